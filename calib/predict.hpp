@@ -1,0 +1,34 @@
+// Dead reckoning from ticks with a calibration and its host-side effects.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "proto/calibration.hpp"
+#include "proto/recording.hpp"
+
+namespace odomcalib::calib {
+
+/// Base pose at each tick sample, starting at the origin. Frame: base at the first sample.
+std::vector<PoseSample> predict(const Recording& recording, const Calibration& calibration);
+
+/// A calibration that holds the nominal values and no effects: dead reckoning as the robot does it now.
+Calibration nominal_calibration(const RobotDescription& robot);
+
+/// The same, sample by sample, for the running daemon.
+class Odometry {
+ public:
+  explicit Odometry(const Calibration& calibration);
+  ~Odometry();
+  Odometry(Odometry&&) noexcept;
+  Odometry& operator=(Odometry&&) noexcept;
+  /// Adds one sample and returns the base pose at its time. The first sample defines the origin; a new segment
+  /// continues from the last pose without motion in between.
+  PoseSample update(const TickSample& sample);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace odomcalib::calib

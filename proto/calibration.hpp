@@ -1,0 +1,110 @@
+// The calibration file (JSON, format "odomcalib-calibration/1").
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/measurements.hpp"
+#include "proto/result.hpp"
+
+namespace odomcalib {
+
+/// Estimate of one quantity; std < 0 means "not estimated", written as null.
+struct Quantity {
+  double value = 0.0;
+  double std = -1.0;
+  std::string unit;
+};
+
+/// Ordered, because the file and every table show quantities in a fixed order.
+using QuantityList = std::vector<std::pair<std::string, Quantity>>;
+
+struct LinearCorrection {
+  std::array<std::array<double, 3>, 3> matrix{};
+  double condition = 0.0;            ///< condition number of A^T A
+  std::array<double, 3> rms{};       ///< m, m, rad
+};
+
+/// Result of one of the estimators, or the reason why it refused.
+struct MethodResult {
+  std::string name;                    ///< straight, spin, linear, joint_closed_form, joint
+  std::optional<std::string> refused;
+  QuantityList parameters;
+  std::array<double, 3> rms{};         ///< m, m, rad
+  std::size_t used = 0;
+  std::size_t discarded = 0;
+};
+
+struct Evidence {
+  double p_value = 1.0;
+  std::optional<double> held_out_before;  ///< open-loop odometry error at the horizon, m
+  std::optional<double> held_out_after;
+};
+
+struct EffectResult {
+  std::string name;
+  QuantityList parameters;
+  Evidence evidence;
+  std::vector<std::string> aliases;
+  std::string stored_in = "host";  ///< "controller" or "host"
+};
+
+struct Unexplained {
+  std::vector<std::string> depends_on;
+  double p_value = 1.0;
+  double share = 0.0;  ///< share of the residual's systematic part
+};
+
+/// RMS in m, m, rad; absent when it could not be measured on held-out data.
+struct ResidualReport {
+  bool held_out = true;
+  std::optional<std::array<double, 3>> before, after, noise_floor;
+};
+
+struct DataUse {
+  std::string name;
+  std::string sha256;
+  double duration = 0.0;
+  std::vector<std::pair<std::string, std::size_t>> counts;     ///< e.g. ticks, scans, pairs
+  std::vector<std::pair<std::string, std::size_t>> discarded;  ///< reason -> count
+};
+
+enum class Verdict { accepted, accepted_with_warnings, refused };
+
+struct Calibration {
+  RobotDescription robot;                        ///< nominal values used
+  QuantityList parameters;                       ///< left_wheel_diameter, right_wheel_diameter, track_width, lidar_x, lidar_y, lidar_yaw
+  std::vector<std::string> covariance_order;
+  std::vector<std::vector<double>> covariance;   ///< SI units, row-major, order above
+  std::optional<LinearCorrection> linear_correction;
+  std::vector<MethodResult> methods;
+  std::vector<EffectResult> effects;
+  std::optional<Unexplained> unexplained;
+  ResidualReport residual;
+  Verdict verdict = Verdict::refused;
+  std::vector<std::string> reasons = {"solve was not called"};
+  std::vector<DataUse> data;
+  /// Additive members that other modules own (JSON text by member name); written verbatim, kept when read.
+  std::map<std::string, std::string> extensions;
+
+  /// Value of a top-level parameter, or nullopt.
+  [[nodiscard]] std::optional<double> parameter(const std::string& name) const {
+    for (const auto& [key, quantity] : parameters)
+      if (key == name) return quantity.value;
+    return std::nullopt;
+  }
+};
+
+/// JSON text with two-space indent and a fixed member order (same input, same bytes). Non-finite numbers become null.
+std::string to_json(const Calibration& calibration);
+Result<Calibration> calibration_from_json(const std::string& text, const std::string& where);
+Result<Calibration> read_calibration(const std::filesystem::path& path);
+/// Writes to a temporary file, syncs and renames: the old file stays whole until the new one is.
+Result<void> write_calibration(const Calibration& calibration, const std::filesystem::path& path);
+
+}  // namespace odomcalib
