@@ -1,0 +1,147 @@
+#include "tests/sim/world/drives.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+
+namespace odomcalib::sim {
+
+namespace {
+
+constexpr Manoeuvre kRest{0.0, 0.0, 0.4};
+
+/// There and back again, with a pause at each end when `stop` is set.
+void shuttle(std::vector<Manoeuvre>& list, double speed, double yaw_rate, double duration, bool stop) {
+  list.push_back({speed, yaw_rate, duration});
+  if (stop) list.push_back(kRest);
+  list.push_back({-speed, -yaw_rate, duration});
+  if (stop) list.push_back(kRest);
+}
+
+void turn(std::vector<Manoeuvre>& list, double yaw_rate, double angle) {
+  list.push_back({0.0, yaw_rate, angle / std::abs(yaw_rate)});
+  list.push_back(kRest);
+}
+
+struct Wanderer {
+  Geometry nominal;
+  double radius;
+  std::mt19937_64 random;
+  Manoeuvre now;
+  double until = 0.0;
+
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  }
+
+  Manoeuvre candidate() {
+    const int kind = std::uniform_int_distribution<int>(0, 9)(random);
+    const double way = uniform(0.0, 1.0) < 0.6 ? 1.0 : -1.0, hand = uniform(0.0, 1.0) < 0.5 ? 1.0 : -1.0;
+    if (kind == 0) return {0.0, 0.0, uniform(0.3, 0.8)};
+    if (kind <= 3) return {0.0, hand * uniform(0.3, 1.3), uniform(1.0, 3.0)};
+    if (kind <= 6) return {way * uniform(0.1, 0.5), 0.0, uniform(1.0, 4.0)};
+    return {way * uniform(0.1, 0.4), hand * uniform(0.2, 1.0), uniform(1.0, 4.0)};
+  }
+
+  [[nodiscard]] bool stays_inside(Pose pose, const Manoeuvre& move) const {
+    constexpr double kStep = 0.1;
+    for (double t = 0.0; t < move.duration + 0.3; t += kStep) {
+      pose = compose(pose, {move.speed * kStep, 0.0, move.yaw_rate * kStep});
+      if (std::hypot(pose.x, pose.y) > radius) return false;
+    }
+    return true;
+  }
+
+  void choose(const Pose& pose) {
+    for (int tries = 0; tries < 50; ++tries) {
+      now = candidate();
+      if (stays_inside(pose, now)) return;
+    }
+    now = {0.0, 0.7, 1.0};  // hemmed in: turn and look again
+  }
+
+  WheelCommand operator()(double t, const Pose& odometry) {
+    if (t >= until) {
+      choose(odometry);
+      until = t + now.duration;
+    }
+    return wheel_command(nominal, now.speed, now.yaw_rate);
+  }
+};
+
+}  // namespace
+
+WheelCommand wheel_command(const Geometry& nominal, double speed, double yaw_rate) {
+  const double edge = 0.5 * nominal.track_width * yaw_rate;
+  return {(speed - edge) / (0.5 * nominal.left_diameter), (speed + edge) / (0.5 * nominal.right_diameter)};
+}
+
+double total_duration(const std::vector<Manoeuvre>& manoeuvres) {
+  double sum = 0.0;
+  for (const Manoeuvre& move : manoeuvres) sum += move.duration;
+  return sum;
+}
+
+Drive follow(const Geometry& nominal, std::vector<Manoeuvre> manoeuvres) {
+  return [nominal, list = std::move(manoeuvres)](double t, const Pose&) {
+    double end = 0.0;
+    for (const Manoeuvre& move : list) {
+      end += move.duration;
+      if (t < end) return wheel_command(nominal, move.speed, move.yaw_rate);
+    }
+    return WheelCommand{};
+  };
+}
+
+std::vector<Manoeuvre> guided_pattern() {
+  std::vector<Manoeuvre> list{{0.0, 0.0, 1.0}};
+  constexpr double kQuarter = 0.5 * std::numbers::pi;
+  for (int heading = 0; heading < 4; ++heading) {
+    const bool stop = heading % 2 == 0;
+    shuttle(list, 0.15, 0.0, 4.0, stop);
+    shuttle(list, 0.25, 0.0, 3.2, !stop);
+    shuttle(list, 0.45, 0.0, 2.2, stop);
+    list.push_back({0.15, 0.0, 1.5});  // from slow to fast without a stop
+    list.push_back({0.40, 0.0, 1.2});
+    list.push_back({-0.40, 0.0, 1.2});
+    list.push_back({-0.15, 0.0, 1.5});
+    turn(list, heading % 2 == 0 ? 0.8 : 0.5, kQuarter);
+  }
+  for (const double rate : {0.3, 0.8, 1.3}) {
+    turn(list, rate, 4.0 * kQuarter);
+    turn(list, -rate, 4.0 * kQuarter);
+  }
+  for (const double speed : {0.15, 0.35})
+    for (const double yaw_rate : {0.4, -0.4, 0.9, -0.9})
+      for (const double way : {1.0, -1.0}) shuttle(list, way * speed, way * yaw_rate, 2.2, false);
+  for (const double speed : {0.12, -0.12, 0.2}) {  // one wheel stands still
+    shuttle(list, speed, speed / 0.2, 2.0, true);
+    shuttle(list, speed, -speed / 0.2, 2.0, true);
+  }
+  shuttle(list, 0.25, 0.0, 3.2, true);
+  list.push_back({0.0, 0.0, 1.0});
+  return list;
+}
+
+std::vector<Manoeuvre> lazy_pattern() {
+  std::vector<Manoeuvre> list{{0.0, 0.0, 1.0}};
+  for (int lap = 0; lap < 10; ++lap) {
+    const double hand = lap % 2 == 0 ? 1.0 : -1.0;
+    list.push_back({0.25, 0.0, 3.0});
+    list.push_back({0.25, hand * 0.4, std::numbers::pi / 0.4});
+    list.push_back({0.25, 0.0, 3.0});
+    list.push_back({0.25, hand * 0.4, std::numbers::pi / 0.4});
+  }
+  list.push_back({0.0, 0.0, 1.0});
+  return list;
+}
+
+Drive random_drive(const Geometry& nominal, std::uint64_t seed, double radius) {
+  auto wanderer = std::make_shared<Wanderer>(
+      Wanderer{nominal, radius, std::mt19937_64(seed ^ 0x6472697665ULL), Manoeuvre{}, 0.0});
+  return [wanderer](double t, const Pose& odometry) { return (*wanderer)(t, odometry); };
+}
+
+}  // namespace odomcalib::sim

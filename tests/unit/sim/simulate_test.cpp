@@ -1,0 +1,108 @@
+#include "tests/sim/world/simulate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "tests/sim/world/rooms.hpp"
+
+namespace odomcalib::sim {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+SimulationConfig short_config() {
+  SimulationConfig config = standard_config(11);
+  config.duration = 5.0;
+  return config;
+}
+
+TEST(Simulate, records_50_tick_samples_and_ten_sweeps_of_450_beams_a_second) {
+  const SimulatedRun run = simulate_recording(short_config(), follow({}, guided_pattern()));
+  EXPECT_EQ(run.recording.ticks.size(), 251U);
+  EXPECT_EQ(run.recording.scans.size(), 49U);
+  for (const Scan& scan : run.recording.scans) {
+    EXPECT_EQ(scan.ranges.size(), 450U);
+    EXPECT_NEAR(scan.angle_increment, -2.0 * kPi / 450.0, 1e-12);
+    EXPECT_NEAR(*scan.time_increment, 1.0 / (450.0 * 9.97), 1e-12);
+  }
+  EXPECT_NEAR(run.recording.scans[1].t - run.recording.scans[0].t, 1.0 / 9.97, 1e-9);
+}
+
+TEST(Simulate, is_deterministic_and_depends_on_the_seed) {
+  SimulationConfig config = short_config();
+  const auto once = simulate_recording(config, random_drive({}, 5));
+  const auto again = simulate_recording(config, random_drive({}, 5));
+  config.seed = 12;
+  const auto other = simulate_recording(config, random_drive({}, 5));
+  ASSERT_EQ(once.recording.scans.size(), again.recording.scans.size());
+  for (std::size_t i = 0; i < once.recording.scans.size(); ++i)
+    EXPECT_EQ(once.recording.scans[i].ranges, again.recording.scans[i].ranges);
+  EXPECT_EQ(once.recording.ticks.back().left, again.recording.ticks.back().left);
+  EXPECT_NE(once.recording.scans[3].ranges, other.recording.scans[3].ranges);
+}
+
+TEST(Simulate, gives_the_drive_the_pose_that_nominal_odometry_believes_in) {
+  SimulationConfig config = short_config();
+  config.truth = config.nominal;
+  config.body.slip_noise = 0.0;
+  Pose believed;
+  const Drive circle = [&](double, const Pose& odometry) {
+    believed = odometry;
+    return wheel_command(config.nominal, 0.2, 0.5);
+  };
+  const auto run = simulate_recording(config, circle);
+  const Pose& truth = run.path.back().pose;
+  EXPECT_NEAR(believed.x, truth.x, 1e-3);
+  EXPECT_NEAR(believed.y, truth.y, 1e-3);
+  EXPECT_NEAR(believed.yaw, truth.yaw, 1e-3);
+}
+
+TEST(Simulate, true_dimensions_differ_from_the_nominal_ones_by_one_to_three_percent) {
+  const Geometry nominal;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const Geometry truth = draw_truth(nominal, seed);
+    for (const double ratio :
+         {truth.left_diameter / nominal.left_diameter, truth.right_diameter / nominal.right_diameter,
+          truth.track_width / nominal.track_width}) {
+      EXPECT_GE(std::abs(ratio - 1.0), 0.0099) << "seed " << seed;
+      EXPECT_LE(std::abs(ratio - 1.0), 0.0301) << "seed " << seed;
+    }
+    EXPECT_NE(truth.left_diameter, truth.right_diameter);
+  }
+}
+
+TEST(Simulate, drives_stay_clear_of_the_walls) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SimulationConfig config = standard_config(seed);
+    config.lidar.beams_per_turn = 10;
+    EXPECT_GT(simulate_recording(config, follow(config.nominal, guided_pattern())).least_clearance, 0.5)
+        << seed;
+    EXPECT_GT(simulate_recording(config, random_drive(config.nominal, seed)).least_clearance, 0.3) << seed;
+    config.room = random_room(seed);
+    EXPECT_GT(simulate_recording(config, random_drive(config.nominal, seed)).least_clearance, 0.2) << seed;
+  }
+}
+
+TEST(Simulate, guided_pattern_excites_both_signs_of_everything_in_about_five_minutes) {
+  const double duration = total_duration(guided_pattern());
+  EXPECT_GT(duration, 240.0);
+  EXPECT_LT(duration, 360.0);
+}
+
+TEST(Simulate, four_minutes_take_less_than_three_seconds) {
+  SimulationConfig config = standard_config(1);
+  config.duration = 240.0;
+  const auto start = std::chrono::steady_clock::now();
+  const auto run = simulate_recording(config, follow(config.nominal, guided_pattern()));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  RecordProperty("seconds", std::to_string(took.count()));
+  EXPECT_LT(took.count(), 12.0)
+      << "3 s on an idle core; the bound leaves room for a loaded machine or a sanitizer";
+  EXPECT_GT(run.recording.scans.size(), 2380U);
+}
+
+}  // namespace
+}  // namespace odomcalib::sim
