@@ -26,16 +26,16 @@ using QuantityList = std::vector<std::pair<std::string, Quantity>>;
 
 struct LinearCorrection {
   std::array<std::array<double, 3>, 3> matrix{};
-  double condition = 0.0;            ///< condition number of A^T A
-  std::array<double, 3> rms{};       ///< m, m, rad
+  double condition = 0.0;       ///< condition number of A^T A
+  std::array<double, 3> rms{};  ///< m, m, rad
 };
 
 /// Result of one of the estimators, or the reason why it refused.
 struct MethodResult {
-  std::string name;                    ///< straight, spin, linear, joint_closed_form, joint
+  std::string name;  ///< straight, spin, linear, joint_closed_form, joint
   std::optional<std::string> refused;
   QuantityList parameters;
-  std::array<double, 3> rms{};         ///< m, m, rad
+  std::array<double, 3> rms{};  ///< m, m, rad
   std::size_t used = 0;
   std::size_t discarded = 0;
 };
@@ -77,10 +77,11 @@ struct DataUse {
 enum class Verdict { accepted, accepted_with_warnings, refused };
 
 struct Calibration {
-  RobotDescription robot;                        ///< nominal values used
-  QuantityList parameters;                       ///< left_wheel_diameter, right_wheel_diameter, track_width, lidar_x, lidar_y, lidar_yaw
+  RobotDescription robot;  ///< nominal values used
+  QuantityList
+      parameters;  ///< left_wheel_diameter, right_wheel_diameter, track_width, lidar_x, lidar_y, lidar_yaw
   std::vector<std::string> covariance_order;
-  std::vector<std::vector<double>> covariance;   ///< SI units, row-major, order above
+  std::vector<std::vector<double>> covariance;  ///< SI units, row-major, order above
   std::optional<LinearCorrection> linear_correction;
   std::vector<MethodResult> methods;
   std::vector<EffectResult> effects;
@@ -100,7 +101,8 @@ struct Calibration {
   }
 };
 
-/// JSON text with two-space indent and a fixed member order (same input, same bytes). Non-finite numbers become null.
+/// JSON text with two-space indent and a fixed member order (same input, same bytes). Non-finite numbers
+/// become null.
 std::string to_json(const Calibration& calibration);
 Result<Calibration> calibration_from_json(const std::string& text, const std::string& where);
 Result<Calibration> read_calibration(const std::filesystem::path& path);

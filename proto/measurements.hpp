@@ -14,15 +14,15 @@ struct RobotDescription {
   double left_wheel_diameter = 0.0;
   double right_wheel_diameter = 0.0;
   double track_width = 0.0;
-  double ticks_per_rev = 0.0;                         ///< counts per wheel turn
-  std::optional<std::array<double, 3>> lidar_pose;    ///< x, y [m], yaw [rad] of the lidar in the base frame
+  double ticks_per_rev = 0.0;                       ///< counts per wheel turn
+  std::optional<std::array<double, 3>> lidar_pose;  ///< x, y [m], yaw [rad] of the lidar in the base frame
   std::string robot_id;
   std::string controller;
 };
 
 /// Cumulative wheel counts at one instant; forward motion counts up on both sides.
 struct TickSample {
-  double t = 0.0;            ///< s
+  double t = 0.0;  ///< s
   std::int64_t left = 0;
   std::int64_t right = 0;
   std::int32_t segment = 0;  ///< increases whenever counts cannot be continued (reset, jump)
@@ -30,17 +30,17 @@ struct TickSample {
 
 /// One sweep of a 2D lidar in the sensor's own frame.
 struct Scan {
-  double t = 0.0;                      ///< s, time of the first beam
-  double angle_min = 0.0;              ///< rad, direction of beam 0, counter-clockwise positive
-  double angle_increment = 0.0;        ///< rad, negative for a clockwise lidar
-  std::optional<double> time_increment;///< s between beams; unknown when absent
-  double range_min = 0.0;              ///< m
-  double range_max = 0.0;              ///< m
-  std::vector<float> ranges;           ///< m, 0 = no reading
-  std::vector<float> angles;           ///< rad per beam; replaces the uniform grid when not empty
-  std::vector<float> times;            ///< s after t per beam; replaces time_increment when not empty
-  std::vector<float> intensities;      ///< device units; empty when the device gives none
-  std::string sensor;                  ///< name of the sensor, empty for the only one
+  double t = 0.0;                        ///< s, time of the first beam
+  double angle_min = 0.0;                ///< rad, direction of beam 0, counter-clockwise positive
+  double angle_increment = 0.0;          ///< rad, negative for a clockwise lidar
+  std::optional<double> time_increment;  ///< s between beams; unknown when absent
+  double range_min = 0.0;                ///< m
+  double range_max = 0.0;                ///< m
+  std::vector<float> ranges;             ///< m, 0 = no reading
+  std::vector<float> angles;             ///< rad per beam; replaces the uniform grid when not empty
+  std::vector<float> times;              ///< s after t per beam; replaces time_increment when not empty
+  std::vector<float> intensities;        ///< device units; empty when the device gives none
+  std::string sensor;                    ///< name of the sensor, empty for the only one
 
   [[nodiscard]] double angle(std::size_t beam) const {
     return angles.empty() ? angle_min + angle_increment * static_cast<double>(beam)

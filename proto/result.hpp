@@ -11,27 +11,27 @@ namespace odomcalib {
 
 /// Closed list of failures; daemon/cli maps each to one exit status (see odomcalibctl(1)).
 enum class ErrorCode {
-  usage,           ///< the request itself makes no sense
-  io,              ///< a file or socket could not be opened, read or written
-  format,          ///< input is not in a known format, or is damaged beyond use
-  missing_units,   ///< robot description lacks a unit-bearing value (diameter, track width, ticks per turn)
-  empty,           ///< no usable data of a needed kind
-  refused,         ///< a quality gate refused; nothing was written
-  cancelled,       ///< stopped by the user or by a lost deadman
-  protective_stop, ///< the daemon stopped the robot
-  device,          ///< bus or device failure
-  timeout,         ///< no answer in time
-  write_failed,    ///< parameter write failed, old values are in force
-  write_unknown,   ///< state of the controller's parameters is unknown, operator needed
-  not_running,     ///< the daemon does not answer
-  not_permitted,   ///< caller lacks the right or the lease
+  usage,            ///< the request itself makes no sense
+  io,               ///< a file or socket could not be opened, read or written
+  format,           ///< input is not in a known format, or is damaged beyond use
+  missing_units,    ///< robot description lacks a unit-bearing value (diameter, track width, ticks per turn)
+  empty,            ///< no usable data of a needed kind
+  refused,          ///< a quality gate refused; nothing was written
+  cancelled,        ///< stopped by the user or by a lost deadman
+  protective_stop,  ///< the daemon stopped the robot
+  device,           ///< bus or device failure
+  timeout,          ///< no answer in time
+  write_failed,     ///< parameter write failed, old values are in force
+  write_unknown,    ///< state of the controller's parameters is unknown, operator needed
+  not_running,      ///< the daemon does not answer
+  not_permitted,    ///< caller lacks the right or the lease
 };
 
 struct Error {
   ErrorCode code = ErrorCode::io;
-  std::string what;   ///< what happened
-  std::string where;  ///< file and line, device, object; may be empty
-  std::string remedy; ///< what to do next; may be empty
+  std::string what;    ///< what happened
+  std::string where;   ///< file and line, device, object; may be empty
+  std::string remedy;  ///< what to do next; may be empty
 
   /// One line for people: "where: what; remedy".
   [[nodiscard]] std::string text() const {

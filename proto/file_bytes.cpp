@@ -1,0 +1,185 @@
+#include "proto/file_bytes.hpp"
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+namespace odomcalib {
+namespace {
+
+constexpr std::size_t kLargestFile = std::size_t{4} << 30;
+
+Error io_error(const std::string& what, const std::filesystem::path& path, const std::string& remedy = {}) {
+  return Error{ErrorCode::io, what + ": " + std::generic_category().message(errno), path.string(), remedy};
+}
+
+/// Closes a descriptor at the end of its scope.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+bool write_all(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+Result<void> sync_folder(const std::filesystem::path& path) {
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd.get() < 0) return io_error("cannot open the folder to sync it", folder);
+  // Some file systems cannot sync a folder (EINVAL); the rename itself has happened.
+  if (::fsync(fd.get()) != 0 && errno != EINVAL) return io_error("cannot sync the folder", folder);
+  return {};
+}
+
+Result<void> write_new_file(const std::filesystem::path& path, int raw_fd, std::string_view bytes) {
+  const Descriptor fd(raw_fd);
+  // mkstemp makes files that only the owner can read; results are for everybody whom the umask lets in.
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  if (::fchmod(fd.get(), 0666 & ~mask) != 0) return io_error("cannot set the mode", path);
+  if (!write_all(fd.get(), bytes)) return io_error("cannot write", path, "check free space");
+  if (::fsync(fd.get()) != 0) return io_error("cannot sync", path, "check the disk");
+  return {};
+}
+
+}  // namespace
+
+Result<std::string> read_file_bytes(const std::filesystem::path& path) {
+  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (fd.get() < 0) return io_error("cannot open", path, "check the name and the permissions");
+  struct stat info {};
+  if (::fstat(fd.get(), &info) != 0) return io_error("cannot read", path);
+  if (S_ISDIR(info.st_mode)) return Error{ErrorCode::io, "is a folder", path.string(), "name a file"};
+  std::string bytes;
+  bytes.reserve(static_cast<std::size_t>(std::max<off_t>(info.st_size, 0)) + 1);
+  std::array<char, 1 << 16> chunk{};
+  for (;;) {
+    const ssize_t got = ::read(fd.get(), chunk.data(), chunk.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return io_error("cannot read", path);
+    if (got == 0) return bytes;
+    bytes.append(chunk.data(), static_cast<std::size_t>(got));
+    if (bytes.size() > kLargestFile)
+      return Error{ErrorCode::io, "is larger than 4 GiB", path.string(), "split it"};
+  }
+}
+
+std::string sha256_hex(std::string_view bytes) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int length = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) return {};
+  static constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string hex;
+  for (unsigned int i = 0; i < length; ++i) {
+    hex += kDigits[digest.at(i) >> 4U];
+    hex += kDigits[digest.at(i) & 15U];
+  }
+  return hex;
+}
+
+bool is_gzip(std::string_view bytes) { return bytes.size() >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b'; }
+
+namespace {
+
+/// Inflates from `stream` until its member ends, input ends, or the data is damaged; returns zlib's last
+/// code.
+int inflate_member(z_stream& stream, std::string& out, std::size_t limit) {
+  std::array<char, 1 << 16> chunk{};
+  int code = Z_OK;
+  while (code == Z_OK && out.size() < limit) {
+    stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+    stream.avail_out = static_cast<uInt>(chunk.size());
+    code = inflate(&stream, Z_NO_FLUSH);
+    out.append(chunk.data(), chunk.size() - stream.avail_out);
+  }
+  return code;
+}
+
+std::string describe_inflate(int code, bool over_limit) {
+  if (over_limit) return "unpacks to more than the limit";
+  return code == Z_BUF_ERROR ? "compressed data is cut off" : "compressed data is damaged";
+}
+
+}  // namespace
+
+Unpacked gunzip(std::string_view packed, std::size_t limit) {
+  Unpacked result;
+  while (is_gzip(packed)) {
+    z_stream stream{};
+    if (inflateInit2(&stream, 16 + MAX_WBITS) != Z_OK) return {{}, false, "cannot start unpacking"};
+    // zlib never writes through next_in. Files are limited to 4 GiB, avail_in holds one byte less.
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT
+    stream.avail_in = static_cast<uInt>(std::min<std::size_t>(packed.size(), UINT32_MAX));
+    const int code = inflate_member(stream, result.bytes, limit);
+    packed.remove_prefix(packed.size() - stream.avail_in);
+    inflateEnd(&stream);
+    if (code == Z_STREAM_END) continue;
+    result.whole = false;
+    result.problem = describe_inflate(code, result.bytes.size() >= limit);
+    return result;
+  }
+  if (!packed.empty() && packed.find_first_not_of('\0') != std::string_view::npos) {
+    result.whole = false;
+    result.problem = "bytes after the compressed data";
+  }
+  return result;
+}
+
+Result<std::string> gzip(std::string_view bytes) {
+  z_stream stream{};
+  if (deflateInit2(&stream, 6, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+    return Error{ErrorCode::io, "cannot start compressing", "", ""};
+  std::string out(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // NOLINT
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  const int code = bytes.size() > UINT32_MAX ? Z_BUF_ERROR : deflate(&stream, Z_FINISH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  if (code != Z_STREAM_END) return Error{ErrorCode::io, "cannot compress", "", "write without .gz"};
+  return out;
+}
+
+Result<void> replace_file(const std::filesystem::path& path, std::string_view bytes) {
+  std::string temporary = path.string() + ".XXXXXX";
+  const int fd = ::mkostemp(temporary.data(), O_CLOEXEC);
+  if (fd < 0) return io_error("cannot create a file beside it", path, "check the folder and its permissions");
+  if (auto written = write_new_file(temporary, fd, bytes); !written) {
+    ::unlink(temporary.c_str());
+    return written;
+  }
+  if (::rename(temporary.c_str(), path.c_str()) != 0) {
+    auto error = io_error("cannot replace", path);
+    ::unlink(temporary.c_str());
+    return error;
+  }
+  return sync_folder(path);
+}
+
+}  // namespace odomcalib

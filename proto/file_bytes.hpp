@@ -1,0 +1,39 @@
+// Whole files as bytes: read, hash, unpack, replace atomically.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "proto/result.hpp"
+
+namespace odomcalib {
+
+/// All bytes of a regular file. Error: io. Files above 4 GiB are refused.
+Result<std::string> read_file_bytes(const std::filesystem::path& path);
+
+/// SHA-256 as lower-case hex.
+std::string sha256_hex(std::string_view bytes);
+
+/// True when the bytes begin with the gzip magic.
+bool is_gzip(std::string_view bytes);
+
+/// What could be unpacked; a damaged or cut-off end leaves what came before it.
+struct Unpacked {
+  std::string bytes;
+  bool whole = true;
+  std::string problem;  ///< why it is not whole
+};
+
+/// Unpacks all members of a gzip file (RFC 1952), at most `limit` bytes.
+Unpacked gunzip(std::string_view packed, std::size_t limit = std::size_t{4} << 30);
+
+/// Packs into one gzip member without a time stamp: same input, same bytes.
+Result<std::string> gzip(std::string_view bytes);
+
+/// Writes to a temporary file beside `path`, syncs, renames and syncs the folder: `path` holds either the old
+/// or the new content, never a part. Error: io.
+Result<void> replace_file(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace odomcalib

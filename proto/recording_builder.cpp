@@ -1,0 +1,260 @@
+#include "proto/recording_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <type_traits>
+
+#include "proto/tick_counts.hpp"
+
+namespace odomcalib {
+namespace {
+
+constexpr double kReorderWindow = 1.0;  // s, DESIGN 4.2: out of order by up to a second
+constexpr double kLatestTime = 1e11;    // s; some 3000 years: larger stamps are garbage
+constexpr std::int64_t kLargestCount = std::int64_t{1} << 53;
+constexpr std::size_t kMostBeams = 100'000;
+constexpr double kLargestRange = 10'000.0;  // m
+constexpr double kNone = -std::numeric_limits<double>::infinity();
+
+bool sane_time(double t) { return std::isfinite(t) && std::abs(t) <= kLatestTime; }
+
+bool all_finite(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+}
+
+bool is_grid(const Scan& scan) {
+  return std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment) && scan.angle_increment != 0.0;
+}
+
+/// Why a scan cannot be used, or nullptr.
+const char* scan_problem(const Scan& scan) {
+  const std::size_t beams = scan.ranges.size();
+  if (!sane_time(scan.t)) return "time stamp missing or impossible";
+  if (beams == 0) return "no ranges";
+  if (beams > kMostBeams) return "more than 100000 beams";
+  if (!scan.angles.empty() && scan.angles.size() != beams) return "angles do not match ranges";
+  if (!scan.times.empty() && scan.times.size() != beams) return "times do not match ranges";
+  if (!scan.intensities.empty() && scan.intensities.size() != beams) return "intensities do not match ranges";
+  if (scan.angles.empty() && !is_grid(scan)) return "angle_min or angle_increment missing or impossible";
+  if (!all_finite(scan.angles)) return "an angle is not a number";
+  if (!all_finite(scan.times)) return "a beam time is not a number";
+  return nullptr;
+}
+
+struct BeamProblems {
+  std::size_t not_a_number = 0;
+  std::size_t out_of_limits = 0;
+};
+
+/// Replaces what is no distance by 0 ("no reading").
+BeamProblems clean_ranges(Scan& scan) {
+  BeamProblems problems;
+  // Limits and ranges were rounded on their own ways to float: allow for one unit in the last place.
+  const auto nearest = static_cast<float>(scan.range_min) * (1.0F - 1e-6F);
+  const auto farthest =
+      static_cast<float>(scan.range_max > 0.0 ? scan.range_max : kLargestRange) * (1.0F + 1e-6F);
+  for (float& range : scan.ranges) {
+    if (range == 0.0F) continue;
+    const bool number = std::isfinite(range);
+    if (number && range > 0.0F && range >= nearest && range <= farthest) continue;
+    ++(number ? problems.out_of_limits : problems.not_a_number);
+    range = 0.0F;
+  }
+  return problems;
+}
+
+void complete_scan(Scan& scan) {
+  if (!std::isfinite(scan.range_min) || scan.range_min < 0.0) scan.range_min = 0.0;
+  if (!std::isfinite(scan.range_max) || scan.range_max <= 0.0) scan.range_max = 0.0;
+  if (!std::isfinite(scan.angle_min)) scan.angle_min = 0.0;
+  if (!std::isfinite(scan.angle_increment)) scan.angle_increment = 0.0;
+  if (scan.time_increment && !(std::isfinite(*scan.time_increment) && *scan.time_increment > 0.0))
+    scan.time_increment.reset();
+}
+
+/// A lidar that states no limit: the farthest reading is the best that is known.
+void set_missing_range_max(Scan& scan) {
+  if (scan.range_max > 0.0) return;
+  scan.range_max = static_cast<double>(*std::max_element(scan.ranges.begin(), scan.ranges.end()));
+}
+
+template <typename Sample>
+void sort_by_time(std::vector<Sample>& samples) {
+  const auto earlier = [](const Sample& a, const Sample& b) { return a.t < b.t; };
+  if (!std::is_sorted(samples.begin(), samples.end(), earlier))
+    std::stable_sort(samples.begin(), samples.end(), earlier);
+}
+
+/// Keeps the first of several samples with one stamp; returns how many went.
+template <typename Sample, typename Same>
+std::size_t drop_repeated(std::vector<Sample>& samples, Same same) {
+  const auto end = std::unique(samples.begin(), samples.end(), same);
+  const auto dropped = static_cast<std::size_t>(samples.end() - end);
+  samples.erase(end, samples.end());
+  return dropped;
+}
+
+std::string number_text(double value) {
+  std::string text = std::to_string(value);
+  return text;
+}
+
+Error missing_unit(const std::string& field, double value, const char* unit, double limit,
+                   const std::string& where) {
+  const std::string remedy = "state it in " + std::string(unit) + " in the robot line or with --robot";
+  if (value == 0.0)
+    return {ErrorCode::missing_units, "robot description lacks \"" + field + "\"", where, remedy};
+  const std::string bound =
+      value > 0.0 || std::isnan(value) ? "at most " + number_text(limit) : "greater than 0";
+  return {
+      ErrorCode::missing_units,
+      "robot description has \"" + field + "\" = " + number_text(value) + ", must be " + bound + " " + unit,
+      where, remedy};
+}
+
+}  // namespace
+
+RecordingBuilder::RecordingBuilder() : newest_ticks_(kNone), newest_pose_(kNone), newest_gyro_(kNone) {}
+
+std::optional<Error> check_robot(const RobotDescription& robot, const std::string& where) {
+  struct Field {
+    const char* name;
+    double value;
+    const char* unit;
+    double limit;  // beyond it, the number is in another unit (mm instead of m)
+  };
+  const bool no_diameter = robot.left_wheel_diameter == 0.0 && robot.right_wheel_diameter == 0.0;
+  const std::array<Field, 4> fields{{
+      {no_diameter ? "wheel_diameter" : "left_wheel_diameter", robot.left_wheel_diameter, "m", 10.0},
+      {no_diameter ? "wheel_diameter" : "right_wheel_diameter", robot.right_wheel_diameter, "m", 10.0},
+      {"track_width", robot.track_width, "m", 50.0},
+      {"ticks_per_rev", robot.ticks_per_rev, "counts per wheel turn", 1e9},
+  }};
+  for (const auto& field : fields)
+    if (!(field.value > 0.0 && field.value <= field.limit))
+      return missing_unit(field.name, field.value, field.unit, field.limit, where);
+  return std::nullopt;
+}
+
+void RecordingBuilder::discard(const std::string& what, const std::string& reason, std::size_t count) {
+  if (count > 0) discarded_[{what, reason}] += count;
+}
+
+template <typename Sample>
+bool RecordingBuilder::in_time(const char* what, const Sample& sample, double& newest) {
+  if (!sane_time(sample.t)) {
+    discard(what, "time stamp missing or impossible");
+    return false;
+  }
+  if (sample.t < newest - kReorderWindow) {
+    discard(what, "out of order by more than 1 s");
+    return false;
+  }
+  newest = std::max(newest, sample.t);
+  return true;
+}
+
+void RecordingBuilder::add_robot(RobotDescription robot) {
+  const auto& old = recording_.robot;
+  if (!have_robot_) {
+    recording_.robot = std::move(robot);
+    have_robot_ = true;
+  } else if (robot.left_wheel_diameter != old.left_wheel_diameter || robot.track_width != old.track_width ||
+             robot.right_wheel_diameter != old.right_wheel_diameter || robot.lidar_pose != old.lidar_pose ||
+             robot.ticks_per_rev != old.ticks_per_rev) {
+    discard("robot", "differs from the first robot description");
+  }
+}
+
+void RecordingBuilder::add_ticks(TickSample sample) {
+  if (std::abs(sample.left) > kLargestCount || std::abs(sample.right) > kLargestCount)
+    discard("ticks", "count beyond 2^53");
+  else if (in_time("ticks", sample, newest_ticks_))
+    recording_.ticks.push_back(sample);
+}
+
+void RecordingBuilder::add_scan(Scan scan) {
+  if (const char* problem = scan_problem(scan)) return discard("scan", problem);
+  if (!in_time("scan", scan, newest_scan_.try_emplace(scan.sensor, kNone).first->second)) return;
+  complete_scan(scan);
+  const auto problems = clean_ranges(scan);
+  discard("beam", "not a number", problems.not_a_number);
+  discard("beam", "outside range_min and range_max", problems.out_of_limits);
+  set_missing_range_max(scan);
+  recording_.scans.push_back(std::move(scan));
+}
+
+void RecordingBuilder::add_pose(PoseSample sample) {
+  if (!std::isfinite(sample.x) || !std::isfinite(sample.y) || !std::isfinite(sample.yaw))
+    discard("pose", "x, y or yaw missing or not a number");
+  else if (in_time("pose", sample, newest_pose_))
+    recording_.poses.push_back(sample);
+}
+
+void RecordingBuilder::add_gyro(GyroSample sample) {
+  if (!std::isfinite(sample.yaw_rate))
+    discard("gyro", "yaw_rate missing or not a number");
+  else if (in_time("gyro", sample, newest_gyro_))
+    recording_.gyro.push_back(sample);
+}
+
+void RecordingBuilder::add_increment(IncrementSample sample) {
+  const bool finite = std::isfinite(sample.left_speed) && std::isfinite(sample.right_speed) &&
+                      std::all_of(sample.lidar_motion.begin(), sample.lidar_motion.end(),
+                                  [](double v) { return std::isfinite(v); });
+  if (!finite || !std::isfinite(sample.duration) || sample.duration <= 0.0)
+    discard("tuple", "a value is missing or impossible");
+  else
+    recording_.increments.push_back(sample);
+}
+
+bool RecordingBuilder::has_data() const {
+  return !recording_.ticks.empty() || !recording_.scans.empty() || !recording_.poses.empty() ||
+         !recording_.gyro.empty() || !recording_.increments.empty();
+}
+
+void RecordingBuilder::merge_robot(const RobotDescription* fallback) {
+  if (fallback == nullptr) return;
+  auto& robot = recording_.robot;
+  const auto take = [](double& value, double other) {
+    if (value == 0.0) value = other;
+  };
+  take(robot.left_wheel_diameter, fallback->left_wheel_diameter);
+  take(robot.right_wheel_diameter, fallback->right_wheel_diameter);
+  take(robot.track_width, fallback->track_width);
+  take(robot.ticks_per_rev, fallback->ticks_per_rev);
+  if (!robot.lidar_pose) robot.lidar_pose = fallback->lidar_pose;
+  if (robot.robot_id.empty()) robot.robot_id = fallback->robot_id;
+  if (robot.controller.empty()) robot.controller = fallback->controller;
+}
+
+void RecordingBuilder::sort_streams() {
+  sort_by_time(recording_.ticks);
+  sort_by_time(recording_.scans);
+  sort_by_time(recording_.poses);
+  sort_by_time(recording_.gyro);
+  const auto same = [](const auto& a, const auto& b) { return a.t == b.t; };
+  const auto same_scan = [](const Scan& a, const Scan& b) { return a.t == b.t && a.sensor == b.sensor; };
+  discard("ticks", "repeated time stamp", drop_repeated(recording_.ticks, same));
+  discard("scan", "repeated time stamp", drop_repeated(recording_.scans, same_scan));
+  discard("pose", "repeated time stamp", drop_repeated(recording_.poses, same));
+  discard("gyro", "repeated time stamp", drop_repeated(recording_.gyro, same));
+}
+
+Result<Recording> RecordingBuilder::finish(const std::string& where, const RobotDescription* fallback,
+                                           RobotNeed need) && {
+  if (!has_data())
+    return Error{ErrorCode::empty, "no usable ticks, scans, poses or increments", where,
+                 "check that the recording was running while the robot moved"};
+  merge_robot(fallback);
+  if (need == RobotNeed::required)
+    if (auto problem = check_robot(recording_.robot, where)) return *problem;
+  sort_streams();
+  continue_counts(recording_.ticks, recording_.robot);
+  for (const auto& [key, count] : discarded_) recording_.discarded.push_back({key.first, key.second, count});
+  return std::move(recording_);
+}
+
+}  // namespace odomcalib

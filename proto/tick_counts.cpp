@@ -1,0 +1,178 @@
+#include "proto/tick_counts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+
+namespace odomcalib {
+namespace {
+
+// No robot that this program calibrates drives faster; nominal diameters may be wrong by a factor of three.
+constexpr double kFastest = 10.0;  // m/s
+// A step of one sample that stands out from both its neighbours by more than this is a jump, not motion: it
+// would need an acceleration and a deceleration of about 100 m/s^2.
+constexpr double kSpike = 4.0;  // m/s
+
+using Counts = std::array<std::int64_t, 2>;
+
+struct Step {
+  Counts change{};
+  Counts wraps{};  // what was added to the raw difference, as a count offset
+};
+
+/// Both counts always fit into `bits`, signed or unsigned: only then can they wrap there.
+struct Width {
+  std::int64_t modulus;
+  bool possible;
+};
+
+bool fits(const std::vector<TickSample>& ticks, std::int64_t modulus) {
+  const auto inside = [&](std::int64_t low) {
+    return std::all_of(ticks.begin(), ticks.end(), [&](const TickSample& s) {
+      return s.left >= low && s.left < low + modulus && s.right >= low && s.right < low + modulus;
+    });
+  };
+  return inside(0) || inside(-modulus / 2);
+}
+
+double median_interval(const std::vector<TickSample>& ticks) {
+  std::vector<double> intervals;
+  intervals.reserve(ticks.size());
+  for (std::size_t i = 1; i < ticks.size(); ++i) intervals.push_back(ticks[i].t - ticks[i - 1].t);
+  if (intervals.empty()) return 0.1;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return std::max(*middle, 1e-3);
+}
+
+/// Speeds in m/s from counts, with the nominal geometry.
+class Speeds {
+ public:
+  Speeds(const std::vector<TickSample>& ticks, const RobotDescription& robot)
+      : floor_(median_interval(ticks)), metres_per_tick_(0.0) {
+    const double diameter = std::max(robot.left_wheel_diameter, robot.right_wheel_diameter);
+    if (diameter > 0.0 && robot.ticks_per_rev > 0.0)
+      metres_per_tick_ = diameter * std::numbers::pi / robot.ticks_per_rev;
+  }
+  [[nodiscard]] bool known() const { return metres_per_tick_ > 0.0; }
+  /// Jittering stamps make short intervals: never divide by less than the usual one.
+  [[nodiscard]] double operator()(std::int64_t change, double interval) const {
+    return static_cast<double>(change) * metres_per_tick_ / std::max(interval, floor_);
+  }
+  [[nodiscard]] bool possible(std::int64_t change, double interval) const {
+    return !known() || std::abs((*this)(change, interval)) <= kFastest;
+  }
+
+ private:
+  double floor_;
+  double metres_per_tick_;
+};
+
+/// The smaller of the raw difference and the same difference wrapped once in either direction.
+std::int64_t nearest_wrap(std::int64_t difference, const std::array<Width, 2>& widths) {
+  std::int64_t best = difference;
+  for (const auto& width : widths) {
+    if (!width.possible) continue;
+    for (const std::int64_t offset : {-width.modulus, width.modulus})
+      if (std::abs(difference + offset) < std::abs(best)) best = difference + offset;
+  }
+  return best;
+}
+
+/// Counters that both return to exactly zero by more than one sample's motion were reset.
+bool is_reset(const TickSample& now, const Counts& change, const Counts& previous_change) {
+  if (now.left != 0 || now.right != 0) return false;
+  const auto unlike = [](std::int64_t step, std::int64_t usual) {
+    return std::abs(step - usual) > 2 * std::abs(usual) + 8;
+  };
+  return unlike(change[0], previous_change[0]) || unlike(change[1], previous_change[1]);
+}
+
+/// Differences that int64 cannot hold come only from garbage.
+std::optional<std::int64_t> difference(std::int64_t now, std::int64_t before) {
+  std::int64_t out = 0;
+  if (__builtin_sub_overflow(now, before, &out) || out == INT64_MIN) return std::nullopt;
+  return out;
+}
+
+struct Change {
+  Counts counts{};
+  bool continued = false;
+};
+
+class Continuation {
+ public:
+  Continuation(const std::vector<TickSample>& ticks, const RobotDescription& robot)
+      : speeds_(ticks, robot),
+        widths_{{{std::int64_t{1} << 16, fits(ticks, std::int64_t{1} << 16)},
+                 {std::int64_t{1} << 32, fits(ticks, std::int64_t{1} << 32)}}} {}
+
+  [[nodiscard]] std::vector<Change> changes(const std::vector<TickSample>& ticks) const {
+    std::vector<Change> out(ticks.size());
+    Counts usual{};
+    for (std::size_t i = 1; i < ticks.size(); ++i) {
+      out[i] = between(ticks[i - 1], ticks[i], usual);
+      if (out[i].continued) usual = out[i].counts;
+    }
+    break_at_spikes(ticks, out);
+    return out;
+  }
+
+ private:
+  [[nodiscard]] Change between(const TickSample& before, const TickSample& now, const Counts& usual) const {
+    if (before.segment != now.segment) return {};
+    const auto left = difference(now.left, before.left);
+    const auto right = difference(now.right, before.right);
+    if (!left || !right || is_reset(now, {*left, *right}, usual)) return {};
+    const Counts counts{nearest_wrap(*left, widths_), nearest_wrap(*right, widths_)};
+    const double interval = now.t - before.t;
+    const bool possible = speeds_.possible(counts[0], interval) && speeds_.possible(counts[1], interval);
+    return {counts, possible};
+  }
+
+  [[nodiscard]] double excess(const Change& change, const Change& other, double interval,
+                              double other_interval, std::size_t side) const {
+    return std::abs(speeds_(change.counts.at(side), interval) -
+                    speeds_(other.counts.at(side), other_interval));
+  }
+
+  void break_at_spikes(const std::vector<TickSample>& ticks, std::vector<Change>& changes) const {
+    if (!speeds_.known()) return;
+    for (std::size_t i = 2; i + 1 < ticks.size(); ++i) {
+      if (!changes[i].continued || !changes[i - 1].continued || !changes[i + 1].continued) continue;
+      const double interval = ticks[i].t - ticks[i - 1].t;
+      for (std::size_t side = 0; side < 2; ++side)
+        if (excess(changes[i], changes[i - 1], interval, ticks[i - 1].t - ticks[i - 2].t, side) > kSpike &&
+            excess(changes[i], changes[i + 1], interval, ticks[i + 1].t - ticks[i].t, side) > kSpike)
+          changes[i].continued = false;
+    }
+  }
+
+  Speeds speeds_;
+  std::array<Width, 2> widths_;
+};
+
+}  // namespace
+
+std::size_t continue_counts(std::vector<TickSample>& ticks, const RobotDescription& robot) {
+  const auto changes = Continuation(ticks, robot).changes(ticks);
+  std::int32_t segment = 0;
+  Counts counts{};
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    if (i == 0 || !changes[i].continued) {
+      segment += i == 0 ? 0 : 1;
+      counts = {ticks[i].left, ticks[i].right};
+    } else {
+      counts = {counts[0] + changes[i].counts[0], counts[1] + changes[i].counts[1]};
+    }
+    ticks[i].left = counts[0];
+    ticks[i].right = counts[1];
+    ticks[i].segment = segment;
+  }
+  return static_cast<std::size_t>(segment);
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,19 @@
+// Cumulative counts as controllers send them: wrapping, resetting, jumping. Internal to proto/.
+#pragma once
+
+#include <vector>
+
+#include "proto/measurements.hpp"
+
+namespace odomcalib {
+
+/// Unwraps counts of 16 and 32 bits and starts a new segment wherever a count cannot be continued: after a
+/// reset, or after a step that no wheel can have made. Counts inside a segment differ by real motion only.
+/// Expects samples sorted by time with increasing stamps; samples that carry different segments already are
+/// never joined.
+/// @param robot nominal geometry: turns counts into speeds; zero fields: only wraps and resets to zero are
+/// recognised
+/// @return number of new segments
+std::size_t continue_counts(std::vector<TickSample>& ticks, const RobotDescription& robot);
+
+}  // namespace odomcalib
