@@ -1,0 +1,81 @@
+#include "calib/gate.hpp"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kMaxRelativeDeviation = 0.03;   ///< of a diameter or the track width; worse is no calibration
+constexpr double kWarnRelativeDeviation = 0.005;
+constexpr double kPlausibleLow = 0.5;            ///< estimate over nominal
+constexpr double kPlausibleHigh = 2.0;
+constexpr double kWarnChange = 0.10;
+
+std::string percent(double share) {
+  std::ostringstream out;
+  out << std::setprecision(3) << 100.0 * share << " %";
+  return out.str();
+}
+
+double nominal_value(const RobotDescription& robot, const std::string& name) {
+  if (name == "left_wheel_diameter") return robot.left_wheel_diameter;
+  if (name == "right_wheel_diameter") return robot.right_wheel_diameter;
+  return robot.track_width;
+}
+
+std::string motion_for(const std::string& name) {
+  return name == "track_width" ? "turn on the spot, both ways" : "drive straight lines, forward and backward";
+}
+
+class Judgement {
+ public:
+  void refuse(const std::string& reason) { refusals_.push_back(reason); }
+  void warn(const std::string& reason) { warnings_.push_back(reason); }
+
+  void check(const std::string& name, const Quantity& quantity, double nominal) {
+    if (!std::isfinite(quantity.value) || quantity.value <= 0.0) {
+      refuse(name + " came out as a non-positive length: left and right wheels may be swapped, or the lidar's direction of "
+                    "rotation is wrong");
+      return;
+    }
+    const double relative = quantity.std / quantity.value;
+    if (!(quantity.std >= 0.0) || relative > kMaxRelativeDeviation)
+      refuse(name + " is determined to " + percent(relative) + " only; to fix that, " + motion_for(name));
+    else if (relative > kWarnRelativeDeviation)
+      warn(name + " is determined to " + percent(relative) + " only; a longer recording would help");
+    if (nominal > 0.0) check_against_nominal(name, quantity.value / nominal);
+  }
+
+  [[nodiscard]] GateResult result() const {
+    if (!refusals_.empty()) return {Verdict::refused, refusals_};
+    if (!warnings_.empty()) return {Verdict::accepted_with_warnings, warnings_};
+    return {Verdict::accepted, {}};
+  }
+
+ private:
+  void check_against_nominal(const std::string& name, double ratio) {
+    if (ratio < kPlausibleLow || ratio > kPlausibleHigh)
+      refuse(name + " is " + percent(ratio) + " of its nominal value: check ticks per revolution, gear ratio and units");
+    else if (std::abs(ratio - 1.0) > kWarnChange)
+      warn(name + " differs from its nominal value by " + percent(ratio - 1.0));
+  }
+
+  std::vector<std::string> refusals_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+GateResult judge(const Calibration& calibration, bool converged) {
+  Judgement judgement;
+  for (const auto& [name, quantity] : calibration.parameters) {
+    if (name.starts_with("lidar_")) continue;
+    judgement.check(name, quantity, nominal_value(calibration.robot, name));
+  }
+  if (!converged) judgement.warn("the fit had not settled when its iterations ran out");
+  return judgement.result();
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,179 @@
+#include "calib/matching/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr int kMaxNeighbours = 12;         ///< on each side
+constexpr double kMaxNeighbourhood = 0.25;///< m; longer stretches of wall gain nothing and bend at corners
+constexpr std::size_t kMinLinePoints = 4;
+constexpr double kLineNoiseFactor = 2.0;  ///< accepted rms of a line fit in units of the expected noise
+constexpr double kRelativeGap = 3.5;      ///< neighbours further apart than this times the median step are another surface
+constexpr double kMinRangeNoise = 2e-3;   ///< m, real surfaces and beams are no better than this
+constexpr double kMaxRangeNoise = 5e-2;   ///< m
+constexpr double kDefaultRangeNoise = 1e-2;
+constexpr double kBeamFloor = 1e-3;       ///< m, angular error of beams and unevenness of surfaces
+
+struct Line {
+  Eigen::Vector2d centre;
+  Eigen::Vector2d normal;
+  double rms = 0.0;
+  std::size_t count = 0;
+};
+
+/// Running sums over the points, so that the line through any run of them costs the same.
+class RunSums {
+ public:
+  explicit RunSums(const std::vector<SurfacePoint>& points) : sums_(points.size() + 1, Sums::Zero()) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector2d& p = points[i].position;
+      sums_[i + 1] = sums_[i];
+      sums_[i + 1] += (Sums() << p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y()).finished();
+    }
+  }
+
+  /// Total least squares line through points [first, last].
+  [[nodiscard]] Line line(std::size_t first, std::size_t last) const {
+    Line line;
+    line.count = last - first + 1;
+    const double n = static_cast<double>(line.count);
+    const Sums s = (sums_[last + 1] - sums_[first]) / n;
+    const double xx = s(2) - s(0) * s(0);
+    const double xy = s(3) - s(0) * s(1);
+    const double yy = s(4) - s(1) * s(1);
+    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);  // direction of largest spread
+    line.centre = s.head<2>();
+    line.normal = {-std::sin(angle), std::cos(angle)};
+    const double smallest = 0.5 * (xx + yy - std::hypot(xx - yy, 2.0 * xy));
+    line.rms = std::sqrt(std::max(smallest, 0.0) * n / std::max(n - 2.0, 1.0));
+    return line;
+  }
+
+ private:
+  using Sums = Eigen::Matrix<double, 5, 1>;
+  std::vector<Sums> sums_;
+};
+
+/// Typical distance between neighbouring beam ends at this range, from the angular step.
+double expected_step(const SurfacePoint& a, double angular_step) { return std::max(a.range * angular_step, 5e-3); }
+
+/// How far the neighbourhood of i reaches to one side before a gap, the size limit or the count limit.
+std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int direction, double angular_step) {
+  std::size_t k = i;
+  for (int n = 0; n < kMaxNeighbours; ++n) {
+    if ((direction < 0 && k == 0) || (direction > 0 && k + 1 == points.size())) break;
+    const std::size_t next = direction < 0 ? k - 1 : k + 1;
+    // A surface seen at a grazing angle spreads its points; beyond about 75 degrees it is not used.
+    const double gap = (points[next].position - points[k].position).norm();
+    if (gap > kRelativeGap * expected_step(points[k], angular_step)) break;
+    if ((points[next].position - points[i].position).norm() > kMaxNeighbourhood) break;
+    k = next;
+  }
+  return k;
+}
+
+bool acceptable(const Line& line, const SurfacePoint& point, double range_noise) {
+  if (line.count < kMinLinePoints) return false;
+  const double incidence = std::abs(line.normal.dot(point.beam));
+  if (incidence < 0.2) return false;
+  return line.rms < kLineNoiseFactor * std::hypot(range_noise * incidence, kBeamFloor);
+}
+
+/// Widest neighbourhood that is still one line: both sides, one side (next to a corner), then a narrower one.
+void attach_line(std::vector<SurfacePoint>& points, const RunSums& sums, std::size_t i, double angular_step,
+                 double range_noise) {
+  const std::size_t low = reach(points, i, -1, angular_step);
+  const std::size_t high = reach(points, i, +1, angular_step);
+  const std::pair<std::size_t, std::size_t> windows[] = {
+      {low, high}, {low, i}, {i, high}, {i - (i - low) / 2, i + (high - i) / 2}};
+  for (const auto& [first, last] : windows) {
+    const Line line = sums.line(first, last);
+    if (!acceptable(line, points[i], range_noise)) continue;
+    SurfacePoint& point = points[i];
+    point.normal = line.normal.dot(point.beam) > 0.0 ? Eigen::Vector2d(-line.normal) : line.normal;
+    point.anchor = point.position - line.normal * line.normal.dot(point.position - line.centre);
+    point.has_line = true;
+    return;
+  }
+}
+
+bool usable(const Scan& scan, std::size_t beam) {
+  const auto range = static_cast<double>(scan.ranges[beam]);
+  return range > 0.0 && range >= scan.range_min && (scan.range_max <= 0.0 || range <= scan.range_max);
+}
+
+SurfacePoint beam_end(const Scan& scan, std::size_t beam, const BeamMotion& motion) {
+  SurfacePoint point;
+  point.range = static_cast<double>(scan.ranges[beam]);
+  const Pose pose = motion(beam_time(scan, beam));
+  const double angle = pose.yaw + scan.angle(beam);
+  point.beam = {std::cos(angle), std::sin(angle)};
+  point.position = Eigen::Vector2d(pose.x, pose.y) + point.range * point.beam;
+  return point;
+}
+
+double angular_step(const Scan& scan) {
+  if (scan.angles.size() > 1)
+    return std::abs(static_cast<double>(scan.angles.back()) - static_cast<double>(scan.angles.front())) /
+           static_cast<double>(scan.angles.size() - 1);
+  return std::abs(scan.angle_increment);
+}
+
+double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Noise along the beam that lines through runs of neighbouring readings show. Runs that cross a corner show more, so that
+/// only the median over many runs means anything.
+void collect_line_noise(const Scan& scan, std::vector<double>& out) {
+  constexpr std::size_t kRun = 13;
+  std::vector<SurfacePoint> points;
+  for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam)
+    if (usable(scan, beam)) points.push_back(beam_end(scan, beam, [](double) { return Pose{}; }));
+  const RunSums sums(points);
+  const double step = angular_step(scan);
+  for (std::size_t first = 0; first + kRun <= points.size(); first += kRun / 2) {
+    const std::size_t middle = first + kRun / 2;
+    if (reach(points, middle, -1, step) > first || reach(points, middle, +1, step) < first + kRun - 1) continue;
+    const Line line = sums.line(first, first + kRun - 1);
+    const double incidence = std::abs(line.normal.dot(points[middle].beam));
+    if (incidence > 0.3) out.push_back(line.rms / incidence);
+  }
+}
+
+}  // namespace
+
+double beam_time(const Scan& scan, std::size_t beam) {
+  if (!scan.times.empty()) return static_cast<double>(scan.times[beam]);
+  return scan.time_increment.value_or(0.0) * static_cast<double>(beam);
+}
+
+double reference_time(const Scan& scan) {
+  return scan.ranges.empty() ? 0.0 : beam_time(scan, scan.ranges.size() - 1) / 2.0;
+}
+
+Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_noise) {
+  Surface surface;
+  surface.points.reserve(scan.ranges.size());
+  for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam)
+    if (usable(scan, beam)) surface.points.push_back(beam_end(scan, beam, motion));
+  const double step = angular_step(scan);
+  const RunSums sums(surface.points);
+  for (std::size_t i = 0; i < surface.points.size(); ++i) attach_line(surface.points, sums, i, step, range_noise);
+  return surface;
+}
+
+double estimate_range_noise(std::span<const Scan> scans) {
+  std::vector<double> noise;
+  const std::size_t stride = std::max<std::size_t>(scans.size() / 100, 1);
+  for (std::size_t k = 0; k < scans.size(); k += stride) collect_line_noise(scans[k], noise);
+  if (noise.empty()) return kDefaultRangeNoise;
+  return std::clamp(median_of(noise), kMinRangeNoise, kMaxRangeNoise);
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,45 @@
+// A scan as points with local lines: what point-to-line matching needs.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "calib/geometry/se2.hpp"
+#include "proto/measurements.hpp"
+
+namespace odomcalib::calib {
+
+/// One beam end in the sensor frame at the scan's reference time, with a line fitted to its neighbourhood.
+struct SurfacePoint {
+  Eigen::Vector2d position;
+  Eigen::Vector2d beam;       ///< unit vector along which the range was measured
+  Eigen::Vector2d anchor;     ///< point of the local line next to `position`
+  Eigen::Vector2d normal;     ///< unit normal of the local line, towards the sensor
+  double range = 0.0;
+  bool has_line = false;
+};
+
+struct Surface {
+  std::vector<SurfacePoint> points;  ///< in beam order
+};
+
+/// Motion of the sensor from the scan's reference time to the time of a beam, s after Scan::t.
+using BeamMotion = std::function<Pose(double seconds_after_first_beam)>;
+
+/// Time of a beam after Scan::t in s; 0 when the recording does not tell.
+double beam_time(const Scan& scan, std::size_t beam);
+
+/// Middle of the sweep after Scan::t in s: the scan's reference time; 0 when beam times are unknown.
+double reference_time(const Scan& scan);
+
+/// De-skewed points with local lines. Beams without reading or outside the scan's range limits are left out.
+/// @param range_noise standard deviation of a range, m; decides what still counts as one line
+Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_noise);
+
+/// Standard deviation of the range readings, m, from lines through runs of neighbouring readings: it includes what short
+/// surfaces are uneven by, and sensors that smooth neighbouring readings do not look better than they are.
+double estimate_range_noise(std::span<const Scan> scans);
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,58 @@
+// What can be missing in the plain differential-drive model: the interface of one effect.
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/model/motion_step.hpp"
+
+namespace odomcalib::calib {
+
+/// Scalar for automatic derivatives: the value and its derivatives by up to 16 parameters at a time.
+inline constexpr int kJetSize = 16;
+using Jet = ceres::Jet<double, kJetSize>;
+
+struct EffectParameter {
+  std::string name;
+  std::string unit;
+  double scale = 1.0;   ///< typical size; steps and tolerances are relative to it
+  double lower = 0.0;   ///< physically plausible range
+  double upper = 0.0;
+};
+
+/// Where a correction can live.
+enum class Storage { controller, host, driver, nowhere };
+
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  [[nodiscard]] virtual std::string name() const = 0;
+  [[nodiscard]] virtual std::vector<EffectParameter> parameters() const = 0;
+  /// Names of the effects that look alike, and the motion that tells them apart.
+  [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
+  [[nodiscard]] virtual std::string separating_motion() const { return {}; }
+  [[nodiscard]] virtual Storage storage() const { return Storage::host; }
+
+  /// Changes the motion of one tick interval in place. Zero parameters leave it unchanged.
+  virtual void apply(const StepContext& context, std::span<const double> parameters, WheelStep<double>& step) const {
+    (void)context, (void)parameters, (void)step;
+  }
+  virtual void apply(const StepContext& context, std::span<const Jet> parameters, WheelStep<Jet>& step) const {
+    (void)context, (void)parameters, (void)step;
+  }
+  /// Delay in s of the sensor against the encoders: a scan stamped t was taken at encoder time t - delay.
+  [[nodiscard]] virtual double delay(double time, std::span<const double> parameters) const {
+    (void)time, (void)parameters;
+    return 0.0;
+  }
+  [[nodiscard]] virtual Jet delay(double time, std::span<const Jet> parameters) const {
+    (void)time, (void)parameters;
+    return Jet(0.0);
+  }
+};
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,109 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/model/drive_model.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kSmoothing = 0.25;  ///< s; differences of raw ticks over less are mostly quantisation noise
+constexpr double kStanding = 0.005;  ///< m/s; below, the direction of travel is undefined and the last one is kept
+
+/// Least-squares parabola through (t, values) around `centre` within the smoothing window: slope and curvature.
+struct LocalDerivatives {
+  double first = 0.0;
+  double second = 0.0;
+};
+
+LocalDerivatives local_derivatives(const std::vector<double>& t, const std::vector<double>& values, std::size_t low,
+                                   std::size_t high, double centre) {
+  // Normal equations of c0 + c1 u + c2 u^2 with u = (t - centre) / window, solved by Cramer's rule on sums.
+  double s[5] = {};
+  double b[3] = {};
+  for (std::size_t k = low; k <= high; ++k) {
+    const double u = (t[k] - centre) / kSmoothing;
+    const double y = values[k] - values[low];
+    double power = 1.0;
+    for (int j = 0; j < 5; ++j, power *= u) {
+      s[j] += power;
+      if (j < 3) b[j] += power * y;
+    }
+  }
+  Eigen::Matrix3d normal;
+  normal << s[0], s[1], s[2], s[1], s[2], s[3], s[2], s[3], s[4];
+  const double determinant = normal.determinant();
+  if (high - low >= 3 && std::abs(determinant) > 1e-9 * std::pow(s[0], 3)) {
+    const Eigen::Vector3d c = normal.inverse() * Eigen::Vector3d(b[0], b[1], b[2]);
+    return {c(1) / kSmoothing, 2.0 * c(2) / (kSmoothing * kSmoothing)};
+  }
+  const double duration = t[high] - t[low];
+  return {duration > 0.0 ? (values[high] - values[low]) / duration : 0.0, 0.0};
+}
+
+struct Window {
+  std::size_t low = 0;
+  std::size_t high = 0;
+};
+
+/// Samples within half a smoothing window of `centre`, at least interval k itself, never across a segment.
+Window window_around(const WheelTrack& track, std::size_t k, Window window, double centre) {
+  while (track.t[window.low] < centre - kSmoothing / 2.0 && window.low < k) ++window.low;
+  window.high = std::max(window.high, k + 1);
+  while (window.high + 1 < track.t.size() && track.t[window.high + 1] <= centre + kSmoothing / 2.0) ++window.high;
+  while (track.segment[window.low] != track.segment[k] && window.low < k) ++window.low;
+  while (track.segment[window.high] != track.segment[k] && window.high > k + 1) --window.high;
+  return window;
+}
+
+void fill_speeds(StepContext& c, const WheelTrack& track, Window window, double centre, const BaseParameters& nominal) {
+  const auto left = local_derivatives(track.t, track.left, window.low, window.high, centre);
+  const auto right = local_derivatives(track.t, track.right, window.low, window.high, centre);
+  c.left_speed = nominal.left_radius * left.first;
+  c.right_speed = nominal.right_radius * right.first;
+  c.left_acceleration = nominal.left_radius * left.second;
+  c.right_acceleration = nominal.right_radius * right.second;
+  c.speed = (c.left_speed + c.right_speed) / 2.0;
+  c.turn_rate = (c.right_speed - c.left_speed) / nominal.track_width;
+}
+
+}  // namespace
+
+std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& nominal) {
+  std::vector<StepContext> contexts;
+  if (track.empty()) return contexts;
+  contexts.reserve(track.t.size() - 1);
+  Pose pose;
+  Window window;
+  double since_reversal = 0.0;
+  double direction = 0.0;
+  for (std::size_t k = 0; k + 1 < track.t.size(); ++k) {
+    StepContext c;
+    const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
+    const bool joined = track.segment[k] == track.segment[k + 1];
+    c.t = centre - track.t.front();
+    c.dt = track.t[k + 1] - track.t[k];
+    c.left_angle = (track.left[k] + track.left[k + 1]) / 2.0;
+    c.right_angle = (track.right[k] + track.right[k + 1]) / 2.0;
+    c.left_delta = joined ? track.left[k + 1] - track.left[k] : 0.0;
+    c.right_delta = joined ? track.right[k + 1] - track.right[k] : 0.0;
+    window = window_around(track, k, window, centre);
+    fill_speeds(c, track, window, centre, nominal);
+    const Pose step = wheel_arc(nominal.left_radius * c.left_delta, nominal.right_radius * c.right_delta,
+                                nominal.track_width);
+    const double now = std::abs(c.speed) > kStanding ? std::copysign(1.0, c.speed) : direction;
+    if (now != direction) since_reversal = 0.0;
+    direction = now;
+    since_reversal += std::hypot(step.x, step.y);
+    c.since_reversal = since_reversal;
+    c.direction = direction;
+    c.heading = pose.yaw + step.yaw / 2.0;
+    c.x = pose.x;
+    c.y = pose.y;
+    pose = compose(pose, step);
+    contexts.push_back(c);
+  }
+  return contexts;
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,136 @@
+#include "calib/predict.hpp"
+
+#include <cmath>
+#include <deque>
+
+#include "calib/effects/catalogue.hpp"
+#include "calib/model/drive_model.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+/// Samples kept for smoothing: effects see speeds, and speeds need a little history.
+constexpr std::size_t kHistory = 32;
+
+struct Correction {
+  Eigen::VectorXd parameters;
+  EffectList effects;
+};
+
+double value_or(const Calibration& calibration, const std::string& name, double otherwise) {
+  return calibration.parameter(name).value_or(otherwise);
+}
+
+Correction correction_of(const Calibration& calibration) {
+  BaseParameters base;
+  base.left_radius = value_or(calibration, "left_wheel_diameter", calibration.robot.left_wheel_diameter) / 2.0;
+  base.right_radius = value_or(calibration, "right_wheel_diameter", calibration.robot.right_wheel_diameter) / 2.0;
+  base.track_width = value_or(calibration, "track_width", calibration.robot.track_width);
+  Correction correction{to_vector(base), {}};
+  std::vector<double> values(correction.parameters.data(), correction.parameters.data() + kBaseCount);
+  for (const EffectResult& result : calibration.effects) {
+    const auto effect = find_effect(result.name);
+    if (!effect || result.parameters.size() != effect->parameters().size()) continue;
+    correction.effects.push_back(effect);
+    for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
+  }
+  correction.parameters = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return correction;
+}
+
+std::span<const double> as_span(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+
+BaseParameters nominal_of(const RobotDescription& robot) {
+  return {robot.left_wheel_diameter / 2.0, robot.right_wheel_diameter / 2.0, robot.track_width, {}};
+}
+
+}  // namespace
+
+Calibration nominal_calibration(const RobotDescription& robot) {
+  Calibration calibration;
+  calibration.robot = robot;
+  calibration.parameters = {{"left_wheel_diameter", {robot.left_wheel_diameter, -1.0, "m"}},
+                            {"right_wheel_diameter", {robot.right_wheel_diameter, -1.0, "m"}},
+                            {"track_width", {robot.track_width, -1.0, "m"}}};
+  calibration.reasons = {"nominal values"};
+  return calibration;
+}
+
+std::vector<PoseSample> predict(const Recording& recording, const Calibration& calibration) {
+  std::vector<PoseSample> poses;
+  const WheelTrack track = wheel_track_from_ticks(recording);
+  if (track.empty()) return poses;
+  const Correction correction = correction_of(calibration);
+  const DriveModel model(track, make_context(track, nominal_of(recording.robot)));
+  const std::vector<Pose> base = model.trajectory(as_span(correction.parameters), correction.effects).poses();
+  std::size_t k = 0;
+  for (const TickSample& sample : recording.ticks) {
+    while (k + 1 < track.t.size() && track.t[k + 1] <= sample.t) ++k;  // repeated stamps keep the pose
+    poses.push_back({sample.t, base[k].x, base[k].y, wrap_angle(base[k].yaw)});
+  }
+  return poses;
+}
+
+struct Odometry::State {
+  Correction correction;
+  BaseParameters nominal;
+  double ticks_per_rev = 0.0;
+  std::deque<TickSample> history;
+  TickSample first;
+  Pose pose;
+  double since_reversal = 0.0;
+  double direction = 0.0;
+};
+
+Odometry::Odometry(const Calibration& calibration) : state_(std::make_unique<State>()) {
+  state_->correction = correction_of(calibration);
+  state_->nominal = nominal_of(calibration.robot);
+  state_->ticks_per_rev = calibration.robot.ticks_per_rev;
+}
+Odometry::~Odometry() = default;
+Odometry::Odometry(Odometry&&) noexcept = default;
+Odometry& Odometry::operator=(Odometry&&) noexcept = default;
+
+PoseSample Odometry::update(const TickSample& sample) {
+  State& s = *state_;
+  if (s.history.empty()) s.first = sample;
+  const bool advances = !s.history.empty() && sample.t > s.history.back().t;
+  if (s.history.empty() || advances) s.history.push_back(sample);
+  if (s.history.size() > kHistory) s.history.pop_front();
+  if (!advances || !(s.ticks_per_rev > 0.0)) return {sample.t, s.pose.x, s.pose.y, wrap_angle(s.pose.yaw)};
+
+  // The last interval, seen with the history before it; what accumulates over the whole drive is carried along.
+  Recording recent;
+  recent.robot.ticks_per_rev = s.ticks_per_rev;
+  recent.ticks.assign(s.history.begin(), s.history.end());
+  WheelTrack track = wheel_track_from_ticks(recent);
+  StepContext context = make_context(track, s.nominal).back();
+  const double rad_per_tick = 2.0 * kPi / s.ticks_per_rev;
+  const TickSample& oldest = s.history.front();
+  context.t += oldest.t - s.first.t;
+  context.left_angle += rad_per_tick * static_cast<double>(oldest.left - s.first.left);
+  context.right_angle += rad_per_tick * static_cast<double>(oldest.right - s.first.right);
+  if (context.direction != 0.0 && context.direction != s.direction) {
+    s.direction = context.direction;
+    s.since_reversal = 0.0;
+  }
+  const Pose step_guess = wheel_arc(s.nominal.left_radius * context.left_delta,
+                                    s.nominal.right_radius * context.right_delta, s.nominal.track_width);
+  s.since_reversal += std::hypot(step_guess.x, step_guess.y);
+  context.since_reversal = s.since_reversal;
+  context.direction = s.direction;
+  context.heading = s.pose.yaw + step_guess.yaw / 2.0;
+  context.x = s.pose.x;
+  context.y = s.pose.y;
+
+  const std::size_t n = track.t.size();
+  WheelTrack last{{track.t[n - 2], track.t[n - 1]},
+                  {track.left[n - 2], track.left[n - 1]},
+                  {track.right[n - 2], track.right[n - 1]},
+                  {track.segment[n - 2], track.segment[n - 1]}};
+  const DriveModel model(std::move(last), {context});
+  s.pose = compose(s.pose, model.trajectory(as_span(s.correction.parameters), s.correction.effects).poses().back());
+  return {sample.t, s.pose.x, s.pose.y, wrap_angle(s.pose.yaw)};
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,26 @@
+// From fits to the calibration file's members.
+#pragma once
+
+#include "calib/estimators/joint.hpp"
+#include "calib/session/session.hpp"
+#include "proto/calibration.hpp"
+
+namespace odomcalib::calib {
+
+/// left_wheel_diameter, right_wheel_diameter, track_width, lidar_x, lidar_y, lidar_yaw from radii and mount.
+/// @param covariance of the base parameters in radii; fixed ones have zero variance and get no deviation
+QuantityList base_quantities(const BaseParameters& base, const Eigen::MatrixXd& covariance);
+
+/// Covariance of the quantities above from that of the radii.
+std::vector<std::vector<double>> diameter_covariance(const Eigen::MatrixXd& covariance);
+
+std::vector<std::string> base_quantity_names();
+
+/// The four classical estimators and the closed form on the same pairs: straight, spin, linear, joint_closed_form.
+std::vector<MethodResult> classical_methods(const Session& session, double delay, Calibration& calibration);
+
+MethodResult joint_method(const FitResult& fit);
+
+std::vector<DataUse> data_use(const Session& session);
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,106 @@
+#include "calib/session/session.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace odomcalib::calib {
+namespace {
+
+/// Khepera-sized start for tuple files, which carry no nominal geometry; the closed form replaces it.
+constexpr double kUnknownRadius = 0.05;
+constexpr double kUnknownTrackWidth = 0.3;
+
+BaseParameters nominal_of(const RobotDescription& robot) {
+  BaseParameters base;
+  base.left_radius = robot.left_wheel_diameter > 0.0 ? robot.left_wheel_diameter / 2.0 : kUnknownRadius;
+  base.right_radius = robot.right_wheel_diameter > 0.0 ? robot.right_wheel_diameter / 2.0 : kUnknownRadius;
+  base.track_width = robot.track_width > 0.0 ? robot.track_width : kUnknownTrackWidth;
+  if (robot.lidar_pose) base.mount = {(*robot.lidar_pose)[0], (*robot.lidar_pose)[1], (*robot.lidar_pose)[2]};
+  return base;
+}
+
+std::optional<Error> check_streams(const Recording& recording) {
+  if (!recording.increments.empty()) return std::nullopt;
+  if (recording.ticks.size() < 2)
+    return Error{ErrorCode::empty, "fewer than two tick samples", recording.name,
+                 "check that the controller's ticks were recorded"};
+  if (recording.scans.size() < 2 && recording.poses.size() < 2)
+    return Error{ErrorCode::empty, "neither scans nor reference poses", recording.name,
+                 "check that the lidar was recorded"};
+  if (!(recording.robot.ticks_per_rev > 0.0))
+    return Error{ErrorCode::missing_units, "ticks_per_rev is missing", recording.name, "add it to the robot line"};
+  return std::nullopt;
+}
+
+bool same_robot(const RobotDescription& a, const RobotDescription& b) {
+  return a.ticks_per_rev == b.ticks_per_rev && a.left_wheel_diameter == b.left_wheel_diameter &&
+         a.right_wheel_diameter == b.right_wheel_diameter && a.track_width == b.track_width;
+}
+
+double wheel_angle(const WheelTrack& track, const std::vector<double>& angle, double time) {
+  const std::size_t k = track.interval_at(time);
+  const double share = (time - track.t[k]) / (track.t[k + 1] - track.t[k]);
+  return angle[k] + share * (angle[k + 1] - angle[k]);
+}
+
+}  // namespace
+
+Result<Session> Session::open(std::span<const Recording> recordings) {
+  if (recordings.empty()) return Error{ErrorCode::usage, "no recording given", "", "name at least one recording"};
+  Session session;
+  session.recordings_ = recordings;
+  session.nominal_ = nominal_of(recordings.front().robot);
+  for (const Recording& recording : recordings) {
+    if (auto error = check_streams(recording)) return *error;
+    if (!same_robot(recording.robot, recordings.front().robot))
+      return Error{ErrorCode::format, "nominal values differ from those of " + recordings.front().name, recording.name,
+                   "solve recordings of different robots separately"};
+    WheelTrack track = recording.increments.empty() ? wheel_track_from_ticks(recording)
+                                                    : wheel_track_from_increments(recording);
+    if (track.empty())
+      return Error{ErrorCode::empty, "tick times do not advance", recording.name, "check the controller's clock"};
+    std::vector<StepContext> context = make_context(track, session.nominal_);
+    session.models_.emplace_back(std::move(track), std::move(context));
+  }
+  session.reference_is_base_ = recordings.front().increments.empty() && !recordings.front().poses.empty();
+  if (session.reference_is_base_) session.nominal_.mount = {};
+  return session;
+}
+
+std::vector<bool> Session::fixed(std::size_t effect_parameters) const {
+  std::vector<bool> fixed(kBaseCount + effect_parameters, false);
+  for (const auto k : {kMountX, kMountY, kMountYaw}) fixed[k] = reference_is_base_;
+  return fixed;
+}
+
+void Session::measure(const Eigen::VectorXd& parameters, const EffectList& effects, const PairOptions& options) {
+  data_.clear();
+  sets_.clear();
+  const std::span<const double> p(parameters.data(), static_cast<std::size_t>(parameters.size()));
+  for (std::size_t i = 0; i < recordings_.size(); ++i) {
+    sets_.push_back(build_pairs(recordings_[i], models_[i], p, effects, options));
+    data_.push_back({&models_[i], sets_.back().pairs});
+  }
+}
+
+std::size_t Session::pair_count() const {
+  std::size_t count = 0;
+  for (const FitData& d : data_) count += d.pairs.size();
+  return count;
+}
+
+std::vector<WheelMotion> wheel_motions(std::span<const FitData> data, double delay) {
+  std::vector<WheelMotion> motions;
+  for (const FitData& d : data) {
+    const WheelTrack& track = d.model->track();
+    for (const SensorPair& pair : d.pairs) {
+      const double begin = pair.interval.begin - delay;
+      const double end = pair.interval.end - delay;
+      motions.push_back({wheel_angle(track, track.left, end) - wheel_angle(track, track.left, begin),
+                         wheel_angle(track, track.right, end) - wheel_angle(track, track.right, begin), pair.motion});
+    }
+  }
+  return motions;
+}
+
+}  // namespace odomcalib::calib

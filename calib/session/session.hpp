@@ -1,0 +1,49 @@
+// The recordings of one robot made ready for fitting: wheel tracks, models, nominal parameters, measured pairs.
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/estimators/joint.hpp"
+#include "calib/reference/pair_builder.hpp"
+#include "proto/recording.hpp"
+#include "proto/result.hpp"
+
+namespace odomcalib::calib {
+
+class Session {
+ public:
+  /// Errors: empty (nothing to measure with, says which stream is missing), missing_units, format (robots differ).
+  static Result<Session> open(std::span<const Recording> recordings);
+
+  [[nodiscard]] std::span<const Recording> recordings() const { return recordings_; }
+  [[nodiscard]] const BaseParameters& nominal() const { return nominal_; }
+  /// True when a pose of the base itself is the reference, so that there is no sensor pose to estimate.
+  [[nodiscard]] bool reference_is_base() const { return reference_is_base_; }
+  /// Which of the base parameters stay at their nominal value.
+  [[nodiscard]] std::vector<bool> fixed(std::size_t effect_parameters) const;
+
+  /// Measures the pairs of all recordings anew with these parameters as guess and for de-skewing.
+  void measure(const Eigen::VectorXd& parameters, const EffectList& effects, const PairOptions& options);
+
+  [[nodiscard]] const std::vector<FitData>& data() const { return data_; }
+  [[nodiscard]] const std::vector<PairSet>& pair_sets() const { return sets_; }
+  [[nodiscard]] std::size_t pair_count() const;
+
+ private:
+  std::span<const Recording> recordings_;
+  BaseParameters nominal_;
+  bool reference_is_base_ = false;
+  std::deque<DriveModel> models_;  ///< addresses stay valid: FitData points here
+  std::vector<FitData> data_;
+  std::vector<PairSet> sets_;
+};
+
+/// Wheel rotation and sensor motion of each pair, for the estimators that need no model of time.
+/// @param delay of the sensor against the encoders, s
+std::vector<WheelMotion> wheel_motions(std::span<const FitData> data, double delay);
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,76 @@
+#include "calib/session/start_values.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "calib/estimators/closed_form.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kReach = 0.6;  ///< s
+constexpr double kStep = 0.02;  ///< s
+/// A delay must reduce the robust misfit by this factor to be believed; otherwise zero is the better start.
+constexpr double kBelievable = 0.9;
+
+/// Mean absolute misfit of rotation = a left + b right at this delay, a and b by least squares with one reweighting.
+double rotation_misfit(std::span<const FitData> data, double delay) {
+  const auto motions = wheel_motions(data, delay);
+  Eigen::Vector2d gains = Eigen::Vector2d::Zero();
+  double misfit = 0.0;
+  for (int round = 0; round < 3; ++round) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-9;
+    Eigen::Vector2d right_side = Eigen::Vector2d::Zero();
+    const double limit = round == 0 ? 1e9 : misfit;
+    double sum = 0.0;
+    for (const WheelMotion& m : motions) {
+      const Eigen::Vector2d wheels(m.left, m.right);
+      const double residual = m.sensor_motion.yaw - gains.dot(wheels);
+      const double weight = std::abs(residual) > limit ? limit / std::abs(residual) : 1.0;
+      normal += weight * wheels * wheels.transpose();
+      right_side += weight * m.sensor_motion.yaw * wheels;
+    }
+    gains = normal.ldlt().solve(right_side);
+    for (const WheelMotion& m : motions)
+      sum += std::abs(m.sensor_motion.yaw - gains.dot(Eigen::Vector2d(m.left, m.right)));
+    misfit = sum / std::max(static_cast<double>(motions.size()), 1.0);
+  }
+  return misfit;
+}
+
+bool plausible(const BaseParameters& p) {
+  return p.left_radius > 0.0 && p.right_radius > 0.0 && p.track_width > 0.0 && std::isfinite(p.track_width);
+}
+
+}  // namespace
+
+double search_delay(std::span<const FitData> data) {
+  const double at_zero = rotation_misfit(data, 0.0);
+  double best = at_zero;
+  double delay = 0.0;
+  for (double d = -kReach; d <= kReach + 1e-9; d += kStep) {
+    const double misfit = rotation_misfit(data, d);
+    if (misfit < best) {
+      best = misfit;
+      delay = d;
+    }
+  }
+  return best < kBelievable * at_zero ? delay : 0.0;
+}
+
+BaseParameters start_values(const Session& session, double delay) {
+  BaseParameters start = session.nominal();
+  if (session.reference_is_base()) return start;
+  const auto closed = solve_closed_form(wheel_motions(session.data(), delay));
+  if (!closed || !plausible(closed.value().parameters)) return start;
+  const RobotDescription& robot = session.recordings().front().robot;
+  if (!robot.lidar_pose) start.mount = closed.value().parameters.mount;
+  if (!(robot.left_wheel_diameter > 0.0)) {
+    const Pose mount = start.mount;
+    start = closed.value().parameters;
+    start.mount = mount;
+  }
+  return start;
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,111 @@
+#include "calib/validation/held_out.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr std::size_t kFolds = 5;
+constexpr double kBlockSeconds = 20.0;
+constexpr std::size_t kMinPairs = 50;
+constexpr double kGrossError = 6.0;  ///< sigma; a failed match says nothing about the wheels
+
+/// Fold of each pair: blocks are dealt out in turn, so that every fold has early and late motion.
+std::vector<std::vector<std::size_t>> assign_folds(std::span<const FitData> data) {
+  std::vector<std::vector<std::size_t>> folds;
+  double block_begin = -1e300;
+  std::size_t block = 0;
+  for (const FitData& d : data) {
+    folds.emplace_back();
+    block_begin = -1e300;
+    for (const SensorPair& pair : d.pairs) {
+      if (pair.interval.begin > block_begin + kBlockSeconds) {
+        block_begin = pair.interval.begin;
+        ++block;
+      }
+      folds.back().push_back(block % kFolds);
+    }
+  }
+  return folds;
+}
+
+/// Pairs of one fold, or of all others; a pair next to the border keeps no link across it.
+std::vector<FitData> select(std::span<const FitData> data, const std::vector<std::vector<std::size_t>>& folds,
+                            std::size_t fold, bool inside) {
+  std::vector<FitData> selected;
+  for (std::size_t d = 0; d < data.size(); ++d) {
+    FitData part{data[d].model, {}};
+    bool previous_kept = false;
+    for (std::size_t k = 0; k < data[d].pairs.size(); ++k) {
+      const bool keep = (folds[d][k] == fold) == inside;
+      if (keep) {
+        part.pairs.push_back(data[d].pairs[k]);
+        part.pairs.back().follows_previous = part.pairs.back().follows_previous && previous_kept;
+      }
+      previous_kept = keep;
+    }
+    selected.push_back(std::move(part));
+  }
+  return selected;
+}
+
+struct Sums {
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  Eigen::Vector3d expected = Eigen::Vector3d::Zero();
+  std::size_t count = 0;
+};
+
+Eigen::Vector3d expected_variance(const SensorPair& pair, const NoiseModel& noise) {
+  Eigen::Vector3d v = noise.matcher_scale * noise.matcher_scale * pair.covariance.diagonal();
+  v(0) += noise.process_translation * noise.process_translation;
+  v(1) += noise.process_translation * noise.process_translation;
+  v(2) += noise.process_rotation * noise.process_rotation;
+  return v;
+}
+
+void accumulate(const FitData& part, const Eigen::VectorXd& parameters, const EffectList& effects,
+                const NoiseModel& noise, Sums& sums) {
+  std::vector<Interval> intervals;
+  for (const SensorPair& pair : part.pairs) intervals.push_back(pair.interval);
+  const auto predicted =
+      part.model->predict({parameters.data(), static_cast<std::size_t>(parameters.size())}, effects, intervals);
+  for (std::size_t k = 0; k < part.pairs.size(); ++k) {
+    const Pose& m = part.pairs[k].motion;
+    const Eigen::Vector3d e(m.x - predicted[k].x, m.y - predicted[k].y, wrap_angle(m.yaw - predicted[k].yaw));
+    const Eigen::Vector3d v = expected_variance(part.pairs[k], noise);
+    if ((e.cwiseAbs2().cwiseQuotient(v)).maxCoeff() > kGrossError * kGrossError) continue;
+    sums.squares += e.cwiseAbs2();
+    sums.expected += v;
+    ++sums.count;
+  }
+}
+
+std::array<double, 3> root(const Eigen::Vector3d& sum, std::size_t count) {
+  const Eigen::Vector3d r = (sum / static_cast<double>(count)).cwiseSqrt();
+  return {r(0), r(1), r(2)};
+}
+
+}  // namespace
+
+std::optional<HeldOut> held_out_residual(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,
+                                         const std::vector<bool>& fixed) {
+  const auto folds = assign_folds(data);
+  Sums sums;
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    const auto training = select(data, folds, fold, false);
+    const auto test = select(data, folds, fold, true);
+    FitOptions options;
+    options.fixed = fixed;
+    options.noise = fit.noise;
+    options.max_iterations = 20;
+    const auto trained = fit_joint(training, effects, fit.parameters, options);
+    if (!trained) return std::nullopt;
+    for (std::size_t d = 0; d < test.size(); ++d)
+      accumulate(test[d], trained.value().parameters, effects, fit.noise[d], sums);
+  }
+  if (sums.count < kMinPairs) return std::nullopt;
+  return HeldOut{root(sums.squares, sums.count), root(sums.expected, sums.count), sums.count};
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,50 @@
+#include "calib/wheels/wheel_track.hpp"
+
+#include <algorithm>
+
+#include "calib/geometry/se2.hpp"
+
+namespace odomcalib::calib {
+
+std::size_t WheelTrack::interval_at(double time) const {
+  const auto next = std::upper_bound(t.begin(), t.end(), time);
+  const auto index = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - t.begin() - 1, 0));
+  return std::min(index, t.size() - 2);
+}
+
+bool WheelTrack::covers(double from, double to) const {
+  if (empty() || from < t.front() || to > t.back()) return false;
+  return segment[interval_at(from)] == segment[std::min(interval_at(to) + 1, t.size() - 1)];
+}
+
+WheelTrack wheel_track_from_ticks(const Recording& recording) {
+  WheelTrack track;
+  if (recording.ticks.empty()) return track;
+  const double rad_per_tick = 2.0 * kPi / recording.robot.ticks_per_rev;
+  const TickSample& first = recording.ticks.front();
+  for (const TickSample& sample : recording.ticks) {
+    if (!track.t.empty() && !(sample.t > track.t.back())) continue;
+    track.t.push_back(sample.t);
+    track.left.push_back(rad_per_tick * static_cast<double>(sample.left - first.left));
+    track.right.push_back(rad_per_tick * static_cast<double>(sample.right - first.right));
+    track.segment.push_back(sample.segment);
+  }
+  return track;
+}
+
+WheelTrack wheel_track_from_increments(const Recording& recording) {
+  WheelTrack track;
+  track.t.push_back(0.0);
+  track.left.push_back(0.0);
+  track.right.push_back(0.0);
+  track.segment.push_back(0);
+  for (const IncrementSample& sample : recording.increments) {
+    track.t.push_back(track.t.back() + sample.duration);
+    track.left.push_back(track.left.back() + sample.duration * sample.left_speed);
+    track.right.push_back(track.right.back() + sample.duration * sample.right_speed);
+    track.segment.push_back(0);
+  }
+  return track;
+}
+
+}  // namespace odomcalib::calib
