@@ -12,7 +12,8 @@ namespace odomcalib {
 namespace {
 
 constexpr double kReorderWindow = 1.0;  // s, DESIGN 4.2: out of order by up to a second
-constexpr double kLatestTime = 1e11;    // s; some 3000 years: larger stamps are garbage
+constexpr double kLatestTime =
+    9e9;  // s; as nanoseconds it still fits 64 bits, and is later than any clock shows
 constexpr std::int64_t kLargestCount = std::int64_t{1} << 53;
 constexpr std::size_t kMostBeams = 100'000;
 constexpr double kLargestRange = 10'000.0;  // m
@@ -125,10 +126,12 @@ std::optional<Error> check_robot(const RobotDescription& robot, const std::strin
     const char* unit;
     double limit;  // beyond it, the number is in another unit (mm instead of m)
   };
-  const bool no_diameter = robot.left_wheel_diameter == 0.0 && robot.right_wheel_diameter == 0.0;
+  // Both sides come from one member of the file, mostly: name that one.
+  const bool one_diameter = robot.left_wheel_diameter == robot.right_wheel_diameter ||
+                            (std::isnan(robot.left_wheel_diameter) && std::isnan(robot.right_wheel_diameter));
   const std::array<Field, 4> fields{{
-      {no_diameter ? "wheel_diameter" : "left_wheel_diameter", robot.left_wheel_diameter, "m", 10.0},
-      {no_diameter ? "wheel_diameter" : "right_wheel_diameter", robot.right_wheel_diameter, "m", 10.0},
+      {one_diameter ? "wheel_diameter" : "left_wheel_diameter", robot.left_wheel_diameter, "m", 10.0},
+      {one_diameter ? "wheel_diameter" : "right_wheel_diameter", robot.right_wheel_diameter, "m", 10.0},
       {"track_width", robot.track_width, "m", 50.0},
       {"ticks_per_rev", robot.ticks_per_rev, "counts per wheel turn", 1e9},
   }};

@@ -1,0 +1,180 @@
+#include "daemon/cli/calibration_document.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace odomcalib::cli {
+namespace {
+
+// Lengths in mm and angles in degrees: what people have on their rulers.
+struct Display {
+  double factor;
+  const char* unit;
+  int digits;
+};
+
+Display display_of(const std::string& unit) {
+  if (unit == "m") return {1000.0, "mm", 3};
+  if (unit == "rad") return {180.0 / std::numbers::pi, "deg", 3};
+  if (unit == "s") return {1000.0, "ms", 3};
+  return {1.0, unit.c_str(), 6};
+}
+
+std::string number(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+}
+
+std::string readable(std::string name) {
+  for (char& c : name)
+    if (c == '_') c = ' ';
+  return name;
+}
+
+std::optional<double> nominal_of(const RobotDescription& robot, const std::string& name) {
+  if (name == "left_wheel_diameter") return robot.left_wheel_diameter;
+  if (name == "right_wheel_diameter") return robot.right_wheel_diameter;
+  if (name == "track_width") return robot.track_width;
+  if (!robot.lidar_pose) return std::nullopt;
+  if (name == "lidar_x") return (*robot.lidar_pose)[0];
+  if (name == "lidar_y") return (*robot.lidar_pose)[1];
+  if (name == "lidar_yaw") return (*robot.lidar_pose)[2];
+  return std::nullopt;
+}
+
+bool is_length_of_drive(const std::string& name) { return !name.starts_with("lidar_"); }
+
+std::vector<std::string> parameter_row(const RobotDescription& robot, const std::string& name,
+                                       const Quantity& quantity) {
+  const Display show = display_of(quantity.unit);
+  const auto nominal = nominal_of(robot, name);
+  std::vector<std::string> row{readable(name), nominal ? number(*nominal * show.factor, show.digits) : "-",
+                               number(quantity.value * show.factor, show.digits)};
+  row.push_back(quantity.std >= 0.0 ? number(2.0 * quantity.std * show.factor, show.digits) : "-");
+  row.emplace_back(show.unit);
+  const bool relative = nominal && *nominal != 0.0 && is_length_of_drive(name);
+  row.push_back(relative ? fmt::format("{:+.3f} %", 100.0 * (quantity.value / *nominal - 1.0)) : "");
+  return row;
+}
+
+Section parameters_of(const Calibration& calibration) {
+  Section section{"Parameters", {}, {{"", "nominal", "value", "+-2 sigma", "unit", "change"}, {}}};
+  for (const auto& [name, quantity] : calibration.parameters)
+    section.table.rows.push_back(parameter_row(calibration.robot, name, quantity));
+  return section;
+}
+
+const Quantity* find(const QuantityList& list, const std::string& name) {
+  for (const auto& [key, quantity] : list)
+    if (key == name) return &quantity;
+  return nullptr;
+}
+
+std::string cell_of(const Quantity* quantity) {
+  if (quantity == nullptr) return "-";
+  const Display show = display_of(quantity->unit);
+  return number(quantity->value * show.factor, show.digits);
+}
+
+// Difference from the final answer in units of the two deviations together.
+std::string sigmas_of(const Quantity* quantity, const Quantity* last) {
+  if (quantity == nullptr || last == nullptr || quantity->std < 0.0 || last->std < 0.0) return "-";
+  const double sigma = std::hypot(quantity->std, last->std);
+  return sigma > 0.0 ? fmt::format("{:+.1f}", (quantity->value - last->value) / sigma) : "-";
+}
+
+Section methods_of(const Calibration& calibration) {
+  Section section{"Estimators compared (difference from the answer in sigmas in brackets)", {}, {{""}, {}}};
+  for (const auto& method : calibration.methods) {
+    if (method.refused)
+      section.lines.push_back(readable(method.name) + ": " + *method.refused);
+    else
+      section.table.head.push_back(readable(method.name));
+  }
+  for (const auto& [name, last] : calibration.parameters) {
+    std::vector<std::string> row{readable(name) + " [" + display_of(last.unit).unit + "]"};
+    for (const auto& method : calibration.methods) {
+      if (method.refused) continue;
+      const Quantity* quantity = find(method.parameters, name);
+      const std::string sigmas = sigmas_of(quantity, &last);
+      row.push_back(cell_of(quantity) + (sigmas == "-" ? "" : " (" + sigmas + ")"));
+    }
+    section.table.rows.push_back(row);
+  }
+  std::vector<std::string> used{"pairs used"};
+  for (const auto& method : calibration.methods)
+    if (!method.refused) used.push_back(fmt::format("{} of {}", method.used, method.used + method.discarded));
+  if (used.size() > 1) section.table.rows.push_back(used);
+  if (section.table.head.size() < 2) section.table = {};
+  return section;
+}
+
+Section effects_of(const Calibration& calibration) {
+  Section section{"Effects", {}, {{"", "value", "+-2 sigma", "unit", "p", "stored in"}, {}}};
+  for (const auto& effect : calibration.effects)
+    for (const auto& [name, quantity] : effect.parameters) {
+      const Display show = display_of(quantity.unit);
+      section.table.rows.push_back(
+          {readable(effect.name) + ": " + readable(name), number(quantity.value * show.factor, show.digits),
+           quantity.std >= 0.0 ? number(2.0 * quantity.std * show.factor, show.digits) : "-", show.unit,
+           fmt::format("{:.2g}", effect.evidence.p_value), effect.stored_in});
+    }
+  if (section.table.rows.empty()) section.table = {};
+  if (const auto& rest = calibration.unexplained) {
+    std::string on;
+    for (const auto& variable : rest->depends_on) on += (on.empty() ? "" : ", ") + readable(variable);
+    section.lines.push_back(
+        fmt::format("unexplained: the residual depends on {} (p {:.2g})", on, rest->p_value));
+  }
+  return section;
+}
+
+std::vector<std::string> residual_row(const char* name, const std::optional<std::array<double, 3>>& rms) {
+  if (!rms) return {name, "-", "-", "-"};
+  return {name, number(1000.0 * (*rms)[0], 2), number(1000.0 * (*rms)[1], 2),
+          number((*rms)[2] * 180.0 / std::numbers::pi, 3)};
+}
+
+Section residual_of(const ResidualReport& residual) {
+  Section section{
+      residual.held_out ? "Residual on data not used in the fit (RMS)" : "Residual (RMS)", {}, {}};
+  section.table.head = {"", "x mm", "y mm", "yaw deg"};
+  section.table.rows = {residual_row("before", residual.before), residual_row("after", residual.after),
+                        residual_row("noise floor", residual.noise_floor)};
+  return section;
+}
+
+Section data_of(const Calibration& calibration) {
+  Section section{"Data", {}, {}};
+  for (const auto& data : calibration.data) {
+    std::string line = fmt::format("{}: {:.1f} s", data.name, data.duration);
+    for (const auto& [what, count] : data.counts) line += fmt::format(", {} {}", count, what);
+    section.lines.push_back(line);
+    for (const auto& [why, count] : data.discarded)
+      section.lines.push_back(fmt::format("  not used: {} {}", count, why));
+    section.lines.push_back("  SHA-256 " + data.sha256);
+  }
+  return section;
+}
+
+}  // namespace
+
+std::string headline(Verdict verdict) {
+  if (verdict == Verdict::accepted) return "ACCEPTED";
+  return verdict == Verdict::refused ? "REFUSED" : "ACCEPTED WITH WARNINGS";
+}
+
+Document describe(const Calibration& calibration) {
+  Document document{headline(calibration.verdict), {}};
+  if (!calibration.reasons.empty()) document.sections.push_back({"", calibration.reasons, {}});
+  for (Section section : {parameters_of(calibration), methods_of(calibration), effects_of(calibration)})
+    if (!section.lines.empty() || !section.table.rows.empty())
+      document.sections.push_back(std::move(section));
+  const auto& residual = calibration.residual;
+  if (residual.before || residual.after) document.sections.push_back(residual_of(residual));
+  document.sections.push_back(data_of(calibration));
+  return document;
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,14 @@
+// A calibration for people: verdict first, then parameters, estimators, residuals, data.
+#pragma once
+
+#include "daemon/cli/document.hpp"
+#include "proto/calibration.hpp"
+
+namespace odomcalib::cli {
+
+Document describe(const Calibration& calibration);
+
+/// "ACCEPTED", "ACCEPTED WITH WARNINGS" or "REFUSED".
+std::string headline(Verdict verdict);
+
+}  // namespace odomcalib::cli

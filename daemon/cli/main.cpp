@@ -1,0 +1,55 @@
+// odomcalibctl: parses the command line and runs one verb.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/verbs.hpp"
+
+namespace {
+
+using odomcalib::cli::JsonMode;
+
+void add_common_options(CLI::App& app, odomcalib::cli::Session& session, std::string& json) {
+  app.add_flag("--json{pretty}", json, "print JSON: --json or --json=pretty|short|off")
+      ->check(CLI::IsMember({"pretty", "short", "off"}));
+  app.add_flag("!--no-legend", session.legend, "tables without their head line");
+  app.add_flag("--no-pager", "accepted for scripts; no pager is ever started");
+  app.footer(odomcalib::cli::exit_status_help());
+}
+
+JsonMode mode_of(const std::string& text) {
+  if (text == "short") return JsonMode::shortened;
+  return text == "pretty" ? JsonMode::pretty : JsonMode::off;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Calibrates the odometry of differential-drive robots.", "odomcalibctl"};
+  odomcalib::cli::Session session;
+  std::string json = "off";
+  add_common_options(app, session, json);
+  app.fallthrough();
+  app.require_subcommand(0, 1);
+  odomcalib::cli::add_solve(app, session);
+  odomcalib::cli::add_predict(app, session);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? odomcalib::cli::kDone : odomcalib::cli::kUsage;
+  }
+  session.json = mode_of(json);
+  if (session.run) return session.run();
+  std::cout << app.help();
+  return odomcalib::cli::kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "odomcalibctl: " << error.what() << '\n';
+    return odomcalib::cli::kFailure;
+  }
+}

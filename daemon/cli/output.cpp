@@ -1,0 +1,50 @@
+#include "daemon/cli/output.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/exit_codes.hpp"
+
+namespace odomcalib::cli {
+
+void print_json(const std::string& text, JsonMode mode) {
+  const auto value = nlohmann::ordered_json::parse(text, nullptr, false);
+  if (value.is_discarded()) {
+    std::cout << text << '\n';
+    return;
+  }
+  const int indent = mode == JsonMode::pretty ? 2 : -1;
+  std::cout << value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+}
+
+int report_error(const Error& error, JsonMode mode) {
+  std::cerr << "odomcalibctl: " << error.text() << '\n';
+  if (mode != JsonMode::off) {
+    const nlohmann::ordered_json body = {{"error",
+                                          {{"code", code_name(error.code)},
+                                           {"what", error.what},
+                                           {"where", error.where},
+                                           {"remedy", error.remedy}}}};
+    print_json(body.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), mode);
+  }
+  return exit_status(error.code);
+}
+
+ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressLine::~ProgressLine() { clear(); }
+
+void ProgressLine::show(const std::string& text) {
+  if (!terminal_) return;
+  std::cerr << "\r\x1b[K" << text << std::flush;
+  shown_ = true;
+}
+
+void ProgressLine::clear() {
+  if (shown_) std::cerr << "\r\x1b[K" << std::flush;
+  shown_ = false;
+}
+
+}  // namespace odomcalib::cli

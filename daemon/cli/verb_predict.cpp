@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include "calib/predict.hpp"
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/recordings.hpp"
+#include "daemon/cli/verbs.hpp"
+#include "proto/calibration.hpp"
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+struct Options {
+  std::string recording, calibration, trajectory, robot;
+};
+
+Result<Calibration> chosen_calibration(const Options& options, const RobotDescription& robot) {
+  if (options.calibration == "nominal") return calib::nominal_calibration(robot);
+  return read_calibration(options.calibration);
+}
+
+// One line "t x y 0 0 0 qz qw" (TUM).
+std::string to_tum(const std::vector<PoseSample>& poses) {
+  std::string text;
+  for (const PoseSample& pose : poses)
+    fmt::format_to(std::back_inserter(text), "{:.6f} {:.9f} {:.9f} 0 0 0 {:.12f} {:.12f}\n", pose.t, pose.x,
+                   pose.y, std::sin(0.5 * pose.yaw), std::cos(0.5 * pose.yaw));
+  return text;
+}
+
+Result<std::vector<PoseSample>> predicted(const Options& options) {
+  const auto recordings = read_recordings({options.recording}, options.robot);
+  if (!recordings) return recordings.error();
+  const Recording& recording = recordings.value().front();
+  if (recording.ticks.empty())
+    return Error{ErrorCode::empty, "no tick samples", options.recording,
+                 "dead reckoning needs encoder counts"};
+  const auto calibration = chosen_calibration(options, recording.robot);
+  if (!calibration) return calibration.error();
+  return calib::predict(recording, calibration.value());
+}
+
+int predict_trajectory(const Options& options, const Session& session) {
+  const auto poses = predicted(options);
+  if (!poses) return report_error(poses.error(), session.json);
+  if (auto written = replace_file(options.trajectory, to_tum(poses.value())); !written)
+    return report_error(written.error(), session.json);
+  const PoseSample end = poses.value().empty() ? PoseSample{} : poses.value().back();
+  if (session.json == JsonMode::off)
+    std::cout << fmt::format("{} poses, end x {:.4f} m, y {:.4f} m, yaw {:.5f} rad\n", poses.value().size(),
+                             end.x, end.y, end.yaw);
+  else
+    print_json(fmt::format(R"({{"poses":{},"end":[{},{},{}]}})", poses.value().size(), end.x, end.y, end.yaw),
+               session.json);
+  return kDone;
+}
+
+}  // namespace
+
+void add_predict(CLI::App& app, Session& session) {
+  auto* verb = app.add_subcommand("predict", "Dead reckoning from the ticks of a recording");
+  auto options = std::make_shared<Options>();
+  verb->add_option("RECORDING", options->recording)->required();
+  verb->add_option("--calibration", options->calibration, "calibration file, or \"nominal\"")->required();
+  verb->add_option("--trajectory", options->trajectory, "file to write, TUM format")->required();
+  verb->add_option("--robot", options->robot, "nominal values (TOML) instead of those of the recording");
+  verb->callback([&session, options] {
+    session.run = [&session, options] { return predict_trajectory(*options, session); };
+  });
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "calib/solve.hpp"
+#include "daemon/cli/calibration_document.hpp"
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/recordings.hpp"
+#include "daemon/cli/verbs.hpp"
+#include "proto/calibration.hpp"
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> recordings;
+  std::vector<std::string> effects{"auto"};
+  std::string robot, out, report;
+};
+
+Result<void> write_results(const Options& options, const Calibration& calibration) {
+  if (!options.out.empty())
+    if (auto written = write_calibration(calibration, options.out); !written) return written;
+  if (!options.report.empty()) return replace_file(options.report, to_html(describe(calibration)));
+  return {};
+}
+
+int solve_recordings(const Options& options, const Session& session) {
+  const auto recordings = read_recordings(options.recordings, options.robot);
+  if (!recordings) return report_error(recordings.error(), session.json);
+  ProgressLine line;
+  const auto progress = [&line](const std::string& phase, double fraction) {
+    line.show(fmt::format("{} {:3.0f} %", phase, 100.0 * fraction));
+  };
+  const Calibration calibration = calib::solve(recordings.value(), {.effects = options.effects}, progress);
+  line.clear();
+  if (auto written = write_results(options, calibration); !written)
+    return report_error(written.error(), session.json);
+  if (session.json == JsonMode::off)
+    std::cout << to_text(describe(calibration), session.legend);
+  else
+    print_json(to_json(calibration), session.json);
+  return calibration.verdict == Verdict::refused ? kRefused : kDone;
+}
+
+}  // namespace
+
+void add_solve(CLI::App& app, Session& session) {
+  auto* verb = app.add_subcommand("solve", "Calibrate from recordings of one robot");
+  auto options = std::make_shared<Options>();
+  verb->add_option("RECORDING", options->recordings, "JSON Lines, LCM log, CARMEN log, tuple file")
+      ->required();
+  verb->add_option("--robot", options->robot, "nominal values (TOML) instead of those of the recordings");
+  verb->add_option("--effects", options->effects, "auto, none, or names of effects to fit")->delimiter(',');
+  verb->add_option("--out", options->out, "calibration file to write, also when refused");
+  verb->add_option("--report", options->report, "HTML report to write");
+  verb->callback([&session, options] {
+    session.run = [&session, options] { return solve_recordings(*options, session); };
+  });
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,28 @@
+// The verbs, one file each. A verb registers itself and sets `run`, which main calls after parsing.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "daemon/cli/output.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace odomcalib::cli {
+
+struct Session {
+  JsonMode json = JsonMode::off;
+  bool legend = true;
+  std::string socket;        ///< of the daemon
+  std::function<int()> run;  ///< set by the verb that was parsed
+};
+
+// Offline: need no daemon.
+void add_solve(CLI::App& app, Session& session);
+void add_predict(CLI::App& app, Session& session);
+
+}  // namespace odomcalib::cli

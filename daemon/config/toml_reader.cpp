@@ -1,0 +1,120 @@
+#include "daemon/config/toml_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <cmath>
+#include <set>
+
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib {
+
+struct TomlReader::State {
+  toml::table table;
+  std::string where;
+  std::set<std::string> asked;
+  std::optional<Error> problem;
+
+  toml::node_view<const toml::node> find(const std::string& key) {
+    asked.insert(key);
+    return static_cast<const toml::table&>(table).at_path(key);
+  }
+  void complain(const std::string& key, const std::string& allowed) {
+    if (!problem)
+      problem = Error{ErrorCode::format, fmt::format("key \"{}\" is not {}", key, allowed), where,
+                      "correct the file; odomcalib.toml(5) lists the keys"};
+  }
+};
+
+namespace {
+
+void collect_leaves(const toml::table& table, const std::string& prefix, std::set<std::string>& keys) {
+  for (const auto& [key, node] : table) {
+    const std::string path = prefix.empty() ? std::string(key.str()) : prefix + "." + std::string(key.str());
+    if (const auto* inner = node.as_table())
+      collect_leaves(*inner, path, keys);
+    else
+      keys.insert(path);
+  }
+}
+
+}  // namespace
+
+TomlReader::TomlReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
+TomlReader::TomlReader(TomlReader&&) noexcept = default;
+TomlReader& TomlReader::operator=(TomlReader&&) noexcept = default;
+TomlReader::~TomlReader() = default;
+
+Result<TomlReader> TomlReader::read(const std::filesystem::path& path) {
+  const auto bytes = read_file_bytes(path);
+  if (!bytes) return bytes.error();
+  return parse(bytes.value(), path.string());
+}
+
+Result<TomlReader> TomlReader::parse(const std::string& text, const std::string& where) {
+  auto state = std::make_unique<State>();
+  state->where = where;
+  try {
+    state->table = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const auto& at = error.source().begin;
+    return Error{ErrorCode::format, std::string(error.description()),
+                 fmt::format("{}:{}:{}", where, at.line, at.column), "correct the TOML syntax"};
+  }
+  return TomlReader(std::move(state));
+}
+
+double TomlReader::number(const std::string& key, double otherwise, double least, double most) {
+  const auto node = state_->find(key);
+  if (!node) return otherwise;
+  const auto value = node.value<double>();
+  if (value && std::isfinite(*value) && *value >= least && *value <= most) return *value;
+  state_->complain(key, fmt::format("a number from {} to {}", least, most));
+  return otherwise;
+}
+
+std::string TomlReader::text(const std::string& key, const std::string& otherwise) {
+  const auto node = state_->find(key);
+  if (!node) return otherwise;
+  if (const auto value = node.value<std::string>()) return *value;
+  state_->complain(key, "a text in quotes");
+  return otherwise;
+}
+
+bool TomlReader::flag(const std::string& key, bool otherwise) {
+  const auto node = state_->find(key);
+  if (!node) return otherwise;
+  if (const auto value = node.value<bool>()) return *value;
+  state_->complain(key, "true or false");
+  return otherwise;
+}
+
+std::optional<std::array<double, 3>> TomlReader::pose(const std::string& key) {
+  const auto node = state_->find(key);
+  if (!node) return std::nullopt;
+  const auto* array = node.as_array();
+  std::array<double, 3> pose{};
+  bool good = array != nullptr && array->size() == pose.size();
+  for (std::size_t i = 0; good && i < pose.size(); ++i) {
+    const auto value = (*array)[i].value<double>();
+    good = value && std::isfinite(*value);
+    if (good) pose.at(i) = *value;
+  }
+  if (good) return pose;
+  state_->complain(key, "a list of three numbers: x in m, y in m, yaw in rad");
+  return std::nullopt;
+}
+
+std::optional<Error> TomlReader::problem() const {
+  if (state_->problem) return state_->problem;
+  std::set<std::string> keys;
+  collect_leaves(state_->table, "", keys);
+  for (const auto& key : keys)
+    if (!state_->asked.contains(key))
+      return Error{ErrorCode::format, fmt::format("unknown key \"{}\"", key), state_->where,
+                   "remove or correct it; odomcalib.toml(5) lists the keys"};
+  return std::nullopt;
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,41 @@
+// Reads typed values from a TOML file, remembers the first problem, and knows which keys nobody asked for.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "proto/result.hpp"
+
+namespace odomcalib {
+
+/// Keys are dotted paths ("lidar.device"). A missing key yields the default; a value of the wrong type or out
+/// of range yields the default too, and problem() says so.
+class TomlReader {
+ public:
+  /// Errors: io, format (line and column).
+  static Result<TomlReader> read(const std::filesystem::path& path);
+  static Result<TomlReader> parse(const std::string& text, const std::string& where);
+
+  TomlReader(TomlReader&&) noexcept;
+  TomlReader& operator=(TomlReader&&) noexcept;
+  ~TomlReader();
+
+  double number(const std::string& key, double otherwise, double least, double most);
+  std::string text(const std::string& key, const std::string& otherwise);
+  bool flag(const std::string& key, bool otherwise);
+  /// [x, y, yaw], all finite.
+  std::optional<std::array<double, 3>> pose(const std::string& key);
+
+  /// The first wrong value, otherwise the first key that was never asked for (a misspelling).
+  [[nodiscard]] std::optional<Error> problem() const;
+
+ private:
+  struct State;
+  explicit TomlReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace odomcalib

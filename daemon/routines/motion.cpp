@@ -1,0 +1,101 @@
+#include "daemon/routines/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "daemon/routines/runner.hpp"
+
+namespace odomcalib::routines {
+namespace {
+
+double lower(double wanted, double cap) {
+  return std::isfinite(wanted) && wanted > 0.0 ? std::min(wanted, cap) : cap;
+}
+
+double sign(double value) { return value < 0.0 ? -1.0 : 1.0; }
+
+Pose advanced(const Pose& pose, const Twist& twist, double dt) {
+  const double middle = pose.yaw + 0.5 * twist.w * dt;
+  return {pose.x + twist.v * dt * std::cos(middle), pose.y + twist.v * dt * std::sin(middle),
+          pose.yaw + twist.w * dt};
+}
+
+}  // namespace
+
+Limits capped(const Limits& wanted) {
+  return {lower(wanted.speed, kCaps.speed), lower(wanted.turn_rate, kCaps.turn_rate),
+          lower(wanted.acceleration, kCaps.acceleration),
+          lower(wanted.turn_acceleration, kCaps.turn_acceleration)};
+}
+
+WheelRates to_wheels(const Twist& twist, const WheelGeometry& geometry) {
+  const bool usable =
+      geometry.left_wheel_diameter > 0.0 && geometry.right_wheel_diameter > 0.0 && geometry.track_width > 0.0;
+  if (!usable || !std::isfinite(twist.v) || !std::isfinite(twist.w)) return {};
+  const double half = 0.5 * geometry.track_width * twist.w;
+  return {2.0 * (twist.v - half) / geometry.left_wheel_diameter,
+          2.0 * (twist.v + half) / geometry.right_wheel_diameter};
+}
+
+double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
+
+Move straight(double distance, double speed, double settle) {
+  return {.name = distance < 0.0 ? "straight backward" : "straight forward",
+          .direction = {sign(distance), 0.0},
+          .amount = std::abs(distance),
+          .pace = std::abs(speed),
+          .settle = settle};
+}
+
+Move spin(double angle, double rate, double settle) {
+  return {.name = angle < 0.0 ? "spin right" : "spin left",
+          .direction = {0.0, sign(angle)},
+          .amount = std::abs(angle),
+          .pace = std::abs(rate),
+          .settle = settle};
+}
+
+Move arc(double radius, double angle, double rate, bool forward, double settle) {
+  return {.name = std::string(angle < 0.0 ? "right" : "left") + " arc " + (forward ? "forward" : "backward"),
+          .direction = {forward ? radius : -radius, sign(angle)},
+          .amount = std::abs(angle),
+          .pace = std::abs(rate),
+          .settle = settle};
+}
+
+Move turn_to(double heading, double rate) {
+  return {
+      .name = "turn to heading", .direction = {0.0, 1.0}, .pace = rate, .settle = 0.5, .heading = heading};
+}
+
+double expected_duration(const Move& move, const Limits& limits) {
+  Move turned = move;
+  if (move.heading) turned = spin(std::numbers::pi, move.pace, move.settle);
+  const Profile profile = profile_of(turned, limits);
+  const double first = std::min(turned.pace, profile.fastest);
+  const double slowest = turned.late_pace > 0.0 ? std::min(first, turned.late_pace) : first;
+  if (slowest <= 0.0) return turned.settle;
+  return turned.amount / slowest + 2.0 * first / profile.acceleration + turned.settle;
+}
+
+Preview preview(const Plan& plan) {
+  constexpr double kStep = 0.02;
+  Preview seen;
+  Runner runner(plan);
+  Pose pose;
+  const double budget = 3600.0;
+  while (!runner.done() && seen.duration < budget) {
+    seen.path.push_back(pose);
+    seen.reach = std::max(seen.reach, std::hypot(pose.x, pose.y));
+    pose = advanced(pose, runner.step(seen.duration, pose), kStep);
+    seen.duration += kStep;
+  }
+  for (const Move& move : plan.moves) {
+    if (move.direction.w == 0.0) seen.distance = std::max(seen.distance, move.amount);
+    if (move.direction.w != 0.0) seen.turn = std::max(seen.turn, move.amount);
+  }
+  return seen;
+}
+
+}  // namespace odomcalib::routines

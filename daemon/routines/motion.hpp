@@ -1,0 +1,90 @@
+// Guided motions as data: a plan is a list of moves, each one a body twist along a path of known length.
+// Nothing here reads a clock or a device.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace odomcalib::routines {
+
+/// Pose of the base in the odometry frame: m, m, rad.
+struct Pose {
+  double x = 0.0, y = 0.0, yaw = 0.0;
+};
+
+/// Body velocity: forward m/s, counter-clockwise rad/s.
+struct Twist {
+  double v = 0.0, w = 0.0;
+};
+
+/// Wheel angular velocities, rad/s, forward positive on both sides.
+struct WheelRates {
+  double left = 0.0, right = 0.0;
+};
+
+/// Nominal lengths, m.
+struct WheelGeometry {
+  double left_wheel_diameter = 0.0, right_wheel_diameter = 0.0, track_width = 0.0;
+};
+
+struct Limits {
+  double speed = 0.30;             ///< m/s
+  double turn_rate = 0.6;          ///< rad/s
+  double acceleration = 0.5;       ///< m/s^2
+  double turn_acceleration = 1.0;  ///< rad/s^2
+};
+
+/// What no configuration can raise (rule M7).
+constexpr Limits kCaps{};
+
+/// The wanted limits, each lowered to its cap; a value that is no positive number becomes the cap.
+Limits capped(const Limits& wanted);
+
+/// Pure rolling; zero for a geometry without lengths or a twist that is not finite (rule M17).
+WheelRates to_wheels(const Twist& twist, const WheelGeometry& geometry);
+
+/// Smallest equivalent angle, in [-pi, pi].
+double wrapped(double angle);
+
+/// Motion along one straight line or circle, from rest to rest.
+struct Move {
+  std::string name;
+  Twist direction = {};    ///< twist per unit of pace: (+-1, 0) straight, (0, +-1) spin, (+-r, +-1) arc
+  double amount = 0.0;     ///< m along the line, or rad of turn when direction.w is not zero
+  double pace = 0.0;       ///< m/s or rad/s
+  double late_pace = 0.0;  ///< pace of the second half, 0: the same
+  double settle = 0.8;     ///< s at rest afterwards
+  /// Turn on the spot to this heading of the odometry frame, on the shorter way; direction and amount are
+  /// found at the start of the move.
+  std::optional<double> heading = std::nullopt;
+};
+
+Move straight(double distance, double speed, double settle = 0.8);
+Move spin(double angle, double rate, double settle = 0.8);
+/// @param radius m, from the middle of the axle to the centre of the circle, positive
+/// @param angle rad of turn, signed; @param forward driving direction
+Move arc(double radius, double angle, double rate, bool forward, double settle = 0.8);
+Move turn_to(double heading, double rate);
+
+struct Plan {
+  std::string name;
+  std::vector<Move> moves;
+  Limits limits;
+};
+
+/// Time that a robot without lag needs for one move, settling included, s.
+double expected_duration(const Move& move, const Limits& limits);
+
+struct Preview {
+  double duration = 0.0;  ///< s
+  std::vector<Pose> path;
+  double reach = 0.0;     ///< m, farthest point of the path from its start
+  double distance = 0.0;  ///< m, longest single straight move
+  double turn = 0.0;      ///< rad, largest turn of a single move
+};
+
+/// Drives the plan with an ideal robot from the origin.
+Preview preview(const Plan& plan);
+
+}  // namespace odomcalib::routines

@@ -1,0 +1,23 @@
+// The motion that keeps all parameters and effects apart: every direction, several speeds and radii, single
+// wheels, four headings, many starts and stops, and the first straight once more at the end (drift).
+#pragma once
+
+#include "daemon/routines/motion.hpp"
+
+namespace odomcalib::routines {
+
+struct PatternOptions {
+  /// Free area around the start, m: its length along the start heading and its width. The middle of the axle
+  /// stays inside; the robot's own size must be free beyond it.
+  double area_length = 2.0;
+  double area_width = 2.0;
+  double track_width = 0.4;  ///< m, nominal: radius of the single-wheel turns
+  bool quick = false;        ///< a quarter of the time, fewer speeds
+  Limits limits;
+};
+
+/// Every move is undone by its opposite, so that the robot is near its start after each block: driven from
+/// the odometry pose with a Runner it stays inside the area. About four minutes, quick: one and a half.
+Plan pattern_plan(const PatternOptions& options);
+
+}  // namespace odomcalib::routines

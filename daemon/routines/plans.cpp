@@ -1,0 +1,26 @@
+#include "daemon/routines/plans.hpp"
+
+#include <numbers>
+
+namespace odomcalib::routines {
+
+Plan straight_plan(const StraightOptions& options) {
+  Plan plan{.name = "straight", .moves = {}, .limits = options.limits};
+  for (int i = 0; i < options.repeat; ++i) {
+    plan.moves.push_back(straight(options.distance, options.speed, 1.0));
+    plan.moves.push_back(straight(-options.distance, options.speed, 1.0));
+  }
+  return plan;
+}
+
+Plan spin_plan(const SpinOptions& options) {
+  Plan plan{.name = "spin", .moves = {}, .limits = options.limits};
+  const double angle = 2.0 * std::numbers::pi * options.turns;
+  for (int i = 0; i < options.repeat; ++i) {
+    if (options.left) plan.moves.push_back(spin(angle, options.rate, 1.0));
+    if (options.right) plan.moves.push_back(spin(-angle, options.rate, 1.0));
+  }
+  return plan;
+}
+
+}  // namespace odomcalib::routines

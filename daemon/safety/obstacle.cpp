@@ -1,0 +1,110 @@
+#include "daemon/safety/obstacle.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace odomcalib::safety {
+namespace {
+
+using routines::Pose;
+using routines::Twist;
+
+bool inside(const Point& point, const Footprint& footprint, double grow) {
+  return point.x <= footprint.front + grow && point.x >= -footprint.back - grow &&
+         std::abs(point.y) <= footprint.half_width + grow;
+}
+
+Point seen_from(const Pose& pose, const Point& point) {
+  const double dx = point.x - pose.x;
+  const double dy = point.y - pose.y;
+  const double c = std::cos(pose.yaw);
+  const double s = std::sin(pose.yaw);
+  return {c * dx + s * dy, -s * dx + c * dy};
+}
+
+// Poses along the circle of the twist until `distance` m are driven, the present one included.
+std::vector<Pose> path_of(const Twist& twist, double distance) {
+  constexpr int kSteps = 12;
+  const double duration = distance / std::abs(twist.v);
+  std::vector<Pose> path(1);
+  for (int i = 0; i < kSteps; ++i) {
+    Pose pose = path.back();
+    const double dt = duration / kSteps;
+    const double middle = pose.yaw + 0.5 * twist.w * dt;
+    pose.x += twist.v * dt * std::cos(middle);
+    pose.y += twist.v * dt * std::sin(middle);
+    pose.yaw += twist.w * dt;
+    path.push_back(pose);
+  }
+  return path;
+}
+
+bool on_path(const Point& point, const std::vector<Pose>& path, const ObstacleOptions& options) {
+  return std::any_of(path.begin(), path.end(), [&](const Pose& pose) {
+    return inside(seen_from(pose, point), options.footprint, options.side_margin);
+  });
+}
+
+// Turns with almost no forward speed are spins: the path above would be a whole circle of a tiny radius.
+bool is_spin(const Twist& twist) { return std::abs(twist.v) < 0.02; }
+
+}  // namespace
+
+double Footprint::radius() const { return std::hypot(std::max(front, back), half_width); }
+
+std::vector<Point> points_of(const Scan& scan, const std::array<double, 3>& lidar_pose) {
+  std::vector<Point> points;
+  points.reserve(scan.ranges.size());
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = static_cast<double>(scan.ranges[i]);
+    if (!(range > 0.0) || range < scan.range_min || range > scan.range_max) continue;
+    const double angle = scan.angle(i) + lidar_pose[2];
+    points.push_back({lidar_pose[0] + range * std::cos(angle), lidar_pose[1] + range * std::sin(angle)});
+  }
+  return points;
+}
+
+double stopping_distance(double speed, const ObstacleOptions& options) {
+  const double v = std::abs(speed);
+  return v * options.reaction + v * v / (2.0 * options.acceleration) + options.margin;
+}
+
+int points_in_way(const std::vector<Point>& points, const Twist& twist, const ObstacleOptions& options) {
+  if (twist.v == 0.0 && twist.w == 0.0) return 0;
+  const double circle = options.footprint.radius() + options.side_margin;
+  const auto path =
+      is_spin(twist) ? std::vector<Pose>{} : path_of(twist, stopping_distance(twist.v, options));
+  const auto counts = [&](const Point& point) {
+    if (inside(point, options.footprint, 0.0)) return false;
+    return is_spin(twist) ? std::hypot(point.x, point.y) <= circle : on_path(point, path, options);
+  };
+  return static_cast<int>(std::count_if(points.begin(), points.end(), counts));
+}
+
+void ObstacleGuard::seen(const std::vector<Point>& points, const Twist& twist) {
+  if (points_in_way(points, twist, options_) >= options_.points) {
+    blocked_ = true;
+    free_scans_ = 0;
+  } else if (blocked_ && ++free_scans_ >= options_.release_scans) {
+    blocked_ = false;
+  }
+}
+
+std::optional<std::string> occupied(const std::vector<Point>& points, const routines::Preview& preview,
+                                    const Footprint& footprint, double clearance) {
+  constexpr std::size_t kStride = 5;  // the preview has a pose each 20 ms, at most 6 mm apart
+  for (const Point& point : points) {
+    if (inside(point, footprint, 0.0)) continue;
+    for (std::size_t i = 0; i < preview.path.size(); i += kStride)
+      if (inside(seen_from(preview.path[i], point), footprint, clearance))
+        return fmt::format(
+            "something stands {:.2f} m ahead and {:.2f} m to the left of the robot, nearer than "
+            "{:.2f} m to its way",
+            point.x, point.y, clearance);
+  }
+  return std::nullopt;
+}
+
+}  // namespace odomcalib::safety

@@ -1,0 +1,66 @@
+// Rules M5, M6 and M10: nothing may stand where the robot will be before it can stop. This is an additional
+// protection: it replaces neither a safety scanner nor an emergency stop.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/routines/motion.hpp"
+#include "proto/measurements.hpp"
+
+namespace odomcalib::safety {
+
+/// A point in the base frame, m.
+struct Point {
+  double x = 0.0, y = 0.0;
+};
+
+/// Valid readings of a scan in the base frame. @param lidar_pose x, y [m], yaw [rad] of the lidar in the base
+std::vector<Point> points_of(const Scan& scan, const std::array<double, 3>& lidar_pose);
+
+/// The robot from above, m from the middle of the axle.
+struct Footprint {
+  double front = 0.25, back = 0.25, half_width = 0.25;
+  [[nodiscard]] double radius() const;
+};
+
+struct ObstacleOptions {
+  Footprint footprint;
+  double margin = 0.30;       ///< m, ahead of the stopping distance
+  double side_margin = 0.05;  ///< m
+  double reaction = 0.13;     ///< s: one scan period and one control step
+  double acceleration = 0.5;  ///< m/s^2, braking
+  int points = 3;             ///< so many readings are an obstacle
+  int release_scans = 5;      ///< so many free scans in a row release
+};
+
+/// v t_react + v^2 / (2 a) + margin, m.
+double stopping_distance(double speed, const ObstacleOptions& options);
+
+/// Readings inside the area that the robot sweeps until it can have stopped. Readings on the robot itself do
+/// not count. A spin sweeps the full circle of its farthest corner.
+int points_in_way(const std::vector<Point>& points, const routines::Twist& twist,
+                  const ObstacleOptions& options);
+
+/// One scan with enough points blocks; release_scans free ones in a row release.
+class ObstacleGuard {
+ public:
+  explicit ObstacleGuard(ObstacleOptions options) : options_(options) {}
+  void seen(const std::vector<Point>& points, const routines::Twist& twist);
+  [[nodiscard]] bool blocked() const { return blocked_; }
+  [[nodiscard]] const ObstacleOptions& options() const { return options_; }
+
+ private:
+  ObstacleOptions options_;
+  bool blocked_ = false;
+  int free_scans_ = 0;
+};
+
+/// Before a motion: points nearer than `clearance` to the footprint anywhere on the previewed path.
+/// @return what is in the way, with its place, or nullopt
+std::optional<std::string> occupied(const std::vector<Point>& points, const routines::Preview& preview,
+                                    const Footprint& footprint, double clearance);
+
+}  // namespace odomcalib::safety

@@ -1,0 +1,108 @@
+// odomcalib-sim: a simulated robot in real time, for demonstrations and for tests of whole programs.
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <thread>
+
+#include "tests/sim/wires/truth_json.hpp"
+
+namespace {
+
+using odomcalib::sim::SimRobot;
+using odomcalib::sim::SimRobotOptions;
+
+volatile sig_atomic_t stop_requested = 0;
+
+void on_signal(int /*number*/) { stop_requested = 1; }
+
+struct Arguments {
+  std::uint64_t seed = 1;
+  double speed = 1.0;
+  double duration = 0.0;
+  std::string room = "furnished";
+  std::string link_dir, truth_file, can;
+  bool exact = false;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.add_option("--seed", arguments.seed, "robot, noise and random room are drawn from this number");
+  app.add_option("--speed", arguments.speed, "times real time")->check(CLI::PositiveNumber);
+  app.add_option("--duration", arguments.duration, "simulated seconds, 0 for ever");
+  app.add_option("--room", arguments.room, "where it stands")
+      ->check(CLI::IsMember({"furnished", "workshop", "corridor", "random"}));
+  app.add_option("--link", arguments.link_dir,
+                 "folder in which to make the links `can` and `lidar` to the ports");
+  app.add_option("--truth", arguments.truth_file,
+                 "file to write the true parameters to (JSON), refreshed every second");
+  app.add_option("--can", arguments.can, "SocketCAN interface to use instead of an slcan port");
+  app.add_flag("--exact", arguments.exact, "a robot whose true parameters are the nominal ones");
+}
+
+odomcalib::sim::Room choose_room(const Arguments& arguments) {
+  if (arguments.room == "workshop") return odomcalib::sim::workshop();
+  if (arguments.room == "corridor") return odomcalib::sim::corridor();
+  if (arguments.room == "random") return odomcalib::sim::random_room(arguments.seed);
+  return odomcalib::sim::furnished_room();
+}
+
+SimRobotOptions robot_options(const Arguments& arguments) {
+  SimRobotOptions options;
+  options.seed = arguments.seed;
+  options.truth = arguments.exact ? options.nominal : draw_truth(options.nominal, arguments.seed);
+  options.room = choose_room(arguments);
+  options.body.slip_noise = 0.0003;
+  options.link_dir = arguments.link_dir;
+  if (!arguments.can.empty()) options.socketcan = arguments.can;
+  return options;
+}
+
+void announce(const SimRobot& robot) {
+  std::printf("can    %s\nlidar  %s\n", robot.can_device().c_str(), robot.lidar_device().c_str());
+  std::fflush(stdout);
+}
+
+/// @return exit status
+int run(SimRobot& robot, const Arguments& arguments) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double kChunk = 0.002;  // s of real time between exchanges
+  const auto start = Clock::now();
+  double truth_due = 0.0;
+  for (int i = 1; stop_requested == 0; ++i) {
+    if (!arguments.truth_file.empty() && robot.now() >= truth_due) {
+      const auto written = write_truth(robot, arguments.truth_file);
+      if (!written) return std::fprintf(stderr, "odomcalib-sim: %s\n", written.error().text().c_str()), 1;
+      truth_due = robot.now() + 1.0;
+    }
+    robot.step(kChunk * arguments.speed);
+    if (arguments.duration > 0.0 && robot.now() >= arguments.duration) break;
+    std::this_thread::sleep_until(
+        start + i * std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kChunk)));
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Simulated differential-drive robot: CANopen drive on an slcan port, LD06 lidar on a serial port"};
+  Arguments arguments;
+  declare(app, arguments);
+  CLI11_PARSE(app, argc, argv);
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  const auto robot = SimRobot::create(robot_options(arguments));
+  if (!robot) {
+    std::fprintf(stderr, "odomcalib-sim: %s\n", robot.error().text().c_str());
+    return 1;
+  }
+  announce(*robot.value());
+  const int status = run(*robot.value(), arguments);
+  if (!arguments.truth_file.empty() && !write_truth(*robot.value(), arguments.truth_file)) return 1;
+  return status;
+}

@@ -1,0 +1,201 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "daemon/routines/plans.hpp"
+#include "daemon/safety/envelope.hpp"
+#include "daemon/safety/freshness.hpp"
+#include "daemon/safety/lease.hpp"
+#include "daemon/safety/obstacle.hpp"
+#include "daemon/safety/stop_guard.hpp"
+
+namespace odomcalib::safety {
+namespace {
+
+Scan scan_with(float range) {
+  Scan scan;
+  scan.angle_increment = 0.1;
+  scan.range_max = 10.0;
+  scan.ranges.assign(20, range);
+  return scan;
+}
+
+TEST(ScanFreshness, blocks_before_the_first_scan_and_after_250_ms) {
+  ScanFreshness freshness;
+  EXPECT_TRUE(freshness.stale(0.0).has_value());
+  freshness.seen(scan_with(1.0F), 1.0);
+  EXPECT_FALSE(freshness.stale(1.249).has_value());
+  EXPECT_TRUE(freshness.stale(1.251).has_value());
+}
+
+TEST(ScanFreshness, a_repeated_scan_and_an_empty_one_count_as_none) {
+  ScanFreshness freshness;
+  freshness.seen(scan_with(1.0F), 1.0);
+  freshness.seen(scan_with(1.0F), 1.2);
+  EXPECT_TRUE(freshness.stale(1.3).has_value());
+  freshness.seen(scan_with(1.01F), 1.4);
+  EXPECT_FALSE(freshness.stale(1.5).has_value());
+  freshness.seen(scan_with(0.0F), 1.6);
+  EXPECT_TRUE(freshness.stale(1.7).has_value());
+}
+
+TEST(EncoderFreshness, blocks_after_100_ms_of_silence) {
+  EncoderFreshness freshness;
+  EXPECT_TRUE(freshness.stale(0.0).has_value());
+  freshness.seen({0.0, 1, 1, 0}, 0.0);
+  EXPECT_FALSE(freshness.stale(0.099).has_value());
+  EXPECT_TRUE(freshness.stale(0.101).has_value());
+}
+
+TEST(EncoderFreshness, a_turning_wheel_must_count_and_a_standing_one_need_not) {
+  EncoderFreshness freshness;
+  std::optional<std::string> stale;
+  for (int i = 0; i < 60 && !stale; ++i) {
+    const double now = 0.02 * i;
+    freshness.commanded(1.0, 0.0, now);
+    freshness.seen({now, 10 * i, 0, 0}, now);
+    stale = freshness.stale(now);
+  }
+  EXPECT_FALSE(stale.has_value());
+  for (int i = 60; i < 100 && !stale; ++i) {
+    const double now = 0.02 * i;
+    freshness.seen({now, 600, 0, 0}, now);
+    stale = freshness.stale(now);
+  }
+  ASSERT_TRUE(stale.has_value());
+  EXPECT_NE(stale->find("left"), std::string::npos);
+}
+
+TEST(Envelope, of_a_straight_metre_is_1_3_m_and_half_as_long_again) {
+  const auto preview = routines::preview(routines::straight_plan({}));
+  const Envelope envelope = Envelope::of(preview);
+  EXPECT_NEAR(envelope.reach, 1.3, 0.01);
+  EXPECT_FALSE(envelope.violated({1.25, 0.0, 0.0}, 0.0, 5.0).has_value());
+  EXPECT_TRUE(envelope.violated({1.35, 0.0, 0.0}, 0.0, 5.0).has_value());
+  EXPECT_TRUE(envelope.violated({0.0, 0.0, 0.0}, 1.0, 5.0).has_value());
+  EXPECT_TRUE(envelope.violated({0.0, 0.0, 0.0}, 0.0, 1.6 * preview.duration).has_value());
+  EXPECT_TRUE(envelope.violated({std::nan(""), 0.0, 0.0}, 0.0, 0.0).has_value());
+}
+
+TEST(Envelope, of_one_full_turn_is_450_degrees) {
+  const Envelope envelope = Envelope::of(routines::preview(routines::spin_plan({})));
+  EXPECT_NEAR(envelope.turn, 450.0 * std::numbers::pi / 180.0, 0.05);
+}
+
+TEST(Disagreement, is_judged_after_a_fifth_of_a_metre_only) {
+  EXPECT_FALSE(disagreement({0.1, 0.0, 0.0}, {0.0, 0.0, 0.0}).has_value());
+  EXPECT_FALSE(disagreement({1.0, 0.0, 0.0}, {0.95, 0.02, 0.0}).has_value());
+  EXPECT_TRUE(disagreement({1.0, 0.0, 0.0}, {0.5, 0.0, 0.0}).has_value());
+  EXPECT_TRUE(disagreement({0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}).has_value());
+}
+
+TEST(Disagreement, finds_swapped_sides_in_a_turn) {
+  EXPECT_TRUE(disagreement({0.0, 0.0, 0.8}, {0.0, 0.0, -0.8}).has_value());
+  EXPECT_FALSE(disagreement({0.0, 0.0, 0.8}, {0.0, 0.0, 0.75}).has_value());
+}
+
+std::vector<Point> cluster(double x, double y) { return {{x, y}, {x, y + 0.01}, {x, y - 0.01}}; }
+
+TEST(Obstacle, stopping_distance_has_the_figure_of_the_rule) {
+  EXPECT_NEAR(stopping_distance(0.20, {}), 0.066 + 0.30, 1e-3);
+}
+
+TEST(Obstacle, ahead_counts_when_driving_ahead_and_not_when_backing) {
+  const ObstacleOptions options;
+  EXPECT_EQ(points_in_way(cluster(0.5, 0.0), {0.2, 0.0}, options), 3);
+  EXPECT_EQ(points_in_way(cluster(0.5, 0.0), {-0.2, 0.0}, options), 0);
+  EXPECT_EQ(points_in_way(cluster(-0.5, 0.0), {-0.2, 0.0}, options), 3);
+  EXPECT_EQ(points_in_way(cluster(0.5, 0.5), {0.2, 0.0}, options), 0);
+  EXPECT_EQ(points_in_way(cluster(1.5, 0.0), {0.2, 0.0}, options), 0);
+  EXPECT_EQ(points_in_way(cluster(0.5, 0.0), {0.0, 0.0}, options), 0);
+}
+
+TEST(Obstacle, a_spin_watches_the_full_circle_from_its_first_step) {
+  const ObstacleOptions options;
+  for (int i = 0; i < 36; ++i) {
+    const double angle = i * std::numbers::pi / 18.0;
+    const double near = options.footprint.radius() + 0.03;
+    const double far = options.footprint.radius() + 0.10;
+    EXPECT_EQ(points_in_way({{near * std::cos(angle), near * std::sin(angle)}}, {0.0, 0.1}, options), 1) << i;
+    EXPECT_EQ(points_in_way({{far * std::cos(angle), far * std::sin(angle)}}, {0.0, 0.1}, options), 0) << i;
+  }
+}
+
+TEST(Obstacle, an_arc_looks_into_its_bend) {
+  const ObstacleOptions options;
+  EXPECT_GT(points_in_way(cluster(0.55, 0.38), {0.3, 0.6}, options), 0);
+  EXPECT_EQ(points_in_way(cluster(0.55, 0.38), {0.3, -0.6}, options), 0);
+}
+
+TEST(Obstacle, one_scan_triggers_and_five_release) {
+  ObstacleGuard guard{{}};
+  guard.seen({{0.5, 0.0}, {0.5, 0.01}}, {0.2, 0.0});
+  EXPECT_FALSE(guard.blocked());
+  guard.seen(cluster(0.5, 0.0), {0.2, 0.0});
+  EXPECT_TRUE(guard.blocked());
+  for (int i = 0; i < 4; ++i) guard.seen({}, {0.2, 0.0});
+  EXPECT_TRUE(guard.blocked());
+  guard.seen({}, {0.2, 0.0});
+  EXPECT_FALSE(guard.blocked());
+}
+
+TEST(Obstacle, the_way_is_checked_before_the_first_step) {
+  const auto preview = routines::preview(routines::straight_plan({}));
+  EXPECT_TRUE(occupied(cluster(1.4, 0.0), preview, {}, 0.3).has_value());
+  EXPECT_FALSE(occupied(cluster(1.7, 0.0), preview, {}, 0.3).has_value());
+  EXPECT_FALSE(occupied(cluster(0.5, 0.7), preview, {}, 0.3).has_value());
+}
+
+TEST(PointsOf, turns_the_scan_into_the_base_frame_and_drops_no_readings) {
+  Scan scan;
+  scan.range_max = 10.0;
+  scan.angle_increment = std::numbers::pi / 2.0;
+  scan.ranges = {1.0F, 0.0F, 2.0F, 20.0F};
+  const auto points = points_of(scan, {0.1, 0.0, std::numbers::pi / 2.0});
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_NEAR(points[0].x, 0.1, 1e-6);
+  EXPECT_NEAR(points[0].y, 1.0, 1e-6);
+  EXPECT_NEAR(points[1].y, -2.0, 1e-6);
+}
+
+TEST(Lease, lapses_after_250_ms_and_cannot_be_revived) {
+  Lease lease;
+  const auto id = lease.acquire(1, 0.0);
+  ASSERT_TRUE(id.ok());
+  EXPECT_TRUE(lease.renew(id.value(), 0.2).ok());
+  EXPECT_TRUE(lease.holds(id.value(), 0.449));
+  EXPECT_FALSE(lease.holds(id.value(), 0.451));
+  EXPECT_FALSE(lease.renew(id.value(), 0.5).ok());
+}
+
+TEST(Lease, belongs_to_one_client_and_ends_with_its_connection) {
+  Lease lease;
+  const auto id = lease.acquire(1, 0.0);
+  EXPECT_FALSE(lease.acquire(2, 0.1).ok());
+  EXPECT_FALSE(lease.renew("wrong", 0.1).ok());
+  lease.lost(2);
+  EXPECT_TRUE(lease.active(0.1));
+  lease.lost(1);
+  EXPECT_FALSE(lease.active(0.1));
+  EXPECT_TRUE(lease.acquire(2, 0.1).ok());
+}
+
+TEST(StopGuard, stops_once_on_every_way_out) {
+  int stops = 0;
+  {
+    StopGuard guard([&stops] { ++stops; });
+    guard.stop();
+  }
+  EXPECT_EQ(stops, 1);
+  try {
+    const StopGuard guard([&stops] { ++stops; });
+    throw std::runtime_error("anything");
+  } catch (const std::runtime_error&) {
+    EXPECT_EQ(stops, 2);
+  }
+}
+
+}  // namespace
+}  // namespace odomcalib::safety

@@ -1,0 +1,145 @@
+#include "proto/tick_counts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "support.hpp"
+
+namespace odomcalib {
+namespace {
+
+constexpr double kInterval = 0.05;  // s
+
+/// A drive with changing, plausible speeds: up to 1 m/s, that is 207 counts a sample.
+std::vector<TickSample> drive(std::mt19937& random, std::size_t samples, std::int64_t left,
+                              std::int64_t right) {
+  std::vector<TickSample> out;
+  std::int64_t left_speed = 0;
+  std::int64_t right_speed = 0;
+  std::uniform_int_distribution<std::int64_t> change(-20, 20);
+  for (std::size_t i = 0; i < samples; ++i) {
+    out.push_back({static_cast<double>(i) * kInterval, left, right, 0});
+    left_speed = std::clamp<std::int64_t>(left_speed + change(random), -207, 207);
+    right_speed = std::clamp<std::int64_t>(right_speed + change(random), -207, 207);
+    left += left_speed;
+    right += right_speed;
+  }
+  return out;
+}
+
+template <typename Counter>
+std::vector<TickSample> wrapped(std::vector<TickSample> ticks) {
+  for (auto& sample : ticks) {
+    sample.left = static_cast<Counter>(sample.left);
+    sample.right = static_cast<Counter>(sample.right);
+  }
+  return ticks;
+}
+
+void expect_same_motion(const std::vector<TickSample>& actual, const std::vector<TickSample>& expected) {
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i) {
+    ASSERT_EQ(actual[i].segment, 0) << "sample " << i;
+    ASSERT_EQ(actual[i].left - actual[0].left, expected[i].left - expected[0].left) << "sample " << i;
+    ASSERT_EQ(actual[i].right - actual[0].right, expected[i].right - expected[0].right) << "sample " << i;
+  }
+}
+
+template <typename Counter>
+class Wrapping : public testing::Test {};
+using Counters = testing::Types<std::int16_t, std::uint16_t, std::int32_t, std::uint32_t, std::int64_t>;
+TYPED_TEST_SUITE(Wrapping, Counters);
+
+TYPED_TEST(Wrapping, counters_give_the_motion_of_counters_that_never_wrap) {
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  for (int round = 0; round < 30; ++round) {
+    // Near both ends of the narrow counters, so that wraps in both directions happen.
+    const auto start =
+        static_cast<std::int64_t>(std::numeric_limits<std::int32_t>::max()) - 100 + round * 1000;
+    const auto truth = drive(random, 1500, start, -start);
+    auto ticks = wrapped<TypeParam>(truth);
+    EXPECT_EQ(continue_counts(ticks, test::example_robot()), 0U);
+    expect_same_motion(ticks, truth);
+  }
+}
+
+TEST(TickCounts, start_a_new_segment_when_they_are_reset_and_keep_the_motion_of_both_parts) {
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  for (const std::int64_t start : {5000, -40000, 1000000}) {
+    auto ticks = drive(random, 100, start, start + 3000);
+    const auto before = ticks;
+    for (std::size_t i = 50; i < ticks.size(); ++i) {
+      ticks[i].left -= before[50].left;
+      ticks[i].right -= before[50].right;
+    }
+    EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U) << start;
+    EXPECT_EQ(ticks[49].segment, 0);
+    EXPECT_EQ(ticks[50].segment, 1);
+    EXPECT_EQ(ticks[50].left, 0);
+    EXPECT_EQ(ticks[99].left - ticks[50].left, before[99].left - before[50].left);
+  }
+}
+
+TEST(TickCounts, start_a_new_segment_at_a_jump_that_no_wheel_can_make) {
+  std::mt19937 random(7);
+  for (const std::int64_t jump : {3000, -3000, 70000, 1 << 20}) {
+    auto ticks = drive(random, 100, 0, 0);
+    for (std::size_t i = 60; i < ticks.size(); ++i) ticks[i].right += jump;
+    EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U) << jump;
+    EXPECT_EQ(ticks[60].segment, 1);
+  }
+}
+
+TEST(TickCounts, start_a_new_segment_at_a_single_step_out_of_line) {
+  std::mt19937 random(7);
+  auto ticks = drive(random, 100, 0, 0);
+  for (std::size_t i = 60; i < ticks.size(); ++i) ticks[i].left += 1300;  // 6 m/s in one sample
+  EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U);
+}
+
+TEST(TickCounts, are_not_broken_by_jittering_stamps_or_lost_samples) {
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> jitter(-0.024, 0.024);
+  auto truth = drive(random, 2000, 0, 0);
+  std::vector<TickSample> ticks;
+  for (auto sample : truth) {
+    sample.t += jitter(random);
+    if (random() % 10 != 0) ticks.push_back(sample);
+  }
+  EXPECT_EQ(continue_counts(ticks, test::example_robot()), 0U);
+}
+
+TEST(TickCounts, never_join_segments_that_the_source_has_told_apart) {
+  std::vector<TickSample> ticks{{0, 0, 0, 3}, {0.1, 10, 10, 3}, {0.2, 20, 20, 7}, {0.3, 30, 30, 7}};
+  EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U);
+  EXPECT_EQ(ticks[1].segment, 0);
+  EXPECT_EQ(ticks[2].segment, 1);
+  EXPECT_EQ(ticks[3].left, 30);
+}
+
+TEST(TickCounts, survive_any_numbers) {
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937_64 random(seed);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<TickSample> ticks;
+    const int shift = static_cast<int>(random() % 60);
+    for (int i = 0; i < 20; ++i)
+      ticks.push_back({i * 0.1, static_cast<std::int64_t>(random()) >> 10 >> (shift / 2),
+                       static_cast<std::int64_t>(random()) >> 10, 0});
+    const auto robot = round % 2 == 0 ? test::example_robot() : RobotDescription{};
+    EXPECT_LT(continue_counts(ticks, robot), ticks.size());
+  }
+  std::vector<TickSample> none;
+  EXPECT_EQ(continue_counts(none, {}), 0U);
+}
+
+}  // namespace
+}  // namespace odomcalib
