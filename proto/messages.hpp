@@ -19,7 +19,7 @@ struct Stamp {
 };
 
 /// Seconds of a stamp as recordings use them.
-inline double seconds(const Stamp& stamp) { return static_cast<double>(stamp.mono_ns) * 1e-9; }
+inline double seconds(const Stamp& stamp) { return static_cast<double>(stamp.mono_ns) / 1e9; }
 
 /// How a time stamp came about (ticks_t, scan_t: time_source).
 enum class TimeSource : std::int8_t {

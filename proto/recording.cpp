@@ -38,8 +38,8 @@ Error unknown_form(const std::string& where) {
           "known are JSON Lines, LCM event logs, Censi's tuple and JSON logs and CARMEN logs, plain or gzip"};
 }
 
-Result<Recording> read_bytes(std::string_view bytes, const std::string& where, RecordingBuilder builder,
-                             const RobotDescription* fallback) {
+Result<Recording> read_content(std::string_view bytes, const std::string& where, RecordingBuilder builder,
+                               const RobotDescription* fallback) {
   using Need = RecordingBuilder::RobotNeed;
   Need need = Need::required;
   switch (recognise(bytes)) {
@@ -70,21 +70,24 @@ Result<Recording> read_bytes(std::string_view bytes, const std::string& where, R
 
 }  // namespace
 
-Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback) {
-  auto file = read_file_bytes(path);
-  if (!file) return file.error();
+Result<Recording> read_recording_bytes(const std::string& bytes, const std::filesystem::path& name,
+                                       const RobotDescription* fallback) {
   RecordingBuilder builder;
-  const std::string sha256 = sha256_hex(file.value());
-  if (is_gzip(file.value())) {
-    auto unpacked = gunzip(file.value());
-    if (!unpacked.whole) builder.discard("file", unpacked.problem);
-    file = std::move(unpacked.bytes);
-  }
-  auto recording = read_bytes(file.value(), path.string(), std::move(builder), fallback);
+  Unpacked unpacked;
+  const bool packed = is_gzip(bytes);
+  if (packed) unpacked = gunzip(bytes);
+  if (!unpacked.whole) builder.discard("file", unpacked.problem);
+  auto recording = read_content(packed ? unpacked.bytes : bytes, name.string(), std::move(builder), fallback);
   if (!recording) return recording;
-  recording.value().name = path.filename().string();
-  recording.value().sha256 = sha256;
+  recording.value().name = name.filename().string();
+  recording.value().sha256 = sha256_hex(bytes);
   return recording;
+}
+
+Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback) {
+  const auto file = read_file_bytes(path);
+  if (!file) return file.error();
+  return read_recording_bytes(file.value(), path, fallback);
 }
 
 }  // namespace odomcalib

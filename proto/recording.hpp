@@ -39,6 +39,11 @@ struct Recording {
 Result<Recording> read_recording(const std::filesystem::path& path,
                                  const RobotDescription* fallback = nullptr);
 
+/// The same for content that is in memory already.
+/// @param name file name, for messages and Recording::name
+Result<Recording> read_recording_bytes(const std::string& bytes, const std::filesystem::path& name,
+                                       const RobotDescription* fallback = nullptr);
+
 /// Writes JSON Lines (gzip when the name ends in .gz). Counterpart of read_recording: numbers survive
 /// unchanged.
 Result<void> write_recording_jsonl(const Recording& recording, const std::filesystem::path& path);

@@ -16,10 +16,10 @@ struct CanFrame {
   std::uint32_t id = 0;
   bool extended = false;  ///< 29-bit identifier
   bool remote = false;
-  bool error = false;     ///< error frame of the interface (bus-off, error-passive, ...), not from a node
+  bool error = false;  ///< error frame of the interface (bus-off, error-passive, ...), not from a node
   std::uint8_t length = 0;
   std::array<std::uint8_t, 8> data{};
-  double t = 0.0;         ///< s on the caller's clock, best estimate of the frame's reception
+  double t = 0.0;  ///< s on the caller's clock, best estimate of the frame's reception
 };
 
 /// Named counters, shown by `odomcalibctl status`. Byte streams keep bytes_in = good + skipped + buffered.
@@ -38,7 +38,8 @@ class CanTransport {
   [[nodiscard]] virtual Counters counters() const = 0;
 };
 
-/// Opens a device string. Errors: usage (bad string), device (cannot open; the remedy names the command to try).
+/// Opens a device string. Errors: usage (bad string), device (cannot open; the remedy names the command to
+/// try).
 Result<std::unique_ptr<CanTransport>> open_can(const std::string& device);
 
 }  // namespace odomcalib::drivers

@@ -4,9 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <map>
 #include <thread>
 
+#include "tests/sim/effects/effect.hpp"
 #include "tests/sim/wires/truth_json.hpp"
 
 namespace {
@@ -23,7 +23,8 @@ struct Arguments {
   double speed = 1.0;
   double duration = 0.0;
   std::string room = "furnished";
-  std::string link_dir, truth_file, can;
+  std::string link_dir, truth_file, can, effect;
+  double effect_size = -1.0;
   bool exact = false;
 };
 
@@ -38,6 +39,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--truth", arguments.truth_file,
                  "file to write the true parameters to (JSON), refreshed every second");
   app.add_option("--can", arguments.can, "SocketCAN interface to use instead of an slcan port");
+  app.add_option("--effect", arguments.effect, "something that the plain model lacks, e.g. gear_play");
+  app.add_option("--effect-size", arguments.effect_size, "in its unit; default: its largest usual size");
   app.add_flag("--exact", arguments.exact, "a robot whose true parameters are the nominal ones");
 }
 
@@ -56,6 +59,11 @@ SimRobotOptions robot_options(const Arguments& arguments) {
   options.body.slip_noise = 0.0003;
   options.link_dir = arguments.link_dir;
   if (!arguments.can.empty()) options.socketcan = arguments.can;
+  if (const auto* kind = odomcalib::sim::find_effect(arguments.effect)) {
+    odomcalib::sim::Random random(arguments.seed);
+    options.disturbances = {
+        kind->make(arguments.effect_size >= 0.0 ? arguments.effect_size : kind->largest, random)};
+  }
   return options;
 }
 

@@ -60,6 +60,59 @@ TEST(Simulate, gives_the_drive_the_pose_that_nominal_odometry_believes_in) {
   EXPECT_NEAR(believed.yaw, truth.yaw, 1e-3);
 }
 
+/// Dead reckoning by exact arcs: another discretisation than that of the simulated body.
+Pose dead_reckoning(const std::vector<TickSample>& ticks, const Geometry& robot) {
+  Pose pose;
+  const double radian = 2.0 * kPi / robot.ticks_per_rev;
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const double left =
+        0.5 * robot.left_diameter * radian * static_cast<double>(ticks[i].left - ticks[i - 1].left);
+    const double right =
+        0.5 * robot.right_diameter * radian * static_cast<double>(ticks[i].right - ticks[i - 1].right);
+    const double turn = (right - left) / robot.track_width, way = 0.5 * (left + right);
+    const double chord = std::abs(turn) < 1e-9 ? way : way / turn * 2.0 * std::sin(0.5 * turn);
+    pose.x += chord * std::cos(pose.yaw + 0.5 * turn);
+    pose.y += chord * std::sin(pose.yaw + 0.5 * turn);
+    pose.yaw += turn;
+  }
+  return pose;
+}
+
+TEST(Simulate, ticks_and_true_dimensions_give_the_true_path_and_nominal_dimensions_do_not) {
+  SimulationConfig config = standard_config(21);
+  config.body.slip_noise = 0.0;
+  config.lidar.beams_per_turn = 10;
+  const auto run = simulate_recording(config, follow(config.nominal, guided_pattern()));
+  const Pose& truth = run.path.back().pose;
+  const Pose by_truth = dead_reckoning(run.recording.ticks, config.truth);
+  EXPECT_NEAR(by_truth.x, truth.x, 0.002);
+  EXPECT_NEAR(by_truth.y, truth.y, 0.002);
+  EXPECT_NEAR(by_truth.yaw, truth.yaw, 0.001);
+  const Pose by_nominal = dead_reckoning(run.recording.ticks, config.nominal);
+  EXPECT_GT(std::hypot(by_nominal.x - truth.x, by_nominal.y - truth.y), 0.02);
+}
+
+TEST(Simulate, every_beam_ends_on_a_wall_as_seen_from_the_true_pose_at_its_time) {
+  SimulationConfig config = standard_config(22);
+  config.duration = 40.0;
+  config.lidar.range_noise = 0.0;
+  config.truth_period = 0.001;
+  const auto run = simulate_recording(config, follow(config.nominal, guided_pattern()));
+  for (std::size_t i = 0; i < run.recording.scans.size(); i += 7) {
+    const Scan& scan = run.recording.scans[i];
+    for (std::size_t k = 0; k < scan.ranges.size(); k += 11) {
+      if (scan.ranges[k] == 0.0F) continue;
+      const double t = scan.t + *scan.time_increment * static_cast<double>(k);
+      const Pose base = run.path[static_cast<std::size_t>(std::lround(t * 1000.0))].pose;
+      const Pose eye = compose(base, config.truth.lidar);
+      const double direction = eye.yaw + scan.angle(k), range = static_cast<double>(scan.ranges[k]);
+      const Vec2 end{eye.x + range * std::cos(direction), eye.y + range * std::sin(direction)};
+      EXPECT_LT(config.room.clearance(end), 0.006)
+          << "scan " << i << " beam " << k;  // 0.5 ms at 4 m and 1.3 rad/s
+    }
+  }
+}
+
 TEST(Simulate, true_dimensions_differ_from_the_nominal_ones_by_one_to_three_percent) {
   const Geometry nominal;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

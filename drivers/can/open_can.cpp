@@ -1,0 +1,43 @@
+#include <charconv>
+
+#include "drivers/can/slcan.hpp"
+#include "drivers/can/socketcan.hpp"
+#include "drivers/serial/port.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+Result<unsigned> number(const DeviceString& device, const std::string& key, unsigned otherwise) {
+  const std::string text = device.option(key, std::to_string(otherwise));
+  unsigned value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size()) return value;
+  return Error{ErrorCode::usage, "\"" + key + "=" + text + "\" is not a whole number", device.path, ""};
+}
+
+Result<std::unique_ptr<CanTransport>> open_slcan_device(const DeviceString& device) {
+  const SlcanOptions defaults;
+  const auto bitrate = number(device, "bitrate", defaults.bitrate);
+  if (!bitrate) return bitrate.error();
+  const auto baud = number(device, "baud", defaults.baud);
+  if (!baud) return baud.error();
+  const auto stamps = number(device, "timestamps", 0);
+  if (!stamps) return stamps.error();
+  auto port = open_serial(device.path, baud.value());
+  if (!port) return port.error();
+  return open_slcan(std::move(port).value(), device.path,
+                    {bitrate.value(), baud.value(), stamps.value() != 0});
+}
+
+}  // namespace
+
+Result<std::unique_ptr<CanTransport>> open_can(const std::string& device) {
+  const auto parsed = parse_device(device);
+  if (!parsed) return parsed.error();
+  if (parsed.value().scheme == "socketcan") return open_socketcan(parsed.value().path);
+  if (parsed.value().scheme == "slcan") return open_slcan_device(parsed.value());
+  return Error{ErrorCode::usage, "\"" + parsed.value().scheme + "\" is no way to a CAN bus", device,
+               "use socketcan:can0 or slcan:/dev/ttyACM0?bitrate=500000"};
+}
+
+}  // namespace odomcalib::drivers

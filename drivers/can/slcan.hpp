@@ -1,0 +1,24 @@
+// A Lawicel ASCII adapter on a serial port as a CAN transport.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "drivers/can/transport.hpp"
+#include "drivers/serial/port.hpp"
+
+namespace odomcalib::drivers {
+
+struct SlcanOptions {
+  unsigned bitrate = 500'000;  ///< bit/s on the CAN side
+  unsigned baud = 115'200;     ///< of the serial side; irrelevant on USB-CDC
+  bool timestamps = false;     ///< ask the adapter for its own millisecond stamps
+};
+
+/// Closes the adapter's channel, sets the bit rate and opens it again. Takes 0.1 s, at most 1.2 s with a
+/// silent adapter. Errors: usage (bit rate that the protocol has no command for), device (no answer,
+/// refused).
+Result<std::unique_ptr<CanTransport>> open_slcan(std::unique_ptr<SerialPort> port, const std::string& name,
+                                                 const SlcanOptions& options);
+
+}  // namespace odomcalib::drivers

@@ -1,0 +1,45 @@
+#include "drivers/device_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace odomcalib::drivers {
+namespace {
+
+// The envelope may rise by this rate, so that a device clock that runs slow is followed: 200 ppm is more than
+// crystals differ (lidars: up to 100 ppm and a little more when warm).
+constexpr double kDrift = 200e-6;
+// A device that was restarted has a new zero: arrivals then leave the envelope by more than any transport's
+// delay.
+constexpr double kRestart_s = 0.5;
+
+}  // namespace
+
+void DeviceClock::reset() { last_ms_.reset(); }
+
+void DeviceClock::unwrap(std::uint32_t device_ms, double arrival) {
+  const std::uint32_t step_ms = (device_ms + modulus_ms_ - *last_ms_) % modulus_ms_;
+  const double modulus_s = modulus_ms_ * 1e-3;
+  const double step = step_ms * 1e-3;
+  // Whole turns that passed unseen, e.g. while the port was unplugged.
+  const double missed = std::round((arrival - last_arrival_ - step) / modulus_s);
+  device_s_ += step + std::max(0.0, missed) * modulus_s;
+}
+
+double DeviceClock::to_host(std::uint32_t device_ms, double arrival) {
+  const bool first = !last_ms_.has_value();
+  if (!first) unwrap(device_ms, arrival);
+  if (first) device_s_ = device_ms * 1e-3;
+  last_ms_ = device_ms;
+  last_arrival_ = arrival;
+  const double delay = arrival - device_s_;
+  if (first || std::abs(delay - offset_) > kRestart_s) {
+    offset_ = delay;
+  } else {
+    offset_ = std::min(delay, offset_ + kDrift * std::max(0.0, device_s_ - last_device_s_));
+  }
+  last_device_s_ = device_s_;
+  return device_s_ + offset_;
+}
+
+}  // namespace odomcalib::drivers

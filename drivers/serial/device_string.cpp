@@ -1,0 +1,56 @@
+#include <algorithm>
+#include <array>
+
+#include "drivers/serial/port.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+constexpr std::array<const char*, 4> kSchemes = {"socketcan", "slcan", "serial", "tcp"};
+
+Error bad_device(const std::string& text, const std::string& what) {
+  return {
+      ErrorCode::usage, what, "device \"" + text + "\"",
+      "write it like serial:/dev/ttyUSB0?baud=230400, slcan:/dev/ttyACM0?bitrate=500000 or socketcan:can0"};
+}
+
+/// Splits "a=1&b=2"; false when a part is not key=value or a key comes twice.
+bool parse_options(std::string text, DeviceString& out) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('&'), text.size());
+    const std::string part = text.substr(0, end);
+    text.erase(0, end + 1);
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == part.size()) return false;
+    const std::string key = part.substr(0, equals);
+    if (!out.option(key, "").empty()) return false;
+    out.options.emplace_back(key, part.substr(equals + 1));
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string DeviceString::option(const std::string& key, const std::string& otherwise) const {
+  for (const auto& [name, value] : options)
+    if (name == key) return value;
+  return otherwise;
+}
+
+Result<DeviceString> parse_device(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return bad_device(text, "no scheme (the part before a colon)");
+  DeviceString out;
+  out.scheme = text.substr(0, colon);
+  if (std::find(kSchemes.begin(), kSchemes.end(), out.scheme) == kSchemes.end())
+    return bad_device(text, "unknown scheme \"" + out.scheme + "\"");
+  const std::size_t question = std::min(text.find('?', colon), text.size());
+  out.path = text.substr(colon + 1, question - colon - 1);
+  if (out.path.empty()) return bad_device(text, "no path after \"" + out.scheme + ":\"");
+  const bool has_options = question < text.size();
+  if (has_options && (question + 1 == text.size() || !parse_options(text.substr(question + 1), out)))
+    return bad_device(text, "options after \"?\" must be key=value, each key once, joined by &");
+  return out;
+}
+
+}  // namespace odomcalib::drivers

@@ -1,0 +1,203 @@
+#include <fcntl.h>
+#include <libserial/SerialPort.h>
+#include <limits.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <optional>
+
+#include "drivers/serial/custom_baud.hpp"
+#include "drivers/serial/port.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+constexpr std::size_t kReadAtMost = 64 * 1024;  // per call, so that a fast device cannot hold the event loop
+
+Error port_error(const std::string& path, const std::string& what, const std::string& remedy) {
+  return {ErrorCode::device, what, path, remedy};
+}
+
+Error unplugged(const std::string& path, const std::string& detail) {
+  return port_error(path, "serial port is gone (" + detail + ")",
+                    "check cable and power; it is reopened by itself");
+}
+
+class TtyPort final : public SerialPort {
+ public:
+  TtyPort(std::string path, std::unique_ptr<LibSerial::SerialPort> port)
+      : path_(std::move(path)), port_(std::move(port)), fd_(port_->GetFileDescriptor()) {}
+
+  ~TtyPort() override {
+    try {
+      port_->Close();
+    } catch (const std::exception&) {
+      // The device may be gone already: nothing is left to close then.
+    }
+  }
+  TtyPort(const TtyPort&) = delete;
+  TtyPort& operator=(const TtyPort&) = delete;
+
+  [[nodiscard]] int fd() const override { return fd_; }
+
+  Result<std::vector<std::uint8_t>> read() override {
+    std::vector<std::uint8_t> out;
+    std::array<std::uint8_t, 4096> chunk{};
+    while (out.size() < kReadAtMost) {
+      const ssize_t n = ::read(fd_, chunk.data(), chunk.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) break;
+      if (n <= 0) return out.empty() ? end_of_input(n) : Result<std::vector<std::uint8_t>>(out);
+      out.insert(out.end(), chunk.begin(), chunk.begin() + n);
+    }
+    return out;
+  }
+
+  Result<void> write(std::span<const std::uint8_t> bytes) override {
+    while (!bytes.empty()) {
+      const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+        return port_error(path_, "output buffer is full: the device does not take what is sent",
+                          "check baud rate and flow control");
+      if (n <= 0) return unplugged(path_, n == 0 ? "write took nothing" : std::strerror(errno));
+      bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+    return {};
+  }
+
+ private:
+  [[nodiscard]] Result<std::vector<std::uint8_t>> end_of_input(ssize_t n) const {
+    return unplugged(path_, n < 0 ? std::strerror(errno) : "end of file");
+  }
+
+  std::string path_;
+  std::unique_ptr<LibSerial::SerialPort> port_;
+  int fd_;
+};
+
+std::optional<LibSerial::BaudRate> table_rate(unsigned baud) {
+  using enum LibSerial::BaudRate;
+  switch (baud) {
+    case 9600:
+      return BAUD_9600;
+    case 19200:
+      return BAUD_19200;
+    case 38400:
+      return BAUD_38400;
+    case 57600:
+      return BAUD_57600;
+    case 115200:
+      return BAUD_115200;
+    case 230400:
+      return BAUD_230400;
+    case 460800:
+      return BAUD_460800;
+    case 500000:
+      return BAUD_500000;
+    case 921600:
+      return BAUD_921600;
+    case 1000000:
+      return BAUD_1000000;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Opens with a file descriptor that libserial configures. Its exceptions end here.
+Result<std::unique_ptr<LibSerial::SerialPort>> open_port(const std::string& path,
+                                                         std::optional<LibSerial::BaudRate> rate) {
+  try {
+    auto port = std::make_unique<LibSerial::SerialPort>();
+    port->Open(path, std::ios_base::in | std::ios_base::out);
+    if (rate) port->SetBaudRate(*rate);
+    port->SetCharacterSize(LibSerial::CharacterSize::CHAR_SIZE_8);
+    port->SetParity(LibSerial::Parity::PARITY_NONE);
+    port->SetStopBits(LibSerial::StopBits::STOP_BITS_1);
+    port->SetFlowControl(LibSerial::FlowControl::FLOW_CONTROL_NONE);
+    return port;
+  } catch (const std::exception& problem) {
+    return port_error(path, std::string("cannot be set up as a serial port: ") + problem.what(),
+                      "check that it is a serial device: ls -l " + path);
+  }
+}
+
+/// Raw bytes, one at least per read (0 then means end of file); closing must not drop DTR (a lidar's
+/// motor or an Arduino's reset may hang on it).
+bool make_raw(int fd) {
+  termios settings{};
+  if (tcgetattr(fd, &settings) != 0) return false;
+  cfmakeraw(&settings);
+  settings.c_cflag |= CLOCAL | CREAD;
+  settings.c_cflag &= ~static_cast<tcflag_t>(HUPCL | CSTOPB | PARENB);
+  settings.c_cc[VMIN] = 1;
+  settings.c_cc[VTIME] = 0;
+  if (tcsetattr(fd, TCSANOW, &settings) != 0) return false;
+  const int flags = fcntl(fd, F_GETFL);
+  return flags >= 0 && fcntl(fd, F_SETFL, flags | O_NONBLOCK) == 0 && fcntl(fd, F_SETFD, FD_CLOEXEC) == 0;
+}
+
+/// Other programs are kept away by a lock, and by TIOCEXCL on real ports: on a pseudo-terminal that flag
+/// would outlive us. A pseudo-terminal has no modem lines either, so a refusal is tolerated.
+bool claim(int fd, const std::string& path) {
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
+  std::array<char, PATH_MAX> real{};
+  const bool pseudo =
+      realpath(path.c_str(), real.data()) != nullptr && std::strncmp(real.data(), "/dev/pts/", 9) == 0;
+  ioctl(fd, pseudo ? TIOCNXCL : TIOCEXCL);
+  const int lines = TIOCM_DTR | TIOCM_RTS;
+  ioctl(fd, TIOCMBIS, &lines);
+  return true;
+}
+
+Error cannot_open(const std::string& path, int cause) {
+  std::string remedy = "check the cable and the name: ls /dev/serial/by-id";
+  if (cause == EACCES) remedy = "let the service's user use it: usermod -aG dialout USER";
+  if (cause == EBUSY) remedy = "another program has it: fuser -v " + path;
+  return port_error(path, std::string("cannot open: ") + std::strerror(cause), remedy);
+}
+
+/// Holds the port open while libserial opens it too: it names no cause when it fails, and a device that
+/// resets or leaves when its last user closes must not see a close in between.
+class Probe {
+ public:
+  explicit Probe(const std::string& path)
+      : fd_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
+  ~Probe() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Probe(const Probe&) = delete;
+  Probe& operator=(const Probe&) = delete;
+  [[nodiscard]] bool ok() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<SerialPort>> open_serial(const std::string& path, unsigned baud) {
+  if (baud < 50 || baud > 4'000'000)
+    return Error{ErrorCode::usage, "baud rate " + std::to_string(baud) + " is not within 50 and 4000000",
+                 path, ""};
+  const Probe probe(path);
+  if (!probe.ok()) return cannot_open(path, errno);
+  const auto rate = table_rate(baud);
+  auto opened = open_port(path, rate);
+  if (!opened) return opened.error();
+  const int fd = opened.value()->GetFileDescriptor();
+  if (!make_raw(fd) || (!rate && !set_custom_baud(fd, baud)))
+    return port_error(path, "cannot set " + std::to_string(baud) + " baud, 8N1: " + std::strerror(errno), "");
+  if (!claim(fd, path)) return cannot_open(path, EBUSY);
+  tcflush(fd, TCIOFLUSH);
+  return std::unique_ptr<SerialPort>(std::make_unique<TtyPort>(path, std::move(opened).value()));
+}
+
+}  // namespace odomcalib::drivers

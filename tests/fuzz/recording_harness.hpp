@@ -1,0 +1,50 @@
+// What every recording parser must hold, whatever the bytes: sorted streams, finite numbers, and a result
+// that survives writing and reading.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "proto/recording.hpp"
+
+namespace odomcalib::fuzz {
+
+inline void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+template <typename Sample>
+void check_times(const std::vector<Sample>& samples) {
+  for (const auto& sample : samples) require(std::isfinite(sample.t));
+  require(
+      std::is_sorted(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.t < b.t; }));
+}
+
+inline void check(const Recording& recording) {
+  check_times(recording.ticks);
+  check_times(recording.scans);
+  check_times(recording.poses);
+  check_times(recording.gyro);
+  for (const auto& scan : recording.scans) {
+    require(scan.angles.empty() || scan.angles.size() == scan.ranges.size());
+    require(scan.times.empty() || scan.times.size() == scan.ranges.size());
+    require(std::all_of(scan.ranges.begin(), scan.ranges.end(),
+                        [](float r) { return std::isfinite(r) && r >= 0.0F; }));
+    require(!scan.ranges.empty() && std::isfinite(scan.angle(scan.ranges.size() - 1)));
+  }
+  for (std::size_t i = 1; i < recording.ticks.size(); ++i)
+    require(recording.ticks[i].segment >= recording.ticks[i - 1].segment);
+}
+
+/// @param prefix recognised begin of the form, so that the fuzzer does not have to invent it
+inline void read_and_check(const std::string& prefix, const std::uint8_t* data, std::size_t size) {
+  const RobotDescription robot{0.1, 0.1, 0.3, 1000.0, std::nullopt, "", ""};
+  const auto result =
+      read_recording_bytes(prefix + std::string(reinterpret_cast<const char*>(data), size), "fuzz", &robot);
+  if (result.ok()) check(result.value());
+}
+
+}  // namespace odomcalib::fuzz

@@ -1,0 +1,58 @@
+// odomcalib-sim-blind: a campaign of recordings with unknown effects, and the sealed answers.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "proto/file_bytes.hpp"
+#include "tests/sim/effects/blind_case.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool write_answers(const fs::path& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  return static_cast<bool>(file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Draws robots, rooms, drives and effects; writes recordings, and the answers into a file of their own"};
+  std::uint64_t seed = 1;
+  unsigned count = 10;
+  fs::path folder;
+  odomcalib::sim::BlindOptions options;
+  app.add_option("--seed", seed, "of the campaign");
+  app.add_option("--count", count, "number of recordings");
+  app.add_option("--out", folder, "folder for case-N.jsonl.gz and answers.json")->required();
+  app.add_option("--size-factor", options.size_factor, "scales every effect")->check(CLI::PositiveNumber);
+  app.add_option("--without", options.share_without_effect, "share of recordings without effect")
+      ->check(CLI::Range(0.0, 1.0));
+  CLI11_PARSE(app, argc, argv);
+
+  std::error_code error;
+  fs::create_directories(folder, error);
+  std::vector<odomcalib::sim::BlindAnswer> answers;
+  for (unsigned number = 0; number < count; ++number) {
+    const auto drawn = odomcalib::sim::make_blind_case(seed, number, options);
+    const fs::path file = folder / ("case-" + std::to_string(number) + ".jsonl.gz");
+    if (const auto written = odomcalib::write_recording_jsonl(drawn.run.recording, file); !written) {
+      std::fprintf(stderr, "odomcalib-sim-blind: %s\n", written.error().text().c_str());
+      return 1;
+    }
+    answers.push_back(drawn.answer);
+  }
+  const std::string text = answers_json(answers);
+  if (!write_answers(folder / "answers.json", text)) {
+    std::fprintf(stderr, "odomcalib-sim-blind: cannot write %s\n", (folder / "answers.json").c_str());
+    return 1;
+  }
+  std::printf("%u recordings in %s\nseal of answers.json (SHA-256): %s\n", count, folder.c_str(),
+              odomcalib::sha256_hex(text).c_str());
+  return 0;
+}

@@ -1,0 +1,240 @@
+// Recordings of others: MaeBot and MBot logs, bot_core, Censi, CARMEN.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support.hpp"
+
+namespace odomcalib {
+namespace {
+
+using test::discarded;
+using test::list_discarded;
+using test::read_text;
+
+// The log as lcm-logger wrote it, against the conversion that was made independently of this program.
+TEST(MaebotLog, agrees_with_its_json_lines_conversion) {
+  ODOMCALIB_SHARED_FILE(log_path, "maebot/convex.lcmlog.gz");
+  ODOMCALIB_SHARED_FILE(jsonl_path, "maebot/convex.jsonl.gz");
+  const auto jsonl = read_recording(jsonl_path);
+  ASSERT_TRUE(jsonl.ok());
+  const auto log = read_recording(log_path, &jsonl.value().robot);
+  ASSERT_TRUE(log.ok()) << log.error().text();
+  const auto& a = log.value();
+  const auto& b = jsonl.value();
+  EXPECT_EQ(discarded(a, "event", "not needed: mbot_lcm_msgs.pose2D_t"), 457U) << list_discarded(a);
+  ASSERT_EQ(a.ticks.size(), b.ticks.size());
+  for (std::size_t i = 0; i < a.ticks.size(); ++i) {
+    EXPECT_NEAR(a.ticks[i].t, b.ticks[i].t, 1e-9);
+    EXPECT_EQ(a.ticks[i].left, b.ticks[i].left);
+    EXPECT_EQ(a.ticks[i].right, b.ticks[i].right);
+  }
+  ASSERT_EQ(a.scans.size(), b.scans.size());
+  for (std::size_t i = 0; i < a.scans.size(); ++i) {
+    ASSERT_EQ(a.scans[i].ranges.size(), b.scans[i].ranges.size());
+    EXPECT_NEAR(a.scans[i].t, b.scans[i].t, 1e-9);
+    for (std::size_t k = 0; k < a.scans[i].ranges.size(); ++k) {
+      // The conversion printed four decimals of ranges, five of angles, six of times.
+      EXPECT_NEAR(a.scans[i].ranges[k], b.scans[i].ranges[k], 0.51e-4F);
+      EXPECT_NEAR(std::remainder(static_cast<double>(a.scans[i].angles[k] - b.scans[i].angles[k]),
+                                 2 * std::numbers::pi),
+                  0.0, 0.6e-5);
+      EXPECT_NEAR(a.scans[i].times[k], b.scans[i].times[k], 0.6e-6F);
+    }
+  }
+}
+
+TEST(MaebotLog, needs_a_robot_description) {
+  ODOMCALIB_SHARED_FILE(path, "maebot/convex.lcmlog.gz");
+  const auto result = read_recording(path);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::missing_units);
+}
+
+std::string number(std::uint64_t value, std::size_t size) {
+  std::string out;
+  for (std::size_t i = 0; i < size; ++i) out += static_cast<char>(value >> (8 * (size - 1 - i)));
+  return out;
+}
+
+std::string real(float value) { return number(std::bit_cast<std::uint32_t>(value), 4); }
+
+std::string event(const std::string& data) {
+  return "\xED\xA1\xDA\x01" + std::string(16, '\0') + number(5, 4) + number(data.size(), 4) + "LIDAR" + data;
+}
+
+std::string lidar(std::int32_t count, std::int64_t first_stamp) {
+  std::string out =
+      number(0x89dc5b879a5056cf, 8) + number(5'000'000, 8) + number(static_cast<std::uint32_t>(count), 4);
+  for (const float range : {1.0F, 0.04F}) out += real(range);
+  for (const float theta : {0.5F, 6.0F}) out += real(theta);
+  for (const std::int64_t since : {0, 1000})
+    out += number(static_cast<std::uint64_t>(first_stamp + since), 8);
+  for (const float intensity : {1.0F, 2.0F}) out += real(intensity);
+  return event(out);
+}
+
+std::string new_encoders(std::int64_t left) {
+  return event(number(0xaefa0bcd9e362081, 8) + number(5'000'000, 8) +
+               number(static_cast<std::uint64_t>(left), 8) + number(2, 8) + number(0, 8) +
+               std::string(16, '\0'));
+}
+
+std::string old_encoder(std::int64_t left) {
+  return event(number(0xa8b04e85ffa9d1d1, 8) + number(5'000'000, 8) +
+               number(static_cast<std::uint64_t>(left), 8) + number(2, 8) + std::string(4, '\0'));
+}
+
+TEST(MbotLog, takes_angles_as_counter_clockwise_unless_the_encoders_are_of_the_older_stack) {
+  const auto robot = test::example_robot();
+  const auto current = read_text(new_encoders(-7) + lidar(2, 5'250'000), &robot);
+  ASSERT_TRUE(current.ok()) << current.error().text();
+  EXPECT_EQ(current.value().ticks.at(0).left, -7);
+  const auto& scan = current.value().scans.at(0);
+  EXPECT_FLOAT_EQ(scan.angles.at(0), 0.5F);
+  EXPECT_NEAR(scan.angles.at(1), 6.0 - 2 * std::numbers::pi, 1e-6);
+  EXPECT_EQ(scan.ranges, (std::vector<float>{1.0F, 0.0F})) << "0.05 m and less is no reading";
+  EXPECT_EQ(scan.t, 0.25) << "seconds since the whole second of the first message";
+  EXPECT_FLOAT_EQ(scan.times.at(1), 0.001F);
+  const auto older = read_text(old_encoder(-7) + lidar(2, 5'250'000), &robot);
+  ASSERT_TRUE(older.ok());
+  EXPECT_FLOAT_EQ(older.value().scans.at(0).angles.at(0), -0.5F);
+}
+
+TEST(MbotLog, refuses_arrays_that_do_not_fit_their_message) {
+  const auto robot = test::example_robot();
+  for (const std::int32_t count : {-1, 1, 3, INT32_MAX, INT32_MIN}) {
+    const auto result = read_text(new_encoders(0) + lidar(count, 1), &robot);
+    ASSERT_TRUE(result.ok());
+    EXPECT_EQ(discarded(result.value(), "scan", "damaged message"), 1U) << count;
+  }
+}
+
+TEST(BotCoreLog, gives_planar_lidar_scans) {
+  std::string data = number(0xe3d17423180b5e8d, 8) + number(1'500'000, 8) + number(2, 4) + real(1) + real(2) +
+                     number(0, 4) + real(-1.5F) + real(0.25F);
+  const auto robot = test::example_robot();
+  const auto result = read_text(event(data), &robot);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  EXPECT_EQ(result.value().scans.at(0).angle_min, -1.5);
+  EXPECT_EQ(result.value().scans.at(0).angle_increment, 0.25);
+  EXPECT_EQ(result.value().scans.at(0).ranges, (std::vector<float>{1, 2}));
+}
+
+TEST(CensiTuples, are_all_read_where_objects_share_a_line) {
+  for (const auto& [name, count, duration] : {std::tuple{"khepera-censi/l90.tuple", 3295U, 2628.0},
+                                              {"khepera-censi/lstraight.tuple", 4396U, 3511.0}}) {
+    ODOMCALIB_SHARED_FILE(path, name);
+    const auto result = read_recording(path);
+    ASSERT_TRUE(result.ok()) << result.error().text();
+    EXPECT_EQ(result.value().increments.size(), count);
+    EXPECT_TRUE(result.value().discarded.empty()) << list_discarded(result.value());
+    double sum = 0.0;
+    for (const auto& increment : result.value().increments) sum += increment.duration;
+    EXPECT_NEAR(sum, duration, 0.5) << "sum of T of the set's description";
+    EXPECT_EQ(result.value().robot.left_wheel_diameter, 0.0) << "wheel angles in rad need no nominal values";
+  }
+}
+
+TEST(CensiTuples, take_the_robot_from_the_fallback_and_count_what_is_damaged) {
+  const auto robot = test::example_robot();
+  const auto result = read_text(
+      R"({ "T": 0.5, "phi_l": 1, "phi_r": -1, "sm": [ 1, 2, 3 ] }{ "T": 1, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] })"
+      "\n"
+      R"({ "T": 1, "phi_l": 1, "phi_r": 1, "sm": [4,5] })"
+      "\n"
+      R"({ "T": 0, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] })"
+      "\n"
+      R"({ "T": 1, "phi_l": null, "phi_r": 1, "sm": [4,5,6] })"
+      "\n"
+      R"({ "T": 1, "phi_l": 1, "phi_r": )"
+      "\n"
+      R"({ "T": 2, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] })"
+      "\n"
+      R"({ "T": 2, "phi)",
+      &robot);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  const auto& r = result.value();
+  ASSERT_EQ(r.increments.size(), 3U) << list_discarded(r);
+  EXPECT_EQ(r.increments[0].right_speed, -1.0);
+  EXPECT_EQ(r.increments[1].lidar_motion[2], 6.0);
+  EXPECT_EQ(r.robot.track_width, 0.33);
+  EXPECT_EQ(discarded(r, "tuple", "\"sm\" is not three numbers"), 1U);
+  EXPECT_EQ(discarded(r, "tuple", "a value is missing or impossible"), 2U);
+  EXPECT_EQ(discarded(r, "tuple", "not valid JSON"), 1U);
+  EXPECT_EQ(discarded(r, "tuple", "cut off"), 1U);
+}
+
+TEST(CensiRawLog, gives_scans_and_the_counts_they_carry) {
+  ODOMCALIB_SHARED_FILE(path, "mines-rover-2/exp3.scans.jsonl.gz");
+  ODOMCALIB_SHARED_FILE(jsonl_path, "mines-rover-2/exp3.jsonl.gz");
+  const auto jsonl = read_recording(jsonl_path);
+  ASSERT_TRUE(jsonl.ok());
+  const auto raw = read_recording(path, &jsonl.value().robot);
+  ASSERT_TRUE(raw.ok()) << raw.error().text();
+  const auto& a = raw.value();
+  const auto& b = jsonl.value();
+  ASSERT_EQ(a.scans.size(), b.scans.size());
+  ASSERT_EQ(a.ticks.size(), b.ticks.size());
+  for (std::size_t i = 0; i < a.scans.size(); ++i) {
+    EXPECT_NEAR(a.scans[i].t, b.scans[i].t, 1e-6);
+    EXPECT_EQ(a.scans[i].ranges, b.scans[i].ranges);
+    EXPECT_NEAR(a.scans[i].angle(681), b.scans[i].angle(681), 1e-5);
+    EXPECT_EQ(a.ticks[i].left, b.ticks[i].left);
+  }
+}
+
+// The counts behind this odometry were recovered independently: every one must agree.
+TEST(CarmenLog, gives_back_the_counts_behind_its_odometry) {
+  ODOMCALIB_SHARED_FILE(path, "azos-wheelchair/laserazosSM3.log");
+  ODOMCALIB_SHARED_FILE(counts_path, "azos-wheelchair/ticks_recovered.csv");
+  const RobotDescription robot{0.17, 0.17, 0.6, 2000.0, std::nullopt, "", ""};
+  const auto result = read_recording(path, &robot);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  const auto& r = result.value();
+  EXPECT_EQ(r.scans.size(), 778U);
+  EXPECT_EQ(r.scans[0].ranges.size(), 361U);
+  EXPECT_NEAR(r.scans[0].angle(360), std::numbers::pi / 2, 1e-9);
+  EXPECT_EQ(discarded(r, "time stamp", "the log has none: 0.2 s per scan assumed"), 778U);
+  std::ifstream counts(counts_path);
+  std::string line;
+  std::getline(counts, line);
+  for (const auto& sample : r.ticks) {
+    ASSERT_TRUE(std::getline(counts, line));
+    const auto comma = line.find(',');
+    const auto second = line.find(',', comma + 1);
+    EXPECT_EQ(sample.left, std::stoll(line.substr(comma + 1))) << line;
+    EXPECT_EQ(sample.right, std::stoll(line.substr(second + 1))) << line;
+  }
+  EXPECT_EQ(r.ticks.size(), 778U);
+  EXPECT_EQ(read_recording(path).error().code, ErrorCode::missing_units);
+}
+
+TEST(CarmenLog, reads_its_messages_with_their_times_and_the_lidar_pose) {
+  const auto robot = test::example_robot();
+  const auto result = read_text(
+      "# CARMEN log\nPARAM robot_width 0.5 0 host 0\n"
+      "ODOM 0 0 0 0 0 0 1000000000.5 host 0.1\n"
+      "ODOM 0.5 0 0 0 0 0 1000000001.5 host 1.1\n"
+      "FLASER 3 1 nan 3 1 0.5 0 0.5 0.5 0 1000000001.0 host 0.6\n"
+      "ROBOTLASER1 0 -1.5 3.0 1.5 20 0.01 0 3 4 5 21 0 1 0.5 0 0.5 0.5 0 0 0 0 0 0 1000000002.0 host 1.6\n"
+      "WHAT 1 2\nFLASER 3 1 2\nODOM 1 x 3\nFLASER 4 1 1",
+      &robot);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  const auto& r = result.value();
+  ASSERT_EQ(r.scans.size(), 2U) << list_discarded(r);
+  EXPECT_EQ(r.scans[0].t, 0.0);
+  EXPECT_EQ(r.scans[0].ranges, (std::vector<float>{1, 0, 3}));
+  EXPECT_EQ(r.scans[1].ranges, (std::vector<float>{4, 5, 0}));
+  EXPECT_EQ(r.scans[1].angle_increment, 1.5);
+  ASSERT_EQ(r.ticks.size(), 2U);
+  EXPECT_EQ(r.ticks[1].left, std::llround(0.5 / (std::numbers::pi * 0.154) * 2000));
+  EXPECT_EQ(r.robot.lidar_pose, (std::array<double, 3>{0.5, 0, 0}));
+  EXPECT_EQ(discarded(r, "line", "unknown message"), 1U);
+  EXPECT_EQ(discarded(r, "line", "too few or wrong fields"), 2U);
+  EXPECT_EQ(discarded(r, "line", "cut off"), 1U);
+}
+
+}  // namespace
+}  // namespace odomcalib
