@@ -14,7 +14,8 @@ void add_common_options(CLI::App& app, odomcalib::cli::Session& session, std::st
   app.add_flag("--json{pretty}", json, "print JSON: --json or --json=pretty|short|off")
       ->check(CLI::IsMember({"pretty", "short", "off"}));
   app.add_flag("!--no-legend", session.legend, "tables without their head line");
-  app.add_flag("--no-pager", "accepted for scripts; no pager is ever started");
+  app.add_flag_callback(
+      "--no-pager", [] {}, "accepted for scripts; no pager is ever started");
   app.footer(odomcalib::cli::exit_status_help());
 }
 
