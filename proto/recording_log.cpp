@@ -15,7 +15,7 @@ namespace odomcalib {
 
 struct RecordingLog::State {
   struct Close {
-    void operator()(lcm_eventlog_t* log) const { lcm_eventlog_destroy(log); }
+    void operator()(lcm_eventlog_t* open_log) const { lcm_eventlog_destroy(open_log); }
   };
   std::unique_ptr<lcm_eventlog_t, Close> log;
   std::filesystem::path path;

@@ -1,5 +1,6 @@
-// What every motor controller looks like to the daemon. A controller is a pure state machine: frames and time in,
-// frames and events out; it holds no file descriptor and no clock, so a test or a replay drives it directly.
+// What every motor controller looks like to the daemon. A controller is a pure state machine: frames and time
+// in, frames and events out; it holds no file descriptor and no clock, so a test or a replay drives it
+// directly.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ enum class ControllerState {
   configuring,  ///< identity check, heartbeat set-up, PDO mapping in progress
   disabled,     ///< configured, ticks arrive, axes without torque
   enabling,
-  enabled,      ///< axes follow the commanded speed
+  enabled,  ///< axes follow the commanded speed
   fault,
 };
 
@@ -34,9 +35,9 @@ struct ControllerEvent {
 /// A quantity the controller stores: left_wheel_diameter, right_wheel_diameter, track_width (SI).
 struct StoredParameter {
   std::string quantity;
-  std::int64_t raw = 0;    ///< as on the wire
-  double value = 0.0;      ///< raw * scale, the value in force
-  double step = 0.0;       ///< quantisation in SI
+  std::int64_t raw = 0;  ///< as on the wire
+  double value = 0.0;    ///< raw * scale, the value in force
+  double step = 0.0;     ///< quantisation in SI
 };
 
 struct ParameterValue {
@@ -47,8 +48,8 @@ struct ParameterValue {
 /// Outcome of an asynchronous parameter job, delivered once by take_job_result().
 struct ParameterJobResult {
   enum class Kind { read, write, store } kind = Kind::read;
-  std::optional<Error> error;                ///< empty: done
-  std::vector<StoredParameter> parameters;   ///< read: what the controller holds; write: what was read back
+  std::optional<Error> error;               ///< empty: done
+  std::vector<StoredParameter> parameters;  ///< read: what the controller holds; write: what was read back
 };
 
 struct Identity {
@@ -88,7 +89,8 @@ class Controller {
   virtual std::optional<ParameterJobResult> take_job_result() = 0;
 
   [[nodiscard]] virtual std::optional<Identity> identity() const = 0;
-  /// Nominal geometry from the profile: ticks per revolution, and the diameters and track where the profile states them.
+  /// Nominal geometry from the profile: ticks per revolution, and the diameters and track where the profile
+  /// states them.
   [[nodiscard]] virtual RobotDescription description() const = 0;
   [[nodiscard]] virtual Counters counters() const = 0;
 };

@@ -1,7 +1,10 @@
 #include "tests/sim/wires/sim_robot.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace odomcalib::sim {
 
@@ -132,6 +135,20 @@ void SimRobot::fine_step() {
   for (const Beam& beam : beams_) stream_.add(beam);
   const auto bytes = stream_.take(now());
   if (lidar_pty_) lidar_pty_->write(bytes);
+}
+
+void SimRobot::serve_during(const std::function<void()>& work) {
+  std::atomic<bool> finished = false;
+  std::thread robot([this, &finished] {
+    constexpr std::chrono::milliseconds kChunk(1);
+    while (!finished) {
+      step(0.001);
+      std::this_thread::sleep_for(kChunk);
+    }
+  });
+  work();
+  finished = true;
+  robot.join();
 }
 
 void SimRobot::step(double dt) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +41,9 @@ class SimRobot {
 
   /// Advances virtual time by dt seconds in fine steps and moves bytes both ways.
   void step(double dt);
+  /// Runs `work` while the robot goes on in real time, for calls that wait for an answer (opening an slcan
+  /// port). The robot must not be touched by `work`.
+  void serve_during(const std::function<void()>& work);
   /// s since the start.
   [[nodiscard]] double now() const { return body_.time(); }
 

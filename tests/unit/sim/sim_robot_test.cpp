@@ -6,9 +6,12 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <stdexcept>
+#include <thread>
 
 #include "tests/sim/wires/truth_json.hpp"
 
@@ -162,6 +165,18 @@ TEST_F(Robot, encoder_faults_show_on_the_wire_and_not_in_the_motion) {
   run(1.0);
   EXPECT_NE(say("t60184064600200000000\r").find("t58184364600200000000"), std::string::npos) << received;
   EXPECT_GT(std::hypot(robot->pose().x, robot->pose().y), 0.2);
+}
+
+TEST_F(Robot, answers_a_caller_that_waits) {
+  std::string answer;
+  robot->serve_during([&] {
+    can->write("V\r");
+    for (int i = 0; i < 2000 && answer.empty(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      answer = can->read();
+    }
+  });
+  EXPECT_EQ(answer.substr(0, 6), "V0101\r");
 }
 
 TEST(SimRobot, makes_stable_links_and_writes_the_truth) {

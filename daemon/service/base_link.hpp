@@ -1,0 +1,48 @@
+// The motor controller behind its bus: opens the bus, reopens it after it was lost, carries frames both ways.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/base/controller.hpp"
+#include "drivers/can/transport.hpp"
+
+namespace odomcalib {
+
+class BaseLink {
+ public:
+  /// Error: what make_controller says about the profile. The device may be absent.
+  static Result<BaseLink> create(std::string device, const std::string& profile);
+
+  /// To poll for reading; -1 while the bus is away.
+  [[nodiscard]] int fd() const;
+  /// Call every few ms: receives, lets the controller work, sends.
+  void step(double now);
+  /// Sends what the controller has to say now, e.g. a quick stop that must not wait.
+  void flush();
+
+  [[nodiscard]] drivers::Controller& controller() const { return *controller_; }
+  [[nodiscard]] bool connected() const { return transport_ != nullptr; }
+  /// Why the bus is away; empty while it is there.
+  [[nodiscard]] const std::optional<Error>& problem() const { return problem_; }
+  [[nodiscard]] drivers::Counters counters() const;
+  [[nodiscard]] const std::string& device() const { return device_; }
+  [[nodiscard]] std::uint64_t reconnects() const { return opened_ > 0 ? opened_ - 1 : 0; }
+
+ private:
+  BaseLink(std::string device, std::unique_ptr<drivers::Controller> controller);
+  void open_when_due(double now);
+  void receive(double now);
+  void lose(const Error& error, double now);
+
+  std::string device_;
+  std::unique_ptr<drivers::Controller> controller_;
+  std::unique_ptr<drivers::CanTransport> transport_;
+  std::optional<Error> problem_;
+  double next_try_ = 0.0;
+  std::uint64_t opened_ = 0;
+};
+
+}  // namespace odomcalib

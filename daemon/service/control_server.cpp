@@ -1,0 +1,245 @@
+#include "daemon/service/control_server.hpp"
+
+#include <fcntl.h>
+#include <grp.h>
+#include <pwd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "odomcalib_version.hpp"
+
+namespace odomcalib {
+namespace {
+
+struct Client {
+  int fd = -1;
+  control::FrameDecoder decoder;
+  std::string output;
+  bool gone = false;
+};
+
+Error failed(const std::string& what, const std::filesystem::path& path) {
+  return {ErrorCode::io, what + ": " + std::strerror(errno), path.string(),
+          "check that the folder exists and belongs to the daemon's user"};
+}
+
+Result<sockaddr_un> address_of(const std::filesystem::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string text = path.string();
+  if (text.size() >= sizeof(address.sun_path))
+    return Error{ErrorCode::usage, "the path of a socket has at most 107 characters", text,
+                 "choose a shorter one"};
+  std::copy(text.begin(), text.end(), std::begin(address.sun_path));
+  return address;
+}
+
+bool answers(const sockaddr_un& address) {
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const bool alive = connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  close(fd);
+  return alive;
+}
+
+void give_to_group(const std::filesystem::path& path, const std::string& group) {
+  const struct group* entry = getgrnam(group.c_str());
+  // Without the group, or without the right to give files away, the daemon's own user keeps the socket.
+  if (entry != nullptr && chown(path.c_str(), static_cast<uid_t>(-1), entry->gr_gid) != 0) errno = 0;
+}
+
+Result<int> listen_at(const std::filesystem::path& path, const std::string& group) {
+  const auto address = address_of(path);
+  if (!address) return address.error();
+  if (answers(address.value()))
+    return Error{ErrorCode::io, "another daemon answers at this socket", path.string(), "stop it first"};
+  std::error_code ignored;
+  std::filesystem::create_directories(path.parent_path(), ignored);
+  if (std::filesystem::is_socket(path, ignored)) std::filesystem::remove(path, ignored);
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (fd < 0) return failed("socket", path);
+  const mode_t before = umask(0117);
+  const int bound = bind(fd, reinterpret_cast<const sockaddr*>(&address.value()), sizeof(sockaddr_un));
+  umask(before);
+  if (bound != 0 || listen(fd, 8) != 0) {
+    const Error error = failed("bind", path);
+    close(fd);
+    return error;
+  }
+  give_to_group(path, group);
+  return fd;
+}
+
+}  // namespace
+
+bool may_connect(uid_t uid, gid_t gid, const std::string& group) {
+  if (uid == 0 || uid == geteuid()) return true;
+  const struct group* entry = getgrnam(group.c_str());
+  if (entry == nullptr) return false;
+  if (entry->gr_gid == gid) return true;
+  const struct passwd* user = getpwuid(uid);
+  if (user == nullptr) return false;
+  for (char** member = entry->gr_mem; *member != nullptr; ++member)
+    if (std::strcmp(*member, user->pw_name) == 0) return true;
+  return false;
+}
+
+struct ControlServer::State {
+  int listener = -1;
+  std::filesystem::path path;
+  std::string group;
+  std::map<ClientId, Client> clients;
+  ClientId next = 1;
+  std::vector<IncomingCall> calls;
+  std::vector<ClientId> gone;
+  Counters counters;
+
+  void accept_all();
+  void accept_one(int fd);
+  void read_from(ClientId id, Client& client);
+  void take_frames(ClientId id, Client& client);
+  void write_to(Client& client);
+  void drop_gone();
+};
+
+void ControlServer::State::accept_all() {
+  for (int i = 0; i < 16; ++i) {
+    const int fd = accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (fd < 0) return;
+    accept_one(fd);
+  }
+}
+
+void ControlServer::State::accept_one(int fd) {
+  ucred peer{};
+  socklen_t size = sizeof(peer);
+  const bool known = getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+  if (!known || !may_connect(peer.uid, peer.gid, group)) {
+    ++counters.not_permitted;
+    const std::string frame =
+        control::encode_error({ErrorCode::not_permitted, "you are not in group \"" + group + "\"",
+                               path.string(), "ask the administrator"});
+    (void)!write(fd, frame.data(), frame.size());
+    close(fd);
+    return;
+  }
+  if (clients.size() >= kMostClients) {
+    ++counters.too_many;
+    close(fd);
+    return;
+  }
+  ++counters.accepted;
+  clients[next++].fd = fd;
+}
+
+void ControlServer::State::take_frames(ClientId id, Client& client) {
+  while (const auto frame = client.decoder.next()) {
+    const auto call = control::decode_call(*frame);
+    if (!call) {
+      // What is no call is counted and ends the connection; it is not answered.
+      ++counters.malformed;
+      client.gone = true;
+      return;
+    }
+    const control::ServiceInfo info{.version = kVersion};
+    if (const auto answer = control::answer_introspection(call.value(), info))
+      client.output += *answer;
+    else
+      calls.push_back({id, call.value()});
+  }
+}
+
+void ControlServer::State::read_from(ClientId id, Client& client) {
+  std::array<char, 65536> buffer;
+  const ssize_t got = read(client.fd, buffer.data(), buffer.size());
+  if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) client.gone = true;
+  if (got <= 0) return;
+  client.decoder.feed({buffer.data(), static_cast<std::size_t>(got)});
+  take_frames(id, client);
+  if (client.decoder.counters().oversized > 0) {
+    ++counters.malformed;
+    client.gone = true;
+  }
+}
+
+void ControlServer::State::write_to(Client& client) {
+  if (client.output.empty()) return;
+  const ssize_t put = send(client.fd, client.output.data(), client.output.size(), MSG_NOSIGNAL);
+  if (put > 0) client.output.erase(0, static_cast<std::size_t>(put));
+  if (put < 0 && errno != EAGAIN && errno != EINTR) client.gone = true;
+  if (client.output.size() > kMostOutput) {
+    ++counters.too_slow;
+    client.gone = true;
+  }
+}
+
+void ControlServer::State::drop_gone() {
+  std::erase_if(clients, [this](const auto& entry) {
+    if (!entry.second.gone) return false;
+    close(entry.second.fd);
+    gone.push_back(entry.first);
+    return true;
+  });
+}
+
+ControlServer::ControlServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ControlServer::ControlServer(ControlServer&&) noexcept = default;
+ControlServer& ControlServer::operator=(ControlServer&&) noexcept = default;
+
+ControlServer::~ControlServer() {
+  if (!state_) return;
+  for (auto& [id, client] : state_->clients) {
+    state_->write_to(client);
+    close(client.fd);
+  }
+  close(state_->listener);
+  std::error_code ignored;
+  std::filesystem::remove(state_->path, ignored);
+}
+
+Result<ControlServer> ControlServer::create(const std::filesystem::path& path, const std::string& group) {
+  const auto fd = listen_at(path, group);
+  if (!fd) return fd.error();
+  auto state = std::make_unique<State>();
+  state->listener = fd.value();
+  state->path = path;
+  state->group = group;
+  return ControlServer(std::move(state));
+}
+
+std::vector<ControlServer::Watch> ControlServer::watches() const {
+  std::vector<Watch> all{{state_->listener, false}};
+  for (const auto& [id, client] : state_->clients) all.push_back({client.fd, !client.output.empty()});
+  return all;
+}
+
+void ControlServer::step() {
+  state_->accept_all();
+  for (auto& [id, client] : state_->clients) {
+    state_->read_from(id, client);
+    state_->write_to(client);
+  }
+  state_->drop_gone();
+}
+
+std::vector<IncomingCall> ControlServer::take_calls() { return std::exchange(state_->calls, {}); }
+std::vector<ClientId> ControlServer::take_gone() { return std::exchange(state_->gone, {}); }
+
+void ControlServer::reply(ClientId client, const std::string& frame) {
+  const auto found = state_->clients.find(client);
+  if (found == state_->clients.end()) return;
+  found->second.output += frame;
+  state_->write_to(found->second);
+}
+
+bool ControlServer::connected(ClientId client) const { return state_->clients.contains(client); }
+std::size_t ControlServer::clients() const { return state_->clients.size(); }
+const ControlServer::Counters& ControlServer::counters() const { return state_->counters; }
+
+}  // namespace odomcalib

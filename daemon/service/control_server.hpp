@@ -1,0 +1,71 @@
+// The control socket: Varlink calls of local clients whose credentials were checked. Never blocks.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/control.hpp"
+#include "proto/result.hpp"
+
+namespace odomcalib {
+
+using ClientId = std::uint64_t;
+
+struct IncomingCall {
+  ClientId client = 0;
+  control::Call call;
+};
+
+class ControlServer {
+ public:
+  static constexpr std::size_t kMostClients = 8;
+  static constexpr std::size_t kMostOutput = std::size_t{8} << 20;  ///< bytes waiting for one slow client
+
+  struct Counters {
+    std::uint64_t accepted = 0, too_many = 0, not_permitted = 0, malformed = 0, too_slow = 0;
+  };
+
+  /// Binds the socket (mode 0660, of the group where it exists). An orphaned socket is replaced; a live one
+  /// is an error. Errors: io, usage (path too long).
+  static Result<ControlServer> create(const std::filesystem::path& path, const std::string& group);
+  ~ControlServer();
+  ControlServer(ControlServer&&) noexcept;
+  ControlServer& operator=(ControlServer&&) noexcept;
+
+  struct Watch {
+    int fd;
+    bool writing;
+  };
+  /// What to poll: the listener and each client.
+  [[nodiscard]] std::vector<Watch> watches() const;
+  /// Accepts, reads, writes; call after each poll.
+  void step();
+
+  /// Calls that arrived, in order for each client; introspection is answered already.
+  std::vector<IncomingCall> take_calls();
+  /// Clients that have gone since the last call.
+  std::vector<ClientId> take_gone();
+  /// Queues a frame for a client; nothing happens when it has gone.
+  void reply(ClientId client, const std::string& frame);
+  [[nodiscard]] bool connected(ClientId client) const;
+  [[nodiscard]] std::size_t clients() const;
+  [[nodiscard]] const Counters& counters() const;
+
+ private:
+  struct State;
+  explicit ControlServer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Whether a process of this user and group may use the socket: root, the daemon's own user, or a member of
+/// the group.
+bool may_connect(uid_t uid, gid_t gid, const std::string& group);
+
+}  // namespace odomcalib

@@ -1,0 +1,71 @@
+// What a write-back was about to do, on the disk before it does it: append-only lines, each with its CRC.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/result.hpp"
+
+namespace odomcalib {
+
+/// The steps of a write-back in their order (manual: "Write-back"). A record announces the action behind it.
+enum class JournalState {
+  begin,           ///< old values are known, nothing is changed
+  write,           ///< new values go to the controller's RAM
+  readback_ok,     ///< RAM holds the new values
+  store_begin,     ///< RAM goes to permanent memory
+  store_ok,        ///< stored and read again
+  commit,          ///< done: new values in force
+  rollback,        ///< old values go back
+  rolled_back,     ///< done: old values in force
+  needs_operator,  ///< neither could be reached
+};
+
+std::string name_of(JournalState state);
+
+struct JournalRecord {
+  std::uint64_t seq = 0;
+  double monotonic = 0.0;    ///< s
+  std::int64_t wall_us = 0;  ///< us since 1970
+  JournalState state = JournalState::begin;
+  std::string label;                     ///< what asked for it: "apply", "rollback"
+  std::map<std::string, double> before;  ///< SI, by quantity
+  std::map<std::string, double> after;
+};
+
+/// One line: CRC-32 (zlib's) as hex, a space, a JSON object, a newline.
+std::string to_line(const JournalRecord& record);
+/// nullopt: torn or damaged.
+std::optional<JournalRecord> from_line(const std::string& line);
+
+class Journal {
+ public:
+  static constexpr std::uintmax_t kRotateAt = std::uintmax_t{1} << 20;
+
+  /// Reads what is there; a torn last line is dropped. Errors: io.
+  static Result<Journal> open(const std::filesystem::path& path);
+  ~Journal();
+  Journal(Journal&& other) noexcept;
+  Journal& operator=(Journal&&) = delete;
+
+  /// On the disk when it returns. seq is given by the journal. Error: io; then the action must not be taken.
+  Result<void> append(JournalRecord record);
+  /// The newest record, if any.
+  [[nodiscard]] const std::optional<JournalRecord>& last() const { return last_; }
+  /// The newest record when its write-back was not brought to an end.
+  [[nodiscard]] std::optional<JournalRecord> unfinished() const;
+
+ private:
+  Journal(std::filesystem::path path, int fd) : path_(std::move(path)), fd_(fd) {}
+  void rotate_when_large();
+
+  std::filesystem::path path_;
+  int fd_ = -1;
+  std::optional<JournalRecord> last_;
+};
+
+}  // namespace odomcalib

@@ -1,0 +1,85 @@
+// Writing parameters so that a crash or a power failure at any moment leaves wholly old or wholly new values:
+// read, journal, write RAM, compare, journal, store once, compare, commit; otherwise everything back.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/writeback/journal.hpp"
+#include "drivers/base/controller.hpp"
+
+namespace odomcalib {
+
+using ParameterMap = std::map<std::string, double>;  ///< SI, by quantity
+
+enum class WriteOutcome {
+  read,         ///< only read
+  committed,    ///< new values in force and stored
+  rolled_back,  ///< old values in force
+  unknown,      ///< forbids motion until an operator or a recovery has decided
+};
+
+struct WriteReport {
+  WriteOutcome outcome = WriteOutcome::unknown;
+  std::string label;
+  std::vector<drivers::StoredParameter> in_force;  ///< newest reading, empty when nothing could be read
+  ParameterMap before, after;                      ///< after: what was asked for
+  std::optional<Error> error;                      ///< why it was not committed
+  std::vector<std::string> steps;                  ///< what was done, for the report
+};
+
+/// Drives one controller through one transaction at a time. Holds no clock and no descriptor.
+class Transaction {
+ public:
+  /// @param journal outlives the transaction
+  explicit Transaction(Journal& journal) : journal_(journal) {}
+
+  // One of these starts; refused (error refused) while another one runs.
+  /// Reads, and brings an unfinished write-back of the journal to an end by comparing what the controller
+  /// holds: all new is stored and committed, anything else becomes old again.
+  Result<void> recover();
+  /// Writes those of the values that the controller stores, in full or not at all.
+  Result<void> write(const std::string& label, const ParameterMap& values);
+
+  /// Call every few ms.
+  void step(drivers::Controller& controller, double now, std::int64_t wall_us);
+  [[nodiscard]] bool busy() const { return phase_ != Phase::idle; }
+  /// Once, when it has ended.
+  std::optional<WriteReport> take_report();
+
+ private:
+  enum class Phase { idle, read_first, write_new, store_new, verify_new, write_old, store_old, verify_old };
+  using Job = drivers::ParameterJobResult;
+
+  void start(Phase phase, drivers::Controller& controller, double now);
+  Result<void> start_job(Phase phase, drivers::Controller& controller, double now) const;
+  void on_result(const Job& job, drivers::Controller& controller, double now);
+  void on_read(const Job& job, drivers::Controller& controller, double now);
+  void on_written(const Job& job, drivers::Controller& controller, double now);
+  void on_verified(const Job& job, drivers::Controller& controller, double now);
+  void on_old_written(const Job& job, drivers::Controller& controller, double now);
+  void on_old_verified(const Job& job);
+  void decide_recovery(drivers::Controller& controller, double now);
+  void begin_writing(drivers::Controller& controller, double now);
+  void go_back(const Error& why, drivers::Controller& controller, double now);
+  /// False: the journal cannot be written, and the transaction has ended or turned back.
+  Result<void> announce(JournalState state);
+  void finish(WriteOutcome outcome);
+
+  Journal& journal_;
+  Phase phase_ = Phase::idle;
+  bool started_ = false;  // the job of this phase runs
+  bool recovering_ = false;
+  bool store_begun_ = false;
+  double began_ = 0.0, now_ = 0.0;
+  std::int64_t wall_us_ = 0;
+  WriteReport report_;
+  std::optional<WriteReport> finished_;
+};
+
+/// Equal within half a step of the controller's resolution.
+bool holds(const std::vector<drivers::StoredParameter>& stored, const ParameterMap& wanted);
+
+}  // namespace odomcalib

@@ -1,0 +1,250 @@
+// Life signs, emergencies, other masters; what comes in and goes out. Set-up and motion have their own files.
+#include "drivers/base/dual_axis.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include "drivers/base/canopen/words.hpp"
+#include "drivers/bytes.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+constexpr double kOwnHeartbeat_s = 0.05;
+constexpr int kMissedHeartbeats = 3;
+constexpr std::size_t kMostQueued = 1024;  // events or ticks that nobody takes
+constexpr std::uint8_t kOperational = 0x05;
+constexpr std::uint32_t kBusOff = 0x040;  // SocketCAN error classes
+constexpr std::uint32_t kController = 0x004;
+
+double ticks_per_s(const Profile& profile) { return profile.max_rpm / 60.0 * profile.ticks_per_rev; }
+
+}  // namespace
+
+DualAxis::DualAxis(Profile profile)
+    : profile_(std::move(profile)),
+      sdo_(profile_.node),
+      job_(profile_),
+      left_(ticks_per_s(profile_)),
+      right_(ticks_per_s(profile_)) {}
+
+/// A stop event also stops the axes right here: the daemon's protective stop is the second line, not the
+/// first.
+void DualAxis::event(const std::string& code, const std::string& text, bool stop) {
+  if (stop && (motion_ == Motion::on || motion_ == Motion::enabling)) quick_stop(now_);
+  if (events_.size() >= kMostQueued) {
+    ++dropped_;
+    return;
+  }
+  events_.push_back({now_, code, text, stop});
+}
+
+void DualAxis::on_frame(const CanFrame& frame) {
+  ++frames_in_;
+  now_ = std::max(now_, frame.t);
+  if (frame.error) return on_error_frame(frame);
+  if (frame.extended || frame.remote || frame.length > 8) return;
+  if (sdo_.on_frame(frame, now_)) {
+    ++frames_used_;
+    advance_setup();
+    return;
+  }
+  if (frame.id == 0x080u + profile_.node) return on_emergency(frame);
+  if (frame.id == 0x700u + profile_.node) return on_life_sign(frame);
+  if (frame.id == 0x000 || frame.id == 0x600u + profile_.node) return on_other_master(frame);
+  for (const canopen::Pdo& pdo : profile_.pdos)
+    if (pdo.transmit && pdo.cob_id == frame.id) return on_process_data(pdo, frame);
+}
+
+void DualAxis::on_error_frame(const CanFrame& frame) {
+  ++error_frames_;
+  if ((frame.id & kBusOff) != 0)
+    return event("bus_off", "the CAN interface is off the bus; restart it", true);
+  const bool passive = (frame.id & kController) != 0 && (frame.data[1] & 0x30) != 0;
+  if (passive)
+    event("error_passive", "the CAN interface is error-passive: check wiring and termination", true);
+}
+
+void DualAxis::on_emergency(const CanFrame& frame) {
+  if (frame.length != 8) {
+    ++bad_frames_;
+    return;
+  }
+  ++frames_used_;
+  ++emergencies_;
+  ByteReader reader(Bytes(frame.data).first(frame.length));
+  const std::uint16_t code = reader.u16();
+  if (code == 0) return event("emcy_cleared", "controller reports: error gone", false);
+  event("emcy", "emergency of the controller: " + canopen::emergency_text(code), true);
+}
+
+void DualAxis::on_life_sign(const CanFrame& frame) {
+  if (frame.length != 1) {
+    ++bad_frames_;
+    return;
+  }
+  ++frames_used_;
+  ++heartbeats_;
+  heard_at_ = now_;
+  node_state_ = frame.data[0] & 0x7F;  // bit 7 is the toggle of node guarding
+  if (node_state_ == 0) {
+    ++boot_ups_;
+    const bool expected = phase_ == Phase::absent || phase_ == Phase::identifying;
+    if (!expected)
+      lose("unexpected_boot", "the controller restarted: its RAM parameters and PDO mapping are gone");
+    look_after_ = now_;
+    return;
+  }
+  if (phase_ == Phase::ready && node_state_ != kOperational)
+    lose("left_operational",
+         "the controller left operational: it is " + canopen::nmt_state_text(node_state_));
+}
+
+void DualAxis::on_other_master(const CanFrame& frame) {
+  ++other_master_;
+  const bool first = now_ - last_other_master_ > 10.0;
+  last_other_master_ = now_;
+  if (first)
+    event("other_master",
+          frame.id == 0 ? "another program sends NMT commands on this bus"
+                        : "another SDO client talks to this node",
+          false);
+}
+
+void DualAxis::check_life() {
+  if (phase_ != Phase::ready || job_.storing() || !heard_at_) return;
+  const double longest = kMissedHeartbeats * 1e-3 * profile_.heartbeat_ms;
+  if (now_ - *heard_at_ > longest) lose("heartbeat_lost", "three heartbeats of the controller are missing");
+}
+
+/// The node is no longer what was configured: stop, forget, look again.
+void DualAxis::lose(const std::string& code, const std::string& text) {
+  event(code, text, true);
+  motion_ = Motion::off;
+  job_.abandon();
+  setup_.cancel();
+  sdo_.cancel();
+  phase_ = Phase::absent;
+  phase_since_ = now_;
+  look_after_ = now_ + 0.1;
+  watchdog_armed_ = false;
+  positions_at_.reset();
+  status_at_.reset();
+  left_.unwrap.forget();
+  right_.unwrap.forget();
+  ++segment_;
+}
+
+void DualAxis::send_nmt(std::uint8_t command) {
+  CanFrame frame;
+  frame.id = 0x000;
+  frame.length = 2;
+  frame.data = {command, profile_.node};
+  out_.push_back(frame);
+}
+
+void DualAxis::send_own_heartbeat() {
+  const bool watched = phase_ == Phase::configuring || phase_ == Phase::starting || phase_ == Phase::ready;
+  if (!watched || now_ < own_heartbeat_due_) return;
+  own_heartbeat_due_ = now_ + kOwnHeartbeat_s;
+  CanFrame frame;
+  frame.id = 0x700u + profile_.host_node;
+  frame.length = 1;
+  frame.data[0] = kOperational;
+  out_.push_back(frame);
+}
+
+void DualAxis::on_time(double now) {
+  now_ = std::max(now_, now);
+  sdo_.on_time(now_);
+  advance_setup();
+  if (phase_ == Phase::ready) job_.advance(sdo_, now_);
+  send_own_heartbeat();
+  check_life();
+  cycle_motion();
+}
+
+std::vector<CanFrame> DualAxis::take_frames() {
+  for (CanFrame& frame : sdo_.take_frames()) out_.push_back(frame);
+  return std::exchange(out_, {});
+}
+
+std::vector<TickSample> DualAxis::take_ticks() { return std::exchange(ticks_, {}); }
+std::vector<ControllerEvent> DualAxis::take_events() { return std::exchange(events_, {}); }
+
+ControllerState DualAxis::state() const {
+  switch (phase_) {
+    case Phase::absent:
+      return ControllerState::absent;
+    case Phase::foreign:
+      return ControllerState::fault;
+    case Phase::identifying:
+      return heard_at_ ? ControllerState::configuring : ControllerState::absent;
+    case Phase::configuring:
+    case Phase::starting:
+      return ControllerState::configuring;
+    case Phase::ready:
+      break;
+  }
+  using enum canopen::DriveState;
+  if (motion_ == Motion::enabling) return ControllerState::enabling;
+  if (any_axis(fault) || any_axis(fault_reaction)) return ControllerState::fault;
+  // While the axes are brought to rest they still have torque: not disabled before the drive says so.
+  return motion_ == Motion::off || !any_axis(enabled) ? ControllerState::disabled : ControllerState::enabled;
+}
+
+Counters DualAxis::counters() const {
+  Counters all = sdo_.counters();
+  all.insert({{"frames_in", frames_in_},
+              {"frames_used", frames_used_},
+              {"emergencies", emergencies_},
+              {"boot_ups", boot_ups_},
+              {"heartbeats", heartbeats_},
+              {"bad_frames", bad_frames_},
+              {"short_pdos", short_pdos_},
+              {"other_master", other_master_},
+              {"tick_jumps", jumps_},
+              {"stale_commands", stale_commands_},
+              {"limited_commands", limited_commands_},
+              {"error_frames", error_frames_},
+              {"events_dropped", dropped_}});
+  return all;
+}
+
+Result<void> DualAxis::job_allowed(double now) {
+  now_ = std::max(now_, now);
+  const std::string where = "controller " + profile_.name;
+  if (phase_ != Phase::ready)
+    return Error{ErrorCode::refused, "controller is not configured", where, "wait until it is"};
+  if (motion_ != Motion::off || any_axis(canopen::DriveState::enabled))
+    return Error{ErrorCode::refused, "axes are not disabled", where, "stop and disable first"};
+  if (!at_rest())
+    return Error{ErrorCode::refused, "wheels are turning", where, "wait until the robot stands still"};
+  if (job_.running())
+    return Error{ErrorCode::refused, "another parameter job is in progress", where, "wait for it"};
+  return {};
+}
+
+Result<void> DualAxis::start_read_parameters(double now) {
+  if (auto allowed = job_allowed(now); !allowed) return allowed;
+  return job_.start_read();
+}
+
+Result<void> DualAxis::start_write_parameters(const std::vector<ParameterValue>& values, double now) {
+  if (auto allowed = job_allowed(now); !allowed) return allowed;
+  return job_.start_write(values);
+}
+
+Result<void> DualAxis::start_store(double now) {
+  if (auto allowed = job_allowed(now); !allowed) return allowed;
+  return job_.start_store();
+}
+
+Result<std::unique_ptr<Controller>> make_controller(const std::string& profile_path) {
+  auto profile = read_profile(profile_path);
+  if (!profile) return profile.error();
+  return std::unique_ptr<Controller>(std::make_unique<DualAxis>(std::move(profile).value()));
+}
+
+}  // namespace odomcalib::drivers

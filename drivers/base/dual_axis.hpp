@@ -1,0 +1,137 @@
+// Two axes in one CANopen node (docs/profiles.md, style "dual-axis"): the controller of
+// drivers/base/controller.hpp.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/base/canopen/cia402.hpp"
+#include "drivers/base/canopen/sdo_sequence.hpp"
+#include "drivers/base/controller.hpp"
+#include "drivers/base/parameter_job.hpp"
+#include "drivers/base/profile.hpp"
+#include "drivers/base/tick_unwrap.hpp"
+
+namespace odomcalib::drivers {
+
+class DualAxis final : public Controller {
+ public:
+  explicit DualAxis(Profile profile);
+  DualAxis(const DualAxis&) = delete;
+  DualAxis& operator=(const DualAxis&) = delete;
+  ~DualAxis() override = default;
+
+  void on_frame(const CanFrame& frame) override;
+  void on_time(double now) override;
+  std::vector<CanFrame> take_frames() override;
+  std::vector<TickSample> take_ticks() override;
+  std::vector<ControllerEvent> take_events() override;
+
+  [[nodiscard]] ControllerState state() const override;
+  void enable(double now) override;
+  void disable(double now) override;
+  Result<void> command(double left_rad_s, double right_rad_s, double now) override;
+  void quick_stop(double now) override;
+  [[nodiscard]] bool watchdog_armed() const override { return watchdog_armed_; }
+
+  Result<void> start_read_parameters(double now) override;
+  Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) override;
+  Result<void> start_store(double now) override;
+  std::optional<ParameterJobResult> take_job_result() override { return job_.take_result(); }
+
+  [[nodiscard]] std::optional<Identity> identity() const override { return identity_; }
+  [[nodiscard]] RobotDescription description() const override { return profile_.robot; }
+  [[nodiscard]] Counters counters() const override;
+
+ private:
+  enum class Phase { absent, identifying, configuring, starting, ready, foreign };
+  enum class Motion { off, enabling, on, disabling, stopping };
+
+  // dual_axis.cpp: events and life signs
+  void event(const std::string& code, const std::string& text, bool stop);
+  void on_error_frame(const CanFrame& frame);
+  void on_emergency(const CanFrame& frame);
+  void on_life_sign(const CanFrame& frame);
+  void on_other_master(const CanFrame& frame);
+  void check_life();
+  void lose(const std::string& code, const std::string& text);
+  void send_own_heartbeat();
+  void send_nmt(std::uint8_t command);
+
+  // dual_axis_setup.cpp: identity, configuration, start
+  void advance_setup();
+  void look_for_node();
+  void begin_identification();
+  void end_identification();
+  void begin_configuration();
+  void end_configuration();
+  void note_safety_objects();
+  void check_started();
+
+  // dual_axis_motion.cpp: process data
+  void on_process_data(const canopen::Pdo& pdo, const CanFrame& frame);
+  void on_positions(std::int32_t left, std::int32_t right, double t);
+  void on_status(std::uint32_t status);
+  void cycle_motion();
+  void step_enabling();
+  void step_ending();
+  void check_motion();
+  void check_encoders();
+  void send_command(std::uint16_t control_word, double left_rad_s, double right_rad_s);
+  [[nodiscard]] std::int64_t speed_counts(double rad_s, int sign) const;
+  void end_motion(Motion how);
+  [[nodiscard]] bool both_axes(canopen::DriveState state) const;
+  [[nodiscard]] bool any_axis(canopen::DriveState state) const;
+  [[nodiscard]] bool at_rest() const;
+  Result<void> job_allowed(double now);
+
+  struct Wheel {
+    explicit Wheel(double ticks_per_s) : unwrap(ticks_per_s) {}
+    TickUnwrap unwrap;
+    std::int64_t total = 0;
+    double changed_at = -1.0;     // s, last count that differed
+    double expected_since = 0.0;  // rad commanded since then
+  };
+
+  const Profile profile_;
+  double now_ = 0.0;
+  canopen::SdoClient sdo_;
+  canopen::SdoSequence setup_;
+  ParameterJob job_;
+  Phase phase_ = Phase::absent;
+  double phase_since_ = 0.0;
+  std::optional<double> look_after_;  // s, when to ask for the node (again)
+  std::optional<Identity> identity_;
+  bool watchdog_armed_ = false;
+
+  std::optional<double> heard_at_;  // s, last life sign
+  std::uint8_t node_state_ = 0;
+  double own_heartbeat_due_ = 0.0;
+  double last_other_master_ = -1e9;
+
+  Motion motion_ = Motion::off;
+  double motion_since_ = 0.0;
+  double cycle_due_ = 0.0;
+  std::optional<double> positions_at_;  // s, last position frame
+  std::optional<double> status_at_;
+  std::uint32_t status_ = 0;
+  std::array<canopen::DriveState, 2> axes_{canopen::DriveState::not_ready, canopen::DriveState::not_ready};
+  std::uint32_t fault_code_ = 0;
+  Wheel left_, right_;
+  std::int32_t segment_ = 0;
+  double moved_at_ = 0.0;  // s, last change of either count
+  double command_left_ = 0.0, command_right_ = 0.0, command_at_ = -1e9;
+  unsigned cycles_ = 0;
+
+  std::vector<CanFrame> out_;
+  std::vector<TickSample> ticks_;
+  std::vector<ControllerEvent> events_;
+  std::uint64_t frames_in_ = 0, frames_used_ = 0, emergencies_ = 0, boot_ups_ = 0, heartbeats_ = 0,
+                bad_frames_ = 0;
+  std::uint64_t short_pdos_ = 0, other_master_ = 0, jumps_ = 0, stale_commands_ = 0, limited_commands_ = 0;
+  std::uint64_t error_frames_ = 0, dropped_ = 0;
+};
+
+}  // namespace odomcalib::drivers
