@@ -7,9 +7,9 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kMaxRelativeDeviation = 0.03;   ///< of a diameter or the track width; worse is no calibration
+constexpr double kMaxRelativeDeviation = 0.03;  ///< of a diameter or the track width; worse is no calibration
 constexpr double kWarnRelativeDeviation = 0.005;
-constexpr double kPlausibleLow = 0.5;            ///< estimate over nominal
+constexpr double kPlausibleLow = 0.5;  ///< estimate over nominal
 constexpr double kPlausibleHigh = 2.0;
 constexpr double kWarnChange = 0.10;
 
@@ -36,8 +36,10 @@ class Judgement {
 
   void check(const std::string& name, const Quantity& quantity, double nominal) {
     if (!std::isfinite(quantity.value) || quantity.value <= 0.0) {
-      refuse(name + " came out as a non-positive length: left and right wheels may be swapped, or the lidar's direction of "
-                    "rotation is wrong");
+      refuse(name +
+             " came out as a non-positive length: left and right wheels may be swapped, or the lidar's "
+             "direction of "
+             "rotation is wrong");
       return;
     }
     const double relative = quantity.std / quantity.value;
@@ -57,7 +59,8 @@ class Judgement {
  private:
   void check_against_nominal(const std::string& name, double ratio) {
     if (ratio < kPlausibleLow || ratio > kPlausibleHigh)
-      refuse(name + " is " + percent(ratio) + " of its nominal value: check ticks per revolution, gear ratio and units");
+      refuse(name + " is " + percent(ratio) +
+             " of its nominal value: check ticks per revolution, gear ratio and units");
     else if (std::abs(ratio - 1.0) > kWarnChange)
       warn(name + " differs from its nominal value by " + percent(ratio - 1.0));
   }

@@ -13,7 +13,8 @@ struct GateResult {
   std::vector<std::string> reasons;
 };
 
-/// Refuses implausible or badly determined values and says which motion is missing; warns of what a user should know.
+/// Refuses implausible or badly determined values and says which motion is missing; warns of what a user
+/// should know.
 GateResult judge(const Calibration& calibration, bool converged);
 
 }  // namespace odomcalib::calib

@@ -23,8 +23,10 @@ double value_or(const Calibration& calibration, const std::string& name, double 
 
 Correction correction_of(const Calibration& calibration) {
   BaseParameters base;
-  base.left_radius = value_or(calibration, "left_wheel_diameter", calibration.robot.left_wheel_diameter) / 2.0;
-  base.right_radius = value_or(calibration, "right_wheel_diameter", calibration.robot.right_wheel_diameter) / 2.0;
+  base.left_radius =
+      value_or(calibration, "left_wheel_diameter", calibration.robot.left_wheel_diameter) / 2.0;
+  base.right_radius =
+      value_or(calibration, "right_wheel_diameter", calibration.robot.right_wheel_diameter) / 2.0;
   base.track_width = value_or(calibration, "track_width", calibration.robot.track_width);
   Correction correction{to_vector(base), {}};
   std::vector<double> values(correction.parameters.data(), correction.parameters.data() + kBaseCount);
@@ -34,11 +36,14 @@ Correction correction_of(const Calibration& calibration) {
     correction.effects.push_back(effect);
     for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
   }
-  correction.parameters = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  correction.parameters =
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   return correction;
 }
 
-std::span<const double> as_span(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+std::span<const double> as_span(const Eigen::VectorXd& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
 
 BaseParameters nominal_of(const RobotDescription& robot) {
   return {robot.left_wheel_diameter / 2.0, robot.right_wheel_diameter / 2.0, robot.track_width, {}};
@@ -99,7 +104,8 @@ PoseSample Odometry::update(const TickSample& sample) {
   if (s.history.size() > kHistory) s.history.pop_front();
   if (!advances || !(s.ticks_per_rev > 0.0)) return {sample.t, s.pose.x, s.pose.y, wrap_angle(s.pose.yaw)};
 
-  // The last interval, seen with the history before it; what accumulates over the whole drive is carried along.
+  // The last interval, seen with the history before it; what accumulates over the whole drive is carried
+  // along.
   Recording recent;
   recent.robot.ticks_per_rev = s.ticks_per_rev;
   recent.ticks.assign(s.history.begin(), s.history.end());
@@ -129,7 +135,8 @@ PoseSample Odometry::update(const TickSample& sample) {
                   {track.right[n - 2], track.right[n - 1]},
                   {track.segment[n - 2], track.segment[n - 1]}};
   const DriveModel model(std::move(last), {context});
-  s.pose = compose(s.pose, model.trajectory(as_span(s.correction.parameters), s.correction.effects).poses().back());
+  s.pose = compose(s.pose,
+                   model.trajectory(as_span(s.correction.parameters), s.correction.effects).poses().back());
   return {sample.t, s.pose.x, s.pose.y, wrap_angle(s.pose.yaw)};
 }
 

@@ -22,8 +22,8 @@ class Odometry {
   ~Odometry();
   Odometry(Odometry&&) noexcept;
   Odometry& operator=(Odometry&&) noexcept;
-  /// Adds one sample and returns the base pose at its time. The first sample defines the origin; a new segment
-  /// continues from the last pose without motion in between.
+  /// Adds one sample and returns the base pose at its time. The first sample defines the origin; a new
+  /// segment continues from the last pose without motion in between.
   PoseSample update(const TickSample& sample);
 
  private:

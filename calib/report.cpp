@@ -29,9 +29,10 @@ MethodResult straight_method(std::span<const WheelMotion> samples, const BasePar
   const Ratio& r = ratio.value();
   MethodResult result;
   result.name = "straight";
-  result.parameters = {{"left_wheel_diameter", {2.0 * nominal.left_radius * r.value, 2.0 * nominal.left_radius * r.std, "m"}},
-                       {"right_wheel_diameter",
-                        {2.0 * nominal.right_radius * r.value, 2.0 * nominal.right_radius * r.std, "m"}}};
+  result.parameters = {
+      {"left_wheel_diameter", {2.0 * nominal.left_radius * r.value, 2.0 * nominal.left_radius * r.std, "m"}},
+      {"right_wheel_diameter",
+       {2.0 * nominal.right_radius * r.value, 2.0 * nominal.right_radius * r.std, "m"}}};
   result.rms = {r.rms, 0.0, 0.0};
   result.used = r.used;
   result.discarded = r.discarded;
@@ -57,7 +58,8 @@ MethodResult spin_method(std::span<const WheelMotion> samples, const BaseParamet
 }
 
 /// Increments of the base by odometry and by the sensor, the latter moved from the sensor to the base.
-std::vector<IncrementPair> base_increments(std::span<const WheelMotion> samples, const BaseParameters& nominal,
+std::vector<IncrementPair> base_increments(std::span<const WheelMotion> samples,
+                                           const BaseParameters& nominal,
                                            const std::vector<std::size_t>* subset) {
   std::vector<IncrementPair> increments;
   const auto add = [&](const WheelMotion& sample) {
@@ -104,12 +106,13 @@ std::vector<std::string> base_quantity_names() {
 }
 
 QuantityList base_quantities(const BaseParameters& base, const Eigen::MatrixXd& covariance) {
-  const double values[] = {2.0 * base.left_radius, 2.0 * base.right_radius, base.track_width,
-                           base.mount.x,           base.mount.y,            wrap_angle(base.mount.yaw)};
+  const double values[] = {2.0 * base.left_radius, 2.0 * base.right_radius,   base.track_width, base.mount.x,
+                           base.mount.y,           wrap_angle(base.mount.yaw)};
   const auto names = base_quantity_names();
   QuantityList list;
   for (std::size_t k = 0; k < names.size(); ++k)
-    list.push_back({names[k], {values[k], deviation(covariance, static_cast<Eigen::Index>(k)), k == 5 ? "rad" : "m"}});
+    list.push_back(
+        {names[k], {values[k], deviation(covariance, static_cast<Eigen::Index>(k)), k == 5 ? "rad" : "m"}});
   return list;
 }
 
@@ -168,7 +171,8 @@ std::vector<DataUse> data_use(const Session& session) {
                   {"scans", recording.scans.size()},
                   {"poses", recording.poses.size()},
                   {"increments", recording.increments.size()}};
-    for (const Discarded& d : recording.discarded) use.discarded.emplace_back(d.what + ": " + d.reason, d.count);
+    for (const Discarded& d : recording.discarded)
+      use.discarded.emplace_back(d.what + ": " + d.reason, d.count);
     if (i < session.pair_sets().size()) {
       use.counts.emplace_back("pairs", session.pair_sets()[i].pairs.size());
       for (const auto& [reason, count] : session.pair_sets()[i].rejected)

@@ -16,7 +16,8 @@ std::vector<std::vector<double>> diameter_covariance(const Eigen::MatrixXd& cova
 
 std::vector<std::string> base_quantity_names();
 
-/// The four classical estimators and the closed form on the same pairs: straight, spin, linear, joint_closed_form.
+/// The four classical estimators and the closed form on the same pairs: straight, spin, linear,
+/// joint_closed_form.
 std::vector<MethodResult> classical_methods(const Session& session, double delay, Calibration& calibration);
 
 MethodResult joint_method(const FitResult& fit);

@@ -61,14 +61,17 @@ class Solver {
     if (automatic_ || options_.effects == std::vector<std::string>{"none"}) return std::nullopt;
     for (const std::string& name : options_.effects) {
       const auto effect = find_effect(name);
-      if (!effect) return Error{ErrorCode::usage, "there is no effect named \"" + name + "\"", "--effects", "see odomcalibctl(1)"};
+      if (!effect)
+        return Error{ErrorCode::usage, "there is no effect named \"" + name + "\"", "--effects",
+                     "see odomcalibctl(1)"};
       effects_.push_back(effect);
     }
     return std::nullopt;
   }
 
   [[nodiscard]] bool has_offset() const {
-    return std::any_of(effects_.begin(), effects_.end(), [](const auto& e) { return e->name() == "time_offset"; });
+    return std::any_of(effects_.begin(), effects_.end(),
+                       [](const auto& e) { return e->name() == "time_offset"; });
   }
 
   [[nodiscard]] double delay() const { return has_offset() ? parameters_(offset_index()) : 0.0; }
@@ -93,8 +96,8 @@ class Solver {
     if (has_offset()) parameters_(offset_index()) = delay;
   }
 
-  /// Fits, matches again with the fitted parameters (guess and de-skew), and fits again. Noise of a match made with wrong
-  /// parameters must not reach the result.
+  /// Fits, matches again with the fitted parameters (guess and de-skew), and fits again. Noise of a match
+  /// made with wrong parameters must not reach the result.
   Result<FitResult> settle() {
     report("fitting", 0.2);
     auto fit = fit_now();
@@ -141,7 +144,8 @@ class Solver {
   }
 
   void fill_residual(const FitResult& fit) {
-    const auto after = held_out_residual(session_->data(), effects_, fit, session_->fixed(count_parameters(effects_)));
+    const auto after =
+        held_out_residual(session_->data(), effects_, fit, session_->fixed(count_parameters(effects_)));
     if (!after) {
       calibration_.residual.held_out = false;
       return;
@@ -191,7 +195,8 @@ class Solver {
 
 }  // namespace
 
-Calibration solve(std::span<const Recording> recordings, const SolveOptions& options, const Progress& progress) {
+Calibration solve(std::span<const Recording> recordings, const SolveOptions& options,
+                  const Progress& progress) {
   return Solver(recordings, options, progress).run();
 }
 

@@ -16,12 +16,14 @@ struct SolveOptions {
   std::vector<std::string> effects = {"auto"};
 };
 
-/// Called with a phase name and its completed share in [0, 1]; never called with a smaller share within a phase.
+/// Called with a phase name and its completed share in [0, 1]; never called with a smaller share within a
+/// phase.
 using Progress = std::function<void(const std::string& phase, double fraction)>;
 
 /// Estimates wheel diameters, track width and lidar pose from the recordings of one robot, jointly.
-/// Never fails: a recording that cannot be calibrated yields a Calibration with verdict refused, the reasons, and what was
-/// measured. Deterministic: same input, same bytes.
-Calibration solve(std::span<const Recording> recordings, const SolveOptions& options, const Progress& progress = {});
+/// Never fails: a recording that cannot be calibrated yields a Calibration with verdict refused, the reasons,
+/// and what was measured. Deterministic: same input, same bytes.
+Calibration solve(std::span<const Recording> recordings, const SolveOptions& options,
+                  const Progress& progress = {});
 
 }  // namespace odomcalib::calib

@@ -1,4 +1,5 @@
-// Scans stamped at the end of the sweep or at reception, encoder counts stamped late: a constant delay between the clocks.
+// Scans stamped at the end of the sweep or at reception, encoder counts stamped late: a constant delay
+// between the clocks.
 //
 // A scan stamped t was taken at encoder time t - offset. To first order the motion in an interval changes by
 // -offset (v(end) - v(begin), 0, w(end) - w(begin)): visible only while the speed changes.

@@ -35,8 +35,10 @@ Result<Eigen::Vector2d> solve_rotation(std::span<const WheelMotion> samples, con
                                                  (eigen.eigenvectors().transpose() * right_side)));
 }
 
-/// Quadratic form in (b, l_x, l_y, cos l_yaw, sin l_yaw) of the rewritten residual l (+) s (-) r (-) l: eq. 17-19.
-Matrix5 quadratic_form(std::span<const WheelMotion> samples, const Indices& used, const Eigen::Vector2d& rotation) {
+/// Quadratic form in (b, l_x, l_y, cos l_yaw, sin l_yaw) of the rewritten residual l (+) s (-) r (-) l: eq.
+/// 17-19.
+Matrix5 quadratic_form(std::span<const WheelMotion> samples, const Indices& used,
+                       const Eigen::Vector2d& rotation) {
   Matrix5 form = Matrix5::Zero();
   for (const std::size_t i : used) {
     const double left = rotation(0) * samples[i].left;
@@ -53,7 +55,8 @@ Matrix5 quadratic_form(std::span<const WheelMotion> samples, const Indices& used
   return form;
 }
 
-/// Null vector of M + lambda W, W = diag(0,0,0,1,1), scaled to a unit heading vector and positive track width.
+/// Null vector of M + lambda W, W = diag(0,0,0,1,1), scaled to a unit heading vector and positive track
+/// width.
 std::optional<Vector5> solution_for(const Matrix5& form, double lambda) {
   Matrix5 shifted = form;
   shifted(3, 3) += lambda;
@@ -66,13 +69,14 @@ std::optional<Vector5> solution_for(const Matrix5& form, double lambda) {
   return x;
 }
 
-/// Minimum of x^T M x with |(x4, x5)| = 1. Eliminating b, l_x, l_y leaves a 2x2 eigenproblem whose two eigenvalues are
-/// the two multipliers of the paper; both are evaluated and the better one is taken.
+/// Minimum of x^T M x with |(x4, x5)| = 1. Eliminating b, l_x, l_y leaves a 2x2 eigenproblem whose two
+/// eigenvalues are the two multipliers of the paper; both are evaluated and the better one is taken.
 Result<Vector5> minimise_on_circle(const Matrix5& form) {
   const Eigen::Matrix3d a = form.topLeftCorner<3, 3>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> conditioning(a);
   if (!(conditioning.eigenvalues()(0) > 1e-12 * conditioning.eigenvalues()(2)))
-    return underdetermined("track width and sensor position cannot be told apart", "turns on the spot both ways");
+    return underdetermined("track width and sensor position cannot be told apart",
+                           "turns on the spot both ways");
   const Eigen::Matrix<double, 3, 2> b = form.topRightCorner<3, 2>();
   const Eigen::Matrix2d reduced = form.bottomRightCorner<2, 2>() - b.transpose() * a.ldlt().solve(b);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(reduced);
@@ -115,7 +119,8 @@ Eigen::Vector3d prediction_error(const BaseParameters& p, const WheelMotion& sam
 
 /// Value that a share of 1 - fraction of the samples does not exceed.
 double percentile(std::vector<double> values, double fraction) {
-  const auto index = static_cast<std::size_t>(std::round((1.0 - fraction) * static_cast<double>(values.size())));
+  const auto index =
+      static_cast<std::size_t>(std::round((1.0 - fraction) * static_cast<double>(values.size())));
   const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::min(index, values.size() - 1));
   std::nth_element(values.begin(), nth, values.end());
   return *nth;
@@ -139,7 +144,8 @@ Indices drop_worst(std::span<const WheelMotion> samples, const Indices& used, co
   return kept;
 }
 
-Eigen::Vector3d rms_error(std::span<const WheelMotion> samples, const Indices& used, const BaseParameters& p) {
+Eigen::Vector3d rms_error(std::span<const WheelMotion> samples, const Indices& used,
+                          const BaseParameters& p) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const std::size_t i : used) sum += prediction_error(p, samples[i]).cwiseAbs2();
   return (sum / static_cast<double>(used.size())).cwiseSqrt();
@@ -167,7 +173,8 @@ Eigen::Matrix<double, 6, 6> parameter_covariance(std::span<const WheelMotion> sa
                                                  const BaseParameters& p, const Eigen::Vector3d& noise) {
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   for (const std::size_t i : used) {
-    const Eigen::Matrix<double, 3, 6> scaled = noise.cwiseInverse().asDiagonal() * numeric_jacobian(p, samples[i]);
+    const Eigen::Matrix<double, 3, 6> scaled =
+        noise.cwiseInverse().asDiagonal() * numeric_jacobian(p, samples[i]);
     information += scaled.transpose() * scaled;
   }
   return information.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity());
@@ -175,8 +182,10 @@ Eigen::Matrix<double, 6, 6> parameter_covariance(std::span<const WheelMotion> sa
 
 }  // namespace
 
-Result<ClosedFormResult> solve_closed_form(std::span<const WheelMotion> samples, const ClosedFormOptions& options) {
-  if (samples.empty()) return Error{ErrorCode::empty, "no motion samples", "joint closed form", "record motion"};
+Result<ClosedFormResult> solve_closed_form(std::span<const WheelMotion> samples,
+                                           const ClosedFormOptions& options) {
+  if (samples.empty())
+    return Error{ErrorCode::empty, "no motion samples", "joint closed form", "record motion"};
   ClosedFormResult result;
   result.inliers.resize(samples.size());
   std::iota(result.inliers.begin(), result.inliers.end(), std::size_t{0});

@@ -5,21 +5,22 @@
 #include <cmath>
 #include <string>
 
+#include "calib/noise/noise_estimate.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kStudentDof = 4.0;
-constexpr double kOutlier = 5.0;         ///< sigma of a standardised residual vector
-constexpr int kNoiseRounds = 4;          ///< noise and weights are settled over this many outer rounds
-constexpr double kBlockSeconds = 5.0;    ///< cluster length of the robust covariance
+constexpr double kOutlier = 5.0;       ///< sigma of a standardised residual vector
+constexpr int kNoiseRounds = 4;        ///< noise and weights are settled over this many outer rounds
+constexpr double kBlockSeconds = 5.0;  ///< cluster length of the robust covariance
 constexpr double kMinRelativePivot = 1e-12;
 
 /// Stacked residuals and Jacobians of all recordings, before weighting.
 struct Stack {
-  Eigen::MatrixXd residual;  ///< 3 n x 1
-  Eigen::MatrixXd jacobian;  ///< 3 n x parameters
+  Eigen::MatrixXd residual;        ///< 3 n x 1
+  Eigen::MatrixXd jacobian;        ///< 3 n x parameters
   std::vector<std::size_t> first;  ///< first pair of each recording, and the total
-  std::vector<double> headings;    ///< of the sensor at each pair's begin
+  std::vector<PairState> states;   ///< what each pair's noise depends on
 };
 
 std::vector<Interval> intervals_of(const std::vector<SensorPair>& pairs) {
@@ -33,9 +34,26 @@ Eigen::Vector3d difference(const Pose& measured, const Pose& predicted) {
   return {measured.x - predicted.x, measured.y - predicted.y, wrap_angle(measured.yaw - predicted.yaw)};
 }
 
-std::span<const double> as_span(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+std::span<const double> as_span(const Eigen::VectorXd& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
 
-Stack make_stack(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& p, bool derivatives) {
+/// Velocity of the sensor in room axes by a central difference over 40 ms.
+Eigen::Vector3d velocity_at(const Trajectory& trajectory, const Pose& mount, double time) {
+  constexpr double kHalf = 0.02;
+  const Pose a = compose(trajectory.at(time - kHalf), mount);
+  const Pose b = compose(trajectory.at(time + kHalf), mount);
+  return Eigen::Vector3d(b.x - a.x, b.y - a.y, b.yaw - a.yaw) / (2.0 * kHalf);
+}
+
+PairState state_of(const Trajectory& trajectory, const Pose& mount, const SensorPair& pair) {
+  return {trajectory.at(pair.interval.begin).yaw + mount.yaw,
+          velocity_at(trajectory, mount, pair.interval.begin),
+          velocity_at(trajectory, mount, pair.interval.end)};
+}
+
+Stack make_stack(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& p,
+                 bool derivatives) {
   Stack stack;
   std::size_t total = 0;
   for (const FitData& d : data) total += d.pairs.size();
@@ -48,12 +66,14 @@ Stack make_stack(std::span<const FitData> data, const EffectList& effects, const
     Eigen::MatrixXd jacobian;
     const auto predicted = derivatives ? d.model->predict(as_span(p), effects, intervals, jacobian)
                                        : d.model->predict(as_span(p), effects, intervals);
-    if (derivatives) stack.jacobian.middleRows(static_cast<Eigen::Index>(3 * row), jacobian.rows()) = jacobian;
+    if (derivatives)
+      stack.jacobian.middleRows(static_cast<Eigen::Index>(3 * row), jacobian.rows()) = jacobian;
     const Trajectory trajectory = d.model->trajectory(as_span(p), effects);
+    const Pose mount = to_base(as_span(p)).mount;
     for (std::size_t k = 0; k < d.pairs.size(); ++k) {
       stack.residual.block<3, 1>(static_cast<Eigen::Index>(3 * (row + k)), 0) =
           difference(d.pairs[k].motion, predicted[k]);
-      stack.headings.push_back(trajectory.at(d.pairs[k].interval.begin).yaw + p(kMountYaw));
+      stack.states.push_back(state_of(trajectory, mount, d.pairs[k]));
     }
     row += d.pairs.size();
   }
@@ -61,116 +81,81 @@ Stack make_stack(std::span<const FitData> data, const EffectList& effects, const
   return stack;
 }
 
-/// Applies `op(whitener, block)` recording by recording.
-template <typename Operation>
-void for_each_recording(std::span<const FitData> data, const Stack& stack, const std::vector<NoiseModel>& noise,
-                        const std::vector<double>& weights, Eigen::MatrixXd& rows, Operation op) {
+std::vector<Eigen::Vector3d> residuals_of(const Stack& stack, std::size_t d) {
+  std::vector<Eigen::Vector3d> residuals;
+  for (std::size_t k = stack.first[d]; k < stack.first[d + 1]; ++k)
+    residuals.emplace_back(stack.residual.block<3, 1>(static_cast<Eigen::Index>(3 * k), 0));
+  return residuals;
+}
+
+std::span<const PairState> states_of(const Stack& stack, std::size_t d) {
+  return std::span(stack.states).subspan(stack.first[d], stack.first[d + 1] - stack.first[d]);
+}
+
+Eigen::MatrixXd whitened(std::span<const FitData> data, const Stack& stack,
+                         const std::vector<NoiseModel>& noise, const std::vector<double>& weights,
+                         Eigen::MatrixXd rows) {
   for (std::size_t d = 0; d < data.size(); ++d) {
     const std::size_t count = data[d].pairs.size();
-    if (count == 0) continue;
-    const Whitener whitener(data[d].pairs, std::span(stack.headings).subspan(stack.first[d], count), noise[d],
+    const Whitener whitener(data[d].pairs, states_of(stack, d), noise[d],
                             std::span(weights).subspan(stack.first[d], count));
-    Eigen::MatrixXd block = rows.middleRows(static_cast<Eigen::Index>(3 * stack.first[d]),
-                                            static_cast<Eigen::Index>(3 * count));
-    op(whitener, block);
-    rows.middleRows(static_cast<Eigen::Index>(3 * stack.first[d]), block.rows()) = block;
+    const auto first = static_cast<Eigen::Index>(3 * stack.first[d]);
+    Eigen::MatrixXd block = rows.middleRows(first, static_cast<Eigen::Index>(3 * count));
+    whitener.apply(block);
+    rows.middleRows(first, block.rows()) = block;
   }
-}
-
-Eigen::MatrixXd standardised(std::span<const FitData> data, const Stack& stack, const std::vector<NoiseModel>& noise) {
-  const std::vector<double> ones(stack.headings.size(), 1.0);
-  Eigen::MatrixXd z = stack.residual;
-  for_each_recording(data, stack, noise, ones, z,
-                     [](const Whitener& w, Eigen::MatrixXd& block) { w.standardise(block); });
-  return z;
-}
-
-Eigen::MatrixXd whitened(std::span<const FitData> data, const Stack& stack, const std::vector<NoiseModel>& noise,
-                         const std::vector<double>& weights, Eigen::MatrixXd rows) {
-  for_each_recording(data, stack, noise, weights, rows,
-                     [](const Whitener& w, Eigen::MatrixXd& block) { w.apply(block); });
   return rows;
 }
 
-double median_magnitude(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Robust scale of the given axes over pairs [first, last) of a standardised residual.
-double mad_scale(const Eigen::MatrixXd& z, std::size_t first, std::size_t last, std::initializer_list<int> axes) {
-  std::vector<double> magnitudes;
-  for (std::size_t k = first; k < last; ++k)
-    for (const int axis : axes) magnitudes.push_back(std::abs(z(static_cast<Eigen::Index>(3 * k) + axis, 0)));
-  return 1.4826 * median_magnitude(std::move(magnitudes));
-}
-
-/// Lag-1 correlation of winsorised values over neighbouring pairs.
-double lag_correlation(const Eigen::MatrixXd& z, const FitData& data, std::size_t first, int axis) {
-  double products = 0.0;
-  double squares = 0.0;
-  const auto value = [&](std::size_t k) {
-    return std::clamp(z(static_cast<Eigen::Index>(3 * (first + k)) + axis, 0), -2.5, 2.5);
-  };
-  for (std::size_t k = 1; k < data.pairs.size(); ++k) {
-    if (!data.pairs[k].follows_previous) continue;
-    products += value(k) * value(k - 1);
-    squares += 0.5 * (value(k) * value(k) + value(k - 1) * value(k - 1));
-  }
-  return squares > 0.0 ? std::clamp(products / squares, -0.48, 0.3) : 0.0;
-}
-
-/// Robust scale of recording d on these axes when its noise model has `member` set to `value`.
-double scale_with(std::span<const FitData> data, const Stack& stack, std::vector<NoiseModel>& noise, std::size_t d,
-                  double NoiseModel::*member, double value, std::initializer_list<int> axes) {
-  noise[d].*member = value;
-  return mad_scale(standardised(data, stack, noise), stack.first[d], stack.first[d + 1], axes);
-}
-
-/// Smallest process noise that explains the spread of the residuals: the scale falls monotonically with it.
-void settle_process_noise(std::span<const FitData> data, const Stack& stack, std::vector<NoiseModel>& noise,
-                          std::size_t d, double NoiseModel::*member, double largest, std::initializer_list<int> axes) {
-  if (scale_with(data, stack, noise, d, member, 0.0, axes) <= 1.0) return;
-  double low = largest * 1e-6;
-  double high = largest;
-  for (int i = 0; i < 16; ++i) {
-    const double middle = std::sqrt(low * high);
-    (scale_with(data, stack, noise, d, member, middle, axes) > 1.0 ? low : high) = middle;
-  }
-  noise[d].*member = high;
-}
+/// All recordings of one call come from one robot and one lidar; with few pairs each, they share a noise
+/// model.
+constexpr std::size_t kPairsForOwnNoise = 100;
 
 std::vector<NoiseModel> estimate_noise(std::span<const FitData> data, const Stack& stack,
-                                       std::vector<NoiseModel> noise) {
+                                       const std::vector<NoiseModel>& start) {
+  std::vector<NoiseModel> noise = start;
+  std::vector<SensorPair> pooled;
+  std::vector<Eigen::Vector3d> pooled_residuals;
+  std::vector<PairState> pooled_states;
   for (std::size_t d = 0; d < data.size(); ++d) {
-    const std::size_t first = stack.first[d];
-    const std::size_t last = stack.first[d + 1];
-    if (first == last) continue;
-    noise[d] = NoiseModel{};
-    noise[d].matcher_scale = std::clamp(mad_scale(standardised(data, stack, noise), first, last, {0, 1, 2}), 0.3, 1.0);
-    settle_process_noise(data, stack, noise, d, &NoiseModel::process_rotation, 1.0, {2});
-    settle_process_noise(data, stack, noise, d, &NoiseModel::process_translation, 1.0, {0, 1});
+    const auto residuals = residuals_of(stack, d);
+    if (data[d].pairs.size() >= kPairsForOwnNoise || data.size() == 1) {
+      noise[d] = odomcalib::calib::estimate_noise(data[d].pairs, states_of(stack, d), residuals, start[d]);
+      continue;
+    }
+    pooled.insert(pooled.end(), data[d].pairs.begin(), data[d].pairs.end());
+    pooled_residuals.insert(pooled_residuals.end(), residuals.begin(), residuals.end());
+    pooled_states.insert(pooled_states.end(), states_of(stack, d).begin(), states_of(stack, d).end());
   }
-  const Eigen::MatrixXd z = standardised(data, stack, noise);
+  if (pooled.empty()) return noise;
+  const NoiseModel common =
+      odomcalib::calib::estimate_noise(pooled, pooled_states, pooled_residuals, NoiseModel{});
   for (std::size_t d = 0; d < data.size(); ++d)
-    for (int axis = 0; axis < 3; ++axis)
-      noise[d].correlation[static_cast<std::size_t>(axis)] = lag_correlation(z, data[d], stack.first[d], axis);
+    if (data[d].pairs.size() < kPairsForOwnNoise && data.size() > 1) noise[d] = common;
   return noise;
 }
 
-/// Student t weights of the standardised residual vectors (Lange, Little and Taylor, JASA 1989, eq. 4).
-std::vector<double> robust_weights(const Eigen::MatrixXd& z) {
+std::vector<double> distances(std::span<const FitData> data, const Stack& stack,
+                              const std::vector<NoiseModel>& noise) {
+  std::vector<double> all;
+  for (std::size_t d = 0; d < data.size(); ++d) {
+    const auto part = squared_distances(data[d].pairs, states_of(stack, d), residuals_of(stack, d), noise[d]);
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+/// Student t weights (Lange, Little and Taylor, JASA 1989, eq. 4).
+std::vector<double> robust_weights(const std::vector<double>& squared) {
   std::vector<double> weights;
-  for (Eigen::Index k = 0; k < z.rows() / 3; ++k)
-    weights.push_back((kStudentDof + 3.0) / (kStudentDof + z.block<3, 1>(3 * k, 0).squaredNorm()));
+  weights.reserve(squared.size());
+  for (const double q : squared) weights.push_back((kStudentDof + 3.0) / (kStudentDof + q));
   return weights;
 }
 
 std::string parameter_names(const Eigen::VectorXd& direction) {
-  static constexpr const char* kNames[] = {"left wheel diameter", "right wheel diameter", "track width",
-                                           "lidar x",             "lidar y",              "lidar yaw"};
+  static constexpr const char* kNames[] = {
+      "left wheel diameter", "right wheel diameter", "track width", "lidar x", "lidar y", "lidar yaw"};
   std::string names;
   for (Eigen::Index k = 0; k < std::min<Eigen::Index>(direction.size(), kBaseCount); ++k)
     if (std::abs(direction(k)) > 0.3) names += std::string(names.empty() ? "" : ", ") + kNames[k];
@@ -189,7 +174,8 @@ NormalSystem normal_system(const Eigen::MatrixXd& jacobian, const Eigen::VectorX
   NormalSystem system;
   system.scale = jacobian.colwise().norm().transpose();
   for (Eigen::Index k = 0; k < system.scale.size(); ++k)
-    system.scale(k) = !fixed[static_cast<std::size_t>(k)] && system.scale(k) > 0.0 ? 1.0 / system.scale(k) : 0.0;
+    system.scale(k) =
+        !fixed[static_cast<std::size_t>(k)] && system.scale(k) > 0.0 ? 1.0 / system.scale(k) : 0.0;
   const Eigen::MatrixXd scaled = jacobian * system.scale.asDiagonal();
   system.matrix = scaled.transpose() * scaled;
   system.right_side = scaled.transpose() * residual;
@@ -206,8 +192,8 @@ std::optional<Error> check_rank(const NormalSystem& system, const std::vector<bo
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(system.scale.size());
   for (std::size_t i = 0; i < free.size(); ++i)
     direction(free[i]) = eigen.eigenvectors()(static_cast<Eigen::Index>(i), 0);
-  return Error{ErrorCode::refused, "the motion does not determine: " + parameter_names(direction), "joint estimate",
-               "record straight lines, arcs and turns on the spot, both ways"};
+  return Error{ErrorCode::refused, "the motion does not determine: " + parameter_names(direction),
+               "joint estimate", "record straight lines, arcs and turns on the spot, both ways"};
 }
 
 double sum_of_squares(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& p,
@@ -217,9 +203,9 @@ double sum_of_squares(std::span<const FitData> data, const EffectList& effects, 
 }
 
 /// Levenberg-Marquardt on fixed weights; returns whether it settled.
-Result<bool> descend(std::span<const FitData> data, const EffectList& effects, const std::vector<NoiseModel>& noise,
-                     const std::vector<double>& weights, const std::vector<bool>& fixed, int iterations,
-                     Eigen::VectorXd& p) {
+Result<bool> descend(std::span<const FitData> data, const EffectList& effects,
+                     const std::vector<NoiseModel>& noise, const std::vector<double>& weights,
+                     const std::vector<bool>& fixed, int iterations, Eigen::VectorXd& p) {
   double damping = 1e-9;
   for (int i = 0; i < iterations; ++i) {
     const Stack stack = make_stack(data, effects, p, true);
@@ -279,27 +265,28 @@ Eigen::MatrixXd robust_covariance(std::span<const FitData> data, const Stack& st
 }
 
 /// Model covariance, each parameter's deviation raised to the robust one where that is larger.
-void set_covariance(std::span<const FitData> data, const Stack& stack, const std::vector<bool>& fixed, FitResult& fit) {
+void set_covariance(std::span<const FitData> data, const Stack& stack, const std::vector<bool>& fixed,
+                    FitResult& fit) {
   const NormalSystem system = normal_system(fit.whitened_jacobian, fit.whitened_residual, fixed);
   Eigen::MatrixXd matrix = system.matrix;
   for (Eigen::Index k = 0; k < matrix.rows(); ++k)
     if (!(system.scale(k) > 0.0)) matrix(k, k) = 1.0;
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
-  const Eigen::MatrixXd inverse = system.scale.asDiagonal() * matrix.ldlt().solve(identity) * system.scale.asDiagonal();
+  const Eigen::MatrixXd inverse =
+      system.scale.asDiagonal() * matrix.ldlt().solve(identity) * system.scale.asDiagonal();
   const Eigen::MatrixXd robust = robust_covariance(data, stack, fit, inverse);
   const double variance = std::max(1.0, fit.whitened_residual.squaredNorm() /
                                             std::max(static_cast<double>(fit.whitened_residual.size()), 1.0));
   Eigen::VectorXd inflation = Eigen::VectorXd::Ones(inverse.rows());
   for (Eigen::Index k = 0; k < inverse.rows(); ++k)
-    if (inverse(k, k) > 0.0)
-      inflation(k) = std::sqrt(std::max(variance, robust(k, k) / inverse(k, k)));
+    if (inverse(k, k) > 0.0) inflation(k) = std::sqrt(std::max(variance, robust(k, k) / inverse(k, k)));
   fit.covariance = inflation.asDiagonal() * inverse * inflation.asDiagonal();
 }
 
-void count_outliers(const Eigen::MatrixXd& z, FitResult& fit) {
+void count_outliers(const std::vector<double>& squared, FitResult& fit) {
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   for (Eigen::Index k = 0; k < fit.residuals.rows(); ++k) {
-    if (z.block<3, 1>(3 * k, 0).norm() > kOutlier) {
+    if (squared[static_cast<std::size_t>(k)] > kOutlier * kOutlier) {
       ++fit.discarded;
       continue;
     }
@@ -309,37 +296,38 @@ void count_outliers(const Eigen::MatrixXd& z, FitResult& fit) {
   fit.rms = (squares / std::max(static_cast<double>(fit.used), 1.0)).cwiseSqrt();
 }
 
-void conclude(std::span<const FitData> data, const EffectList& effects, const std::vector<bool>& fixed, FitResult& fit) {
+void conclude(std::span<const FitData> data, const EffectList& effects, const std::vector<bool>& fixed,
+              FitResult& fit) {
   const Stack stack = make_stack(data, effects, fit.parameters, true);
   fit.residuals = stack.residual.reshaped(3, stack.residual.rows() / 3).transpose();
-  const Eigen::MatrixXd z = standardised(data, stack, fit.noise);
-  fit.weights = robust_weights(z);
+  const std::vector<double> squared = distances(data, stack, fit.noise);
+  fit.weights = robust_weights(squared);
   fit.whitened_residual = whitened(data, stack, fit.noise, fit.weights, stack.residual);
   fit.whitened_jacobian = whitened(data, stack, fit.noise, fit.weights, stack.jacobian);
   fit.cost = 0.0;
-  for (Eigen::Index k = 0; k < z.rows() / 3; ++k)
-    fit.cost += (kStudentDof + 3.0) * std::log1p(z.block<3, 1>(3 * k, 0).squaredNorm() / kStudentDof);
-  count_outliers(z, fit);
+  for (const double q : squared) fit.cost += (kStudentDof + 3.0) * std::log1p(q / kStudentDof);
+  count_outliers(squared, fit);
   set_covariance(data, stack, fixed, fit);
 }
 
 }  // namespace
 
-Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& start,
-                            const FitOptions& options) {
+Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects,
+                            const Eigen::VectorXd& start, const FitOptions& options) {
   FitResult fit;
   fit.parameters = start;
   std::vector<bool> fixed = options.fixed;
   fixed.resize(static_cast<std::size_t>(start.size()), false);
   fit.noise = options.noise.empty() ? std::vector<NoiseModel>(data.size()) : options.noise;
   Stack stack = make_stack(data, effects, start, false);
-  if (stack.headings.empty())
-    return Error{ErrorCode::empty, "no pair of scans or poses with ticks", "joint estimate", "check the recording"};
+  if (stack.states.empty())
+    return Error{ErrorCode::empty, "no pair of scans or poses with ticks", "joint estimate",
+                 "check the recording"};
   for (int round = 0; round < kNoiseRounds; ++round) {
     if (options.noise.empty()) fit.noise = estimate_noise(data, stack, fit.noise);
-    fit.weights = robust_weights(standardised(data, stack, fit.noise));
-    const auto settled = descend(data, effects, fit.noise, fit.weights, fixed, options.max_iterations / kNoiseRounds,
-                                 fit.parameters);
+    fit.weights = robust_weights(distances(data, stack, fit.noise));
+    const auto settled = descend(data, effects, fit.noise, fit.weights, fixed,
+                                 options.max_iterations / kNoiseRounds, fit.parameters);
     if (!settled) return settled.error();
     fit.converged = settled.value();
     stack = make_stack(data, effects, fit.parameters, false);

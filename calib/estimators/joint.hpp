@@ -1,4 +1,5 @@
-// Weighted robust nonlinear least squares on the sensor's motion: wheel radii, track width, sensor pose and effects.
+// Weighted robust nonlinear least squares on the sensor's motion: wheel radii, track width, sensor pose and
+// effects.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,30 +20,32 @@ struct FitData {
 };
 
 struct FitOptions {
-  std::vector<bool> fixed;      ///< parameters kept at their start value; empty: none
+  std::vector<bool> fixed;  ///< parameters kept at their start value; empty: none
   int max_iterations = 60;
-  std::vector<NoiseModel> noise;///< given (one per recording): used as it is; empty: estimated from the residuals
+  std::vector<NoiseModel>
+      noise;  ///< given (one per recording): used as it is; empty: estimated from the residuals
 };
 
 struct FitResult {
   Eigen::VectorXd parameters;
-  Eigen::MatrixXd covariance;          ///< zero rows for fixed parameters
-  Eigen::MatrixXd residuals;           ///< n x 3, measured - predicted in the sensor's frame: m, m, rad
-  std::vector<double> weights;         ///< robust weight per pair
-  std::vector<NoiseModel> noise;       ///< per recording
-  Eigen::VectorXd whitened_residual;   ///< 3 n, unit variance if the model is complete
-  Eigen::MatrixXd whitened_jacobian;   ///< 3 n x parameters, of the prediction
-  Eigen::Vector3d rms;                 ///< of the residuals of the pairs that are not outliers: m, m, rad
-  double cost = 0.0;                   ///< robust -2 log likelihood up to a constant, on `noise`
+  Eigen::MatrixXd covariance;         ///< zero rows for fixed parameters
+  Eigen::MatrixXd residuals;          ///< n x 3, measured - predicted in the sensor's frame: m, m, rad
+  std::vector<double> weights;        ///< robust weight per pair
+  std::vector<NoiseModel> noise;      ///< per recording
+  Eigen::VectorXd whitened_residual;  ///< 3 n, unit variance if the model is complete
+  Eigen::MatrixXd whitened_jacobian;  ///< 3 n x parameters, of the prediction
+  Eigen::Vector3d rms;                ///< of the residuals of the pairs that are not outliers: m, m, rad
+  double cost = 0.0;                  ///< robust -2 log likelihood up to a constant, on `noise`
   std::size_t used = 0;
-  std::size_t discarded = 0;           ///< outliers: more than 5 sigma
+  std::size_t discarded = 0;  ///< outliers: more than 5 sigma
   bool converged = false;
 };
 
-/// Fits from `start`. Robustness: Student t weights (4 degrees of freedom), scale and correlation from the residuals.
-/// Covariance: the larger of the model's and of a cluster-robust estimate over blocks of the recording.
-/// Errors: empty (no pairs), refused (normal matrix singular; names the parameters that the motion does not determine).
-Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& start,
-                            const FitOptions& options = {});
+/// Fits from `start`. Robustness: Student t weights (4 degrees of freedom), scale and correlation from the
+/// residuals. Covariance: the larger of the model's and of a cluster-robust estimate over blocks of the
+/// recording. Errors: empty (no pairs), refused (normal matrix singular; names the parameters that the motion
+/// does not determine).
+Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects,
+                            const Eigen::VectorXd& start, const FitOptions& options = {});
 
 }  // namespace odomcalib::calib

@@ -19,7 +19,8 @@ Eigen::MatrixX3d rows_of(std::span<const IncrementPair> samples, Pose IncrementP
 }
 
 Error underdetermined(const Eigen::MatrixX3d& odometry) {
-  static constexpr const char* kNames[] = {"forward motion", "sideways motion (turn while driving)", "rotation"};
+  static constexpr const char* kNames[] = {"forward motion", "sideways motion (turn while driving)",
+                                           "rotation"};
   std::string missing;
   const double largest = odometry.colwise().norm().maxCoeff();
   for (int k = 0; k < 3; ++k)
@@ -33,8 +34,8 @@ Error underdetermined(const Eigen::MatrixX3d& odometry) {
 
 }  // namespace
 
-// The three rows of X are independent problems with one design matrix: A = kron(U, I3) up to a row permutation, so
-// cond(A^T A) = cond(U^T U) and one QR of the n x 3 matrix U serves all.
+// The three rows of X are independent problems with one design matrix: A = kron(U, I3) up to a row
+// permutation, so cond(A^T A) = cond(U^T U) and one QR of the n x 3 matrix U serves all.
 Result<LinearResult> solve_linear(std::span<const IncrementPair> samples) {
   const Eigen::MatrixX3d odometry = rows_of(samples, &IncrementPair::odometry);
   const Eigen::MatrixX3d observed = rows_of(samples, &IncrementPair::observed);
@@ -50,7 +51,8 @@ Result<LinearResult> solve_linear(std::span<const IncrementPair> samples) {
   result.matrix = transposed.transpose();
   const Eigen::MatrixX3d residual = observed - odometry * transposed;
   result.condition = 1.0 / (ratio * ratio);
-  result.rms = (residual.colwise().squaredNorm() / static_cast<double>(samples.size())).cwiseSqrt().transpose();
+  result.rms =
+      (residual.colwise().squaredNorm() / static_cast<double>(samples.size())).cwiseSqrt().transpose();
   const double scale = odometry.norm() * observed.norm();
   result.orthogonality = scale > 0.0 ? (odometry.transpose() * residual).cwiseAbs().maxCoeff() / scale : 0.0;
   result.used = samples.size();

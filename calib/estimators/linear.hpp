@@ -17,18 +17,18 @@ struct IncrementPair {
 
 struct LinearResult {
   Eigen::Matrix3d matrix;
-  double condition = 0.0;        ///< of A^T A, the 9x9 normal matrix
-  Eigen::Vector3d rms;           ///< of observed - X * odometry: m, m, rad
-  double orthogonality = 0.0;    ///< max |A^T (b - A x)| / (|A| |b|); zero for an exact least-squares solution
+  double condition = 0.0;      ///< of A^T A, the 9x9 normal matrix
+  Eigen::Vector3d rms;         ///< of observed - X * odometry: m, m, rad
+  double orthogonality = 0.0;  ///< max |A^T (b - A x)| / (|A| |b|); zero for an exact least-squares solution
   std::size_t used = 0;
 };
 
-/// Least squares by QR. Errors: refused when fewer than three independent increments exist; names the odometry
-/// components that never occurred.
+/// Least squares by QR. Errors: refused when fewer than three independent increments exist; names the
+/// odometry components that never occurred.
 Result<LinearResult> solve_linear(std::span<const IncrementPair> samples);
 
-/// Wheel radii and track width that X implies (only x11, x31, x33 are well determined on a differential drive):
-/// r = r0 x11, b = b0 x11 / x33, r_right - r_left = x31 r0 b.
+/// Wheel radii and track width that X implies (only x11, x31, x33 are well determined on a differential
+/// drive): r = r0 x11, b = b0 x11 / x33, r_right - r_left = x31 r0 b.
 struct LinearReading {
   double left_radius = 0.0, right_radius = 0.0, track_width = 0.0;
 };

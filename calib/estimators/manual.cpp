@@ -7,13 +7,14 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kStraightYaw = 0.02;        ///< rad per pair that still counts as straight
-constexpr double kMinPairTravel = 0.02;      ///< m
-constexpr double kMinTravel = 0.3;           ///< m in all
-constexpr double kSpinLever = 0.1;           ///< travel over rotation in units of the track width that still is on the spot
-constexpr double kMinPairTurn = 0.03;        ///< rad
+constexpr double kStraightYaw = 0.02;    ///< rad per pair that still counts as straight
+constexpr double kMinPairTravel = 0.02;  ///< m
+constexpr double kMinTravel = 0.3;       ///< m in all
+constexpr double kSpinLever =
+    0.1;  ///< travel over rotation in units of the track width that still is on the spot
+constexpr double kMinPairTurn = 0.03;  ///< rad
 constexpr double kMinTurn = kPi / 2.0;
-constexpr double kOutlier = 5.0;             ///< robust sigma
+constexpr double kOutlier = 5.0;  ///< robust sigma
 
 struct Comparison {
   double claimed = 0.0;
@@ -26,7 +27,8 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// Slope through the origin of `seen` on `claimed`, after cutting what deviates grossly from the median ratio.
+/// Slope through the origin of `seen` on `claimed`, after cutting what deviates grossly from the median
+/// ratio.
 Ratio robust_slope(const std::vector<Comparison>& all) {
   std::vector<double> ratios;
   for (const Comparison& c : all) ratios.push_back(c.seen / c.claimed);
@@ -72,8 +74,8 @@ Result<Ratio> straight_ratio(std::span<const WheelMotion> samples, const BasePar
     travel += std::abs(claimed);
   }
   if (travel < kMinTravel)
-    return Error{ErrorCode::refused, "only " + std::to_string(travel) + " m were driven straight", "straight method",
-                 "drive at least 0.3 m straight"};
+    return Error{ErrorCode::refused, "only " + std::to_string(travel) + " m were driven straight",
+                 "straight method", "drive at least 0.3 m straight"};
   return robust_slope(straight);
 }
 
@@ -85,12 +87,14 @@ Result<Ratio> spin_ratio(std::span<const WheelMotion> samples, const BaseParamet
     const double right = base.right_radius * sample.right;
     const double claimed = (right - left) / base.track_width;
     const double lever = std::abs(left + right) / 2.0;
-    if (std::abs(claimed) < kMinPairTurn || lever > kSpinLever * base.track_width * std::abs(claimed)) continue;
+    if (std::abs(claimed) < kMinPairTurn || lever > kSpinLever * base.track_width * std::abs(claimed))
+      continue;
     turns.push_back({sample.sensor_motion.yaw, claimed});
     turned += std::abs(claimed);
   }
   if (turned < kMinTurn)
-    return Error{ErrorCode::refused, "only " + std::to_string(turned * 180.0 / kPi) + " degrees were turned on the spot",
+    return Error{ErrorCode::refused,
+                 "only " + std::to_string(turned * 180.0 / kPi) + " degrees were turned on the spot",
                  "spin method", "turn at least a quarter turn on the spot, better one turn each way"};
   return robust_slope(turns);
 }

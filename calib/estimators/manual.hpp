@@ -1,4 +1,5 @@
-// The straight-metre and full-turn methods: compare what the wheels claim with what the sensor saw, one quantity at a time.
+// The straight-metre and full-turn methods: compare what the wheels claim with what the sensor saw, one
+// quantity at a time.
 #pragma once
 
 #include <span>
@@ -9,16 +10,16 @@
 namespace odomcalib::calib {
 
 struct Ratio {
-  double value = 1.0;   ///< true over claimed
+  double value = 1.0;  ///< true over claimed
   double std = 0.0;
-  double rms = 0.0;     ///< of the single comparisons: m (straight) or rad (spin)
+  double rms = 0.0;  ///< of the single comparisons: m (straight) or rad (spin)
   std::size_t used = 0;
   std::size_t discarded = 0;
 };
 
-/// Distance ratio over the straight parts; assumes equal wheels (one factor for both diameters). The sensor's mounting does
-/// not matter: without rotation every point of the robot travels the same distance.
-/// Errors: refused when less than 0.3 m was driven straight.
+/// Distance ratio over the straight parts; assumes equal wheels (one factor for both diameters). The sensor's
+/// mounting does not matter: without rotation every point of the robot travels the same distance. Errors:
+/// refused when less than 0.3 m was driven straight.
 Result<Ratio> straight_ratio(std::span<const WheelMotion> samples, const BaseParameters& nominal);
 
 /// Ratio of the claimed to the true rotation over the turns on the spot: track_new = track_old * ratio.

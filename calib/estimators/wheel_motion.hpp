@@ -8,9 +8,9 @@
 namespace odomcalib::calib {
 
 struct WheelMotion {
-  double left = 0.0;    ///< wheel rotation in the interval, rad
+  double left = 0.0;  ///< wheel rotation in the interval, rad
   double right = 0.0;
-  Pose sensor_motion;   ///< measured motion of the sensor, in its frame at the start of the interval
+  Pose sensor_motion;  ///< measured motion of the sensor, in its frame at the start of the interval
 };
 
 /// Wheel radii in m, track width in m, sensor pose on the base.

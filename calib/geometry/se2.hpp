@@ -1,5 +1,6 @@
 // Rigid motions of the plane, templated on the scalar so that derivatives can be automatic.
-// Conventions: REP-103 (x forward, y left, yaw counter-clockwise); T_a_b maps coordinates in b to coordinates in a.
+// Conventions: REP-103 (x forward, y left, yaw counter-clockwise); T_a_b maps coordinates in b to coordinates
+// in a.
 #pragma once
 
 #include <cmath>

@@ -9,19 +9,20 @@ namespace odomcalib::calib {
 namespace {
 
 constexpr std::size_t kMinPoints = 20;
-constexpr double kMinNormalAgreement = 0.8;   ///< cosine between the two scans' normals
-constexpr double kMinIncidence = 0.2;         ///< cosine; flatter beams say little and err much
-constexpr double kTukey = 4.685;              ///< 95 % efficiency at the normal distribution
-constexpr double kSurfaceFloor = 1e-3;        ///< m, unevenness of surfaces and angular error of beams
+constexpr double kMinNormalAgreement = 0.8;  ///< cosine between the two scans' normals
+constexpr double kMinIncidence = 0.2;        ///< cosine; flatter beams say little and err much
+constexpr double kTukey = 4.685;             ///< 95 % efficiency at the normal distribution
+constexpr double kSurfaceFloor = 1e-3;       ///< m, unevenness of surfaces and angular error of beams
 constexpr int kCoarseIterations = 4;
-constexpr double kSettled = 0.03;             ///< sigma, a step that no longer matters
+constexpr int kDampedFrom = 12;
+constexpr double kSettled = 0.05;  ///< sigma, a step that no longer matters
 
 /// One point of the scan against one line of the reference.
 struct Correspondence {
   Eigen::Vector2d position;  ///< in the scan's frame
   Eigen::Vector2d anchor;
   Eigen::Vector2d normal;
-  double variance = 0.0;     ///< of the distance, m^2
+  double variance = 0.0;  ///< of the distance, m^2
 };
 
 struct Linearised {
@@ -42,9 +43,11 @@ Eigen::Vector2d rotate(double yaw, const Eigen::Vector2d& p) {
   return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
 }
 
-/// Range noise acts along the beam; across the line only its projection counts. Reference lines average their own
-/// readings, but each reading serves several lines, so over the scan the reference adds as much as the scan itself.
-double distance_variance(const SurfacePoint& point, const Eigen::Vector2d& normal, double yaw, double range_noise) {
+/// Range noise acts along the beam; across the line only its projection counts. Reference lines average their
+/// own readings, but each reading serves several lines, so over the scan the reference adds as much as the
+/// scan itself.
+double distance_variance(const SurfacePoint& point, const Eigen::Vector2d& normal, double yaw,
+                         double range_noise) {
   const double incidence = rotate(yaw, point.beam).dot(normal);
   return 2.0 * (range_noise * range_noise * incidence * incidence + kSurfaceFloor * kSurfaceFloor);
 }
@@ -98,13 +101,13 @@ Linearised linearise(const std::vector<Correspondence>& pairs, const Pose& pose,
   return system;
 }
 
-/// Translation information after eliminating yaw, taken about the centre of the points so that it does not depend on
-/// where the sensor's origin lies.
+/// Translation information after eliminating yaw, taken about the centre of the points so that it does not
+/// depend on where the sensor's origin lies.
 void judge_observability(const Eigen::Matrix3d& information, MatchResult& result) {
   if (!(information(2, 2) > 0.0)) return;
-  const Eigen::Matrix2d schur = information.topLeftCorner<2, 2>() -
-                                information.topRightCorner<2, 1>() * information.bottomLeftCorner<1, 2>() /
-                                    information(2, 2);
+  const Eigen::Matrix2d schur = information.topLeftCorner<2, 2>() - information.topRightCorner<2, 1>() *
+                                                                        information.bottomLeftCorner<1, 2>() /
+                                                                        information(2, 2);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(schur);
   result.eigenvalue_ratio = std::max(eigen.eigenvalues()(0), 0.0) / std::max(eigen.eigenvalues()(1), 1e-300);
   result.weak_direction = eigen.eigenvectors().col(0);
@@ -143,11 +146,16 @@ void conclude(MatchResult& result, const Linearised& system, double scale, std::
 
 std::string to_string(MatchStatus status) {
   switch (status) {
-    case MatchStatus::ok: return "ok";
-    case MatchStatus::too_few_points: return "too_few_points";
-    case MatchStatus::no_overlap: return "no_overlap";
-    case MatchStatus::degenerate: return "degenerate";
-    case MatchStatus::not_converged: return "not_converged";
+    case MatchStatus::ok:
+      return "ok";
+    case MatchStatus::too_few_points:
+      return "too_few_points";
+    case MatchStatus::no_overlap:
+      return "no_overlap";
+    case MatchStatus::degenerate:
+      return "degenerate";
+    case MatchStatus::not_converged:
+      return "not_converged";
   }
   return "unknown";
 }
@@ -162,7 +170,8 @@ struct MatchReference::Tree {
   bool kdtree_get_bbox(Box& /*box*/) const {
     return false;
   }
-  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Tree>, Tree, 2, std::size_t>;
+  using Index =
+      nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Tree>, Tree, 2, std::size_t>;
   std::unique_ptr<Index> kd_tree;
 };
 
@@ -205,14 +214,19 @@ MatchResult match_point_to_line(const MatchReference& reference, const Surface& 
     }
     scale = std::max(1.0, residual_scale(pairs, result.motion));
     system = linearise(pairs, result.motion, scale);
-    const Eigen::Matrix3d damped = system.information + 1e-9 * system.information.trace() * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d damped =
+        system.information + 1e-9 * system.information.trace() * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d step = damped.ldlt().solve(system.gradient);
     if (!step.allFinite()) break;
-    result.motion.x -= step(0);
-    result.motion.y -= step(1);
-    result.motion.yaw -= step(2);
-    // In units of the match's own uncertainty; smaller steps only follow correspondences that change back and forth.
-    converged = i >= kCoarseIterations && step.dot(system.information * step) < kSettled * kSettled * scale * scale;
+    const double length =
+        i < kDampedFrom ? 1.0 : 0.5;  // late, correspondences that flip to and fro are averaged
+    result.motion.x -= length * step(0);
+    result.motion.y -= length * step(1);
+    result.motion.yaw -= length * step(2);
+    // In units of the match's own uncertainty; smaller steps only follow correspondences that change back and
+    // forth.
+    converged =
+        i >= kCoarseIterations && step.dot(system.information * step) < kSettled * kSettled * scale * scale;
   }
   conclude(result, system, scale, lines, converged, options);
   return result;

@@ -1,5 +1,5 @@
-// Point-to-line scan matching. A. Censi: An ICP variant using a point-to-line metric, ICRA 2008; here with lines fitted to
-// neighbourhoods instead of two points, so that the reference scan's noise is averaged.
+// Point-to-line scan matching. A. Censi: An ICP variant using a point-to-line metric, ICRA 2008; here with
+// lines fitted to neighbourhoods instead of two points, so that the reference scan's noise is averaged.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,30 +12,30 @@ namespace odomcalib::calib {
 
 enum class MatchStatus {
   ok,
-  too_few_points,   ///< a scan has too few readings on surfaces
-  no_overlap,       ///< too few correspondences, or they do not agree
-  degenerate,       ///< one direction of motion is not observable (corridor, round room); see weak_direction
+  too_few_points,  ///< a scan has too few readings on surfaces
+  no_overlap,      ///< too few correspondences, or they do not agree
+  degenerate,      ///< one direction of motion is not observable (corridor, round room); see weak_direction
   not_converged,
 };
 std::string to_string(MatchStatus status);
 
 struct MatchOptions {
-  double range_noise = 0.01;        ///< m, standard deviation of one range
-  double max_distance = 0.5;        ///< m, first gate for correspondences
-  double min_overlap = 0.4;         ///< share of usable points that must find a partner
-  double min_eigenvalue_ratio = 0.01; ///< of the translation information; below: degenerate
+  double range_noise = 0.01;           ///< m, standard deviation of one range
+  double max_distance = 0.5;           ///< m, first gate for correspondences
+  double min_overlap = 0.4;            ///< share of usable points that must find a partner
+  double min_eigenvalue_ratio = 0.01;  ///< of the translation information; below: degenerate
   int max_iterations = 40;
 };
 
 struct MatchResult {
   MatchStatus status = MatchStatus::not_converged;
-  Pose motion;                      ///< of the sensor, in the frame of the reference scan
+  Pose motion;  ///< of the sensor, in the frame of the reference scan
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, yaw of `motion`; m^2, m rad, rad^2
   std::size_t inliers = 0;
-  double overlap = 0.0;             ///< share of usable points that are inliers
-  double eigenvalue_ratio = 0.0;    ///< smallest to largest eigenvalue of the translation information
+  double overlap = 0.0;           ///< share of usable points that are inliers
+  double eigenvalue_ratio = 0.0;  ///< smallest to largest eigenvalue of the translation information
   Eigen::Vector2d weak_direction = Eigen::Vector2d::Zero();  ///< eigenvector of the smallest one
-  double residual = 0.0;            ///< robust sigma of the point-to-line distances in units of their expectation
+  double residual = 0.0;  ///< robust sigma of the point-to-line distances in units of their expectation
   int iterations = 0;
   [[nodiscard]] bool is_usable() const { return status == MatchStatus::ok; }
 };
@@ -56,8 +56,8 @@ class MatchReference {
   std::unique_ptr<Tree> tree_;
 };
 
-/// Motion from `reference` to `scan`, starting at `guess`. The guess is a start, not a prior: the result does not depend
-/// on it within the basin of convergence.
+/// Motion from `reference` to `scan`, starting at `guess`. The guess is a start, not a prior: the result does
+/// not depend on it within the basin of convergence.
 MatchResult match_point_to_line(const MatchReference& reference, const Surface& scan, const Pose& guess,
                                 const MatchOptions& options);
 

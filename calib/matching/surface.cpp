@@ -7,15 +7,16 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr int kMaxNeighbours = 12;         ///< on each side
-constexpr double kMaxNeighbourhood = 0.25;///< m; longer stretches of wall gain nothing and bend at corners
+constexpr int kMaxNeighbours = 12;          ///< on each side
+constexpr double kMaxNeighbourhood = 0.25;  ///< m; longer stretches of wall gain nothing and bend at corners
 constexpr std::size_t kMinLinePoints = 4;
 constexpr double kLineNoiseFactor = 2.0;  ///< accepted rms of a line fit in units of the expected noise
-constexpr double kRelativeGap = 3.5;      ///< neighbours further apart than this times the median step are another surface
-constexpr double kMinRangeNoise = 2e-3;   ///< m, real surfaces and beams are no better than this
-constexpr double kMaxRangeNoise = 5e-2;   ///< m
+constexpr double kRelativeGap =
+    3.5;  ///< neighbours further apart than this times the median step are another surface
+constexpr double kMinRangeNoise = 2e-3;  ///< m, real surfaces and beams are no better than this
+constexpr double kMaxRangeNoise = 5e-2;  ///< m
 constexpr double kDefaultRangeNoise = 1e-2;
-constexpr double kBeamFloor = 1e-3;       ///< m, angular error of beams and unevenness of surfaces
+constexpr double kBeamFloor = 1e-3;  ///< m, angular error of beams and unevenness of surfaces
 
 struct Line {
   Eigen::Vector2d centre;
@@ -58,10 +59,13 @@ class RunSums {
 };
 
 /// Typical distance between neighbouring beam ends at this range, from the angular step.
-double expected_step(const SurfacePoint& a, double angular_step) { return std::max(a.range * angular_step, 5e-3); }
+double expected_step(const SurfacePoint& a, double angular_step) {
+  return std::max(a.range * angular_step, 5e-3);
+}
 
 /// How far the neighbourhood of i reaches to one side before a gap, the size limit or the count limit.
-std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int direction, double angular_step) {
+std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int direction,
+                  double angular_step) {
   std::size_t k = i;
   for (int n = 0; n < kMaxNeighbours; ++n) {
     if ((direction < 0 && k == 0) || (direction > 0 && k + 1 == points.size())) break;
@@ -115,21 +119,24 @@ SurfacePoint beam_end(const Scan& scan, std::size_t beam, const BeamMotion& moti
   return point;
 }
 
-double angular_step(const Scan& scan) {
-  if (scan.angles.size() > 1)
-    return std::abs(static_cast<double>(scan.angles.back()) - static_cast<double>(scan.angles.front())) /
-           static_cast<double>(scan.angles.size() - 1);
-  return std::abs(scan.angle_increment);
-}
-
 double median_of(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-/// Noise along the beam that lines through runs of neighbouring readings show. Runs that cross a corner show more, so that
-/// only the median over many runs means anything.
+/// Median step between neighbouring beams; listed angles may wrap anywhere.
+double angular_step(const Scan& scan) {
+  if (scan.angles.size() < 2) return std::abs(scan.angle_increment);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < scan.angles.size(); ++i)
+    steps.push_back(
+        std::abs(wrap_angle(static_cast<double>(scan.angles[i]) - static_cast<double>(scan.angles[i - 1]))));
+  return median_of(steps);
+}
+
+/// Noise along the beam that lines through runs of neighbouring readings show. Runs that cross a corner show
+/// more, so that only the median over many runs means anything.
 void collect_line_noise(const Scan& scan, std::vector<double>& out) {
   constexpr std::size_t kRun = 13;
   std::vector<SurfacePoint> points;
@@ -139,7 +146,8 @@ void collect_line_noise(const Scan& scan, std::vector<double>& out) {
   const double step = angular_step(scan);
   for (std::size_t first = 0; first + kRun <= points.size(); first += kRun / 2) {
     const std::size_t middle = first + kRun / 2;
-    if (reach(points, middle, -1, step) > first || reach(points, middle, +1, step) < first + kRun - 1) continue;
+    if (reach(points, middle, -1, step) > first || reach(points, middle, +1, step) < first + kRun - 1)
+      continue;
     const Line line = sums.line(first, first + kRun - 1);
     const double incidence = std::abs(line.normal.dot(points[middle].beam));
     if (incidence > 0.3) out.push_back(line.rms / incidence);
@@ -164,7 +172,8 @@ Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_no
     if (usable(scan, beam)) surface.points.push_back(beam_end(scan, beam, motion));
   const double step = angular_step(scan);
   const RunSums sums(surface.points);
-  for (std::size_t i = 0; i < surface.points.size(); ++i) attach_line(surface.points, sums, i, step, range_noise);
+  for (std::size_t i = 0; i < surface.points.size(); ++i)
+    attach_line(surface.points, sums, i, step, range_noise);
   return surface;
 }
 

@@ -14,9 +14,9 @@ namespace odomcalib::calib {
 /// One beam end in the sensor frame at the scan's reference time, with a line fitted to its neighbourhood.
 struct SurfacePoint {
   Eigen::Vector2d position;
-  Eigen::Vector2d beam;       ///< unit vector along which the range was measured
-  Eigen::Vector2d anchor;     ///< point of the local line next to `position`
-  Eigen::Vector2d normal;     ///< unit normal of the local line, towards the sensor
+  Eigen::Vector2d beam;    ///< unit vector along which the range was measured
+  Eigen::Vector2d anchor;  ///< point of the local line next to `position`
+  Eigen::Vector2d normal;  ///< unit normal of the local line, towards the sensor
   double range = 0.0;
   bool has_line = false;
 };
@@ -38,8 +38,9 @@ double reference_time(const Scan& scan);
 /// @param range_noise standard deviation of a range, m; decides what still counts as one line
 Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_noise);
 
-/// Standard deviation of the range readings, m, from lines through runs of neighbouring readings: it includes what short
-/// surfaces are uneven by, and sensors that smooth neighbouring readings do not look better than they are.
+/// Standard deviation of the range readings, m, from lines through runs of neighbouring readings: it includes
+/// what short surfaces are uneven by, and sensors that smooth neighbouring readings do not look better than
+/// they are.
 double estimate_range_noise(std::span<const Scan> scans);
 
 }  // namespace odomcalib::calib

@@ -58,8 +58,8 @@ double value_of(double x) { return x; }
 double value_of(const Jet& x) { return x.a; }
 
 template <typename T>
-Pose2<T> pose_at(const WheelTrack& track, const std::vector<Pose2<T>>& poses, const std::vector<Pose2<T>>& twists,
-                 const T& time) {
+Pose2<T> pose_at(const WheelTrack& track, const std::vector<Pose2<T>>& poses,
+                 const std::vector<Pose2<T>>& twists, const T& time) {
   const std::size_t k = track.interval_at(value_of(time));
   const T share = (time - track.t[k]) / (track.t[k + 1] - track.t[k]);
   const Pose2<T>& w = twists[k];
@@ -152,7 +152,8 @@ std::vector<Pose> DriveModel::predict(std::span<const double> parameters, const 
 
 std::vector<Pose> DriveModel::predict(std::span<const double> parameters, const EffectList& effects,
                                       std::span<const Interval> intervals, Eigen::MatrixXd& jacobian) const {
-  jacobian.resize(static_cast<Eigen::Index>(3 * intervals.size()), static_cast<Eigen::Index>(parameters.size()));
+  jacobian.resize(static_cast<Eigen::Index>(3 * intervals.size()),
+                  static_cast<Eigen::Index>(parameters.size()));
   std::vector<Pose> values;
   for (std::size_t first = 0; first < parameters.size(); first += kJetSize) {
     const std::vector<Jet> jets = seed(parameters, first);

@@ -19,8 +19,8 @@ using Jet = ceres::Jet<double, kJetSize>;
 struct EffectParameter {
   std::string name;
   std::string unit;
-  double scale = 1.0;   ///< typical size; steps and tolerances are relative to it
-  double lower = 0.0;   ///< physically plausible range
+  double scale = 1.0;  ///< typical size; steps and tolerances are relative to it
+  double lower = 0.0;  ///< physically plausible range
   double upper = 0.0;
 };
 
@@ -38,10 +38,12 @@ class Effect {
   [[nodiscard]] virtual Storage storage() const { return Storage::host; }
 
   /// Changes the motion of one tick interval in place. Zero parameters leave it unchanged.
-  virtual void apply(const StepContext& context, std::span<const double> parameters, WheelStep<double>& step) const {
+  virtual void apply(const StepContext& context, std::span<const double> parameters,
+                     WheelStep<double>& step) const {
     (void)context, (void)parameters, (void)step;
   }
-  virtual void apply(const StepContext& context, std::span<const Jet> parameters, WheelStep<Jet>& step) const {
+  virtual void apply(const StepContext& context, std::span<const Jet> parameters,
+                     WheelStep<Jet>& step) const {
     (void)context, (void)parameters, (void)step;
   }
   /// Delay in s of the sensor against the encoders: a scan stamped t was taken at encoder time t - delay.

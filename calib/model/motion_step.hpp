@@ -6,28 +6,28 @@ namespace odomcalib::calib {
 /// Base motion in one tick interval before integration, m and rad.
 template <typename T>
 struct WheelStep {
-  T left{0.0};    ///< travel of the left wheel
+  T left{0.0};  ///< travel of the left wheel
   T right{0.0};
-  T side{0.0};    ///< sideways motion of the base, left positive
-  T yaw{0.0};     ///< rotation in addition to (right - left) / track_width
-  T track{1.0};   ///< factor on the track width
+  T side{0.0};   ///< sideways motion of the base, left positive
+  T yaw{0.0};    ///< rotation in addition to (right - left) / track_width
+  T track{1.0};  ///< factor on the track width
 };
 
-/// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations are smoothed,
-/// since differences of raw ticks are mostly quantisation noise.
+/// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
+/// are smoothed, since differences of raw ticks are mostly quantisation noise.
 struct StepContext {
-  double t = 0.0;                            ///< middle of the interval, s after the recording's first sample
-  double dt = 0.0;                           ///< s
-  double left_angle = 0.0, right_angle = 0.0;///< cumulative wheel angle, rad
-  double left_delta = 0.0, right_delta = 0.0;///< wheel rotation in the interval, rad
-  double left_speed = 0.0, right_speed = 0.0;///< wheel rim speed, m/s
+  double t = 0.0;   ///< middle of the interval, s after the recording's first sample
+  double dt = 0.0;  ///< s
+  double left_angle = 0.0, right_angle = 0.0;                ///< cumulative wheel angle, rad
+  double left_delta = 0.0, right_delta = 0.0;                ///< wheel rotation in the interval, rad
+  double left_speed = 0.0, right_speed = 0.0;                ///< wheel rim speed, m/s
   double left_acceleration = 0.0, right_acceleration = 0.0;  ///< m/s^2
-  double speed = 0.0;                        ///< forward, m/s
-  double turn_rate = 0.0;                    ///< rad/s
-  double heading = 0.0;                      ///< rad, from the plain model
-  double x = 0.0, y = 0.0;                   ///< m, from the plain model
-  double since_reversal = 0.0;               ///< distance driven since the direction of travel last changed, m
-  double direction = 0.0;                    ///< sign of the forward speed, kept while standing
+  double speed = 0.0;                                        ///< forward, m/s
+  double turn_rate = 0.0;                                    ///< rad/s
+  double heading = 0.0;                                      ///< rad, from the plain model
+  double x = 0.0, y = 0.0;                                   ///< m, from the plain model
+  double since_reversal = 0.0;  ///< distance driven since the direction of travel last changed, m
+  double direction = 0.0;       ///< sign of the forward speed, kept while standing
 };
 
 }  // namespace odomcalib::calib

@@ -8,16 +8,18 @@ namespace odomcalib::calib {
 namespace {
 
 constexpr double kSmoothing = 0.25;  ///< s; differences of raw ticks over less are mostly quantisation noise
-constexpr double kStanding = 0.005;  ///< m/s; below, the direction of travel is undefined and the last one is kept
+constexpr double kStanding =
+    0.005;  ///< m/s; below, the direction of travel is undefined and the last one is kept
 
-/// Least-squares parabola through (t, values) around `centre` within the smoothing window: slope and curvature.
+/// Least-squares parabola through (t, values) around `centre` within the smoothing window: slope and
+/// curvature.
 struct LocalDerivatives {
   double first = 0.0;
   double second = 0.0;
 };
 
-LocalDerivatives local_derivatives(const std::vector<double>& t, const std::vector<double>& values, std::size_t low,
-                                   std::size_t high, double centre) {
+LocalDerivatives local_derivatives(const std::vector<double>& t, const std::vector<double>& values,
+                                   std::size_t low, std::size_t high, double centre) {
   // Normal equations of c0 + c1 u + c2 u^2 with u = (t - centre) / window, solved by Cramer's rule on sums.
   double s[5] = {};
   double b[3] = {};
@@ -50,13 +52,15 @@ struct Window {
 Window window_around(const WheelTrack& track, std::size_t k, Window window, double centre) {
   while (track.t[window.low] < centre - kSmoothing / 2.0 && window.low < k) ++window.low;
   window.high = std::max(window.high, k + 1);
-  while (window.high + 1 < track.t.size() && track.t[window.high + 1] <= centre + kSmoothing / 2.0) ++window.high;
+  while (window.high + 1 < track.t.size() && track.t[window.high + 1] <= centre + kSmoothing / 2.0)
+    ++window.high;
   while (track.segment[window.low] != track.segment[k] && window.low < k) ++window.low;
   while (track.segment[window.high] != track.segment[k] && window.high > k + 1) --window.high;
   return window;
 }
 
-void fill_speeds(StepContext& c, const WheelTrack& track, Window window, double centre, const BaseParameters& nominal) {
+void fill_speeds(StepContext& c, const WheelTrack& track, Window window, double centre,
+                 const BaseParameters& nominal) {
   const auto left = local_derivatives(track.t, track.left, window.low, window.high, centre);
   const auto right = local_derivatives(track.t, track.right, window.low, window.high, centre);
   c.left_speed = nominal.left_radius * left.first;

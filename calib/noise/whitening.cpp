@@ -14,54 +14,68 @@ Eigen::Matrix3d rotation_about_z(double yaw) {
   return r;
 }
 
-/// Inverse of the symmetric square root: neighbouring pairs keep the same axes, so that their errors line up.
-Eigen::Matrix3d inverse_root(const Eigen::Matrix3d& covariance) {
+/// Symmetric square root: neighbouring pairs keep the same axes, so that their errors line up.
+Eigen::Matrix3d symmetric_root(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
   const Eigen::Vector3d values = eigen.eigenvalues().cwiseMax(1e-18);
-  return eigen.eigenvectors() * values.cwiseSqrt().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  return eigen.eigenvectors() * values.cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+Eigen::Matrix3d jitter_covariance(const Eigen::Vector3d& velocity, const NoiseModel& noise) {
+  return noise.stamp_jitter * noise.stamp_jitter * velocity * velocity.transpose();
 }
 
 }  // namespace
 
-Whitener::Whitener(std::span<const SensorPair> pairs, std::span<const double> headings, const NoiseModel& noise,
-                   std::span<const double> weights) {
-  scale_.reserve(pairs.size());
-  const double pt = noise.process_translation * noise.process_translation;
-  const Eigen::Vector3d process(pt, pt, noise.process_rotation * noise.process_rotation);
-  const double matcher = noise.matcher_scale * noise.matcher_scale;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const Eigen::Matrix3d to_room = rotation_about_z(headings[k]);
-    Eigen::Matrix3d covariance = matcher * (to_room * pairs[k].covariance * to_room.transpose());
-    covariance.diagonal() += process;
-    scale_.push_back(std::sqrt(weights[k]) * inverse_root(covariance) * to_room);
-    std::array<double, 3> link{};
-    std::array<double, 3> pivot{1.0, 1.0, 1.0};
-    if (k > 0 && pairs[k].follows_previous) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        link[c] = noise.correlation[c] / pivot_[k - 1][c];
-        pivot[c] = std::sqrt(1.0 - link[c] * link[c]);
-      }
-    }
-    link_.push_back(link);
-    pivot_.push_back(pivot);
-  }
+Eigen::Matrix3d base_covariance(const SensorPair& pair, const PairState& state, const NoiseModel& noise) {
+  const Eigen::Matrix3d turn = rotation_about_z(state.heading);
+  Eigen::Matrix3d covariance =
+      noise.matcher_scale * noise.matcher_scale * (turn * pair.covariance * turn.transpose());
+  const double translation = noise.process_translation * noise.process_translation;
+  covariance(0, 0) += translation;
+  covariance(1, 1) += translation;
+  covariance(2, 2) += noise.process_rotation * noise.process_rotation;
+  return covariance;
 }
 
-void Whitener::standardise(Eigen::MatrixXd& rows) const {
-  for (std::size_t k = 0; k < scale_.size(); ++k) {
-    auto block = rows.middleRows<3>(static_cast<Eigen::Index>(3 * k));
-    block = (scale_[k] * block).eval();
+Eigen::Matrix3d full_covariance(const SensorPair& pair, const PairState& state, const NoiseModel& noise) {
+  return base_covariance(pair, state, noise) + jitter_covariance(state.begin_velocity, noise) +
+         jitter_covariance(state.end_velocity, noise);
+}
+
+Eigen::Vector3d to_room(const Eigen::Vector3d& residual, const PairState& state) {
+  return rotation_about_z(state.heading) * residual;
+}
+
+Whitener::Whitener(std::span<const SensorPair> pairs, std::span<const PairState> states,
+                   const NoiseModel& noise, std::span<const double> weights) {
+  const Eigen::Vector3d correlation(noise.correlation[0], noise.correlation[1], noise.correlation[2]);
+  Eigen::Matrix3d previous_root = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    turn_.push_back(std::sqrt(weights[k]) * rotation_about_z(states[k].heading));
+    const Eigen::Matrix3d root = symmetric_root(base_covariance(pairs[k], states[k], noise));
+    Eigen::Matrix3d diagonal = full_covariance(pairs[k], states[k], noise);
+    Eigen::Matrix3d link = Eigen::Matrix3d::Zero();
+    if (k > 0 && pairs[k].follows_previous) {
+      const Eigen::Matrix3d shared = root * correlation.asDiagonal() * previous_root.transpose() -
+                                     jitter_covariance(states[k].begin_velocity, noise);
+      link = shared * inverse_.back().transpose();
+      diagonal -= link * link.transpose();
+    }
+    const Eigen::Matrix3d lower = diagonal.llt().matrixL();
+    inverse_.push_back(lower.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity()));
+    link_.push_back(link);
+    previous_root = root;
   }
 }
 
 void Whitener::apply(Eigen::MatrixXd& rows) const {
-  standardise(rows);
-  for (std::size_t k = 0; k < scale_.size(); ++k)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto row = static_cast<Eigen::Index>(3 * k + c);
-      if (link_[k][c] != 0.0) rows.row(row) -= link_[k][c] * rows.row(row - 3);
-      rows.row(row) /= pivot_[k][c];
-    }
+  for (std::size_t k = 0; k < turn_.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(3 * k);
+    Eigen::MatrixXd block = turn_[k] * rows.middleRows<3>(row);
+    if (k > 0) block -= link_[k] * rows.middleRows<3>(row - 3);
+    rows.middleRows<3>(row) = inverse_[k] * block;
+  }
 }
 
 }  // namespace odomcalib::calib

@@ -9,11 +9,12 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kPoseNoise = 5e-4;        ///< m, motion capture or localiser; scaled by the fit
-constexpr double kPoseYawNoise = 1e-3;     ///< rad
-constexpr double kTupleNoise = 1e-3;       ///< m, a scan match whose covariance is not recorded
-constexpr double kTupleYawNoise = 2e-3;    ///< rad
-constexpr double kMaxGap = 2.0;            ///< s between neighbouring scans or poses; beyond, the reference was interrupted
+constexpr double kPoseNoise = 5e-4;      ///< m, motion capture or localiser; scaled by the fit
+constexpr double kPoseYawNoise = 1e-3;   ///< rad
+constexpr double kTupleNoise = 1e-3;     ///< m, a scan match whose covariance is not recorded
+constexpr double kTupleYawNoise = 2e-3;  ///< rad
+constexpr double kMaxGap =
+    2.0;  ///< s between neighbouring scans or poses; beyond, the reference was interrupted
 
 std::vector<Pose> poses_at(const Trajectory& odometry, const std::vector<double>& times) {
   std::vector<Pose> poses;
@@ -33,16 +34,15 @@ Eigen::Matrix3d diagonal_covariance(double position, double yaw) {
   return Eigen::Vector3d(position * position, position * position, yaw * yaw).asDiagonal();
 }
 
-/// Chooses keyframes among instants with known odometry; the first and each that moved far enough.
+/// Chooses keyframes among instants with known odometry: the first, each that moved far enough, and the last.
 std::vector<std::size_t> choose_keyframes(const std::vector<double>& times, const std::vector<Pose>& odometry,
                                           const PairOptions& options) {
   std::vector<std::size_t> chosen;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    if (chosen.empty() || is_keyframe(between(odometry[chosen.back()], odometry[k]), times[k] - times[chosen.back()],
-                                      options)) {
+  for (std::size_t k = 0; k < times.size(); ++k)
+    if (chosen.empty() ||
+        is_keyframe(between(odometry[chosen.back()], odometry[k]), times[k] - times[chosen.back()], options))
       chosen.push_back(k);
-    }
-  }
+  if (!chosen.empty() && chosen.back() + 1 < times.size()) chosen.push_back(times.size() - 1);
   return chosen;
 }
 
@@ -67,8 +67,9 @@ PairSet pairs_from_increments(const Recording& recording) {
   return set;
 }
 
-PairSet pairs_from_poses(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
-                         const EffectList& effects, const PairOptions& options) {
+PairSet pairs_from_poses(const Recording& recording, const DriveModel& model,
+                         std::span<const double> parameters, const EffectList& effects,
+                         const PairOptions& options) {
   PairSet set;
   std::vector<double> times;
   for (const PoseSample& pose : recording.poses) times.push_back(pose.t);
@@ -144,7 +145,8 @@ class ScanChain {
     };
   }
 
-  bool add_pair(const MatchReference& reference, const Surface& scan, std::size_t from, std::size_t to, bool linked) {
+  bool add_pair(const MatchReference& reference, const Surface& scan, std::size_t from, std::size_t to,
+                bool linked) {
     const Interval interval{times_[from], times_[to]};
     if (has_gap(times_, from, to)) return reject("reference interrupted");
     if (!model_.track().covers(interval.begin, interval.end)) return reject("no ticks");
@@ -169,8 +171,8 @@ class ScanChain {
   Pose mount_;
   PairSet& set_;
   Trajectory trajectory_;
-  std::vector<double> times_;    ///< reference time of each scan
-  std::vector<Pose> odometry_;   ///< base pose by odometry at those times
+  std::vector<double> times_;   ///< reference time of each scan
+  std::vector<Pose> odometry_;  ///< base pose by odometry at those times
 };
 
 }  // namespace
@@ -178,7 +180,8 @@ class ScanChain {
 PairSet build_pairs(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
                     const EffectList& effects, const PairOptions& options) {
   if (!recording.increments.empty()) return pairs_from_increments(recording);
-  if (!recording.poses.empty()) return pairs_from_poses(recording, model, parameters, effects, options);
+  if (!recording.poses.empty())
+    return pairs_from_poses(recording, model, parameters, effects, pose_pair_options());
   PairSet set;
   set.range_noise = estimate_range_noise(recording.scans);
   ScanChain(recording, model, parameters, effects, options, set).run();

@@ -11,11 +11,15 @@
 namespace odomcalib::calib {
 
 struct PairOptions {
-  double distance = 0.10;      ///< m, a new keyframe after this travel ...
-  double rotation = 0.175;     ///< rad (10 degrees), ... or this rotation ...
-  double duration = 0.5;       ///< s, ... or this time, if the wheels turned at all
+  double distance = 0.15;  ///< m, a new keyframe after this travel ...
+  double rotation = 0.25;  ///< rad (14 degrees), ... or this rotation ...
+  double duration = 0.75;  ///< s, ... or this time, if the wheels turned at all
   double min_overlap = 0.4;
 };
+
+/// A pose reference does not drift and its error does not grow with the baseline: longer pairs cost nothing
+/// there, and errors of its time stamps weigh less.
+inline PairOptions pose_pair_options() { return {0.3, 0.5, 2.0, 0.4}; }
 
 struct PairSet {
   std::vector<SensorPair> pairs;
@@ -23,8 +27,8 @@ struct PairSet {
   double range_noise = 0.0;                     ///< m; 0 for recordings without scans
 };
 
-/// Pairs of a recording. Scans are de-skewed and matched from guesses made with `parameters` and `effects`; poses and
-/// tuples are used as they are.
+/// Pairs of a recording. Scans are de-skewed and matched from guesses made with `parameters` and `effects`;
+/// poses and tuples are used as they are.
 PairSet build_pairs(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
                     const EffectList& effects, const PairOptions& options);
 

@@ -10,10 +10,11 @@
 namespace odomcalib::calib {
 
 struct SensorPair {
-  Interval interval;             ///< s on the sensor's clock
-  Pose motion;                   ///< in the sensor's frame at the begin
-  Eigen::Matrix3d covariance;    ///< x, y, yaw of `motion`, as the matcher states it
-  bool follows_previous = false; ///< begins with the scan (or pose) the previous pair ends with: their errors are correlated
+  Interval interval;           ///< s on the sensor's clock
+  Pose motion;                 ///< in the sensor's frame at the begin
+  Eigen::Matrix3d covariance;  ///< x, y, yaw of `motion`, as the matcher states it
+  bool follows_previous =
+      false;  ///< begins with the scan (or pose) the previous pair ends with: their errors are correlated
 };
 
 }  // namespace odomcalib::calib

@@ -28,7 +28,8 @@ std::optional<Error> check_streams(const Recording& recording) {
     return Error{ErrorCode::empty, "neither scans nor reference poses", recording.name,
                  "check that the lidar was recorded"};
   if (!(recording.robot.ticks_per_rev > 0.0))
-    return Error{ErrorCode::missing_units, "ticks_per_rev is missing", recording.name, "add it to the robot line"};
+    return Error{ErrorCode::missing_units, "ticks_per_rev is missing", recording.name,
+                 "add it to the robot line"};
   return std::nullopt;
 }
 
@@ -46,19 +47,21 @@ double wheel_angle(const WheelTrack& track, const std::vector<double>& angle, do
 }  // namespace
 
 Result<Session> Session::open(std::span<const Recording> recordings) {
-  if (recordings.empty()) return Error{ErrorCode::usage, "no recording given", "", "name at least one recording"};
+  if (recordings.empty())
+    return Error{ErrorCode::usage, "no recording given", "", "name at least one recording"};
   Session session;
   session.recordings_ = recordings;
   session.nominal_ = nominal_of(recordings.front().robot);
   for (const Recording& recording : recordings) {
     if (auto error = check_streams(recording)) return *error;
     if (!same_robot(recording.robot, recordings.front().robot))
-      return Error{ErrorCode::format, "nominal values differ from those of " + recordings.front().name, recording.name,
-                   "solve recordings of different robots separately"};
+      return Error{ErrorCode::format, "nominal values differ from those of " + recordings.front().name,
+                   recording.name, "solve recordings of different robots separately"};
     WheelTrack track = recording.increments.empty() ? wheel_track_from_ticks(recording)
                                                     : wheel_track_from_increments(recording);
     if (track.empty())
-      return Error{ErrorCode::empty, "tick times do not advance", recording.name, "check the controller's clock"};
+      return Error{ErrorCode::empty, "tick times do not advance", recording.name,
+                   "check the controller's clock"};
     std::vector<StepContext> context = make_context(track, session.nominal_);
     session.models_.emplace_back(std::move(track), std::move(context));
   }
@@ -73,7 +76,8 @@ std::vector<bool> Session::fixed(std::size_t effect_parameters) const {
   return fixed;
 }
 
-void Session::measure(const Eigen::VectorXd& parameters, const EffectList& effects, const PairOptions& options) {
+void Session::measure(const Eigen::VectorXd& parameters, const EffectList& effects,
+                      const PairOptions& options) {
   data_.clear();
   sets_.clear();
   const std::span<const double> p(parameters.data(), static_cast<std::size_t>(parameters.size()));
@@ -97,7 +101,8 @@ std::vector<WheelMotion> wheel_motions(std::span<const FitData> data, double del
       const double begin = pair.interval.begin - delay;
       const double end = pair.interval.end - delay;
       motions.push_back({wheel_angle(track, track.left, end) - wheel_angle(track, track.left, begin),
-                         wheel_angle(track, track.right, end) - wheel_angle(track, track.right, begin), pair.motion});
+                         wheel_angle(track, track.right, end) - wheel_angle(track, track.right, begin),
+                         pair.motion});
     }
   }
   return motions;

@@ -1,4 +1,5 @@
-// The recordings of one robot made ready for fitting: wheel tracks, models, nominal parameters, measured pairs.
+// The recordings of one robot made ready for fitting: wheel tracks, models, nominal parameters, measured
+// pairs.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +17,8 @@ namespace odomcalib::calib {
 
 class Session {
  public:
-  /// Errors: empty (nothing to measure with, says which stream is missing), missing_units, format (robots differ).
+  /// Errors: empty (nothing to measure with, says which stream is missing), missing_units, format (robots
+  /// differ).
   static Result<Session> open(std::span<const Recording> recordings);
 
   [[nodiscard]] std::span<const Recording> recordings() const { return recordings_; }

@@ -13,7 +13,8 @@ constexpr double kStep = 0.02;  ///< s
 /// A delay must reduce the robust misfit by this factor to be believed; otherwise zero is the better start.
 constexpr double kBelievable = 0.9;
 
-/// Mean absolute misfit of rotation = a left + b right at this delay, a and b by least squares with one reweighting.
+/// Mean absolute misfit of rotation = a left + b right at this delay, a and b by least squares with one
+/// reweighting.
 double rotation_misfit(std::span<const FitData> data, double delay) {
   const auto motions = wheel_motions(data, delay);
   Eigen::Vector2d gains = Eigen::Vector2d::Zero();

@@ -1,5 +1,6 @@
 #include "calib/validation/held_out.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -56,20 +57,21 @@ struct Sums {
   std::size_t count = 0;
 };
 
+/// In the sensor's frame at the begin: heading zero.
 Eigen::Vector3d expected_variance(const SensorPair& pair, const NoiseModel& noise) {
-  Eigen::Vector3d v = noise.matcher_scale * noise.matcher_scale * pair.covariance.diagonal();
-  v(0) += noise.process_translation * noise.process_translation;
-  v(1) += noise.process_translation * noise.process_translation;
-  v(2) += noise.process_rotation * noise.process_rotation;
-  return v;
+  PairState state;
+  const double duration = std::max(pair.interval.end - pair.interval.begin, 1e-3);
+  state.begin_velocity = Eigen::Vector3d(pair.motion.x, pair.motion.y, pair.motion.yaw) / duration;
+  state.end_velocity = state.begin_velocity;
+  return full_covariance(pair, state, noise).diagonal();
 }
 
 void accumulate(const FitData& part, const Eigen::VectorXd& parameters, const EffectList& effects,
                 const NoiseModel& noise, Sums& sums) {
   std::vector<Interval> intervals;
   for (const SensorPair& pair : part.pairs) intervals.push_back(pair.interval);
-  const auto predicted =
-      part.model->predict({parameters.data(), static_cast<std::size_t>(parameters.size())}, effects, intervals);
+  const auto predicted = part.model->predict({parameters.data(), static_cast<std::size_t>(parameters.size())},
+                                             effects, intervals);
   for (std::size_t k = 0; k < part.pairs.size(); ++k) {
     const Pose& m = part.pairs[k].motion;
     const Eigen::Vector3d e(m.x - predicted[k].x, m.y - predicted[k].y, wrap_angle(m.yaw - predicted[k].yaw));
@@ -88,8 +90,8 @@ std::array<double, 3> root(const Eigen::Vector3d& sum, std::size_t count) {
 
 }  // namespace
 
-std::optional<HeldOut> held_out_residual(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,
-                                         const std::vector<bool>& fixed) {
+std::optional<HeldOut> held_out_residual(std::span<const FitData> data, const EffectList& effects,
+                                         const FitResult& fit, const std::vector<bool>& fixed) {
   const auto folds = assign_folds(data);
   Sums sums;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {

@@ -8,7 +8,8 @@
 
 namespace odomcalib::calib {
 
-/// Cumulative wheel angles in rad at strictly increasing times. Between samples the wheels turn at constant speed.
+/// Cumulative wheel angles in rad at strictly increasing times. Between samples the wheels turn at constant
+/// speed.
 struct WheelTrack {
   std::vector<double> t;
   std::vector<double> left;
