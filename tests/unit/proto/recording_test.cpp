@@ -6,7 +6,7 @@
 #include <chrono>
 #include <random>
 
-#include "support.hpp"
+#include "tests/unit/proto/support.hpp"
 
 namespace odomcalib {
 namespace {
