@@ -12,6 +12,7 @@ namespace odomcalib {
 namespace {
 
 constexpr double kReorderWindow = 1.0;  // s, DESIGN 4.2: out of order by up to a second
+constexpr double kLeap = 60.0;          // s, a longer step ahead is believed when the next sample confirms it
 constexpr double kLatestTime =
     9e9;  // s; as nanoseconds it still fits 64 bits, and is later than any clock shows
 constexpr std::int64_t kLargestCount = std::int64_t{1} << 53;
@@ -117,7 +118,7 @@ Error missing_unit(const std::string& field, double value, const char* unit, dou
 
 }  // namespace
 
-RecordingBuilder::RecordingBuilder() : newest_ticks_(kNone), newest_pose_(kNone), newest_gyro_(kNone) {}
+RecordingBuilder::StreamClock::StreamClock() : newest(kNone) {}
 
 std::optional<Error> check_robot(const RobotDescription& robot, const std::string& where) {
   struct Field {
@@ -145,17 +146,34 @@ void RecordingBuilder::discard(const std::string& what, const std::string& reaso
   if (count > 0) discarded_[{what, reason}] += count;
 }
 
+/// One wild stamp far ahead must not make everything behind it late: it goes, when the next sample continues
+/// before it.
 template <typename Sample>
-bool RecordingBuilder::in_time(const char* what, const Sample& sample, double& newest) {
+void RecordingBuilder::forget_leap(const char* what, StreamClock& clock, std::vector<Sample>& stream) {
+  const auto leap = std::find_if(stream.rbegin(), stream.rend(),
+                                 [&](const Sample& sample) { return sample.t == clock.newest; });
+  if (leap != stream.rend()) stream.erase(std::next(leap).base());
+  discard(what, "time stamp far ahead of its neighbours");
+  clock.newest = *clock.before_leap;
+}
+
+template <typename Sample>
+bool RecordingBuilder::in_time(const char* what, const Sample& sample, StreamClock& clock,
+                               std::vector<Sample>& stream) {
   if (!sane_time(sample.t)) {
     discard(what, "time stamp missing or impossible");
     return false;
   }
-  if (sample.t < newest - kReorderWindow) {
+  const bool late = sample.t < clock.newest - kReorderWindow;
+  if (late && clock.before_leap && sample.t >= *clock.before_leap - kReorderWindow)
+    forget_leap(what, clock, stream);
+  else if (late) {
     discard(what, "out of order by more than 1 s");
     return false;
   }
-  newest = std::max(newest, sample.t);
+  clock.before_leap.reset();
+  if (clock.newest != kNone && sample.t > clock.newest + kLeap) clock.before_leap = clock.newest;
+  clock.newest = std::max(clock.newest, sample.t);
   return true;
 }
 
@@ -174,13 +192,13 @@ void RecordingBuilder::add_robot(RobotDescription robot) {
 void RecordingBuilder::add_ticks(TickSample sample) {
   if (std::abs(sample.left) > kLargestCount || std::abs(sample.right) > kLargestCount)
     discard("ticks", "count beyond 2^53");
-  else if (in_time("ticks", sample, newest_ticks_))
+  else if (in_time("ticks", sample, ticks_clock_, recording_.ticks))
     recording_.ticks.push_back(sample);
 }
 
 void RecordingBuilder::add_scan(Scan scan) {
   if (const char* problem = scan_problem(scan)) return discard("scan", problem);
-  if (!in_time("scan", scan, newest_scan_.try_emplace(scan.sensor, kNone).first->second)) return;
+  if (!in_time("scan", scan, scan_clocks_[scan.sensor], recording_.scans)) return;
   complete_scan(scan);
   const auto problems = clean_ranges(scan);
   discard("beam", "not a number", problems.not_a_number);
@@ -192,14 +210,14 @@ void RecordingBuilder::add_scan(Scan scan) {
 void RecordingBuilder::add_pose(PoseSample sample) {
   if (!std::isfinite(sample.x) || !std::isfinite(sample.y) || !std::isfinite(sample.yaw))
     discard("pose", "x, y or yaw missing or not a number");
-  else if (in_time("pose", sample, newest_pose_))
+  else if (in_time("pose", sample, pose_clock_, recording_.poses))
     recording_.poses.push_back(sample);
 }
 
 void RecordingBuilder::add_gyro(GyroSample sample) {
   if (!std::isfinite(sample.yaw_rate))
     discard("gyro", "yaw_rate missing or not a number");
-  else if (in_time("gyro", sample, newest_gyro_))
+  else if (in_time("gyro", sample, gyro_clock_, recording_.gyro))
     recording_.gyro.push_back(sample);
 }
 
