@@ -6,6 +6,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "proto/scan_checks.hpp"
 #include "proto/tick_counts.hpp"
 
 namespace odomcalib {
@@ -16,71 +17,9 @@ constexpr double kLeap = 60.0;          // s, a longer step ahead is believed wh
 constexpr double kLatestTime =
     9e9;  // s; as nanoseconds it still fits 64 bits, and is later than any clock shows
 constexpr std::int64_t kLargestCount = std::int64_t{1} << 53;
-constexpr std::size_t kMostBeams = 100'000;
-constexpr double kLargestRange = 10'000.0;  // m
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 bool sane_time(double t) { return std::isfinite(t) && std::abs(t) <= kLatestTime; }
-
-bool all_finite(const std::vector<float>& values) {
-  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
-}
-
-bool is_grid(const Scan& scan) {
-  return std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment) && scan.angle_increment != 0.0;
-}
-
-/// Why a scan cannot be used, or nullptr.
-const char* scan_problem(const Scan& scan) {
-  const std::size_t beams = scan.ranges.size();
-  if (!sane_time(scan.t)) return "time stamp missing or impossible";
-  if (beams == 0) return "no ranges";
-  if (beams > kMostBeams) return "more than 100000 beams";
-  if (!scan.angles.empty() && scan.angles.size() != beams) return "angles do not match ranges";
-  if (!scan.times.empty() && scan.times.size() != beams) return "times do not match ranges";
-  if (!scan.intensities.empty() && scan.intensities.size() != beams) return "intensities do not match ranges";
-  if (scan.angles.empty() && !is_grid(scan)) return "angle_min or angle_increment missing or impossible";
-  if (!all_finite(scan.angles)) return "an angle is not a number";
-  if (!all_finite(scan.times)) return "a beam time is not a number";
-  return nullptr;
-}
-
-struct BeamProblems {
-  std::size_t not_a_number = 0;
-  std::size_t out_of_limits = 0;
-};
-
-/// Replaces what is no distance by 0 ("no reading").
-BeamProblems clean_ranges(Scan& scan) {
-  BeamProblems problems;
-  // Limits and ranges were rounded on their own ways to float: allow for one unit in the last place.
-  const auto nearest = static_cast<float>(scan.range_min) * (1.0F - 1e-6F);
-  const auto farthest =
-      static_cast<float>(scan.range_max > 0.0 ? scan.range_max : kLargestRange) * (1.0F + 1e-6F);
-  for (float& range : scan.ranges) {
-    if (range == 0.0F) continue;
-    const bool number = std::isfinite(range);
-    if (number && range > 0.0F && range >= nearest && range <= farthest) continue;
-    ++(number ? problems.out_of_limits : problems.not_a_number);
-    range = 0.0F;
-  }
-  return problems;
-}
-
-void complete_scan(Scan& scan) {
-  if (!std::isfinite(scan.range_min) || scan.range_min < 0.0) scan.range_min = 0.0;
-  if (!std::isfinite(scan.range_max) || scan.range_max <= 0.0) scan.range_max = 0.0;
-  if (!std::isfinite(scan.angle_min)) scan.angle_min = 0.0;
-  if (!std::isfinite(scan.angle_increment)) scan.angle_increment = 0.0;
-  if (scan.time_increment && !(std::isfinite(*scan.time_increment) && *scan.time_increment > 0.0))
-    scan.time_increment.reset();
-}
-
-/// A lidar that states no limit: the farthest reading is the best that is known.
-void set_missing_range_max(Scan& scan) {
-  if (scan.range_max > 0.0) return;
-  scan.range_max = static_cast<double>(*std::max_element(scan.ranges.begin(), scan.ranges.end()));
-}
 
 template <typename Sample>
 void sort_by_time(std::vector<Sample>& samples) {
@@ -197,13 +136,12 @@ void RecordingBuilder::add_ticks(TickSample sample) {
 }
 
 void RecordingBuilder::add_scan(Scan scan) {
+  if (!sane_time(scan.t)) return discard("scan", "time stamp missing or impossible");
   if (const char* problem = scan_problem(scan)) return discard("scan", problem);
   if (!in_time("scan", scan, scan_clocks_[scan.sensor], recording_.scans)) return;
-  complete_scan(scan);
-  const auto problems = clean_ranges(scan);
+  const auto problems = clean_scan(scan);
   discard("beam", "not a number", problems.not_a_number);
   discard("beam", "outside range_min and range_max", problems.out_of_limits);
-  set_missing_range_max(scan);
   recording_.scans.push_back(std::move(scan));
 }
 
