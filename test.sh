@@ -41,7 +41,7 @@ tests/lint build/release || failed+=("tests/lint")
   echo "WARNING: no real recordings at ${ODOMCALIB_SHARED:-../shared}; tests that need them are skipped"
 ctest --preset release -j 2 --output-junit tests.xml || failed+=("ctest")
 
-count() { grep -o "<testsuite [^>]*" build/release/tests.xml | grep -o " $1=\"[0-9]*\"" | tr -dc 0-9; }
+count() { tr -s '[:space:]' ' ' < build/release/tests.xml | grep -o '<testsuite [^>]*' | grep -o " $1=\"[0-9]*" | tr -dc 0-9; }
 echo "tests run: $(count tests), failed: $(count failures), skipped: $(count skipped)"
 if [ ${#failed[@]} -gt 0 ]; then
   echo "FAILED: ${failed[*]}"
