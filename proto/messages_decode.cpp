@@ -33,9 +33,9 @@ TimeSource read_time_source(ByteReader& reader) {
 
 /// Only a message that was read to its last byte is whole.
 template <typename Message>
-std::optional<Message> whole(const ByteReader& reader, Message&& message) {
+std::optional<Message> whole(const ByteReader& reader, Message message) {
   if (!reader.at_end()) return std::nullopt;
-  return std::forward<Message>(message);
+  return message;
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ std::optional<TicksMessage> decode_ticks(std::string_view bytes) {
   out.origin.time_source = read_time_source(reader);
   out.origin.time_uncertainty_us = reader.big_endian<std::int32_t>();
   out.ticks.t = seconds(out.stamp);
-  return whole(reader, std::move(out));
+  return whole(reader, out);
 }
 
 std::optional<ScanMessage> decode_scan(std::string_view bytes) {
@@ -108,7 +108,7 @@ std::optional<PoseMessage> decode_pose(std::string_view bytes) {
   out.pose.x = reader.big_endian<double>();
   out.pose.y = reader.big_endian<double>();
   out.pose.yaw = reader.big_endian<double>();
-  return whole(reader, std::move(out));
+  return whole(reader, out);
 }
 
 std::optional<GyroMessage> decode_gyro(std::string_view bytes) {
@@ -117,7 +117,7 @@ std::optional<GyroMessage> decode_gyro(std::string_view bytes) {
   out.stamp = read_stamp(reader);
   out.gyro.t = seconds(out.stamp);
   out.gyro.yaw_rate = reader.big_endian<double>();
-  return whole(reader, std::move(out));
+  return whole(reader, out);
 }
 
 std::optional<EventMessage> decode_event(std::string_view bytes) {

@@ -6,80 +6,20 @@
 #include <limits>
 #include <type_traits>
 
+#include "proto/scan_checks.hpp"
 #include "proto/tick_counts.hpp"
 
 namespace odomcalib {
 namespace {
 
 constexpr double kReorderWindow = 1.0;  // s, DESIGN 4.2: out of order by up to a second
+constexpr double kLeap = 60.0;          // s, a longer step ahead is believed when the next sample confirms it
 constexpr double kLatestTime =
     9e9;  // s; as nanoseconds it still fits 64 bits, and is later than any clock shows
 constexpr std::int64_t kLargestCount = std::int64_t{1} << 53;
-constexpr std::size_t kMostBeams = 100'000;
-constexpr double kLargestRange = 10'000.0;  // m
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 bool sane_time(double t) { return std::isfinite(t) && std::abs(t) <= kLatestTime; }
-
-bool all_finite(const std::vector<float>& values) {
-  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
-}
-
-bool is_grid(const Scan& scan) {
-  return std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment) && scan.angle_increment != 0.0;
-}
-
-/// Why a scan cannot be used, or nullptr.
-const char* scan_problem(const Scan& scan) {
-  const std::size_t beams = scan.ranges.size();
-  if (!sane_time(scan.t)) return "time stamp missing or impossible";
-  if (beams == 0) return "no ranges";
-  if (beams > kMostBeams) return "more than 100000 beams";
-  if (!scan.angles.empty() && scan.angles.size() != beams) return "angles do not match ranges";
-  if (!scan.times.empty() && scan.times.size() != beams) return "times do not match ranges";
-  if (!scan.intensities.empty() && scan.intensities.size() != beams) return "intensities do not match ranges";
-  if (scan.angles.empty() && !is_grid(scan)) return "angle_min or angle_increment missing or impossible";
-  if (!all_finite(scan.angles)) return "an angle is not a number";
-  if (!all_finite(scan.times)) return "a beam time is not a number";
-  return nullptr;
-}
-
-struct BeamProblems {
-  std::size_t not_a_number = 0;
-  std::size_t out_of_limits = 0;
-};
-
-/// Replaces what is no distance by 0 ("no reading").
-BeamProblems clean_ranges(Scan& scan) {
-  BeamProblems problems;
-  // Limits and ranges were rounded on their own ways to float: allow for one unit in the last place.
-  const auto nearest = static_cast<float>(scan.range_min) * (1.0F - 1e-6F);
-  const auto farthest =
-      static_cast<float>(scan.range_max > 0.0 ? scan.range_max : kLargestRange) * (1.0F + 1e-6F);
-  for (float& range : scan.ranges) {
-    if (range == 0.0F) continue;
-    const bool number = std::isfinite(range);
-    if (number && range > 0.0F && range >= nearest && range <= farthest) continue;
-    ++(number ? problems.out_of_limits : problems.not_a_number);
-    range = 0.0F;
-  }
-  return problems;
-}
-
-void complete_scan(Scan& scan) {
-  if (!std::isfinite(scan.range_min) || scan.range_min < 0.0) scan.range_min = 0.0;
-  if (!std::isfinite(scan.range_max) || scan.range_max <= 0.0) scan.range_max = 0.0;
-  if (!std::isfinite(scan.angle_min)) scan.angle_min = 0.0;
-  if (!std::isfinite(scan.angle_increment)) scan.angle_increment = 0.0;
-  if (scan.time_increment && !(std::isfinite(*scan.time_increment) && *scan.time_increment > 0.0))
-    scan.time_increment.reset();
-}
-
-/// A lidar that states no limit: the farthest reading is the best that is known.
-void set_missing_range_max(Scan& scan) {
-  if (scan.range_max > 0.0) return;
-  scan.range_max = static_cast<double>(*std::max_element(scan.ranges.begin(), scan.ranges.end()));
-}
 
 template <typename Sample>
 void sort_by_time(std::vector<Sample>& samples) {
@@ -117,7 +57,7 @@ Error missing_unit(const std::string& field, double value, const char* unit, dou
 
 }  // namespace
 
-RecordingBuilder::RecordingBuilder() : newest_ticks_(kNone), newest_pose_(kNone), newest_gyro_(kNone) {}
+RecordingBuilder::StreamClock::StreamClock() : newest(kNone) {}
 
 std::optional<Error> check_robot(const RobotDescription& robot, const std::string& where) {
   struct Field {
@@ -145,17 +85,34 @@ void RecordingBuilder::discard(const std::string& what, const std::string& reaso
   if (count > 0) discarded_[{what, reason}] += count;
 }
 
+/// One wild stamp far ahead must not make everything behind it late: it goes, when the next sample continues
+/// before it.
 template <typename Sample>
-bool RecordingBuilder::in_time(const char* what, const Sample& sample, double& newest) {
+void RecordingBuilder::forget_leap(const char* what, StreamClock& clock, std::vector<Sample>& stream) {
+  const auto leap = std::find_if(stream.rbegin(), stream.rend(),
+                                 [&](const Sample& sample) { return sample.t == clock.newest; });
+  if (leap != stream.rend()) stream.erase(std::next(leap).base());
+  discard(what, "time stamp far ahead of its neighbours");
+  clock.newest = *clock.before_leap;
+}
+
+template <typename Sample>
+bool RecordingBuilder::in_time(const char* what, const Sample& sample, StreamClock& clock,
+                               std::vector<Sample>& stream) {
   if (!sane_time(sample.t)) {
     discard(what, "time stamp missing or impossible");
     return false;
   }
-  if (sample.t < newest - kReorderWindow) {
+  const bool late = sample.t < clock.newest - kReorderWindow;
+  if (late && clock.before_leap && sample.t >= *clock.before_leap - kReorderWindow)
+    forget_leap(what, clock, stream);
+  else if (late) {
     discard(what, "out of order by more than 1 s");
     return false;
   }
-  newest = std::max(newest, sample.t);
+  clock.before_leap.reset();
+  if (clock.newest != kNone && sample.t > clock.newest + kLeap) clock.before_leap = clock.newest;
+  clock.newest = std::max(clock.newest, sample.t);
   return true;
 }
 
@@ -174,32 +131,31 @@ void RecordingBuilder::add_robot(RobotDescription robot) {
 void RecordingBuilder::add_ticks(TickSample sample) {
   if (std::abs(sample.left) > kLargestCount || std::abs(sample.right) > kLargestCount)
     discard("ticks", "count beyond 2^53");
-  else if (in_time("ticks", sample, newest_ticks_))
+  else if (in_time("ticks", sample, ticks_clock_, recording_.ticks))
     recording_.ticks.push_back(sample);
 }
 
 void RecordingBuilder::add_scan(Scan scan) {
+  if (!sane_time(scan.t)) return discard("scan", "time stamp missing or impossible");
   if (const char* problem = scan_problem(scan)) return discard("scan", problem);
-  if (!in_time("scan", scan, newest_scan_.try_emplace(scan.sensor, kNone).first->second)) return;
-  complete_scan(scan);
-  const auto problems = clean_ranges(scan);
+  if (!in_time("scan", scan, scan_clocks_[scan.sensor], recording_.scans)) return;
+  const auto problems = clean_scan(scan);
   discard("beam", "not a number", problems.not_a_number);
   discard("beam", "outside range_min and range_max", problems.out_of_limits);
-  set_missing_range_max(scan);
   recording_.scans.push_back(std::move(scan));
 }
 
 void RecordingBuilder::add_pose(PoseSample sample) {
   if (!std::isfinite(sample.x) || !std::isfinite(sample.y) || !std::isfinite(sample.yaw))
     discard("pose", "x, y or yaw missing or not a number");
-  else if (in_time("pose", sample, newest_pose_))
+  else if (in_time("pose", sample, pose_clock_, recording_.poses))
     recording_.poses.push_back(sample);
 }
 
 void RecordingBuilder::add_gyro(GyroSample sample) {
   if (!std::isfinite(sample.yaw_rate))
     discard("gyro", "yaw_rate missing or not a number");
-  else if (in_time("gyro", sample, newest_gyro_))
+  else if (in_time("gyro", sample, gyro_clock_, recording_.gyro))
     recording_.gyro.push_back(sample);
 }
 

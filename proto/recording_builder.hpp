@@ -32,20 +32,26 @@ class RecordingBuilder {
   Result<Recording> finish(const std::string& where, const RobotDescription* fallback, RobotNeed need) &&;
 
  private:
+  /// Where one stream has come to, in file order.
+  struct StreamClock {
+    double newest;
+    std::optional<double> before_leap;  ///< what `newest` was before the last sample leapt far ahead
+    StreamClock();
+  };
+
   template <typename Sample>
-  bool in_time(const char* what, const Sample& sample, double& newest);
+  bool in_time(const char* what, const Sample& sample, StreamClock& clock, std::vector<Sample>& stream);
+  template <typename Sample>
+  void forget_leap(const char* what, StreamClock& clock, std::vector<Sample>& stream);
   [[nodiscard]] bool has_data() const;
   void merge_robot(const RobotDescription* fallback);
   void sort_streams();
 
   Recording recording_;
   bool have_robot_ = false;
-  double newest_ticks_, newest_pose_, newest_gyro_;
-  std::map<std::string, double> newest_scan_;  // by sensor
+  StreamClock ticks_clock_, pose_clock_, gyro_clock_;
+  std::map<std::string, StreamClock> scan_clocks_;  // by sensor
   std::map<std::pair<std::string, std::string>, std::size_t> discarded_;
-
- public:
-  RecordingBuilder();
 };
 
 /// Missing or impossible unit-bearing values of a robot description, or nullopt when it is complete.

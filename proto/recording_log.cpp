@@ -131,7 +131,7 @@ std::string scan_channel(const std::string& prefix, const std::string& sensor) {
 namespace {
 
 messages::Stamp stamp_of(double t) {
-  const auto ns = static_cast<std::int64_t>(std::llround(t * 1e9));
+  const auto ns = static_cast<std::int64_t>(std::llround(std::clamp(t, -9e9, 9e9) * 1e9));
   return {ns / 1000, ns};
 }
 

@@ -12,9 +12,11 @@ namespace {
 
 // No robot that this program calibrates drives faster; nominal diameters may be wrong by a factor of three.
 constexpr double kFastest = 10.0;  // m/s
-// A step of one sample that stands out from both its neighbours by more than this is a jump, not motion: it
-// would need an acceleration and a deceleration of about 100 m/s^2.
-constexpr double kSpike = 4.0;  // m/s
+// A step of one sample that stands out from both its neighbours by so much is a jump, not motion: wheels
+// neither reach such an acceleration nor end it with the same deceleration one sample later. The floor allows
+// for slip and coarse stamps.
+constexpr double kSpikeAcceleration = 30.0;  // m/s^2
+constexpr double kSpikeSpeed = 1.0;          // m/s
 
 using Counts = std::array<std::int64_t, 2>;
 
@@ -60,8 +62,9 @@ class Speeds {
   [[nodiscard]] bool known() const { return metres_per_tick_ > 0.0; }
   /// Jittering stamps make short intervals: never divide by less than the usual one.
   [[nodiscard]] double operator()(std::int64_t change, double interval) const {
-    return static_cast<double>(change) * metres_per_tick_ / std::max(interval, floor_);
+    return static_cast<double>(change) * metres_per_tick_ / usual_interval(interval);
   }
+  [[nodiscard]] double usual_interval(double interval) const { return std::max(interval, floor_); }
   [[nodiscard]] bool possible(std::int64_t change, double interval) const {
     return !known() || std::abs((*this)(change, interval)) <= kFastest;
   }
@@ -144,9 +147,10 @@ class Continuation {
     for (std::size_t i = 2; i + 1 < ticks.size(); ++i) {
       if (!changes[i].continued || !changes[i - 1].continued || !changes[i + 1].continued) continue;
       const double interval = ticks[i].t - ticks[i - 1].t;
+      const double limit = std::max(kSpikeSpeed, kSpikeAcceleration * speeds_.usual_interval(interval));
       for (std::size_t side = 0; side < 2; ++side)
-        if (excess(changes[i], changes[i - 1], interval, ticks[i - 1].t - ticks[i - 2].t, side) > kSpike &&
-            excess(changes[i], changes[i + 1], interval, ticks[i + 1].t - ticks[i].t, side) > kSpike)
+        if (excess(changes[i], changes[i - 1], interval, ticks[i - 1].t - ticks[i - 2].t, side) > limit &&
+            excess(changes[i], changes[i + 1], interval, ticks[i + 1].t - ticks[i].t, side) > limit)
           changes[i].continued = false;
     }
   }

@@ -1,5 +1,5 @@
 // JSON Lines behind a valid robot line.
-#include "recording_harness.hpp"
+#include "tests/fuzz/recording_harness.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   odomcalib::fuzz::read_and_check(

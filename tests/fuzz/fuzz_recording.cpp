@@ -1,5 +1,5 @@
 // Recordings of any form, as a user names them: recognition, gzip, all readers.
-#include "recording_harness.hpp"
+#include "tests/fuzz/recording_harness.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   odomcalib::fuzz::read_and_check("", data, size);

@@ -1,12 +1,18 @@
 // odomcalib-sim: a simulated robot in real time, for demonstrations and for tests of whole programs.
+#include <fcntl.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "tests/sim/effects/effect.hpp"
+#include "tests/sim/wires/fault_commands.hpp"
 #include "tests/sim/wires/truth_json.hpp"
 
 namespace {
@@ -25,7 +31,7 @@ struct Arguments {
   std::string room = "furnished";
   std::string link_dir, truth_file, can, effect;
   double effect_size = -1.0;
-  bool exact = false;
+  bool exact = false, commands = false;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -41,6 +47,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--can", arguments.can, "SocketCAN interface to use instead of an slcan port");
   app.add_option("--effect", arguments.effect, "something that the plain model lacks, e.g. gear_play");
   app.add_option("--effect-size", arguments.effect_size, "in its unit; default: its largest usual size");
+  app.add_flag("--commands", arguments.commands,
+               "read faults from standard input, one a line (tests/sim/README.md)");
   app.add_flag("--exact", arguments.exact, "a robot whose true parameters are the nominal ones");
 }
 
@@ -72,18 +80,41 @@ void announce(const SimRobot& robot) {
   std::fflush(stdout);
 }
 
+/// Faults that arrived on standard input; never waits.
+class CommandReader {
+ public:
+  CommandReader() { ::fcntl(STDIN_FILENO, F_SETFL, ::fcntl(STDIN_FILENO, F_GETFL) | O_NONBLOCK); }
+
+  void serve(SimRobot& robot) {
+    std::array<char, 256> bytes{};
+    const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
+    if (count > 0) pending_.append(bytes.data(), static_cast<std::size_t>(count));
+    for (std::size_t end = pending_.find('\n'); end != std::string::npos; end = pending_.find('\n')) {
+      const auto done = odomcalib::sim::apply_command(robot, pending_.substr(0, end));
+      if (!done) std::fprintf(stderr, "odomcalib-sim: %s\n", done.error().text().c_str());
+      pending_.erase(0, end + 1);
+    }
+  }
+
+ private:
+  std::string pending_;
+};
+
 /// @return exit status
 int run(SimRobot& robot, const Arguments& arguments) {
   using Clock = std::chrono::steady_clock;
   constexpr double kChunk = 0.002;  // s of real time between exchanges
   const auto start = Clock::now();
   double truth_due = 0.0;
+  std::optional<CommandReader> commands;
+  if (arguments.commands) commands.emplace();
   for (int i = 1; stop_requested == 0; ++i) {
     if (!arguments.truth_file.empty() && robot.now() >= truth_due) {
       const auto written = write_truth(robot, arguments.truth_file);
       if (!written) return std::fprintf(stderr, "odomcalib-sim: %s\n", written.error().text().c_str()), 1;
       truth_due = robot.now() + 1.0;
     }
+    if (commands) commands->serve(robot);
     robot.step(kChunk * arguments.speed);
     if (arguments.duration > 0.0 && robot.now() >= arguments.duration) break;
     std::this_thread::sleep_until(

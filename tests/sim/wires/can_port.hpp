@@ -33,6 +33,8 @@ class SlcanPort : public CanPort {
   std::vector<Frame> receive() override;
   void deliver(const std::vector<Frame>& frames, double now) override;
   [[nodiscard]] std::string device() const override;
+  /// Bytes to the program that no adapter would send.
+  void inject(const std::string& bytes) { pty_->write(bytes); }
   [[nodiscard]] const Pty& pty() const { return *pty_; }
   [[nodiscard]] const SlcanAdapter& adapter() const { return adapter_; }
 

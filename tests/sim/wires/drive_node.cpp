@@ -128,7 +128,8 @@ void DriveNode::on_sync() {
   for (ReceivePdo& pdo : rpdos_) pdo.on_sync();
   if (faults.pdo_silent) return;
   for (TransmitPdo& pdo : tpdos_)
-    if (const auto frame = pdo.on_sync(faults.pdo_frozen)) send(*frame, now_ + faults.pdo_delay);
+    if (const auto frame = pdo.on_sync(faults.pdo_frozen))
+      send(*frame, now_ + faults.pdo_delay + wheels_.lateness);
 }
 
 void DriveNode::advance(double now, const WheelState& wheels) {
@@ -189,7 +190,8 @@ void DriveNode::send_life_sign(double now) {
 void DriveNode::send_tpdos(double now) {
   if (nmt_ != NmtState::operational || faults.pdo_silent) return;
   for (TransmitPdo& pdo : tpdos_)
-    if (const auto frame = pdo.poll(now, faults.pdo_frozen)) send(*frame, now + faults.pdo_delay);
+    if (const auto frame = pdo.poll(now, faults.pdo_frozen))
+      send(*frame, now + faults.pdo_delay + wheels_.lateness);
 }
 
 void DriveNode::report_error(std::uint16_t code, std::uint8_t error_register, double now) {

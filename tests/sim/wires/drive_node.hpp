@@ -35,6 +35,7 @@ enum class NmtState : std::uint8_t {
 struct WheelState {
   std::array<std::int64_t, 2> counts{};
   std::array<double, 2> rate{};  ///< rad/s
+  double lateness = 0.0;         ///< s that what is read now takes longer to the bus
 };
 
 /// What the node wants from the motors.

@@ -42,8 +42,8 @@ void DriveNode::add_identity() {
   dictionary_.add_text({0x1009, 0}, "H1.0");
   dictionary_.add_text({0x100A, 0}, "S1.0");
   const std::array<std::uint32_t, 5> identity{4, 0x00000FEE, 0x0D15, 1, options_.serial};
-  for (std::uint8_t sub = 0; sub < identity.size(); ++sub)
-    dictionary_.add_value({0x1018, sub}, sub == 0 ? 1 : 4, identity[sub]);
+  for (std::size_t sub = 0; sub < identity.size(); ++sub)
+    dictionary_.add_value({0x1018, static_cast<std::uint8_t>(sub)}, sub == 0 ? 1 : 4, identity[sub]);
 }
 
 void DriveNode::add_errors() {

@@ -87,8 +87,9 @@ void Ld06Stream::finish() {
   packet.time = device_time(end);
   Chunk chunk;
   chunk.bytes = encode_ld06(packet);
-  chunk.due =
-      end + kProcessing + static_cast<double>(chunk.bytes.size()) / kBytesPerSecond + faults.extra_delay;
+  const double transmission = static_cast<double>(chunk.bytes.size()) / kBytesPerSecond;
+  chunk.due = std::max(end + kProcessing + transmission + lateness_ + faults.extra_delay, last_due_);
+  last_due_ = chunk.due;
   const double before = std::floor(static_cast<double>(packets_) * faults.share_lost);
   const bool lost = std::floor(static_cast<double>(++packets_) * faults.share_lost) > before;
   if (faults.half_packets) chunk.bytes.resize(chunk.bytes.size() / 2);

@@ -42,6 +42,8 @@ class Ld06Stream {
 
   Ld06Stream(const LidarOptions& options, double clock_offset, double clock_rate_error);
   void add(const Beam& beam);
+  /// s that packets take longer from now on.
+  void set_lateness(double seconds) { lateness_ = seconds; }
   /// Power cycle: the first 0.2 s say speed 0 and wrong angles, and the device clock restarts.
   void restart(double now);
   /// Bytes that have been transmitted up to now.
@@ -55,7 +57,7 @@ class Ld06Stream {
 
   LidarOptions options_;
   double clock_offset_, clock_rate_;
-  double started_ = -10.0;
+  double started_ = -10.0, lateness_ = 0.0, last_due_ = 0.0;
   std::uint64_t packets_ = 0;
   std::vector<Beam> gathered_;
   std::vector<double> frozen_ranges_;

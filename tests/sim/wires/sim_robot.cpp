@@ -95,11 +95,30 @@ void SimRobot::hold_encoder(std::size_t side, bool held) {
   held_[side] = held ? std::optional(wheel_state().counts[side]) : std::nullopt;
 }
 
-WheelState SimRobot::wheel_state() {
+void SimRobot::inject(const Frame& frame) {
+  node_.receive(frame, now());
+  if (can_) can_->deliver({frame}, now());
+}
+
+void SimRobot::inject_can_bytes(const std::string& bytes) {
+  if (auto* slcan = dynamic_cast<SlcanPort*>(can_.get())) slcan->inject(bytes);
+}
+
+void SimRobot::inject_lidar_bytes(const std::string& bytes) {
+  if (lidar_pty_) lidar_pty_->write(bytes);
+}
+
+TickReading SimRobot::read_counters() {
   TickReading reading{now(), now(), body_.counts(), false};
   for (const auto& effect : options_.disturbances) effect->on_ticks(reading);
+  return reading;
+}
+
+WheelState SimRobot::wheel_state() {
+  const TickReading reading = read_counters();
   WheelState state;
   state.rate = body_.rate();
+  state.lateness = std::max(0.0, reading.stamp - reading.t);
   for (std::size_t side = 0; side < 2; ++side)
     state.counts[side] = held_[side].value_or(reading.counts[side] + shift_[side]);
   return state;
@@ -129,10 +148,22 @@ void SimRobot::move_body() {
   head_.advance(from, before, now(), body_.pose(), beams_);
 }
 
+// A stamp that comes late on the host's side is a sweep that arrives late.
+void SimRobot::queue_beams() {
+  for (const Beam& beam : beams_) {
+    if (beam.index == 0) {
+      ScanStamp stamp{beam.t, 1.0 / options_.lidar.turns_per_second, beam.t};
+      for (const auto& effect : options_.disturbances) effect->on_scan(stamp);
+      stream_.set_lateness(std::max(0.0, stamp.stamp - stamp.t));
+    }
+    stream_.add(beam);
+  }
+}
+
 void SimRobot::fine_step() {
   move_body();
   exchange_can();
-  for (const Beam& beam : beams_) stream_.add(beam);
+  queue_beams();
   const auto bytes = stream_.take(now());
   if (lidar_pty_) lidar_pty_->write(bytes);
 }

@@ -85,6 +85,11 @@ class SimRobot {
   }
   /// Added to the counters from now on, e.g. to bring them close to the 32-bit wrap, or as a jump.
   void shift_counts(std::int64_t left, std::int64_t right);
+  /// A frame from somebody else on the bus: another master, a node with the same id.
+  void inject(const Frame& frame);
+  /// Raw bytes into the ports: noise, halves of lines, state lines of the adapter.
+  void inject_can_bytes(const std::string& bytes);
+  void inject_lidar_bytes(const std::string& bytes);
   /// The encoder of this side no longer moves (or moves again).
   void hold_encoder(std::size_t side, bool held);
 
@@ -94,7 +99,9 @@ class SimRobot {
   void fine_step();
   void exchange_can();
   void move_body();
+  [[nodiscard]] TickReading read_counters();
   [[nodiscard]] WheelState wheel_state();
+  void queue_beams();
 
   SimRobotOptions options_;
   Room room_;

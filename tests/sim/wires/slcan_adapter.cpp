@@ -52,8 +52,9 @@ std::optional<Frame> frame_from_slcan(std::string_view line) {
   frame.id = *id;
   frame.length = static_cast<std::uint8_t>(*length);
   const std::string_view data = line.substr(2 + id_digits);
-  if (data.size() != (frame.remote ? 0U : 2U * frame.length)) return std::nullopt;
-  for (unsigned i = 0; i < data.size() / 2; ++i) {
+  const std::size_t digits = frame.remote ? 0 : 2 * std::size_t{frame.length};
+  if (data.size() != digits) return std::nullopt;
+  for (std::size_t i = 0; i < digits / 2; ++i) {
     const auto byte = hex(data.substr(2 * i, 2));
     if (!byte) return std::nullopt;
     frame.data[i] = static_cast<std::uint8_t>(*byte);

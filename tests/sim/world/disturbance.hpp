@@ -73,10 +73,12 @@ class Disturbance {
   virtual void on_step(const StepView& /*view*/, StepMotion& /*motion*/) {}
   /// What the encoder sees (rad per side); starts as the shaft angle at the end of the step.
   virtual void on_encoder(const StepView& /*view*/, PerSide& /*encoder_angle*/) {}
+  /// On the wires a later stamp becomes a later arrival; an earlier one cannot be had there.
   virtual void on_ticks(TickReading& /*reading*/) {}
   /// Turns the direction in which a beam really leaves, before it is cast.
   virtual double beam_direction(double /*t*/, double angle) { return angle; }
   virtual void on_beam(BeamReading& /*beam*/) {}
+  /// As for on_ticks: on the wires only later.
   virtual void on_scan(ScanStamp& /*scan*/) {}
 };
 

@@ -7,7 +7,7 @@
 
 #include "proto/messages.hpp"
 #include "proto/recording_log.hpp"
-#include "support.hpp"
+#include "tests/unit/proto/support.hpp"
 
 namespace odomcalib {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support.hpp"
+#include "tests/unit/proto/support.hpp"
 
 namespace odomcalib {
 namespace {

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <random>
 
-#include "support.hpp"
+#include "tests/unit/proto/support.hpp"
 
 namespace odomcalib {
 namespace {
@@ -219,6 +219,19 @@ TEST(Recording, sorts_what_is_up_to_a_second_late_and_discards_what_is_later) {
   EXPECT_EQ(result.value().ticks[2].left, 30);
   EXPECT_EQ(result.value().scans.size(), 1U) << "each stream has its own order";
   EXPECT_EQ(discarded(result.value(), "ticks", "out of order by more than 1 s"), 1U);
+}
+
+TEST(Recording, drops_one_wild_stamp_and_keeps_what_follows_it) {
+  const auto result = read_text(kRobotLine + ticks_line(1, 10, 10) + ticks_line(5000, 20, 20) +
+                                ticks_line(1.1, 30, 30) + ticks_line(1.2, 40, 40));
+  ASSERT_TRUE(result.ok());
+  ASSERT_EQ(result.value().ticks.size(), 3U);
+  EXPECT_EQ(result.value().ticks[1].left, 30);
+  EXPECT_EQ(discarded(result.value(), "ticks", "time stamp far ahead of its neighbours"), 1U);
+  const auto pause =
+      read_text(kRobotLine + ticks_line(1, 10, 10) + ticks_line(5000, 10, 10) + ticks_line(5000.1, 10, 10));
+  ASSERT_TRUE(pause.ok());
+  EXPECT_EQ(pause.value().ticks.size(), 3U) << "a real pause";
 }
 
 TEST(Recording, keeps_the_first_of_repeated_stamps) {

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "support.hpp"
+#include "tests/unit/proto/support.hpp"
 
 namespace odomcalib {
 namespace {
@@ -98,7 +98,7 @@ TEST(TickCounts, start_a_new_segment_at_a_jump_that_no_wheel_can_make) {
 TEST(TickCounts, start_a_new_segment_at_a_single_step_out_of_line) {
   std::mt19937 random(7);
   auto ticks = drive(random, 100, 0, 0);
-  for (std::size_t i = 60; i < ticks.size(); ++i) ticks[i].left += 1300;  // 6 m/s in one sample
+  for (std::size_t i = 60; i < ticks.size(); ++i) ticks[i].left += 500;  // 2.4 m/s more in one sample
   EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U);
 }
 

@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/sim/effects/effect.hpp"
+#include "tests/sim/wires/fault_commands.hpp"
 #include "tests/sim/wires/truth_json.hpp"
 
 namespace odomcalib::sim {
@@ -165,6 +167,45 @@ TEST_F(Robot, encoder_faults_show_on_the_wire_and_not_in_the_motion) {
   run(1.0);
   EXPECT_NE(say("t60184064600200000000\r").find("t58184364600200000000"), std::string::npos) << received;
   EXPECT_GT(std::hypot(robot->pose().x, robot->pose().y), 0.2);
+}
+
+TEST_F(Robot, obeys_faults_by_name_and_refuses_unknown_ones) {
+  for (const char* line :
+       {"cut can", "restore can", "abort 2100 1 06060000", "jump 5 -5", "emcy 2310", "obstacle 1 0.5",
+        "hold left", "release left", "freeze lidar", "thaw lidar", "reset drive"})
+    EXPECT_TRUE(apply_command(*robot, line).ok()) << line;
+  for (const char* line :
+       {"", "cut", "cut the cake", "emcy", "emcy 123456", "jump 1", "obstacle x y", "abort 2100"})
+    EXPECT_FALSE(apply_command(*robot, line).ok()) << line;
+  run(0.5);
+  EXPECT_NE(say("t60182300210100A1BB0D\r").find("t58188000210100000606"), std::string::npos) << received;
+}
+
+TEST_F(Robot, foreign_frames_and_raw_bytes_reach_the_program) {
+  received.clear();
+  robot->inject(make_frame(0x701, {0x05}));
+  robot->inject_can_bytes("sb255000\r");
+  run(0.01);
+  EXPECT_NE(received.find("t701105\rsb255000\r"), std::string::npos) << received;
+  lidar_bytes.clear();
+  robot->inject_lidar_bytes("noise");
+  run(0.01);
+  EXPECT_EQ(lidar_bytes.rfind("noise", 0), 0U);
+}
+
+TEST(SimRobot, an_effect_on_stamps_delays_what_arrives) {
+  const auto bytes_in_first_tenth = [](const char* effect, double size) {
+    SimRobotOptions options;
+    Random random(1);
+    options.disturbances = {find_effect(effect)->make(size, random)};
+    const auto robot = SimRobot::create(options);
+    Port lidar(robot.value()->lidar_path());
+    robot.value()->step(0.1);
+    return lidar.read().size();
+  };
+  const auto prompt = static_cast<double>(bytes_in_first_tenth("sweep_queue", 0.0));
+  const auto late = static_cast<double>(bytes_in_first_tenth("sweep_queue", 0.05));
+  EXPECT_NEAR((prompt - late) / 47.0 * 12.0 / 4486.5, 0.05, 0.006);
 }
 
 TEST_F(Robot, answers_a_caller_that_waits) {

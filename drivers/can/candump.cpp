@@ -1,0 +1,89 @@
+#include "drivers/can/candump.hpp"
+
+#include <charconv>
+#include <cmath>
+
+namespace odomcalib::drivers {
+namespace {
+
+constexpr std::uint32_t kErrorFlag = 0x20000000;
+constexpr std::uint32_t kMaxExtended = 0x1FFFFFFF;
+
+/// The text up to the separator, which is consumed too; nullopt when there is none.
+std::optional<std::string_view> cut(std::string_view& text, char separator) {
+  const std::size_t end = text.find(separator);
+  if (end == std::string_view::npos) return std::nullopt;
+  const std::string_view head = text.substr(0, end);
+  text.remove_prefix(end + 1);
+  return head;
+}
+
+template <typename T, typename... Options>
+std::optional<T> parse(std::string_view text, Options... options) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, options...);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+bool read_id(std::string_view text, CanFrame& frame) {
+  const auto id = parse<std::uint32_t>(text, 16);
+  if (!id || (text.size() != 3 && text.size() != 8)) return false;
+  frame.error = text.size() == 8 && (*id & kErrorFlag) != 0;
+  frame.extended = text.size() == 8 && !frame.error;
+  frame.id = *id & ~(frame.error ? kErrorFlag : 0U);
+  return frame.id <= (text.size() == 8 ? kMaxExtended : 0x7FFU);
+}
+
+bool read_remote(std::string_view text, CanFrame& frame) {
+  frame.remote = true;
+  text.remove_prefix(1);
+  if (text.empty()) return true;
+  const auto length = parse<std::uint8_t>(text, 10);
+  if (!length || *length > 8) return false;
+  frame.length = *length;
+  return true;
+}
+
+bool read_data(std::string_view text, CanFrame& frame) {
+  if (const std::size_t raw_dlc = text.find('_'); raw_dlc != std::string_view::npos)
+    text = text.substr(0, raw_dlc);
+  while (!text.empty()) {
+    if (text[0] == '.') text.remove_prefix(1);
+    const auto byte = text.size() < 2 ? std::nullopt : parse<std::uint8_t>(text.substr(0, 2), 16);
+    if (!byte || frame.length >= 8) return false;
+    frame.data[frame.length++] = *byte;
+    text.remove_prefix(2);
+  }
+  return true;
+}
+
+std::string_view trim_end(std::string_view line) {
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+  const bool direction =
+      line.size() > 2 && line[line.size() - 2] == ' ' && (line.back() == 'R' || line.back() == 'T');
+  return direction ? line.substr(0, line.size() - 2) : line;
+}
+
+}  // namespace
+
+std::optional<CanFrame> parse_candump_line(std::string_view line) {
+  line = trim_end(line);
+  if (line.empty() || line[0] != '(') return std::nullopt;
+  line.remove_prefix(1);
+  const auto time_text = cut(line, ')');
+  const auto time = time_text ? parse<double>(*time_text, std::chars_format::fixed) : std::nullopt;
+  if (!time || !std::isfinite(*time) || line.empty() || line[0] != ' ') return std::nullopt;
+  line.remove_prefix(1);
+  const auto interface = cut(line, ' ');
+  const auto id = cut(line, '#');
+  CanFrame frame;
+  frame.t = *time;
+  if (!interface || interface->empty() || !id || !read_id(*id, frame)) return std::nullopt;
+  if (!line.empty() && line[0] == '#') return std::nullopt;  // CAN FD
+  const bool remote = !line.empty() && line[0] == 'R';
+  if (!(remote ? read_remote(line, frame) : read_data(line, frame))) return std::nullopt;
+  return frame;
+}
+
+}  // namespace odomcalib::drivers

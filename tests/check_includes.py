@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Checks that includes point one way: proto <- calib, proto <- drivers, {calib, drivers} <- daemon, all <- tests.
+
+Usage: check_includes.py [PROJECT_ROOT]      lists violations, exit status 1 if there are any
+       check_includes.py --self-test         shows that each rule accepts what is right and rejects what is wrong
+"""
+
+import pathlib
+import re
+import sys
+import tempfile
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+# Folder -> folders of this project whose headers it may include.
+MAY_INCLUDE = {
+    "proto": {"proto"},
+    "calib": {"proto", "calib"},
+    "drivers": {"proto", "drivers"},
+    "daemon": {"proto", "calib", "drivers", "daemon"},
+    "tests": {"proto", "calib", "drivers", "daemon", "tests"},
+}
+
+# The simulator shares no code with what it tests; the programs that write recordings use the file format alone.
+SIM = "tests/sim/"
+SIM_MAY_INCLUDE = {"proto/measurements.hpp", "proto/recording.hpp", "proto/result.hpp", "proto/file_bytes.hpp"}
+
+# Made by CMake in the build folder.
+GENERATED = {"odomcalib_version.hpp"}
+
+# calib is numbers only: no sockets, no LCM, no logging, no clocks. Bytes and numbers never log.
+SYSTEM_BANNED = {
+    "calib": ("lcm/", "spdlog/", "systemd/", "sys/socket.h", "netinet/", "linux/", "chrono", "ctime", "time.h"),
+    "drivers": ("lcm/", "spdlog/", "systemd/", "ceres/"),
+    "proto": ("spdlog/", "systemd/", "ceres/", "sys/socket.h"),
+}
+
+
+def includes(path):
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        found = INCLUDE.match(line)
+        if found:
+            yield number, found.group(1) == '"', found.group(2)
+
+
+def problem(name, quoted, header):
+    """Why the file `name` (relative to the root) may not include `header`, or None."""
+    folder = name.split("/")[0]
+    if not quoted:
+        banned = [b for b in SYSTEM_BANNED.get(folder, ()) if header == b or (b.endswith("/") and header.startswith(b))]
+        return f"{folder} must not use <{header}>" if banned else None
+    if header in GENERATED:
+        return None
+    target = header.split("/")[0]
+    if target not in MAY_INCLUDE:
+        return f'"{header}" is not written from the project root'
+    if target not in MAY_INCLUDE[folder]:
+        return f'{folder} must not include "{header}"'
+    if name.startswith(SIM) and not header.startswith(SIM) and header not in SIM_MAY_INCLUDE:
+        return f'the simulator must not share code: "{header}"'
+    return None
+
+
+def violations(root):
+    for folder in MAY_INCLUDE:
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix not in (".hpp", ".cpp", ".in", ".h", ".cc"):
+                continue
+            name = path.relative_to(root).as_posix()
+            for number, quoted, header in includes(path):
+                reason = problem(name, quoted, header)
+                if reason:
+                    yield f"{name}:{number}: {reason}"
+
+
+def self_test():
+    good = [
+        ("proto/a.hpp", "proto/b.hpp"), ("calib/a.cpp", "proto/b.hpp"), ("calib/a.cpp", "calib/effects/b.hpp"),
+        ("drivers/a.cpp", "drivers/can/b.hpp"), ("daemon/a.cpp", "calib/b.hpp"), ("daemon/a.cpp", "drivers/b.hpp"),
+        ("tests/unit/a.cpp", "daemon/b.hpp"), ("tests/sim/a.cpp", "tests/sim/b.hpp"),
+        ("tests/sim/a.cpp", "proto/measurements.hpp"),
+    ]
+    bad = [
+        ("proto/a.hpp", "calib/b.hpp"), ("proto/a.hpp", "drivers/b.hpp"), ("calib/a.cpp", "drivers/b.hpp"),
+        ("drivers/a.cpp", "calib/b.hpp"), ("calib/a.cpp", "daemon/b.hpp"), ("daemon/a.cpp", "tests/b.hpp"),
+        ("tests/sim/a.cpp", "calib/b.hpp"), ("tests/sim/a.cpp", "proto/messages.hpp"), ("proto/a.hpp", "b.hpp"),
+    ]
+    for case, expected in [(c, 0) for c in good] + [(c, 1) for c in bad]:
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / case[0]
+            path.parent.mkdir(parents=True)
+            path.write_text(f'// comment\n#include "{case[1]}"\n', encoding="utf-8")
+            found = list(violations(pathlib.Path(folder)))
+            if len(found) != expected:
+                print(f"self-test failed: {case} gave {found}")
+                return 1
+    if problem("calib/a.cpp", False, "chrono") is None or problem("daemon/a.cpp", False, "chrono") is not None:
+        print("self-test failed: system headers")
+        return 1
+    print(f"{len(good) + len(bad) + 2} cases judged rightly")
+    return 0
+
+
+def main():
+    if "--self-test" in sys.argv:
+        return self_test()
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
+    found = list(violations(root))
+    for line in found:
+        print(line)
+    print(f"{len(found)} violations of the include direction")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
