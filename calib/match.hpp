@@ -1,0 +1,26 @@
+// Two scans in, the motion between them out: scan matching for callers outside calibration.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "proto/measurements.hpp"
+
+namespace odomcalib::calib {
+
+struct ScanMatch {
+  std::string status = "not_converged";  ///< "ok", or why there is no pose: too_few_points, no_overlap, degenerate, not_converged
+  std::array<double, 3> pose{};          ///< of the second scan in the frame of the first: m, m, rad
+  std::array<std::array<double, 3>, 3> covariance{};  ///< x, y, yaw: m^2, m rad, rad^2
+  std::size_t inliers = 0;
+  [[nodiscard]] bool ok() const { return status == "ok"; }
+};
+
+/// Point-to-line match of two scans taken at rest (no de-skewing).
+/// @param guess start of the search, m, m, rad
+/// @param range_noise standard deviation of a range, m; estimated from the scans when absent
+ScanMatch match_scans(const Scan& reference, const Scan& scan, const std::array<double, 3>& guess,
+                      std::optional<double> range_noise = std::nullopt);
+
+}  // namespace odomcalib::calib
