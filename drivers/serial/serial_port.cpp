@@ -30,20 +30,26 @@ Error unplugged(const std::string& path, const std::string& detail) {
                     "check cable and power; it is reopened by itself");
 }
 
+/// Owns a file descriptor.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::string& path)
+      : fd_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
+  ~OpenFile() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  [[nodiscard]] int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
 class TtyPort final : public SerialPort {
  public:
-  TtyPort(std::string path, std::unique_ptr<LibSerial::SerialPort> port)
-      : path_(std::move(path)), port_(std::move(port)), fd_(port_->GetFileDescriptor()) {}
-
-  ~TtyPort() override {
-    try {
-      port_->Close();
-    } catch (const std::exception&) {
-      // The device may be gone already: nothing is left to close then.
-    }
-  }
-  TtyPort(const TtyPort&) = delete;
-  TtyPort& operator=(const TtyPort&) = delete;
+  TtyPort(std::string path, std::unique_ptr<OpenFile> file)
+      : path_(std::move(path)), file_(std::move(file)), fd_(file_->fd()) {}
 
   [[nodiscard]] int fd() const override { return fd_; }
 
@@ -79,7 +85,7 @@ class TtyPort final : public SerialPort {
   }
 
   std::string path_;
-  std::unique_ptr<LibSerial::SerialPort> port_;
+  std::unique_ptr<OpenFile> file_;
   int fd_;
 };
 
@@ -111,37 +117,48 @@ std::optional<LibSerial::BaudRate> table_rate(unsigned baud) {
   }
 }
 
-/// Opens with a file descriptor that libserial configures. Its exceptions end here.
-Result<std::unique_ptr<LibSerial::SerialPort>> open_port(const std::string& path,
-                                                         std::optional<LibSerial::BaudRate> rate) {
+/// libserial's destructor throws when the device has gone, which would end the program: such an object is
+/// left alone.
+void close_quietly(std::unique_ptr<LibSerial::SerialPort> port) {
   try {
-    auto port = std::make_unique<LibSerial::SerialPort>();
+    if (port->IsOpen()) port->Close();
+  } catch (const std::exception&) {
+    (void)port.release();  // NOLINT(bugprone-unused-return-value)
+  }
+}
+
+/// Settings as libserial makes them. It puts the old ones back when it closes; ours are applied after that,
+/// on a descriptor of our own that survives an unplugged device.
+Result<termios> compose_settings(const std::string& path, std::optional<LibSerial::BaudRate> rate) {
+  auto port = std::make_unique<LibSerial::SerialPort>();
+  std::string problem;
+  termios settings{};
+  try {
     port->Open(path, std::ios_base::in | std::ios_base::out);
     if (rate) port->SetBaudRate(*rate);
     port->SetCharacterSize(LibSerial::CharacterSize::CHAR_SIZE_8);
     port->SetParity(LibSerial::Parity::PARITY_NONE);
     port->SetStopBits(LibSerial::StopBits::STOP_BITS_1);
     port->SetFlowControl(LibSerial::FlowControl::FLOW_CONTROL_NONE);
-    return port;
-  } catch (const std::exception& problem) {
-    return port_error(path, std::string("cannot be set up as a serial port: ") + problem.what(),
-                      "check that it is a serial device: ls -l " + path);
+    if (tcgetattr(port->GetFileDescriptor(), &settings) != 0) problem = std::strerror(errno);
+  } catch (const std::exception& error) {
+    problem = error.what();
   }
+  close_quietly(std::move(port));
+  if (problem.empty()) return settings;
+  return port_error(path, "cannot be set up as a serial port: " + problem,
+                    "check that it is a serial device: ls -l " + path);
 }
 
-/// Raw bytes, one at least per read (0 then means end of file); closing must not drop DTR (a lidar's
-/// motor or an Arduino's reset may hang on it).
-bool make_raw(int fd) {
-  termios settings{};
-  if (tcgetattr(fd, &settings) != 0) return false;
+/// Raw bytes, one at least per read (0 then means end of file); closing must not drop DTR (a lidar's motor or
+/// an Arduino's reset may hang on it).
+bool make_raw(int fd, termios settings) {
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(HUPCL | CSTOPB | PARENB);
   settings.c_cc[VMIN] = 1;
   settings.c_cc[VTIME] = 0;
-  if (tcsetattr(fd, TCSANOW, &settings) != 0) return false;
-  const int flags = fcntl(fd, F_GETFL);
-  return flags >= 0 && fcntl(fd, F_SETFL, flags | O_NONBLOCK) == 0 && fcntl(fd, F_SETFD, FD_CLOEXEC) == 0;
+  return tcsetattr(fd, TCSANOW, &settings) == 0;
 }
 
 /// Other programs are kept away by a lock, and by TIOCEXCL on real ports: on a pseudo-terminal that flag
@@ -164,40 +181,25 @@ Error cannot_open(const std::string& path, int cause) {
   return port_error(path, std::string("cannot open: ") + std::strerror(cause), remedy);
 }
 
-/// Holds the port open while libserial opens it too: it names no cause when it fails, and a device that
-/// resets or leaves when its last user closes must not see a close in between.
-class Probe {
- public:
-  explicit Probe(const std::string& path)
-      : fd_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
-  ~Probe() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Probe(const Probe&) = delete;
-  Probe& operator=(const Probe&) = delete;
-  [[nodiscard]] bool ok() const { return fd_ >= 0; }
-
- private:
-  int fd_;
-};
-
 }  // namespace
 
 Result<std::unique_ptr<SerialPort>> open_serial(const std::string& path, unsigned baud) {
   if (baud < 50 || baud > 4'000'000)
     return Error{ErrorCode::usage, "baud rate " + std::to_string(baud) + " is not within 50 and 4000000",
                  path, ""};
-  const Probe probe(path);
-  if (!probe.ok()) return cannot_open(path, errno);
+  // Held open from here on: a device that resets or leaves when its last user closes must not see a close in
+  // between.
+  auto file = std::make_unique<OpenFile>(path);
+  const int fd = file->fd();
+  if (fd < 0) return cannot_open(path, errno);
   const auto rate = table_rate(baud);
-  auto opened = open_port(path, rate);
-  if (!opened) return opened.error();
-  const int fd = opened.value()->GetFileDescriptor();
-  if (!make_raw(fd) || (!rate && !set_custom_baud(fd, baud)))
+  const auto settings = compose_settings(path, rate);
+  if (!settings) return settings.error();
+  if (!make_raw(fd, settings.value()) || (!rate && !set_custom_baud(fd, baud)))
     return port_error(path, "cannot set " + std::to_string(baud) + " baud, 8N1: " + std::strerror(errno), "");
   if (!claim(fd, path)) return cannot_open(path, EBUSY);
   tcflush(fd, TCIOFLUSH);
-  return std::unique_ptr<SerialPort>(std::make_unique<TtyPort>(path, std::move(opened).value()));
+  return std::unique_ptr<SerialPort>(std::make_unique<TtyPort>(path, std::move(file)));
 }
 
 }  // namespace odomcalib::drivers

@@ -1,0 +1,413 @@
+// The controller against the simulated drive, frame by frame and without a clock.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "drivers/base/controller.hpp"
+#include "tests/sim/wires/drive_node.hpp"
+#include "tests/unit/drivers/test_support.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+constexpr double kStep = 0.001;
+constexpr double kTicksPerRad = 16384.0 / (2.0 * 3.14159265358979323846);
+
+CanFrame to_can(const sim::Frame& frame, double t) {
+  CanFrame out;
+  out.id = frame.id;
+  out.extended = frame.extended;
+  out.remote = frame.remote;
+  out.length = frame.length;
+  out.data = frame.data;
+  out.t = t;
+  return out;
+}
+
+sim::Frame to_sim(const CanFrame& frame) {
+  return {frame.id, frame.extended, frame.remote, frame.length, frame.data};
+}
+
+class Bench {
+ public:
+  explicit Bench(const std::string& profile = "drivers/base/profiles/sim-dual.toml") : node({}) {
+    auto made = make_controller(profile);
+    EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().text());
+    controller = std::move(made).value();
+    node.reset(0.0);
+  }
+
+  void run(double duration) {
+    for (const double end = now + duration; now < end;) step();
+  }
+
+  bool run_until(const std::function<bool()>& done, double longest) {
+    for (const double end = now + longest; now < end && !done();) step();
+    return done();
+  }
+
+  bool ready() {
+    return run_until([&] { return controller->state() == ControllerState::disabled; }, 5.0);
+  }
+
+  bool enabled() {
+    if (!ready()) return false;
+    controller->enable(now);
+    return run_until([&] { return controller->state() == ControllerState::enabled; }, 2.0);
+  }
+
+  void drive(double left, double right, double duration) {
+    for (const double end = now + duration; now < end;) {
+      (void)controller->command(left, right, now);
+      run(0.02);
+    }
+  }
+
+  ParameterJobResult job() {
+    std::optional<ParameterJobResult> out;
+    const auto arrived = [&] {
+      if (!out) out = controller->take_job_result();
+      return out.has_value();
+    };
+    EXPECT_TRUE(run_until(arrived, 10.0));
+    return out.value_or(ParameterJobResult{});
+  }
+
+  [[nodiscard]] const ControllerEvent* find(const std::string& code) const {
+    for (const ControllerEvent& event : events)
+      if (event.code == code) return &event;
+    return nullptr;
+  }
+
+  sim::DriveNode node;
+  std::unique_ptr<Controller> controller;
+  std::vector<ControllerEvent> events;
+  std::vector<TickSample> ticks;
+  std::vector<CanFrame> sent;
+  bool link_to_node = true, link_from_node = true, wheels_turn = true;
+  double now = 0.0;
+
+ private:
+  void step() {
+    now += kStep;
+    for (std::size_t side = 0; side < 2; ++side) {
+      wheels.rate[side] = node.order().torque ? node.order().rate[side] : 0.0;
+      if (wheels_turn) angle_[side] += wheels.rate[side] * kStep;
+      wheels.counts[side] = std::llround(angle_[side] * kTicksPerRad);
+    }
+    node.advance(now, wheels);
+    for (const sim::Frame& frame : node.take_frames(now))
+      if (link_from_node) controller->on_frame(to_can(frame, now));
+    controller->on_time(now);
+    for (const CanFrame& frame : controller->take_frames()) {
+      sent.push_back(frame);
+      if (link_to_node) node.receive(to_sim(frame), now);
+    }
+    for (auto& event : controller->take_events()) events.push_back(event);
+    for (auto& tick : controller->take_ticks()) ticks.push_back(tick);
+  }
+
+  sim::WheelState wheels;
+  std::array<double, 2> angle_{};
+};
+
+/// A copy of a profile with one piece of text changed.
+std::string changed_profile(const std::string& from, const std::string& to, const std::string& name) {
+  std::string text = test::read_text("drivers/base/profiles/sim-dual.toml");
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos);
+  text.replace(at, from.size(), to);
+  const std::string path = testing::TempDir() + name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(DualAxis, configures_the_drive_and_gets_ticks_within_two_seconds) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  EXPECT_LT(bench.now, 2.0);
+  EXPECT_TRUE(bench.controller->watchdog_armed());
+  ASSERT_TRUE(bench.controller->identity());
+  EXPECT_EQ(bench.controller->identity()->vendor, 0x0FEEU);
+  EXPECT_EQ(bench.controller->identity()->serial, 4242U);
+  const std::size_t before = bench.ticks.size();
+  bench.run(1.0);
+  EXPECT_NEAR(static_cast<double>(bench.ticks.size() - before), 50.0, 3.0);
+  EXPECT_TRUE(bench.events.empty());
+}
+
+TEST(DualAxis, writes_nothing_to_a_foreign_device) {
+  Bench bench(changed_profile("product = 0x0D15", "product = 0x0D16", "foreign.toml"));
+  bench.run(3.0);
+  EXPECT_EQ(bench.controller->state(), ControllerState::fault);
+  ASSERT_NE(bench.find("identity_mismatch"), nullptr);
+  for (const CanFrame& frame : bench.sent) {
+    ASSERT_EQ(frame.id, 0x601U);
+    EXPECT_TRUE((frame.data[0] & 0xE0) == 0x40 || (frame.data[0] & 0xE0) == 0x60) << "not a read";
+  }
+  bench.controller->quick_stop(bench.now);
+  EXPECT_TRUE(bench.controller->take_frames().empty());
+}
+
+TEST(DualAxis, turns_both_wheels_by_what_was_commanded) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  const TickSample before = bench.ticks.back();
+  bench.drive(2.0, -1.0, 2.0);
+  const TickSample after = bench.ticks.back();
+  const double seconds = after.t - before.t;
+  EXPECT_NEAR(static_cast<double>(after.left - before.left), 2.0 * kTicksPerRad * seconds, 700.0);
+  EXPECT_NEAR(static_cast<double>(after.right - before.right), -1.0 * kTicksPerRad * seconds, 400.0);
+}
+
+TEST(DualAxis, a_command_that_is_not_refreshed_becomes_zero) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(2.0, 2.0, 0.5);
+  bench.run(0.15);
+  EXPECT_EQ(bench.node.order().rate[0], 0.0);
+  EXPECT_EQ(bench.controller->state(), ControllerState::enabled);
+}
+
+TEST(DualAxis, refuses_commands_that_are_not_numbers_or_not_enabled) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  EXPECT_EQ(bench.controller->command(1.0, 1.0, bench.now).error().code, ErrorCode::refused);
+  ASSERT_TRUE(bench.enabled());
+  EXPECT_TRUE(bench.controller->command(1.0, 1.0, bench.now).ok());
+  EXPECT_FALSE(bench.controller->command(std::nan(""), 1.0, bench.now).ok());
+  bench.run(0.1);
+  EXPECT_FALSE(bench.node.order().torque && bench.node.order().rate[0] != 0.0);
+}
+
+TEST(DualAxis, quick_stop_takes_effect_at_once_and_stays) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(2.0, 2.0, 0.5);
+  bench.controller->quick_stop(bench.now);
+  bench.run(0.02);
+  EXPECT_EQ(bench.node.order().rate[0], 0.0);
+  for (int i = 0; i < 20; ++i) {
+    bench.controller->quick_stop(bench.now);
+    bench.run(0.02);
+  }
+  bench.run(1.0);
+  EXPECT_EQ(bench.controller->state(), ControllerState::disabled);
+  EXPECT_FALSE(bench.controller->command(1.0, 1.0, bench.now).ok());
+  EXPECT_TRUE(bench.enabled());  // a person may start again
+}
+
+TEST(DualAxis, disable_ends_without_torque) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(1.0, 1.0, 0.3);
+  bench.controller->disable(bench.now);
+  EXPECT_TRUE(bench.run_until([&] { return bench.controller->state() == ControllerState::disabled; }, 2.0));
+  EXPECT_FALSE(bench.node.order().torque);
+}
+
+TEST(DualAxis, is_not_enabled_without_a_watchdog) {
+  Bench bench;
+  bench.node.sdo_faults().abort_on_write[{0x1016, 1}] = static_cast<sim::AbortCode>(0x06020000);
+  ASSERT_TRUE(bench.ready());
+  EXPECT_FALSE(bench.controller->watchdog_armed());
+  bench.controller->enable(bench.now);
+  bench.run(1.0);
+  EXPECT_EQ(bench.controller->state(), ControllerState::disabled);
+  EXPECT_NE(bench.find("enable_refused"), nullptr);
+}
+
+TEST(DualAxis, a_watchdog_that_reads_back_otherwise_is_not_armed) {
+  Bench bench;
+  bench.node.sdo_faults().read_back[{0x6007, 0}] = 0;
+  ASSERT_TRUE(bench.ready());
+  EXPECT_FALSE(bench.controller->watchdog_armed());
+}
+
+TEST(DualAxis, the_drive_stops_by_itself_when_this_program_is_silent) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(2.0, 2.0, 0.5);
+  bench.link_to_node = false;
+  bench.run(0.5);
+  EXPECT_FALSE(bench.node.order().torque && bench.node.order().rate[0] != 0.0);
+}
+
+TEST(DualAxis, a_lost_heartbeat_is_a_stop_event_and_heals) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  bench.node.faults.heartbeat_stopped = true;
+  ASSERT_TRUE(bench.run_until([&] { return bench.find("heartbeat_lost") != nullptr; }, 0.5));
+  EXPECT_TRUE(bench.find("heartbeat_lost")->stop);
+  EXPECT_EQ(bench.controller->state(), ControllerState::absent);
+  bench.node.faults.heartbeat_stopped = false;
+  EXPECT_TRUE(bench.ready());
+  EXPECT_GT(bench.ticks.back().segment, 0);
+}
+
+TEST(DualAxis, frozen_process_data_stops_within_a_quarter_second) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(2.0, 2.0, 0.3);
+  bench.node.faults.pdo_silent = true;
+  const double start = bench.now;
+  bench.drive(2.0, 2.0, 0.2);
+  ASSERT_NE(bench.find("pdo_frozen"), nullptr);
+  EXPECT_LT(bench.find("pdo_frozen")->t - start, 0.13);
+  EXPECT_FALSE(bench.node.order().torque && bench.node.order().rate[0] != 0.0);
+}
+
+TEST(DualAxis, counts_that_stand_still_under_command_stop) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.wheels_turn = false;
+  bench.drive(2.0, 2.0, 1.0);
+  ASSERT_NE(bench.find("encoder_stuck"), nullptr);
+  EXPECT_TRUE(bench.find("encoder_stuck")->stop);
+}
+
+TEST(DualAxis, standing_still_on_command_is_no_stuck_encoder) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(0.0, 0.0, 3.0);
+  EXPECT_TRUE(bench.events.empty());
+}
+
+TEST(DualAxis, an_emergency_message_stops) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(1.0, 1.0, 0.3);
+  bench.node.emergency(0x8611, 0x20, bench.now);
+  bench.run(0.05);
+  ASSERT_NE(bench.find("emcy"), nullptr);
+  EXPECT_TRUE(bench.find("emcy")->stop);
+  EXPECT_NE(bench.find("emcy")->text.find("following error"), std::string::npos);
+  EXPECT_FALSE(bench.controller->command(1.0, 1.0, bench.now).ok());
+}
+
+TEST(DualAxis, enabling_resets_a_fault) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  bench.node.emergency(0x2310, 0x02, bench.now);
+  ASSERT_TRUE(bench.run_until([&] { return bench.controller->state() == ControllerState::fault; }, 0.5));
+  bench.controller->enable(bench.now);
+  EXPECT_TRUE(bench.run_until([&] { return bench.controller->state() == ControllerState::enabled; }, 2.0));
+}
+
+TEST(DualAxis, an_unexpected_boot_up_stops_and_configures_anew) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(1.0, 1.0, 0.3);
+  bench.node.reset(bench.now);
+  bench.run(0.3);
+  EXPECT_NE(bench.find("unexpected_boot"), nullptr);
+  ASSERT_TRUE(bench.ready());
+  EXPECT_TRUE(bench.controller->watchdog_armed());
+  EXPECT_FALSE(bench.node.order().torque);
+}
+
+TEST(DualAxis, finds_a_drive_that_is_switched_on_later) {
+  Bench bench;
+  bench.link_from_node = false;
+  bench.run(3.0);
+  EXPECT_EQ(bench.controller->state(), ControllerState::absent);
+  bench.link_from_node = true;
+  EXPECT_TRUE(bench.run_until([&] { return bench.controller->state() == ControllerState::disabled; }, 2.5));
+}
+
+TEST(DualAxis, bus_off_is_a_stop_event) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  CanFrame frame;
+  frame.error = true;
+  frame.id = 0x040;
+  frame.length = 8;
+  frame.t = bench.now;
+  bench.controller->on_frame(frame);
+  bench.run(0.01);
+  ASSERT_NE(bench.find("bus_off"), nullptr);
+  EXPECT_TRUE(bench.find("bus_off")->stop);
+}
+
+TEST(DualAxisParameters, are_written_read_back_and_stored) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  bench.run(0.2);
+  ASSERT_TRUE(
+      bench.controller
+          ->start_write_parameters({{"left_wheel_diameter", 0.1512344}, {"track_width", 0.41}}, bench.now)
+          .ok());
+  const auto written = bench.job();
+  EXPECT_FALSE(written.error) << written.error->text();
+  ASSERT_EQ(written.parameters.size(), 2U);
+  EXPECT_EQ(written.parameters[0].raw, 151234);
+  EXPECT_EQ(bench.node.geometry_in_ram()[0], 151234U);
+  EXPECT_EQ(bench.node.geometry_stored()[0], 150000U);
+  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
+  EXPECT_FALSE(bench.job().error);
+  EXPECT_EQ(bench.node.geometry_stored()[0], 151234U);
+  EXPECT_EQ(bench.node.store_count(), 1U);
+  EXPECT_TRUE(bench.events.empty());
+}
+
+TEST(DualAxisParameters, are_refused_while_enabled) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  EXPECT_EQ(bench.controller->start_write_parameters({{"track_width", 0.41}}, bench.now).error().code,
+            ErrorCode::refused);
+  EXPECT_EQ(bench.controller->start_store(bench.now).error().code, ErrorCode::refused);
+}
+
+TEST(DualAxisParameters, refuse_unknown_quantities_and_values_out_of_range) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  bench.run(0.2);
+  for (const ParameterValue& value : {ParameterValue{"wheel_colour", 0.1},
+                                      {"track_width", -0.4},
+                                      {"track_width", std::nan("")},
+                                      {"track_width", 1e9}})
+    EXPECT_FALSE(bench.controller->start_write_parameters({value}, bench.now).ok())
+        << value.quantity << value.value;
+  EXPECT_FALSE(bench.controller->start_write_parameters({}, bench.now).ok());
+}
+
+TEST(DualAxisParameters, old_values_come_back_when_the_second_write_is_refused) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  bench.run(0.2);
+  bench.node.sdo_faults().abort_on_write[{0x2100, 3}] = static_cast<sim::AbortCode>(0x06090030);
+  ASSERT_TRUE(bench.controller
+                  ->start_write_parameters({{"left_wheel_diameter", 0.16}, {"track_width", 0.41}}, bench.now)
+                  .ok());
+  const auto result = bench.job();
+  ASSERT_TRUE(result.error);
+  EXPECT_EQ(bench.node.geometry_in_ram()[0], 150000U);
+  EXPECT_EQ(bench.node.geometry_in_ram()[2], 400000U);
+}
+
+TEST(DualAxisParameters, a_failing_store_is_told_and_the_stored_set_is_the_old_one) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  bench.run(0.2);
+  bench.node.faults.store_fails = true;
+  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
+  const auto result = bench.job();
+  ASSERT_TRUE(result.error);
+  EXPECT_EQ(result.error->code, ErrorCode::write_failed);
+}
+
+TEST(DualAxisParameters, a_store_without_answer_is_unknown_and_not_repeated) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  bench.run(0.2);
+  bench.node.sdo_faults().answer_delay[{0x1010, 1}] = 100.0;
+  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
+  const auto result = bench.job();
+  ASSERT_TRUE(result.error);
+  EXPECT_EQ(result.error->code, ErrorCode::write_unknown);
+  EXPECT_EQ(bench.node.store_count(), 1U);
+}
+
+}  // namespace
+}  // namespace odomcalib::drivers

@@ -1,0 +1,63 @@
+// What the driver tests share: seeds, byte strings, the accounting law.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "drivers/can/transport.hpp"
+
+namespace odomcalib::drivers::test {
+
+using ByteString = std::vector<std::uint8_t>;
+
+/// Random 32-bit numbers, the same on every machine.
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  unsigned operator()() { return static_cast<unsigned>(engine_()); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// Every random test prints its seed, so that a failure can be run again: ODOMCALIB_TEST_SEED=n.
+inline Random seeded(unsigned usual) {
+  const char* given = std::getenv("ODOMCALIB_TEST_SEED");
+  const unsigned seed = given != nullptr ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : usual;
+  std::printf("seed %u\n", seed);
+  return Random(seed);
+}
+
+inline std::uint8_t random_byte(Random& random) { return static_cast<std::uint8_t>(random() & 0xFF); }
+
+inline ByteString bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// bytes_in = good + skipped + buffered, at any moment.
+inline void expect_accounted(const Counters& counters) {
+  EXPECT_EQ(counters.at("bytes_in"), counters.at("good") + counters.at("skipped") + counters.at("buffered"));
+}
+
+/// Folder of real captures; empty when it is absent.
+inline std::filesystem::path captures() {
+  const char* given = std::getenv("ODOMCALIB_SHARED");
+  const std::filesystem::path folder =
+      std::filesystem::path(given != nullptr ? given : "../shared") / "captures";
+  return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
+}
+
+inline std::string read_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream out;
+  out << file.rdbuf();
+  return out.str();
+}
+
+}  // namespace odomcalib::drivers::test
