@@ -10,7 +10,8 @@
 namespace odomcalib::calib {
 
 struct ScanMatch {
-  std::string status = "not_converged";  ///< "ok", or why there is no pose: too_few_points, no_overlap, degenerate, not_converged
+  std::string status = "not_converged";  ///< "ok", or why there is no pose: too_few_points, no_overlap,
+                                         ///< degenerate, not_converged
   std::array<double, 3> pose{};          ///< of the second scan in the frame of the first: m, m, rad
   std::array<std::array<double, 3>, 3> covariance{};  ///< x, y, yaw: m^2, m rad, rad^2
   std::size_t inliers = 0;

@@ -31,7 +31,8 @@ Correction correction_of(const Calibration& calibration) {
   Correction correction{to_vector(base), {}};
   std::vector<double> values(correction.parameters.data(), correction.parameters.data() + kBaseCount);
   for (const EffectResult& result : calibration.effects) {
-    const auto effect = find_effect(result.name);
+    if (result.parameters.empty()) continue;
+    const auto effect = find_effect(result.name, result.parameters.front().first);
     if (!effect || result.parameters.size() != effect->parameters().size()) continue;
     correction.effects.push_back(effect);
     for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
@@ -83,14 +84,14 @@ struct Odometry::State {
   std::deque<TickSample> history;
   TickSample first;
   Pose pose;
-  double since_reversal = 0.0;
-  double direction = 0.0;
+  DriveHistory drive{{}};
 };
 
 Odometry::Odometry(const Calibration& calibration) : state_(std::make_unique<State>()) {
   state_->correction = correction_of(calibration);
   state_->nominal = nominal_of(calibration.robot);
   state_->ticks_per_rev = calibration.robot.ticks_per_rev;
+  state_->drive = DriveHistory(state_->nominal);
 }
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
@@ -116,18 +117,7 @@ PoseSample Odometry::update(const TickSample& sample) {
   context.t += oldest.t - s.first.t;
   context.left_angle += rad_per_tick * static_cast<double>(oldest.left - s.first.left);
   context.right_angle += rad_per_tick * static_cast<double>(oldest.right - s.first.right);
-  if (context.direction != 0.0 && context.direction != s.direction) {
-    s.direction = context.direction;
-    s.since_reversal = 0.0;
-  }
-  const Pose step_guess = wheel_arc(s.nominal.left_radius * context.left_delta,
-                                    s.nominal.right_radius * context.right_delta, s.nominal.track_width);
-  s.since_reversal += std::hypot(step_guess.x, step_guess.y);
-  context.since_reversal = s.since_reversal;
-  context.direction = s.direction;
-  context.heading = s.pose.yaw + step_guess.yaw / 2.0;
-  context.x = s.pose.x;
-  context.y = s.pose.y;
+  s.drive.advance(context);
 
   const std::size_t n = track.t.size();
   WheelTrack last{{track.t[n - 2], track.t[n - 1]},

@@ -1,20 +1,47 @@
 #include "calib/effects/catalogue.hpp"
 
-#include "calib/effects/time_offset.hpp"
+#include <algorithm>
+
+#include "calib/effects/factories.hpp"
 
 namespace odomcalib::calib {
 
 const EffectList& effect_catalogue() {
   static const EffectList kAll = {
       make_time_offset(),
+      make_clock_drift(),
+      make_scan_skew(),
+      make_wheel_eccentricity_left(),
+      make_wheel_eccentricity_right(),
+      make_backlash(),
+      make_direction_dependent_diameter(),
+      make_speed_dependent_radius(),
+      make_acceleration_slip(),
+      make_lateral_slip(),
+      make_speed_dependent_track(),
+      make_track_depends_on_motion(),
+      make_turn_direction_asymmetry(),
+      make_caster_kick(),
+      make_drift_with_time(),
+      make_floor_slope(),
+      make_carpet(),
   };
   return kAll;
 }
 
-std::shared_ptr<const Effect> find_effect(const std::string& name) {
+std::shared_ptr<const Effect> find_effect(const std::string& name, const std::string& first_parameter) {
   for (const auto& effect : effect_catalogue())
-    if (effect->name() == name) return effect;
+    if (effect->name() == name &&
+        (first_parameter.empty() || effect->parameters().front().name == first_parameter))
+      return effect;
   return nullptr;
+}
+
+EffectList find_effects(const std::string& name) {
+  EffectList found;
+  std::copy_if(effect_catalogue().begin(), effect_catalogue().end(), std::back_inserter(found),
+               [&](const auto& effect) { return effect->name() == name; });
+  return found;
 }
 
 }  // namespace odomcalib::calib

@@ -10,7 +10,11 @@ namespace odomcalib::calib {
 /// In the fixed order in which they are tried and listed.
 const EffectList& effect_catalogue();
 
-/// nullptr when there is no effect of that name.
-std::shared_ptr<const Effect> find_effect(const std::string& name);
+/// nullptr when there is none. Effects that exist once per wheel share their name and differ by their
+/// parameters.
+std::shared_ptr<const Effect> find_effect(const std::string& name, const std::string& first_parameter = {});
+
+/// All effects of that name, e.g. one per wheel.
+EffectList find_effects(const std::string& name);
 
 }  // namespace odomcalib::calib

@@ -1,4 +1,4 @@
-#include "calib/effects/time_offset.hpp"
+#include "calib/effects/factories.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -12,6 +12,7 @@ class TimeOffset final : public Effect {
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"encoder_lag", "acceleration_slip"};
   }
+  [[nodiscard]] std::vector<std::string> always_alike() const override { return {"encoder_lag"}; }
   [[nodiscard]] std::string separating_motion() const override {
     return "equal accelerations at low and at high speed, forward and backward; a filter in the encoder path "
            "cannot be told "

@@ -149,7 +149,7 @@ std::vector<double> distances(std::span<const FitData> data, const Stack& stack,
 std::vector<double> robust_weights(const std::vector<double>& squared) {
   std::vector<double> weights;
   weights.reserve(squared.size());
-  for (const double q : squared) weights.push_back((kStudentDof + 3.0) / (kStudentDof + q));
+  for (const double q : squared) weights.push_back(kStudentConsistency * (kStudentDof + 3.0) / (kStudentDof + kStudentConsistency * q));
   return weights;
 }
 
@@ -305,7 +305,7 @@ void conclude(std::span<const FitData> data, const EffectList& effects, const st
   fit.whitened_residual = whitened(data, stack, fit.noise, fit.weights, stack.residual);
   fit.whitened_jacobian = whitened(data, stack, fit.noise, fit.weights, stack.jacobian);
   fit.cost = 0.0;
-  for (const double q : squared) fit.cost += (kStudentDof + 3.0) * std::log1p(q / kStudentDof);
+  for (const double q : squared) fit.cost += (kStudentDof + 3.0) * std::log1p(kStudentConsistency * q / kStudentDof);
   count_outliers(squared, fit);
   set_covariance(data, stack, fixed, fit);
 }
@@ -336,6 +336,24 @@ Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& eff
     return Error{ErrorCode::refused, "the fit diverged", "joint estimate", "check the nominal values"};
   conclude(data, effects, fixed, fit);
   return fit;
+}
+
+Eigen::MatrixXd whitened_columns(std::span<const FitData> data, const EffectList& effects,
+                                 const FitResult& fit, const EffectList& candidates) {
+  EffectList all = effects;
+  all.insert(all.end(), candidates.begin(), candidates.end());
+  Eigen::VectorXd parameters =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kBaseCount + count_parameters(all)));
+  parameters.head(fit.parameters.size()) = fit.parameters;
+  const Stack stack = make_stack(data, effects, fit.parameters, false);
+  Eigen::MatrixXd columns(stack.residual.rows(), static_cast<Eigen::Index>(count_parameters(candidates)));
+  for (std::size_t d = 0; d < data.size(); ++d) {
+    Eigen::MatrixXd part;
+    static_cast<void>(data[d].model->predict(as_span(parameters), all, intervals_of(data[d].pairs), part,
+                                             static_cast<std::size_t>(fit.parameters.size())));
+    columns.middleRows(static_cast<Eigen::Index>(3 * stack.first[d]), part.rows()) = part;
+  }
+  return whitened(data, stack, fit.noise, fit.weights, std::move(columns));
 }
 
 }  // namespace odomcalib::calib

@@ -48,4 +48,9 @@ struct FitResult {
 Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects,
                             const Eigen::VectorXd& start, const FitOptions& options = {});
 
+/// Whitened derivatives of the prediction by the parameters of `candidates`, which act on top of `effects`
+/// with value zero, at the fit and with its weights: 3 n x parameters of the candidates.
+Eigen::MatrixXd whitened_columns(std::span<const FitData> data, const EffectList& effects,
+                                 const FitResult& fit, const EffectList& candidates);
+
 }  // namespace odomcalib::calib

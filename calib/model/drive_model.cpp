@@ -54,6 +54,9 @@ T total_delay(double time, std::span<const T> parameters, const EffectList& effe
   return delay;
 }
 
+/// Delays that change with time are counted from here, so that they do not look like a constant one.
+double middle_of(const WheelTrack& track) { return (track.t.front() + track.t.back()) / 2.0; }
+
 double value_of(double x) { return x; }
 double value_of(const Jet& x) { return x.a; }
 
@@ -72,12 +75,12 @@ std::vector<Pose2<T>> predict_all(const WheelTrack& track, const std::vector<Ste
                                   std::span<const Interval> intervals) {
   const Integrated<T> integrated = integrate(context, parameters, effects);
   const Pose2<T> mount{parameters[kMountX], parameters[kMountY], parameters[kMountYaw]};
-  const double start = track.t.front();
+  const double middle = middle_of(track);
   std::vector<Pose2<T>> motions;
   motions.reserve(intervals.size());
   for (const Interval& interval : intervals) {
-    const T begin = interval.begin - total_delay(interval.begin - start, parameters, effects);
-    const T end = interval.end - total_delay(interval.end - start, parameters, effects);
+    const T begin = interval.begin - total_delay(interval.begin - middle, parameters, effects);
+    const T end = interval.end - total_delay(interval.end - middle, parameters, effects);
     const Pose2<T> base = between(pose_at(track, integrated.poses, integrated.twists, begin),
                                   pose_at(track, integrated.poses, integrated.twists, end));
     motions.push_back(conjugate(base, mount));
@@ -130,7 +133,7 @@ DriveModel::DriveModel(WheelTrack track, std::vector<StepContext> context)
     : track_(std::move(track)), context_(std::move(context)) {}
 
 Pose Trajectory::at(double sensor_time) const {
-  const double delay = total_delay<double>(sensor_time - track_->t.front(), parameters_, effects_);
+  const double delay = total_delay<double>(sensor_time - middle_of(*track_), parameters_, effects_);
   return pose_at<double>(*track_, poses_, twists_, sensor_time - delay);
 }
 
@@ -151,15 +154,17 @@ std::vector<Pose> DriveModel::predict(std::span<const double> parameters, const 
 }
 
 std::vector<Pose> DriveModel::predict(std::span<const double> parameters, const EffectList& effects,
-                                      std::span<const Interval> intervals, Eigen::MatrixXd& jacobian) const {
+                                      std::span<const Interval> intervals, Eigen::MatrixXd& jacobian,
+                                      std::size_t first) const {
   jacobian.resize(static_cast<Eigen::Index>(3 * intervals.size()),
-                  static_cast<Eigen::Index>(parameters.size()));
+                  static_cast<Eigen::Index>(parameters.size() - first));
   std::vector<Pose> values;
-  for (std::size_t first = 0; first < parameters.size(); first += kJetSize) {
-    const std::vector<Jet> jets = seed(parameters, first);
+  for (std::size_t chunk = first; chunk < parameters.size(); chunk += kJetSize) {
+    const std::vector<Jet> jets = seed(parameters, chunk);
     const auto motions = predict_all<Jet>(track_, context_, jets, effects, intervals);
-    copy_derivatives(motions, first, std::min<std::size_t>(kJetSize, parameters.size() - first), jacobian);
-    if (first > 0) continue;
+    copy_derivatives(motions, chunk - first, std::min<std::size_t>(kJetSize, parameters.size() - chunk),
+                     jacobian);
+    if (chunk > first) continue;
     values.reserve(motions.size());
     for (const auto& m : motions) values.push_back({m.x.a, m.y.a, m.yaw.a});
   }

@@ -59,13 +59,35 @@ class DriveModel {
   [[nodiscard]] std::vector<Pose> predict(std::span<const double> parameters, const EffectList& effects,
                                           std::span<const Interval> intervals) const;
 
-  /// As predict(); `jacobian` becomes 3 n x parameters (rows x, y, yaw per interval).
+  /// As predict(); `jacobian` becomes 3 n x (parameters - first): derivatives (rows x, y, yaw per interval)
+  /// by the parameters from `first` on.
   std::vector<Pose> predict(std::span<const double> parameters, const EffectList& effects,
-                            std::span<const Interval> intervals, Eigen::MatrixXd& jacobian) const;
+                            std::span<const Interval> intervals, Eigen::MatrixXd& jacobian,
+                            std::size_t first = 0) const;
 
  private:
   WheelTrack track_;
   std::vector<StepContext> context_;
+};
+
+/// What accumulates over a drive: pose by the plain model, and how far back the last reversals lie.
+class DriveHistory {
+ public:
+  explicit DriveHistory(const BaseParameters& nominal) : nominal_(nominal) {}
+  /// Fills the fields of `context` that depend on the drive so far, then takes the interval in.
+  void advance(StepContext& context);
+
+ private:
+  struct Wheel {
+    double direction = 0.0;
+    double since = 1e3;  ///< rad; the drive begins as if the last reversal lay far back
+    double advance(double delta);
+  };
+  BaseParameters nominal_;
+  Pose pose_;
+  Wheel left_, right_;
+  double direction_ = 0.0;
+  double since_reversal_ = 1e3;
 };
 
 /// Observable variables of each tick interval, from smoothed wheel angles and nominal geometry.

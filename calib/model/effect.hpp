@@ -34,6 +34,8 @@ class Effect {
   [[nodiscard]] virtual std::vector<EffectParameter> parameters() const = 0;
   /// Names of the effects that look alike, and the motion that tells them apart.
   [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
+  /// Names that no motion can tell from this one: listed beside it whenever it is found.
+  [[nodiscard]] virtual std::vector<std::string> always_alike() const { return {}; }
   [[nodiscard]] virtual std::string separating_motion() const { return {}; }
   [[nodiscard]] virtual Storage storage() const { return Storage::host; }
 
@@ -47,6 +49,7 @@ class Effect {
     (void)context, (void)parameters, (void)step;
   }
   /// Delay in s of the sensor against the encoders: a scan stamped t was taken at encoder time t - delay.
+  /// @param time s, counted from the middle of the recording
   [[nodiscard]] virtual double delay(double time, std::span<const double> parameters) const {
     (void)time, (void)parameters;
     return 0.0;

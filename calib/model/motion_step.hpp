@@ -27,6 +27,8 @@ struct StepContext {
   double heading = 0.0;                                      ///< rad, from the plain model
   double x = 0.0, y = 0.0;                                   ///< m, from the plain model
   double since_reversal = 0.0;  ///< distance driven since the direction of travel last changed, m
+  double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
+  double right_since_reversal = 0.0;
   double direction = 0.0;       ///< sign of the forward speed, kept while standing
 };
 

@@ -73,14 +73,38 @@ void fill_speeds(StepContext& c, const WheelTrack& track, Window window, double 
 
 }  // namespace
 
+double DriveHistory::Wheel::advance(double delta) {
+  const double now = delta == 0.0 ? direction : std::copysign(1.0, delta);
+  if (direction != 0.0 && now != direction) since = 0.0;
+  direction = now;
+  const double before = since;
+  since += std::abs(delta);
+  return before;
+}
+
+void DriveHistory::advance(StepContext& c) {
+  const Pose step = wheel_arc(nominal_.left_radius * c.left_delta, nominal_.right_radius * c.right_delta,
+                              nominal_.track_width);
+  const double now = std::abs(c.speed) > kStanding ? std::copysign(1.0, c.speed) : direction_;
+  if (direction_ != 0.0 && now != direction_) since_reversal_ = 0.0;
+  direction_ = now;
+  c.direction = direction_;
+  c.since_reversal = since_reversal_;
+  since_reversal_ += std::hypot(step.x, step.y);
+  c.left_since_reversal = left_.advance(c.left_delta);
+  c.right_since_reversal = right_.advance(c.right_delta);
+  c.heading = pose_.yaw + step.yaw / 2.0;
+  c.x = pose_.x;
+  c.y = pose_.y;
+  pose_ = compose(pose_, step);
+}
+
 std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& nominal) {
   std::vector<StepContext> contexts;
   if (track.empty()) return contexts;
   contexts.reserve(track.t.size() - 1);
-  Pose pose;
+  DriveHistory history(nominal);
   Window window;
-  double since_reversal = 0.0;
-  double direction = 0.0;
   for (std::size_t k = 0; k + 1 < track.t.size(); ++k) {
     StepContext c;
     const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
@@ -93,18 +117,7 @@ std::vector<StepContext> make_context(const WheelTrack& track, const BaseParamet
     c.right_delta = joined ? track.right[k + 1] - track.right[k] : 0.0;
     window = window_around(track, k, window, centre);
     fill_speeds(c, track, window, centre, nominal);
-    const Pose step = wheel_arc(nominal.left_radius * c.left_delta, nominal.right_radius * c.right_delta,
-                                nominal.track_width);
-    const double now = std::abs(c.speed) > kStanding ? std::copysign(1.0, c.speed) : direction;
-    if (now != direction) since_reversal = 0.0;
-    direction = now;
-    since_reversal += std::hypot(step.x, step.y);
-    c.since_reversal = since_reversal;
-    c.direction = direction;
-    c.heading = pose.yaw + step.yaw / 2.0;
-    c.x = pose.x;
-    c.y = pose.y;
-    pose = compose(pose, step);
+    history.advance(c);
     contexts.push_back(c);
   }
   return contexts;

@@ -27,7 +27,7 @@ double misfit(const Observation& o, const NoiseModel& noise) {
     const Eigen::Vector3d z = llt.matrixL().solve(o.residuals[k]);
     double log_determinant = 0.0;
     for (Eigen::Index i = 0; i < 3; ++i) log_determinant += 2.0 * std::log(llt.matrixLLT()(i, i));
-    sum += log_determinant + (kStudentDof + 3.0) * std::log1p(z.squaredNorm() / kStudentDof);
+    sum += log_determinant + (kStudentDof + 3.0) * std::log1p(kStudentConsistency * z.squaredNorm() / kStudentDof);
   }
   return sum;
 }
@@ -113,6 +113,24 @@ std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseMod
   return correlation;
 }
 
+double median_magnitude(const Observation& o, std::initializer_list<Eigen::Index> axes) {
+  std::vector<double> magnitudes;
+  for (const Eigen::Vector3d& r : o.residuals)
+    for (const Eigen::Index axis : axes) magnitudes.push_back(std::abs(r(axis)));
+  const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
+  std::nth_element(magnitudes.begin(), middle, magnitudes.end());
+  return *middle;
+}
+
+/// The heavy-tailed likelihood is flat far from the truth: the search begins where all spread is process noise.
+void begin_at_spread(const Observation& o, NoiseModel& noise) {
+  constexpr double kMadToSigma = 1.4826;
+  noise.process_translation = kMadToSigma * median_magnitude(o, {0, 1});
+  noise.process_rotation = kMadToSigma * median_magnitude(o, {2});
+  noise.stamp_jitter = 0.0;
+  noise.matcher_scale = 1.0;
+}
+
 Observation observe(std::span<const SensorPair> pairs, std::span<const PairState> states,
                     std::span<const Eigen::Vector3d> residuals) {
   Observation o{pairs, states, {}};
@@ -128,6 +146,7 @@ NoiseModel estimate_noise(std::span<const SensorPair> pairs, std::span<const Pai
   const Observation o = observe(pairs, states, residuals);
   NoiseModel noise = start;
   if (pairs.empty()) return noise;
+  begin_at_spread(o, noise);
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (const Range& range : kRanges) improve(o, range, noise);
   noise.correlation = neighbour_correlation(o, noise);

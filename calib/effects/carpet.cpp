@@ -1,0 +1,35 @@
+#include "calib/effects/factories.hpp"
+#include "calib/effects/step_effect.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+// Fibres lean: each metre of travel shifts the robot in a direction fixed in the room, (p_x, p_y) |ds|.
+// A property of the place: reported, never written back.
+class Carpet final : public StepEffect<Carpet> {
+ public:
+  [[nodiscard]] std::string name() const override { return "carpet"; }
+  [[nodiscard]] std::vector<EffectParameter> parameters() const override {
+    return {{"p_x", "1", 5e-3, -0.2, 0.2}, {"p_y", "1", 5e-3, -0.2, 0.2}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override { return {"floor_slope"}; }
+  [[nodiscard]] std::string separating_motion() const override { return "straight lines on four headings"; }
+  [[nodiscard]] Storage storage() const override { return Storage::nowhere; }
+
+  template <typename T>
+  static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
+    const double path = std::abs(c.speed) * c.dt;
+    const double cosine = std::cos(c.heading);
+    const double sine = std::sin(c.heading);
+    const T along = path * (p[0] * cosine + p[1] * sine);
+    step.left += along;
+    step.right += along;
+    step.side += path * (p[1] * cosine - p[0] * sine);
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> make_carpet() { return std::make_shared<Carpet>(); }
+
+}  // namespace odomcalib::calib

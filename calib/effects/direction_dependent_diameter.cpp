@@ -1,0 +1,35 @@
+#include "calib/effects/factories.hpp"
+#include "calib/effects/step_effect.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+// Tread, tyre lay or load make a wheel roll differently forward and backward: dL' = dL (1 + kappa_L
+// [backward]). Without backward motion it does not exist: the diameters absorb it.
+class DirectionDependentDiameter final : public StepEffect<DirectionDependentDiameter> {
+ public:
+  [[nodiscard]] std::string name() const override { return "direction_dependent_diameter"; }
+  [[nodiscard]] std::vector<EffectParameter> parameters() const override {
+    return {{"left_kappa", "1", 5e-3, -0.05, 0.05}, {"right_kappa", "1", 5e-3, -0.05, 0.05}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override {
+    return {"turn_direction_asymmetry", "scan_skew"};
+  }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "straight lines forward and backward at the same speed, and spins both ways";
+  }
+
+  template <typename T>
+  static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
+    if (c.left_delta < 0.0) step.left *= 1.0 + p[0];
+    if (c.right_delta < 0.0) step.right *= 1.0 + p[1];
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> make_direction_dependent_diameter() {
+  return std::make_shared<DirectionDependentDiameter>();
+}
+
+}  // namespace odomcalib::calib

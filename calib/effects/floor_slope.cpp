@@ -1,0 +1,34 @@
+#include "calib/effects/factories.hpp"
+#include "calib/effects/step_effect.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+// Rolling slip under gravity: downhill creep ds = -|ds| (k_x cos(heading) + k_y sin(heading)).
+// A property of the place: reported, never written back.
+class FloorSlope final : public StepEffect<FloorSlope> {
+ public:
+  [[nodiscard]] std::string name() const override { return "floor_slope"; }
+  [[nodiscard]] std::vector<EffectParameter> parameters() const override {
+    return {{"kappa_x", "1", 5e-3, -0.1, 0.1}, {"kappa_y", "1", 5e-3, -0.1, 0.1}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override { return {"carpet"}; }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "straight lines on four headings, forward and backward on each";
+  }
+  [[nodiscard]] Storage storage() const override { return Storage::nowhere; }
+
+  template <typename T>
+  static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
+    const double path = std::abs(c.speed) * c.dt;
+    const T creep = -path * (p[0] * std::cos(c.heading) + p[1] * std::sin(c.heading));
+    step.left += creep;
+    step.right += creep;
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> make_floor_slope() { return std::make_shared<FloorSlope>(); }
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,25 @@
+// Saves every effect that acts on tick intervals from writing its formula twice, for values and for
+// derivatives.
+#pragma once
+
+#include <cmath>
+
+#include "calib/model/effect.hpp"
+
+namespace odomcalib::calib {
+
+/// Derived supplies `template <typename T> static void act(const StepContext&, std::span<const T> p,
+/// WheelStep<T>&)`.
+template <typename Derived>
+class StepEffect : public Effect {
+ public:
+  void apply(const StepContext& context, std::span<const double> parameters,
+             WheelStep<double>& step) const final {
+    Derived::template act<double>(context, parameters, step);
+  }
+  void apply(const StepContext& context, std::span<const Jet> parameters, WheelStep<Jet>& step) const final {
+    Derived::template act<Jet>(context, parameters, step);
+  }
+};
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,50 @@
+#include "calib/effects/factories.hpp"
+#include "calib/model/effect.hpp"
+
+#include <cmath>
+
+namespace odomcalib::calib {
+namespace {
+
+enum class Side { left, right };
+
+/// An eccentric wheel or encoder disc: dL' = dL (1 + a cos phi + b sin phi) with phi the angle of that wheel.
+/// The phase is constant over a run; between runs it is known only if the counter keeps its value.
+class WheelEccentricity final : public Effect {
+ public:
+  explicit WheelEccentricity(Side side) : side_(side) {}
+  [[nodiscard]] std::string name() const override { return "wheel_eccentricity"; }
+  [[nodiscard]] std::vector<EffectParameter> parameters() const override {
+    const std::string wheel = side_ == Side::left ? "left" : "right";
+    return {{wheel + "_cos", "1", 5e-3, -0.1, 0.1}, {wheel + "_sin", "1", 5e-3, -0.1, 0.1}};
+  }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "slow straight lines of five or more wheel turns";
+  }
+  void apply(const StepContext& c, std::span<const double> p, WheelStep<double>& step) const override {
+    act(c, p, step);
+  }
+  void apply(const StepContext& c, std::span<const Jet> p, WheelStep<Jet>& step) const override {
+    act(c, p, step);
+  }
+
+ private:
+  template <typename T>
+  void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) const {
+    const double angle = side_ == Side::left ? c.left_angle : c.right_angle;
+    const T factor = 1.0 + p[0] * std::cos(angle) + p[1] * std::sin(angle);
+    (side_ == Side::left ? step.left : step.right) *= factor;
+  }
+  Side side_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> make_wheel_eccentricity_left() {
+  return std::make_shared<WheelEccentricity>(Side::left);
+}
+std::shared_ptr<const Effect> make_wheel_eccentricity_right() {
+  return std::make_shared<WheelEccentricity>(Side::right);
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,136 @@
+#include "calib/estimators/joint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "calib/effects/catalogue.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr unsigned kSeed = 3;
+const BaseParameters kTruth{0.0753, 0.0747, 0.407, {0.11, -0.015, 0.05}};
+const BaseParameters kNominal{0.075, 0.075, 0.4, {0.1, 0.0, 0.0}};
+
+WheelTrack drive(double duration) {
+  WheelTrack track;
+  for (int k = 0; k * 0.02 <= duration; ++k) {
+    const double t = 0.02 * k;
+    track.t.push_back(t);
+    track.left.push_back(9.0 * std::sin(0.29 * t) + 4.0 * std::sin(0.11 * t));
+    track.right.push_back(9.0 * std::sin(0.37 * t) + 4.0 * std::sin(0.13 * t + 1.0));
+    track.segment.push_back(0);
+  }
+  return track;
+}
+
+struct Fixture {
+  explicit Fixture(double noise, unsigned seed = kSeed, double delay = 0.0, double outlier_share = 0.0)
+      : model(drive(200.0), make_context(drive(200.0), kNominal)) {
+    std::mt19937 engine(seed);
+    std::normal_distribution<double> gauss;
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    std::vector<Interval> shifted;
+    for (double t = 1.0; t < 198.0; t += 0.5) shifted.push_back({t - delay, t + 0.5 - delay});
+    const Eigen::VectorXd truth = to_vector(kTruth);
+    const auto motions = model.predict({truth.data(), 6}, {}, shifted);
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      SensorPair pair;
+      pair.interval = {shifted[k].begin + delay, shifted[k].end + delay};
+      pair.motion = motions[k];
+      pair.motion.x += noise * gauss(engine);
+      pair.motion.y += noise * gauss(engine);
+      pair.motion.yaw += noise * gauss(engine);
+      if (uniform(engine) < outlier_share) pair.motion.x += 0.1;
+      pair.covariance = noise > 0.0 ? Eigen::Matrix3d(noise * noise * Eigen::Matrix3d::Identity())
+                                    : Eigen::Matrix3d(1e-12 * Eigen::Matrix3d::Identity());
+      pairs.push_back(pair);
+    }
+  }
+  DriveModel model;
+  std::vector<SensorPair> pairs;
+};
+
+TEST(Joint, recovers_the_truth_from_noise_free_pairs) {
+  Fixture f(0.0);
+  const std::vector<FitData> data = {{&f.model, f.pairs}};
+  const auto fit = fit_joint(data, {}, to_vector(kNominal));
+  ASSERT_TRUE(fit.ok()) << fit.error().text();
+  EXPECT_LT((fit.value().parameters - to_vector(kTruth)).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(Joint, ten_percent_gross_errors_move_the_answer_by_less_than_two_sigma) {
+  Fixture f(1e-3, kSeed, 0.0, 0.1);
+  const std::vector<FitData> data = {{&f.model, f.pairs}};
+  const auto fit = fit_joint(data, {}, to_vector(kNominal));
+  ASSERT_TRUE(fit.ok());
+  const Eigen::VectorXd error = fit.value().parameters - to_vector(kTruth);
+  for (Eigen::Index k = 0; k < 6; ++k)
+    EXPECT_LT(std::abs(error(k)), 3.5 * std::sqrt(fit.value().covariance(k, k))) << "parameter " << k;
+  EXPECT_GT(fit.value().discarded, f.pairs.size() / 20);
+}
+
+TEST(Joint, finds_a_delay_of_fifty_milliseconds_within_two) {
+  Fixture f(1e-3, kSeed, 0.05);
+  const std::vector<FitData> data = {{&f.model, f.pairs}};
+  const EffectList effects = {find_effect("time_offset")};
+  const auto fit = fit_joint(data, effects, to_vector(kNominal, 1));
+  ASSERT_TRUE(fit.ok());
+  EXPECT_NEAR(fit.value().parameters(kBaseCount), 0.05, 0.002);
+}
+
+TEST(Joint, reported_deviations_agree_with_the_scatter) {
+  constexpr unsigned kRuns = 40;
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(6);
+  Eigen::VectorXd reported = Eigen::VectorXd::Zero(6);
+  for (unsigned run = 0; run < kRuns; ++run) {
+    Fixture f(1e-3, 100 + run);
+    const std::vector<FitData> data = {{&f.model, f.pairs}};
+    const auto fit = fit_joint(data, {}, to_vector(kNominal));
+    ASSERT_TRUE(fit.ok());
+    squares += (fit.value().parameters - to_vector(kTruth)).cwiseAbs2();
+    reported += fit.value().covariance.diagonal();
+  }
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const double ratio = std::sqrt(reported(k) / squares(k));
+    EXPECT_GT(ratio, 0.7) << "parameter " << k;
+    EXPECT_LT(ratio, 1.5) << "parameter " << k;
+  }
+}
+
+TEST(Joint, straight_motion_alone_is_refused_and_names_what_is_missing) {
+  WheelTrack track;
+  for (int k = 0; k <= 1000; ++k) {
+    track.t.push_back(0.02 * k);
+    track.left.push_back(0.1 * k);
+    track.right.push_back(0.1 * k);
+    track.segment.push_back(0);
+  }
+  const DriveModel model(track, make_context(track, kNominal));
+  FitData data{&model, {}};
+  for (double t = 0.5; t < 19.0; t += 0.5) {
+    SensorPair pair;
+    pair.interval = {t, t + 0.5};
+    pair.motion = {0.1875, 0.0, 0.0};
+    pair.covariance = 1e-6 * Eigen::Matrix3d::Identity();
+    data.pairs.push_back(pair);
+  }
+  const std::vector<FitData> all = {data};
+  const auto fit = fit_joint(all, {}, to_vector(kNominal));
+  ASSERT_FALSE(fit.ok());
+  EXPECT_EQ(fit.error().code, ErrorCode::refused);
+  EXPECT_NE(fit.error().what.find("does not determine"), std::string::npos);
+}
+
+TEST(Joint, no_pairs_is_an_error_of_its_own) {
+  Fixture f(1e-3);
+  const std::vector<FitData> data = {{&f.model, {}}};
+  const auto fit = fit_joint(data, {}, to_vector(kNominal));
+  ASSERT_FALSE(fit.ok());
+  EXPECT_EQ(fit.error().code, ErrorCode::empty);
+}
+
+}  // namespace
+}  // namespace odomcalib::calib

@@ -1,0 +1,170 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "calib/geometry/se2.hpp"
+#include "calib/match.hpp"
+#include "calib/matching/point_to_line.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+struct Wall {
+  double x1, y1, x2, y2;
+};
+
+double ray_distance(const std::vector<Wall>& walls, double x, double y, double angle) {
+  double nearest = 1e9;
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  for (const Wall& w : walls) {
+    const double ex = w.x2 - w.x1;
+    const double ey = w.y2 - w.y1;
+    const double determinant = c * ey - s * ex;
+    if (std::abs(determinant) < 1e-12) continue;
+    const double along_ray = ((w.x1 - x) * ey - (w.y1 - y) * ex) / determinant;
+    const double along_wall = ((w.x1 - x) * s - (w.y1 - y) * c) / determinant;
+    if (along_ray > 0.0 && along_wall >= 0.0 && along_wall <= 1.0) nearest = std::min(nearest, along_ray);
+  }
+  return nearest;
+}
+
+const std::vector<Wall> kRoom = {{-3, -2, 4, -2}, {4, -2, 4, 3}, {4, 3, -3, 3},
+                                 {-3, 3, -3, -2}, {1, 3, 1, 2},  {1, 2, 2, 2}};
+const std::vector<Wall> kCorridor = {{-50, -1, 50, -1}, {-50, 1, 50, 1}};
+
+Scan scan_from(const std::vector<Wall>& walls, const Pose& pose, double noise, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> gauss(0.0, noise);
+  Scan scan;
+  scan.angle_min = -kPi;
+  scan.angle_increment = 2.0 * kPi / 720.0;
+  scan.range_max = 12.0;
+  for (int i = 0; i < 720; ++i) {
+    const double range =
+        ray_distance(walls, pose.x, pose.y, pose.yaw + scan.angle_min + scan.angle_increment * i);
+    scan.ranges.push_back(range < 12.0 ? static_cast<float>(range + (noise > 0.0 ? gauss(engine) : 0.0))
+                                       : 0.0F);
+  }
+  return scan;
+}
+
+TEST(Matching, recovers_a_known_motion_from_noise_free_scans) {
+  const Pose a{0.2, -0.1, 0.1};
+  const Pose b = compose(a, Pose{0.08, 0.03, 0.15});
+  const ScanMatch match = match_scans(scan_from(kRoom, a, 0.0, 1), scan_from(kRoom, b, 0.0, 2), {0, 0, 0});
+  ASSERT_TRUE(match.ok()) << match.status;
+  EXPECT_NEAR(match.pose[0], 0.08, 1e-4);
+  EXPECT_NEAR(match.pose[1], 0.03, 1e-4);
+  EXPECT_NEAR(match.pose[2], 0.15, 1e-4);
+}
+
+TEST(Matching, errors_agree_with_the_reported_covariance) {
+  constexpr unsigned kRuns = 100;
+  double squared = 0.0;
+  for (unsigned run = 0; run < kRuns; ++run) {
+    const Pose motion{0.1, 0.02, -0.2};
+    const Pose a{0.1 * (run % 5), 0.05 * (run % 7), 0.3 * run};
+    const ScanMatch match =
+        match_scans(scan_from(kRoom, a, 0.008, 2 * run),
+                    scan_from(kRoom, compose(a, motion), 0.008, 2 * run + 1), {0, 0, 0}, 0.008);
+    ASSERT_TRUE(match.ok()) << match.status << " run " << run;
+    Eigen::Matrix3d covariance;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        covariance(i, j) = match.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    const Eigen::Vector3d error(match.pose[0] - motion.x, match.pose[1] - motion.y,
+                                match.pose[2] - motion.yaw);
+    squared += error.dot(covariance.inverse() * error);
+  }
+  EXPECT_NEAR(squared / (3.0 * kRuns), 1.0, 0.4);
+}
+
+TEST(Matching, the_result_does_not_depend_on_the_guess) {
+  const Pose motion{0.1, 0.02, -0.2};
+  const Scan a = scan_from(kRoom, {}, 0.008, 1);
+  const Scan b = scan_from(kRoom, motion, 0.008, 2);
+  const ScanMatch left = match_scans(a, b, {0.12, 0.04, -0.18}, 0.008);
+  const ScanMatch right = match_scans(a, b, {0.08, 0.0, -0.22}, 0.008);
+  ASSERT_TRUE(left.ok() && right.ok());
+  EXPECT_LT(std::abs(left.pose[0] - right.pose[0]), 0.02 * 0.04);
+  EXPECT_LT(std::abs(left.pose[2] - right.pose[2]), 0.02 * 0.04);
+}
+
+TEST(Matching, a_corridor_yields_no_pose_along_it) {
+  const ScanMatch match = match_scans(scan_from(kCorridor, {}, 0.005, 1),
+                                      scan_from(kCorridor, {0.1, 0.0, 0.02}, 0.005, 2), {0, 0, 0});
+  EXPECT_EQ(match.status, "degenerate");
+}
+
+TEST(Matching, scans_of_different_rooms_are_refused) {
+  const std::vector<Wall> other = {
+      {-0.5, -5, 0.9, -5}, {0.9, -5, 0.9, 7}, {0.9, 7, -0.5, 7}, {-0.5, 7, -0.5, -5}};
+  const ScanMatch match =
+      match_scans(scan_from(kRoom, {}, 0.005, 1), scan_from(other, {}, 0.005, 2), {0, 0, 0});
+  EXPECT_FALSE(match.ok());
+}
+
+TEST(Matching, an_empty_scan_or_a_single_point_is_refused) {
+  Scan empty = scan_from(kRoom, {}, 0.005, 1);
+  std::fill(empty.ranges.begin(), empty.ranges.end(), 0.0F);
+  EXPECT_EQ(match_scans(empty, scan_from(kRoom, {}, 0.005, 2), {0, 0, 0}).status, "too_few_points");
+  empty.ranges[100] = 1.0F;
+  EXPECT_EQ(match_scans(scan_from(kRoom, {}, 0.005, 2), empty, {0, 0, 0}).status, "too_few_points");
+}
+
+TEST(Surface, deskewing_straightens_a_sweep_taken_while_turning) {
+  // The head turns counter-clockwise in 0.1 s while the robot turns at 1 rad/s.
+  Scan skewed = scan_from(kRoom, {}, 0.0, 1);
+  skewed.time_increment = 0.1 / 720.0;
+  for (int i = 0; i < 720; ++i) {
+    const double yaw = (*skewed.time_increment * i - 0.05) * 1.0;
+    skewed.ranges[static_cast<std::size_t>(i)] = static_cast<float>(
+        ray_distance(kRoom, 0.0, 0.0, yaw + skewed.angle_min + skewed.angle_increment * i));
+  }
+  const double middle = reference_time(skewed);
+  const Surface straight = make_surface(
+      skewed,
+      [&](double s) {
+        return Pose{0.0, 0.0, s - middle};
+      },
+      0.005);
+  const Surface bent = make_surface(
+      skewed, [](double) { return Pose{}; }, 0.005);
+  const auto worst_wall_error = [](const Surface& surface) {
+    double worst = 0.0;
+    for (const SurfacePoint& p : surface.points)
+      if (p.position.y() < -1.5 && std::abs(p.position.x() - 0.5) < 3.0) worst = std::max(worst, std::abs(p.position.y() + 2.0));
+    return worst;
+  };
+  EXPECT_LT(worst_wall_error(straight), 2e-3);
+  EXPECT_GT(worst_wall_error(bent), 0.05);
+}
+
+TEST(Surface, listed_angles_may_wrap_anywhere) {
+  Scan listed = scan_from(kRoom, {}, 0.005, 1);
+  for (int i = 0; i < 720; ++i)
+    listed.angles.push_back(static_cast<float>(wrap_angle(1.0 + listed.angle_increment * i)));
+  for (int i = 0; i < 720; ++i)
+    listed.ranges[static_cast<std::size_t>(i)] = static_cast<float>(
+        ray_distance(kRoom, 0, 0, static_cast<double>(listed.angles[static_cast<std::size_t>(i)])));
+  const Surface surface = make_surface(
+      listed, [](double) { return Pose{}; }, 0.005);
+  const auto lines = std::count_if(surface.points.begin(), surface.points.end(),
+                                   [](const SurfacePoint& p) { return p.has_line; });
+  EXPECT_GT(lines, 650);
+}
+
+TEST(Surface, estimates_the_range_noise) {
+  for (const double noise : {0.004, 0.01, 0.03}) {
+    std::vector<Scan> scans;
+    for (unsigned i = 0; i < 10; ++i) scans.push_back(scan_from(kRoom, {0.1 * i, 0.0, 0.2 * i}, noise, i));
+    EXPECT_NEAR(estimate_range_noise(scans) / noise, 1.0, 0.2) << noise;
+  }
+}
+
+}  // namespace
+}  // namespace odomcalib::calib

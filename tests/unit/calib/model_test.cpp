@@ -1,0 +1,139 @@
+#include "calib/model/drive_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "calib/effects/catalogue.hpp"
+#include "tests/unit/calib/synthetic.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+const BaseParameters kBase{0.075, 0.074, 0.4, {0.1, 0.02, 0.3}};
+
+/// Wheels that speed up, slow down and reverse independently.
+WheelTrack lively_track() {
+  WheelTrack track;
+  for (int k = 0; k <= 2000; ++k) {
+    const double t = 0.02 * k;
+    track.t.push_back(t);
+    track.left.push_back(8.0 * std::sin(0.31 * t) + 0.7 * t);
+    track.right.push_back(7.0 * std::sin(0.43 * t + 0.5) + 0.8 * t);
+    track.segment.push_back(0);
+  }
+  return track;
+}
+
+std::vector<Interval> some_intervals() {
+  std::vector<Interval> intervals;
+  // Never within a step of a tick sample: the delay's derivative jumps there.
+  for (double t = 1.0137; t < 38.0; t += 0.74) intervals.push_back({t, t + 0.72});
+  return intervals;
+}
+
+std::span<const double> as_span(const Eigen::VectorXd& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+TEST(DriveModel, predicts_the_circle_about_the_centre_of_rotation) {
+  WheelTrack track{{0.0, 2.0}, {0.0, 3.0}, {0.0, 5.0}, {0, 0}};
+  const DriveModel model(track, make_context(track, kBase));
+  const std::vector<Interval> intervals = {{0.0, 2.0}, {0.5, 1.0}};
+  const auto motions = model.predict(as_span(to_vector(kBase)), {}, intervals);
+  const Pose whole = odomcalib::testing::sensor_motion_by_hand(kBase, 3.0, 5.0);
+  const Pose quarter = odomcalib::testing::sensor_motion_by_hand(kBase, 0.75, 1.25);
+  EXPECT_NEAR(motions[0].x, whole.x, 1e-12);
+  EXPECT_NEAR(motions[0].y, whole.y, 1e-12);
+  EXPECT_NEAR(motions[0].yaw, whole.yaw, 1e-12);
+  EXPECT_NEAR(motions[1].x, quarter.x, 1e-12);
+  EXPECT_NEAR(motions[1].yaw, quarter.yaw, 1e-12);
+}
+
+class JacobianOf : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(JacobianOf, agrees_with_central_differences) {
+  const WheelTrack track = lively_track();
+  const DriveModel model(track, make_context(track, kBase));
+  EffectList effects;
+  if (GetParam() > 0) effects.push_back(effect_catalogue()[GetParam() - 1]);
+  Eigen::VectorXd p = to_vector(kBase, count_parameters(effects));
+  std::vector<double> steps(kBaseCount, 1e-6);
+  for (const auto& effect : effects)
+    for (const EffectParameter& parameter : effect->parameters()) {
+      p(static_cast<Eigen::Index>(steps.size())) = 0.25 * parameter.scale;
+      steps.push_back(1e-4 * parameter.scale);
+    }
+  const auto intervals = some_intervals();
+  Eigen::MatrixXd jacobian;
+  static_cast<void>(model.predict(as_span(p), effects, intervals, jacobian));
+  for (Eigen::Index k = 0; k < p.size(); ++k) {
+    const double step = steps[static_cast<std::size_t>(k)];
+    Eigen::VectorXd plus = p;
+    Eigen::VectorXd minus = p;
+    plus(k) += step;
+    minus(k) -= step;
+    const auto a = model.predict(as_span(plus), effects, intervals);
+    const auto b = model.predict(as_span(minus), effects, intervals);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double differences[] = {a[i].x - b[i].x, a[i].y - b[i].y, a[i].yaw - b[i].yaw};
+      for (Eigen::Index r = 0; r < 3; ++r)
+        worst = std::max(worst, std::abs(differences[r] / (2.0 * step) -
+                                         jacobian(static_cast<Eigen::Index>(3 * i) + r, k)));
+    }
+    EXPECT_LT(worst, 1e-5 * std::max(1.0, jacobian.col(k).cwiseAbs().maxCoeff())) << "parameter " << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Model, JacobianOf, ::testing::Range(std::size_t{0}, effect_catalogue().size() + 1),
+                         [](const auto& tested) {
+                           if (tested.param == 0) return std::string("base");
+                           const auto& effect = effect_catalogue()[tested.param - 1];
+                           return effect->name() + "_" + effect->parameters().front().name;
+                         });
+
+TEST(Effects, change_nothing_when_their_parameters_are_zero) {
+  const WheelTrack track = lively_track();
+  const DriveModel model(track, make_context(track, kBase));
+  const auto intervals = some_intervals();
+  const auto plain = model.predict(as_span(to_vector(kBase)), {}, intervals);
+  for (const auto& effect : effect_catalogue()) {
+    const EffectList one = {effect};
+    const auto with = model.predict(as_span(to_vector(kBase, count_parameters(one))), one, intervals);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      EXPECT_NEAR(with[i].x, plain[i].x, 1e-12) << effect->name();
+      EXPECT_NEAR(with[i].yaw, plain[i].yaw, 1e-12) << effect->name();
+    }
+  }
+}
+
+TEST(Context, speeds_and_accelerations_are_those_of_the_wheels) {
+  const WheelTrack track = lively_track();
+  const auto context = make_context(track, kBase);
+  for (std::size_t k = 50; k < 1900; k += 37) {
+    const double t = context[k].t;
+    EXPECT_NEAR(context[k].left_speed, kBase.left_radius * (8.0 * 0.31 * std::cos(0.31 * t) + 0.7), 2e-3);
+    EXPECT_NEAR(context[k].right_acceleration,
+                -kBase.right_radius * 7.0 * 0.43 * 0.43 * std::sin(0.43 * t + 0.5), 2e-2);
+  }
+}
+
+TEST(WheelTrack, interpolates_with_the_weights_the_right_way_round) {
+  WheelTrack track{{0.0, 1.0}, {0.0, 10.0}, {0.0, 0.0}, {0, 0}};
+  const DriveModel model(track, make_context(track, kBase));
+  const auto trajectory = model.trajectory(as_span(to_vector(BaseParameters{0.1, 0.1, 0.4, {}})), {});
+  EXPECT_NEAR(trajectory.at(0.0).x, 0.0, 1e-12);
+  EXPECT_LT(std::abs(trajectory.at(0.25).yaw), std::abs(trajectory.at(0.75).yaw));
+}
+
+TEST(WheelTrack, does_not_cover_a_change_of_segment) {
+  WheelTrack track{{0.0, 1.0, 2.0, 3.0}, {0, 1, 2, 3}, {0, 1, 2, 3}, {0, 0, 1, 1}};
+  EXPECT_TRUE(track.covers(0.1, 0.9));
+  EXPECT_FALSE(track.covers(0.5, 2.5));
+  EXPECT_TRUE(track.covers(2.1, 2.9));
+  EXPECT_FALSE(track.covers(2.5, 3.5));
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
