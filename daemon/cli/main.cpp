@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   odomcalib::cli::add_solve(app, session);
   odomcalib::cli::add_predict(app, session);
+  odomcalib::cli::add_decode(app, session);
   odomcalib::cli::add_questions(app, session);
   odomcalib::cli::add_motions(app, session);
   try {

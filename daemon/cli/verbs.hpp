@@ -24,6 +24,7 @@ struct Session {
 // Offline: need no daemon.
 void add_solve(CLI::App& app, Session& session);
 void add_predict(CLI::App& app, Session& session);
+void add_decode(CLI::App& app, Session& session);
 
 // Ask the daemon.
 int show_status(const Session& session);
