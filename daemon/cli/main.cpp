@@ -16,6 +16,7 @@ void add_common_options(CLI::App& app, odomcalib::cli::Session& session, std::st
   app.add_flag("!--no-legend", session.legend, "tables without their head line");
   app.add_flag_callback(
       "--no-pager", [] {}, "accepted for scripts; no pager is ever started");
+  app.add_option("--socket", session.socket, "control socket of the daemon")->capture_default_str();
   app.footer(odomcalib::cli::exit_status_help());
 }
 
@@ -33,6 +34,9 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   odomcalib::cli::add_solve(app, session);
   odomcalib::cli::add_predict(app, session);
+  odomcalib::cli::add_decode(app, session);
+  odomcalib::cli::add_questions(app, session);
+  odomcalib::cli::add_motions(app, session);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -40,8 +44,7 @@ int run(int argc, char** argv) {
   }
   session.json = mode_of(json);
   if (session.run) return session.run();
-  std::cout << app.help();
-  return odomcalib::cli::kDone;
+  return odomcalib::cli::show_status(session);
 }
 
 }  // namespace

@@ -17,12 +17,18 @@ namespace odomcalib::cli {
 struct Session {
   JsonMode json = JsonMode::off;
   bool legend = true;
-  std::string socket;        ///< of the daemon
-  std::function<int()> run;  ///< set by the verb that was parsed
+  std::string socket = "/run/odomcalib/control";  ///< of the daemon
+  std::function<int()> run;                       ///< set by the verb that was parsed
 };
 
 // Offline: need no daemon.
 void add_solve(CLI::App& app, Session& session);
 void add_predict(CLI::App& app, Session& session);
+void add_decode(CLI::App& app, Session& session);
+
+// Ask the daemon.
+int show_status(const Session& session);
+void add_questions(CLI::App& app, Session& session);
+void add_motions(CLI::App& app, Session& session);
 
 }  // namespace odomcalib::cli

@@ -1,0 +1,171 @@
+#include "daemon/cli/client.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kRenewal = std::chrono::milliseconds(60);  // a quarter of the lease's 250 ms
+
+volatile sig_atomic_t interrupted = 0;
+
+void on_signal(int /*number*/) { interrupted = 1; }
+
+Error not_running(const std::string& socket, const std::string& what) {
+  return {ErrorCode::not_running, what, socket, "start it with: systemctl start odomcalib"};
+}
+
+// While a motion runs, signals ask for its end instead of ending the process.
+class SignalsCaught {
+ public:
+  SignalsCaught() {
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    for (std::size_t i = 0; i < kNumbers.size(); ++i) sigaction(kNumbers.at(i), &action, &before_.at(i));
+  }
+  ~SignalsCaught() {
+    for (std::size_t i = 0; i < kNumbers.size(); ++i) sigaction(kNumbers.at(i), &before_.at(i), nullptr);
+  }
+  SignalsCaught(const SignalsCaught&) = delete;
+  SignalsCaught& operator=(const SignalsCaught&) = delete;
+
+ private:
+  static constexpr std::array kNumbers{SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, 3> before_{};
+};
+
+std::string with_lease(const std::string& parameters, const std::string& lease) {
+  auto body = ordered_json::parse(parameters, nullptr, false);
+  if (!body.is_object()) body = ordered_json::object();
+  body["lease"] = lease;
+  return body.dump();
+}
+
+// Progress goes to the caller; a final reply is returned.
+std::optional<control::Reply> final_reply(const control::Reply& reply,
+                                          const std::function<void(const std::string&)>& progress) {
+  if (!reply.continues) return reply;
+  const auto body = ordered_json::parse(reply.parameters, nullptr, false);
+  if (body.is_object() && body.contains("progress")) progress(body["progress"].dump());
+  return std::nullopt;
+}
+
+Result<std::string> value_of(const control::Reply& reply) {
+  if (!reply.error.empty()) return control::error_of(reply);
+  return reply.parameters;
+}
+
+}  // namespace
+
+Client::~Client() {
+  if (fd_ >= 0) close(fd_);
+}
+
+Client::Client(Client&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)), decoder_(std::move(other.decoder_)) {}
+
+Result<Client> Client::connect(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof(address.sun_path))
+    return Error{ErrorCode::usage, "the path of a socket has at most 107 characters", path, ""};
+  std::copy(path.begin(), path.end(), std::begin(address.sun_path));
+  Client client(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (::connect(client.fd_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0) return client;
+  if (errno == EACCES || errno == EPERM)
+    return Error{ErrorCode::not_permitted, "you may not use the control socket", path,
+                 "join group odomcalib"};
+  return not_running(path, "odomcalibd is not running");
+}
+
+Result<void> Client::send(const std::string& method, const std::string& parameters, bool more) {
+  control::Call call;
+  call.method = std::string(control::kInterface) + "." + method;
+  call.parameters = parameters;
+  call.more = more;
+  const std::string frame = control::encode_call(call);
+  for (std::size_t done = 0; done < frame.size();) {
+    const ssize_t put = ::send(fd_, frame.data() + done, frame.size() - done, MSG_NOSIGNAL);
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0) return not_running("control socket", "the connection to odomcalibd was lost");
+    done += static_cast<std::size_t>(put);
+  }
+  return {};
+}
+
+Result<std::optional<control::Reply>> Client::receive(int timeout_ms) {
+  if (const auto frame = decoder_.next()) {
+    auto reply = control::decode_reply(*frame);
+    if (!reply) return reply.error();
+    return std::optional(std::move(reply).value());
+  }
+  pollfd polled{fd_, POLLIN, 0};
+  if (poll(&polled, 1, timeout_ms) <= 0) return std::optional<control::Reply>();
+  std::array<char, 65536> buffer;
+  const ssize_t got = read(fd_, buffer.data(), buffer.size());
+  if (got == 0 || (got < 0 && errno != EINTR))
+    return not_running("control socket", "the connection to odomcalibd was lost");
+  if (got > 0) decoder_.feed({buffer.data(), static_cast<std::size_t>(got)});
+  const auto frame = decoder_.next();
+  if (!frame) return std::optional<control::Reply>();
+  auto reply = control::decode_reply(*frame);
+  if (!reply) return reply.error();
+  return std::optional(std::move(reply).value());
+}
+
+Result<std::string> Client::call(const std::string& method, const std::string& parameters, int timeout_ms) {
+  if (auto sent = send(method, parameters); !sent) return sent.error();
+  const auto until = Clock::now() + std::chrono::milliseconds(timeout_ms);
+  while (Clock::now() < until) {
+    const auto reply = receive(50);
+    if (!reply) return reply.error();
+    if (reply.value()) return value_of(*reply.value());
+  }
+  return Error{ErrorCode::timeout, "odomcalibd does not answer", method, "see systemctl status odomcalib"};
+}
+
+Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
+                                    const std::string& parameters,
+                                    const std::function<void(const std::string&)>& progress) {
+  auto keeper = Client::connect(socket);
+  auto worker = Client::connect(socket);
+  if (!keeper) return keeper.error();
+  if (!worker) return worker.error();
+  const SignalsCaught caught;
+  const auto given = keeper.value().call("Acquire");
+  if (!given) return given.error();
+  const auto lease = ordered_json::parse(given.value(), nullptr, false).value("lease", std::string());
+  if (auto sent = worker.value().send(method, with_lease(parameters, lease), true); !sent)
+    return sent.error();
+  const std::string renewal = ordered_json{{"lease", lease}}.dump();
+  auto next = Clock::now();
+  while (interrupted == 0) {
+    if (Clock::now() >= next) {
+      next = Clock::now() + kRenewal;
+      if (auto sent = keeper.value().send("Renew", renewal); !sent) return sent.error();
+    }
+    (void)keeper.value().receive(0);
+    const auto reply = worker.value().receive(20);
+    if (!reply) return reply.error();
+    if (!reply.value()) continue;
+    if (const auto last = final_reply(*reply.value(), progress)) return value_of(*last);
+  }
+  (void)keeper.value().call("Stop", "{}", 500);
+  return Error{ErrorCode::cancelled, "interrupted, the robot was stopped", method, "start again"};
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,45 @@
+// A connection to the daemon's control socket, and the lease that keeps a motion going.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "proto/control.hpp"
+#include "proto/result.hpp"
+
+namespace odomcalib::cli {
+
+class Client {
+ public:
+  /// Error: not_running (with the command that starts the daemon), not_permitted.
+  static Result<Client> connect(const std::string& socket);
+  ~Client();
+  Client(Client&& other) noexcept;
+  Client& operator=(Client&&) = delete;
+
+  Result<void> send(const std::string& method, const std::string& parameters, bool more = false);
+  /// The next reply, or nullopt when none came within the time. Errors: not_running (connection lost),
+  /// format.
+  Result<std::optional<control::Reply>> receive(int timeout_ms);
+  /// One call with one reply. @return parameters as JSON text; the daemon's error as ours
+  Result<std::string> call(const std::string& method, const std::string& parameters = "{}",
+                           int timeout_ms = 5000);
+
+ private:
+  explicit Client(int fd) : fd_(fd) {}
+  int fd_;
+  control::FrameDecoder decoder_;
+};
+
+/// Runs a method that needs the lease: acquires it, renews it every 60 ms on a connection of its own, and
+/// lets go of it on Ctrl-C, SIGTERM and SIGHUP. A suspended or killed process renews nothing, and the robot
+/// stops.
+/// @param parameters JSON object text without "lease"
+/// @param progress called with the JSON text of each progress object
+Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
+                                    const std::string& parameters,
+                                    const std::function<void(const std::string&)>& progress);
+
+}  // namespace odomcalib::cli

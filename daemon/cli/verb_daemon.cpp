@@ -1,0 +1,113 @@
+// Verbs that ask the daemon and print its answer.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/client.hpp"
+#include "daemon/cli/document.hpp"
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/verbs.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using Printer = std::function<void(const ordered_json&, const Session&)>;
+
+std::string text_of(const ordered_json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+int ask(const Session& session, const std::string& method, const std::string& parameters,
+        const std::string& member, const Printer& print) {
+  auto client = Client::connect(session.socket);
+  if (!client) return report_error(client.error(), session.json);
+  const auto answer = client.value().call(method, parameters);
+  if (!answer) return report_error(answer.error(), session.json);
+  const auto body = ordered_json::parse(answer.value(), nullptr, false);
+  const ordered_json value = member.empty() ? body : body.value(member, ordered_json());
+  if (session.json != JsonMode::off)
+    print_json(value.dump(), session.json);
+  else
+    print(value, session);
+  return kDone;
+}
+
+void print_status(const ordered_json& status, const Session& session) {
+  Document document{"odomcalibd: " + text_of(status["state"]), {}};
+  const auto& controller = status["controller"];
+  const auto& lidar = status["lidar"];
+  Section section;
+  section.table.rows = {{"controller", text_of(controller["state"]) + "  " + text_of(controller["device"])},
+                        {"lidar", (lidar["stale"] == "" ? "scans arrive" : text_of(lidar["stale"])) + "  " +
+                                      text_of(lidar["device"])},
+                        {"calibrated", status["calibrated"] == true ? "yes" : "no"},
+                        {"last stop", text_of(status["last_stop"])}};
+  for (const auto* device : {&controller, &lidar})
+    if ((*device)["problem"] != "") section.lines.push_back(text_of((*device)["problem"]));
+  document.sections.push_back(section);
+  std::cout << to_text(document, session.legend);
+}
+
+void print_checks(const ordered_json& checks, const Session& session) {
+  Document document{"What is possible", {}};
+  Section section{"", {}, {{"check", "outcome", "found", "remedy"}, {}}};
+  for (const auto& check : checks)
+    section.table.rows.push_back({text_of(check["name"]), text_of(check["outcome"]), text_of(check["found"]),
+                                  text_of(check["remedy"])});
+  document.sections.push_back(section);
+  std::cout << to_text(document, session.legend);
+}
+
+void print_parameters(const ordered_json& parameters, const Session& session) {
+  Document document{"Parameters in force", {}};
+  Section section{"", {}, {{"", "value m", "calibrated m", "stored in"}, {}}};
+  for (const auto& p : parameters)
+    section.table.rows.push_back(
+        {text_of(p["name"]), text_of(p["value"]), text_of(p["calibrated"]), text_of(p["stored_in"])});
+  document.sections.push_back(section);
+  std::cout << to_text(document, session.legend);
+}
+
+void print_history(const ordered_json& entries, const Session& session) {
+  Document document{"Write-backs, newest first", {}};
+  Section section{"", {}, {{"id", "action", "outcome", "before", "after"}, {}}};
+  for (const auto& e : entries)
+    section.table.rows.push_back({text_of(e["id"]), text_of(e["action"]), text_of(e["outcome"]),
+                                  e["before"].dump(), e["after"].dump()});
+  document.sections.push_back(section);
+  std::cout << to_text(document, session.legend);
+}
+
+void add_question(CLI::App& app, Session& session, const char* verb, const char* help, const char* method,
+                  const char* member, const Printer& print) {
+  app.add_subcommand(verb, help)->callback([&session, method, member, print] {
+    session.run = [&session, method, member, print] { return ask(session, method, "{}", member, print); };
+  });
+}
+
+}  // namespace
+
+int show_status(const Session& session) { return ask(session, "GetStatus", "{}", "status", print_status); }
+
+void add_questions(CLI::App& app, Session& session) {
+  add_question(app, session, "status", "What the daemon and its devices do (default)", "GetStatus", "status",
+               print_status);
+  add_question(app, session, "check", "Whether everything needed for a calibration is there", "Check",
+               "checks", print_checks);
+  add_question(app, session, "stop", "Stop the robot and whatever runs", "Stop", "",
+               [](const ordered_json&, const Session&) { std::cout << "stopped\n"; });
+  add_question(app, session, "history", "What was written to the controller", "History", "entries",
+               print_history);
+  auto* params = app.add_subcommand("params", "Parameters of the controller");
+  params->require_subcommand(1);
+  params->fallthrough();
+  add_question(*params, session, "get", "Values in force", "GetParameters", "parameters", print_parameters);
+  add_question(*params, session, "diff", "Values in force against calibrated ones", "GetParameters",
+               "parameters", print_parameters);
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,38 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/verbs.hpp"
+#include "drivers/decode.hpp"
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+struct Options {
+  std::string driver, file, profiles = "/usr/share/odomcalib/profiles";
+};
+
+int decode_file(const Options& options, const Session& session) {
+  const auto bytes = read_file_bytes(options.file);
+  if (!bytes) return report_error(bytes.error(), session.json);
+  const auto lines = drivers::decode(options.driver, bytes.value(), options.profiles, options.file);
+  if (!lines) return report_error(lines.error(), session.json);
+  std::cout << lines.value();
+  return kDone;
+}
+
+}  // namespace
+
+void add_decode(CLI::App& app, Session& session) {
+  auto* verb = app.add_subcommand("decode", "Bytes of a device, or a candump log, as JSON Lines");
+  auto options = std::make_shared<Options>();
+  verb->add_option("DRIVER", options->driver, "ld06, or canopen:PROFILE")->required();
+  verb->add_option("FILE", options->file)->required();
+  verb->add_option("--profiles", options->profiles, "folder of the profiles")->capture_default_str();
+  verb->callback(
+      [&session, options] { session.run = [&session, options] { return decode_file(*options, session); }; });
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,158 @@
+// Verbs that move the robot or write to its controller: consent, lease, progress, result.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "daemon/cli/calibration_document.hpp"
+#include "daemon/cli/client.hpp"
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/verbs.hpp"
+#include "proto/calibration.hpp"
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options {
+  bool yes = false;
+  ordered_json parameters = ordered_json::object();
+  double distance = 1.0, turns = 1.0;
+  std::string direction = "both", file, id;
+  bool dry_run = false, quick = false;
+};
+
+// Rule M11: somebody has looked at the robot.
+Result<void> consent(const Options& options, const std::string& what) {
+  if (options.yes || options.dry_run) return {};
+  if (isatty(STDIN_FILENO) != 1)
+    return Error{ErrorCode::usage, "moving or writing needs consent", what, "add --yes"};
+  std::cerr
+      << what
+      << ": is the area clear and an emergency stop at hand? This program's obstacle stop replaces neither"
+      << " a safety scanner nor an emergency stop. Type yes to go on: " << std::flush;
+  std::string answer;
+  std::getline(std::cin, answer);
+  if (answer == "yes") return {};
+  return Error{ErrorCode::cancelled, "no consent", what, ""};
+}
+
+Result<ordered_json> run_method(const Session& session, const Options& options, const std::string& method,
+                                ordered_json parameters) {
+  if (auto given = consent(options, method); !given) return given.error();
+  if (options.dry_run) parameters["dry_run"] = true;
+  ProgressLine line;
+  const auto progress = [&line](const std::string& text) {
+    const auto body = ordered_json::parse(text, nullptr, false);
+    line.show(fmt::format("{} {:3.0f} %   Ctrl-C stops the robot", body.value("phase", ""),
+                          100.0 * body.value("fraction", 0.0)));
+  };
+  const auto answer = call_with_lease(session.socket, method, parameters.dump(), progress);
+  if (!answer) return answer.error();
+  return ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
+}
+
+std::string describe_move(const ordered_json& move) {
+  const auto& told = move["odometry"];
+  std::string text = fmt::format("{}: odometry {:.4f} m, {:.3f} deg", move.value("move", ""),
+                                 std::hypot(told[0].get<double>(), told[1].get<double>()),
+                                 told[2].get<double>() * 180.0 / std::numbers::pi);
+  if (!move["error"].is_object()) return text + "; no lidar reference";
+  return text + fmt::format("; error {:+.1f} mm, {:+.3f} deg",
+                            1000.0 * move["error"]["distance"].get<double>(),
+                            move["error"]["yaw"].get<double>() * 180.0 / std::numbers::pi);
+}
+
+int print_result(const Session& session, const Result<ordered_json>& result) {
+  if (!result) return report_error(result.error(), session.json);
+  const ordered_json& body = result.value();
+  if (session.json != JsonMode::off) {
+    print_json(body.dump(), session.json);
+  } else if (body.contains("moves") && body["moves"].is_array()) {
+    for (const auto& move : body["moves"]) std::cout << describe_move(move) << '\n';
+    std::cout << "recording " << body.value("recording", "") << '\n';
+  } else {
+    std::cout << body.dump(2) << '\n';
+  }
+  return kDone;
+}
+
+int calibrate(const Session& session, const Options& options) {
+  const auto result = run_method(session, options, "Calibrate", {{"options", {{"quick", options.quick}}}});
+  if (!result || options.dry_run) return print_result(session, result);
+  const std::string text = result.value().value("calibration", ordered_json::object()).dump();
+  const auto calibration = calibration_from_json(text, "odomcalibd");
+  if (!calibration) return report_error(calibration.error(), session.json);
+  if (!options.file.empty())
+    if (auto written = write_calibration(calibration.value(), options.file); !written)
+      return report_error(written.error(), session.json);
+  if (session.json != JsonMode::off)
+    print_json(text, session.json);
+  else
+    std::cout << to_text(describe(calibration.value()), session.legend);
+  return calibration.value().verdict == Verdict::refused ? kRefused : kDone;
+}
+
+int apply(const Session& session, const Options& options) {
+  const auto bytes = read_file_bytes(options.file);
+  if (!bytes) return report_error(bytes.error(), session.json);
+  const auto body = ordered_json::parse(bytes.value(), nullptr, false);
+  if (!body.is_object())
+    return report_error({ErrorCode::format, "no calibration file", options.file, ""}, session.json);
+  return print_result(session, run_method(session, options, "Apply", {{"calibration", body}}));
+}
+
+int rollback(const Session& session, const Options& options) {
+  ordered_json parameters = ordered_json::object();
+  if (!options.id.empty()) parameters["id"] = options.id;
+  return print_result(session, run_method(session, options, "Rollback", parameters));
+}
+
+template <typename Action>
+CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<Options>& options,
+                     const char* verb, const char* help, Action action) {
+  auto* added = app.add_subcommand(verb, help);
+  added->add_flag("--yes", options->yes, "consent: the area is clear, somebody can stop the robot");
+  added->add_flag("--dry-run", options->dry_run, "check and say what would be done");
+  added->callback([&session, options, action] {
+    session.run = [&session, options, action] { return action(session, *options); };
+  });
+  return added;
+}
+
+}  // namespace
+
+void add_motions(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<Options>();
+  add_action(app, session, options, "straight", "Drive straight and back, odometry against lidar",
+             [](const Session& s, const Options& o) {
+               return print_result(s, run_method(s, o, "Straight", {{"distance", o.distance}}));
+             })
+      ->add_option("--distance", options->distance, "m, negative: backwards")
+      ->capture_default_str();
+  auto* spin = add_action(
+      app, session, options, "spin", "Turn on the spot, odometry against lidar",
+      [](const Session& s, const Options& o) {
+        return print_result(s, run_method(s, o, "Spin", {{"turns", o.turns}, {"direction", o.direction}}));
+      });
+  spin->add_option("--turns", options->turns, "full turns")->capture_default_str();
+  spin->add_option("--direction", options->direction)->check(CLI::IsMember({"ccw", "cw", "both"}));
+  auto* all =
+      add_action(app, session, options, "calibrate", "Straight, spin and pattern, then solve", calibrate);
+  all->add_flag("--quick", options->quick, "a shorter pattern");
+  all->add_option("--out", options->file, "calibration file to write");
+  add_action(app, session, options, "apply", "Write a calibration to the controller", apply)
+      ->add_option("CALIBRATION", options->file)
+      ->required();
+  add_action(app, session, options, "rollback", "Restore the values before a write-back", rollback)
+      ->add_option("ID", options->id, "history entry, default: the newest");
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,62 @@
+#include "daemon/service/calibrator.hpp"
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "calib/match.hpp"
+#include "calib/predict.hpp"
+#include "calib/solve.hpp"
+
+namespace odomcalib {
+namespace {
+
+using routines::Pose;
+
+Pose composed(const Pose& a, const Pose& b) {
+  const double c = std::cos(a.yaw);
+  const double s = std::sin(a.yaw);
+  return {a.x + c * b.x - s * b.y, a.y + s * b.x + c * b.y, a.yaw + b.yaw};
+}
+
+Pose inverse(const Pose& pose) {
+  const double c = std::cos(pose.yaw);
+  const double s = std::sin(pose.yaw);
+  return {-c * pose.x - s * pose.y, s * pose.x - c * pose.y, -pose.yaw};
+}
+
+// After a full turn an uncalibrated odometry may be wrong by ten degrees: the match starts from several
+// headings, and the one with the most inliers counts.
+std::optional<Pose> match(const Scan& from, const Scan& to, const Pose& guess,
+                          const std::array<double, 3>& mount) {
+  constexpr std::array kOffsets{0.0, 0.09, -0.09, 0.18, -0.18};
+  constexpr double kSmallTurn = 1.0;  // rad
+  const Pose lidar{mount[0], mount[1], mount[2]};
+  const Pose start = composed(composed(inverse(lidar), guess), lidar);
+  const std::size_t tries = std::abs(guess.yaw) < kSmallTurn ? 1 : kOffsets.size();
+  calib::ScanMatch best;
+  for (std::size_t i = 0; i < tries; ++i) {
+    const auto found = calib::match_scans(from, to, {start.x, start.y, start.yaw + kOffsets.at(i)});
+    if (found.ok() && (!best.ok() || found.inliers > best.inliers)) best = found;
+  }
+  if (!best.ok()) return std::nullopt;
+  return composed(composed(lidar, {best.pose[0], best.pose[1], best.pose[2]}), inverse(lidar));
+}
+
+}  // namespace
+
+Calibrator make_calibrator() {
+  Calibrator calibrator;
+  calibrator.solve = [](const std::vector<Recording>& recordings, const std::vector<std::string>& effects,
+                        const Calibrator::Progress& progress) {
+    return calib::solve(recordings, {.effects = effects}, progress);
+  };
+  calibrator.odometry = [](const Calibration& calibration) {
+    auto state = std::make_shared<calib::Odometry>(calibration);
+    return [state](const TickSample& sample) { return state->update(sample); };
+  };
+  calibrator.match = match;
+  return calibrator;
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,26 @@
+// Odometry with the parameters in force: what a routine is controlled by. The corrected odometry is calib's.
+#pragma once
+
+#include <optional>
+
+#include "daemon/routines/motion.hpp"
+#include "proto/measurements.hpp"
+
+namespace odomcalib {
+
+class DeadReckoning {
+ public:
+  /// Adds the motion since the last sample; a new segment or an unknown geometry adds none.
+  void add(const TickSample& sample, const RobotDescription& robot);
+  /// yaw is continuous over full turns.
+  [[nodiscard]] const routines::Pose& pose() const { return pose_; }
+
+ private:
+  std::optional<TickSample> last_;
+  routines::Pose pose_;
+};
+
+/// `pose` in the frame of `start`; yaw difference continuous.
+routines::Pose relative(const routines::Pose& start, const routines::Pose& pose);
+
+}  // namespace odomcalib

@@ -1,0 +1,237 @@
+#include "daemon/service/service.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/service/service_impl.hpp"
+
+namespace odomcalib {
+namespace {
+
+constexpr std::size_t kKeptEvents = 100;
+constexpr int kMovingTimeout = 5;       // ms: control steps every 10 ms need a loop that turns faster
+constexpr double kControlStep = 0.010;  // s
+
+PoseSample pose_sample(double t, const routines::Pose& pose) {
+  return {t, pose.x, pose.y, routines::wrapped(pose.yaw)};
+}
+
+}  // namespace
+
+Service::Impl::Impl(const Config& configuration, Clock& time, Calibrator functions, BaseLink base_link,
+                    LidarLink lidar_link, ControlServer control_server, Journal write_journal)
+    : config(configuration),
+      clock(time),
+      calibrator(std::move(functions)),
+      base(std::move(base_link)),
+      lidar(std::move(lidar_link)),
+      server(std::move(control_server)),
+      journal(std::move(write_journal)),
+      transaction(journal),
+      history(config.state_dir / "history"),
+      telemetry(config.lcm_enabled ? config.lcm_url : "", config.channel_prefix,
+                config.state_dir / "recordings"),
+      obstacles({.footprint = config.footprint, .acceleration = config.limits.acceleration}) {
+  operator_needed = journal.unfinished().has_value();
+  load_active();
+}
+
+void Service::Impl::wait(int timeout_ms) {
+  std::vector<pollfd> polled;
+  for (const int fd : {base.fd(), lidar.fd()})
+    if (fd >= 0) polled.push_back({fd, POLLIN, 0});
+  for (const auto& watch : server.watches())
+    polled.push_back({watch.fd, static_cast<short>(watch.writing ? POLLIN | POLLOUT : POLLIN), 0});
+  const int limit = run ? std::min(timeout_ms, kMovingTimeout) : timeout_ms;
+  poll(polled.data(), polled.size(), limit);
+}
+
+void Service::Impl::turn() {
+  now = clock.now();
+  serve_base();
+  serve_lidar();
+  serve_clients();
+  serve_motion();
+  serve_solver();
+  serve_writeback();
+  serve_recording();
+  serve_telemetry();
+  base.flush();
+}
+
+void Service::Impl::serve_base() {
+  base.step(now);
+  const RobotDescription description = robot();
+  for (const TickSample& sample : base.controller().take_ticks()) {
+    ++tick_count;
+    encoders.seen(sample, now);
+    odometry.add(sample, description);
+    telemetry.emit(stamp(sample.t).utime, "TICKS", messages::encode(stamp(sample.t), sample));
+    telemetry.publisher.send("ODOM",
+                             messages::encode(stamp(sample.t), pose_sample(sample.t, odometry.pose())));
+    if (corrected)
+      telemetry.publisher.send("ODOM_CALIBRATED", messages::encode(stamp(sample.t), (*corrected)(sample)));
+  }
+  for (const auto& happened : base.controller().take_events()) {
+    event(happened.stop ? messages::Severity::stop : messages::Severity::info, happened.code, happened.text);
+    if (happened.stop && run) run->fault(happened.code + ": " + happened.text);
+  }
+  const auto state = base.controller().state();
+  if (state != controller_state) event(messages::Severity::info, "controller_state", name_of(state));
+  controller_state = state;
+}
+
+void Service::Impl::serve_lidar() {
+  lidar.step(now);
+  for (Scan& scan : lidar.take_scans()) {
+    ++scan_count;
+    scans.seen(scan, now);
+    newest_points = safety::points_of(scan, config.lidar_pose);
+    obstacles.seen(newest_points, run ? run->twist() : routines::Twist{});
+    const messages::Stamp when = stamp(scan.t);
+    telemetry.emit(when.utime, "SCAN", messages::encode(when, scan));
+    if (run) run->seen(scan);
+    if (run && run->driving()) watch_agreement(scan);
+    newest_scan = std::move(scan);
+  }
+}
+
+void Service::Impl::serve_motion() {
+  if (!run || now < next_command) return;
+  next_command = now + kControlStep;
+  Situation situation;
+  situation.now = now;
+  situation.odometry = odometry.pose();
+  situation.lease = lease.holds(pending ? pending->lease : "", now);
+  situation.stale = encoders.stale(now) ? encoders.stale(now) : scans.stale(now);
+  situation.disagreement = disagreement;
+  situation.blocked = obstacles.blocked();
+  run->step(situation);
+  const auto rates = routines::to_wheels(run->twist(), geometry());
+  encoders.commanded(rates.left, rates.right, now);
+  if (run->ended()) return motion_ended();
+  progress(run->activity(), run->fraction(), run->remaining(now));
+}
+
+void Service::Impl::serve_solver() {
+  if (!solver) return;
+  const auto [phase, fraction] = solver->progress();
+  progress("solve: " + phase, fraction, std::nullopt);
+  auto result = solver->take_result();
+  if (!result) return;
+  solver.reset();
+  if (!*result) return fail_pending(result->error());
+  const std::string text = to_json(result->value());
+  telemetry.publisher.send("RESULT", messages::encode_json(clock.wall_us(), "odomcalib-calibration/1", text));
+  (void)write_calibration(result->value(),
+                          config.state_dir / "calibrations" / (recording_path.stem().string() + ".json"));
+  finish_pending({{"recording", recording_path.string()}, {"calibration", ordered_json::parse(text)}});
+}
+
+void Service::Impl::serve_recording() {
+  if (!pending || pending->method != "Record") return;
+  const bool over = pending->until > 0.0 && now >= pending->until;
+  progress("recording", 0.0, pending->until > 0.0 ? std::optional(pending->until - now) : std::nullopt);
+  if (!over) return;
+  const auto path = telemetry.recorder.finish();
+  if (!path) return fail_pending(path.error());
+  answer(pending->client, {{"path", path.value().string()}});
+  pending.reset();
+}
+
+void Service::Impl::serve_telemetry() {
+  if (now >= next_robot) {
+    next_robot = now + 10.0;
+    const std::int64_t utime = clock.wall_us();
+    telemetry.emit(utime, "ROBOT", messages::encode(utime, robot()));
+  }
+  if (now >= next_status) {
+    next_status = now + 1.0;
+    telemetry.publisher.send("STATUS",
+                             messages::encode_json(clock.wall_us(), "odomcalib-status/1", status().dump()));
+  }
+}
+
+void Service::Impl::progress(const std::string& phase, double fraction, std::optional<double> eta) {
+  if (now < next_progress) return;
+  next_progress = now + 0.2;
+  ordered_json body = {{"phase", phase}, {"fraction", fraction}, {"eta", nullptr}, {"hint", nullptr}};
+  if (eta) body["eta"] = *eta;
+  telemetry.publisher.send("PROGRESS",
+                           messages::encode_json(clock.wall_us(), "odomcalib-progress/1", body.dump()));
+  if (pending && pending->more)
+    server.reply(pending->client, control::encode_reply(ordered_json{{"progress", body}}.dump(), true));
+}
+
+void Service::Impl::event(messages::Severity severity, const std::string& code, const std::string& text) {
+  telemetry.emit(clock.wall_us(), "EVENT", messages::encode_event(stamp(now), severity, code, text));
+  events.push_back(
+      {{"time", clock.wall_us()}, {"severity", static_cast<int>(severity)}, {"code", code}, {"text", text}});
+  if (events.size() > kKeptEvents) events.pop_front();
+  for (const ClientId client : monitors)
+    server.reply(client, control::encode_reply(ordered_json{{"event", events.back()}}.dump(), true));
+}
+
+messages::Stamp Service::Impl::stamp(double t) const {
+  const auto age_us = static_cast<std::int64_t>(std::llround((now - t) * 1e6));
+  return {clock.wall_us() - age_us, static_cast<std::int64_t>(std::llround(t * 1e9))};
+}
+
+RobotDescription Service::Impl::robot() const {
+  RobotDescription all = base.controller().description();
+  const RobotDescription& given = config.robot;
+  if (given.left_wheel_diameter > 0.0) all.left_wheel_diameter = given.left_wheel_diameter;
+  if (given.right_wheel_diameter > 0.0) all.right_wheel_diameter = given.right_wheel_diameter;
+  if (given.track_width > 0.0) all.track_width = given.track_width;
+  for (const auto& parameter : in_force) {
+    if (parameter.quantity == "left_wheel_diameter") all.left_wheel_diameter = parameter.value;
+    if (parameter.quantity == "right_wheel_diameter") all.right_wheel_diameter = parameter.value;
+    if (parameter.quantity == "track_width") all.track_width = parameter.value;
+  }
+  all.lidar_pose = config.lidar_pose;
+  if (!given.robot_id.empty()) all.robot_id = given.robot_id;
+  return all;
+}
+
+Service::Service(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Service::~Service() { stop_all("the daemon ends"); }
+
+Result<std::unique_ptr<Service>> Service::create(const Config& config, Clock& clock, Calibrator calibrator) {
+  auto base = BaseLink::create(config.controller_device, config.controller_profile);
+  if (!base) return base.error();
+  auto lidar = LidarLink::create(config.lidar_device, config.lidar_type);
+  if (!lidar) return lidar.error();
+  auto journal = Journal::open(config.state_dir / "journal");
+  if (!journal) return journal.error();
+  auto server = ControlServer::create(config.socket, config.group);
+  if (!server) return server.error();
+  auto impl =
+      std::make_unique<Impl>(config, clock, std::move(calibrator), std::move(base).value(),
+                             std::move(lidar).value(), std::move(server).value(), std::move(journal).value());
+  impl->now = clock.now();
+  return std::unique_ptr<Service>(new Service(std::move(impl)));
+}
+
+void Service::poll_once(int timeout_ms) {
+  impl_->wait(timeout_ms);
+  impl_->turn();
+}
+
+void Service::stop_all(const std::string& why) {
+  impl_->now = impl_->clock.now();
+  const Error error{ErrorCode::cancelled, why, "odomcalibd", "start again"};
+  if (impl_->run) {
+    impl_->run->stop(error);
+    impl_->motion_ended();
+  } else {
+    impl_->base.controller().quick_stop(impl_->now);
+    impl_->base.flush();
+  }
+}
+
+std::string Service::status_line() const { return impl_->activity(); }
+std::string Service::status_json() const { return impl_->status().dump(); }
+
+}  // namespace odomcalib

@@ -1,0 +1,40 @@
+// odomcalibd without its main: one loop over devices, clients, a motion, a solver and a write-back.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "daemon/config/config.hpp"
+#include "daemon/service/calibrator.hpp"
+#include "daemon/service/clock.hpp"
+#include "proto/result.hpp"
+
+namespace odomcalib {
+
+class Service {
+ public:
+  /// Opens the control socket and the journal; devices may be absent and are opened by the loop.
+  /// Errors: io, usage, format (configuration, profile).
+  static Result<std::unique_ptr<Service>> create(const Config& config, Clock& clock, Calibrator calibrator);
+  ~Service();
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+  /// One turn of the loop: waits at most `timeout_ms` for input (less while the robot moves), then serves
+  /// everything that is due by the clock.
+  void poll_once(int timeout_ms);
+
+  /// Zero command, quick stop, end of whatever runs (SIGTERM, ExecStop).
+  void stop_all(const std::string& why);
+  /// One line for systemd's STATUS and for people.
+  [[nodiscard]] std::string status_line() const;
+  /// What `odomcalibctl status --json` prints.
+  [[nodiscard]] std::string status_json() const;
+
+ private:
+  struct Impl;
+  explicit Service(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace odomcalib

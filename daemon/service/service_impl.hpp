@@ -1,0 +1,144 @@
+// The state of the service, shared by the files service*.cpp and by nobody else.
+#pragma once
+
+#include <deque>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "daemon/safety/freshness.hpp"
+#include "daemon/safety/lease.hpp"
+#include "daemon/safety/obstacle.hpp"
+#include "daemon/service/base_link.hpp"
+#include "daemon/service/control_server.hpp"
+#include "daemon/service/dead_reckoning.hpp"
+#include "daemon/service/lidar_link.hpp"
+#include "daemon/service/motion_run.hpp"
+#include "daemon/service/service.hpp"
+#include "daemon/service/solver_job.hpp"
+#include "daemon/service/telemetry.hpp"
+#include "daemon/writeback/history.hpp"
+#include "daemon/writeback/journal.hpp"
+#include "daemon/writeback/transaction.hpp"
+
+namespace odomcalib {
+
+using nlohmann::ordered_json;
+
+/// The call that a client waits for; one at a time.
+struct PendingCall {
+  ClientId client = 0;
+  std::string method;
+  bool more = false;
+  std::string lease;
+  std::vector<std::string> effects{"auto"};
+  std::optional<std::string> calibration;  ///< JSON text, apply and rollback
+  double until = 0.0;                      ///< s, end of a recording without motion; 0: until Stop
+};
+
+struct Service::Impl {
+  Impl(const Config& configuration, Clock& time, Calibrator functions, BaseLink base_link,
+       LidarLink lidar_link, ControlServer control_server, Journal write_journal);
+
+  // service.cpp: the loop
+  void wait(int timeout_ms);
+  void turn();
+  void serve_base();
+  void serve_lidar();
+  void serve_motion();
+  void serve_solver();
+  void serve_writeback();
+  void serve_recording();
+  void serve_telemetry();
+
+  // service_calls.cpp: what clients ask for
+  void serve_clients();
+  void handle(const IncomingCall& incoming);
+  void dispatch(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_straight(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_spin(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_calibrate(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_record(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_apply(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_set(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_rollback(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_history(const IncomingCall& incoming, const ordered_json& parameters);
+  void answer(ClientId client, const ordered_json& parameters);
+  void refuse(ClientId client, const Error& error);
+
+  // service_motion.cpp: guided motions
+  std::optional<Error> motion_forbidden(const routines::Plan& plan) const;
+  void start_motion(const IncomingCall& incoming, const routines::Plan& plan, const ordered_json& parameters,
+                    PendingCall pending);
+  void motion_ended();
+  ordered_json leg_report(const Leg& leg) const;
+  void watch_agreement(const Scan& scan);
+  routines::WheelGeometry geometry() const;
+
+  // service_writeback.cpp
+  std::optional<Error> write_forbidden(const std::string& lease) const;
+  void start_write(const IncomingCall& incoming, const ParameterMap& values, PendingCall pending,
+                   bool dry_run);
+  void write_ended(const WriteReport& report);
+  void load_active();
+  void set_active(const std::optional<std::string>& calibration_json);
+
+  // service_status.cpp
+  ordered_json status() const;
+  ordered_json describe() const;
+  ordered_json checks() const;
+  ordered_json parameters() const;
+  std::string activity() const;
+
+  void finish_pending(const ordered_json& result);
+  void fail_pending(const Error& error);
+  void progress(const std::string& phase, double fraction, std::optional<double> eta);
+  void event(messages::Severity severity, const std::string& code, const std::string& text);
+  [[nodiscard]] messages::Stamp stamp(double t) const;
+  [[nodiscard]] RobotDescription robot() const;
+
+  Config config;
+  Clock& clock;
+  Calibrator calibrator;
+  BaseLink base;
+  LidarLink lidar;
+  ControlServer server;
+  Journal journal;
+  Transaction transaction;
+  History history;
+  Telemetry telemetry;
+
+  double now = 0.0;
+  safety::Lease lease;
+  safety::EncoderFreshness encoders;
+  safety::ScanFreshness scans;
+  safety::ObstacleGuard obstacles;
+  DeadReckoning odometry;
+  std::optional<Calibrator::Odometry> corrected;
+  std::optional<Calibration> active;  ///< applied calibration
+  std::vector<drivers::StoredParameter> in_force;
+  std::optional<Scan> newest_scan;
+  std::vector<safety::Point> newest_points;
+  std::optional<Scan> agreement_scan;  ///< reference of the comparison of odometry and lidar
+  routines::Pose agreement_pose;
+  std::optional<std::string> disagreement;
+  int disagreements = 0;
+
+  std::optional<PendingCall> pending;
+  std::optional<MotionRun> run;
+  std::optional<SolverJob> solver;
+  std::filesystem::path recording_path;
+  std::set<ClientId> monitors;
+  std::deque<ordered_json> events;  ///< newest last, bounded
+  std::string last_stop;            ///< why the robot was stopped last
+  bool parameters_known = false;
+  bool operator_needed = false;
+  drivers::ControllerState controller_state = drivers::ControllerState::absent;
+  std::uint64_t tick_count = 0, scan_count = 0;
+  double next_robot = 0.0, next_status = 0.0, next_progress = 0.0, next_command = 0.0, next_read = 0.0;
+};
+
+std::string name_of(drivers::ControllerState state);
+
+}  // namespace odomcalib

@@ -1,0 +1,146 @@
+// Guided motions: what must be true before one, and what came of it.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "daemon/service/service_impl.hpp"
+
+namespace odomcalib {
+namespace {
+
+Error forbidden(ErrorCode code, const std::string& what, const std::string& remedy) {
+  return {code, what, "motion", remedy};
+}
+
+ordered_json json_of(const routines::Pose& pose) { return {pose.x, pose.y, pose.yaw}; }
+
+}  // namespace
+
+routines::WheelGeometry Service::Impl::geometry() const {
+  const RobotDescription all = robot();
+  return {all.left_wheel_diameter, all.right_wheel_diameter, all.track_width};
+}
+
+std::optional<Error> Service::Impl::motion_forbidden(const routines::Plan& plan) const {
+  using drivers::ControllerState;
+  if (operator_needed)
+    return forbidden(ErrorCode::write_unknown,
+                     "an interrupted write-back has left the controller's values unknown",
+                     "connect the controller and restart odomcalibd, then see odomcalibctl params get");
+  const auto state = base.controller().state();
+  if (state != ControllerState::disabled && state != ControllerState::enabled)
+    return forbidden(ErrorCode::device, "controller is " + name_of(state), "see odomcalibctl check");
+  if (!base.controller().watchdog_armed())
+    return forbidden(ErrorCode::device, "the controller would not stop by itself if this program died",
+                     "use a profile with a watchdog (heartbeat consumer or communication-loss time)");
+  if (const auto stale = encoders.stale(now))
+    return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
+  if (const auto stale = scans.stale(now))
+    return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
+  const RobotDescription all = robot();
+  if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
+    return forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
+                     "state robot.wheel_diameter and robot.track_width in the configuration");
+  if (const auto way =
+          safety::occupied(newest_points, routines::preview(plan), config.footprint, config.clearance))
+    return forbidden(ErrorCode::refused, *way, "clear the area, or move the robot");
+  return std::nullopt;
+}
+
+void Service::Impl::start_motion(const IncomingCall& incoming, const routines::Plan& plan,
+                                 const ordered_json& parameters, PendingCall call) {
+  const bool dry_run = parameters.value("dry_run", ordered_json(false)) == true;
+  if (!dry_run && !lease.holds(call.lease, now))
+    return refuse(incoming.client,
+                  forbidden(ErrorCode::not_permitted, "no lease", "acquire one and keep it alive"));
+  if (const auto error = motion_forbidden(plan)) return refuse(incoming.client, *error);
+  const auto preview = routines::preview(plan);
+  if (dry_run)
+    return answer(incoming.client, {{"result",
+                                     {{"plan", plan.name},
+                                      {"moves", plan.moves.size()},
+                                      {"duration", preview.duration},
+                                      {"reach", preview.reach}}}});
+  const auto path = telemetry.recorder.start(fmt::format("{}-{}", plan.name, clock.wall_us() / 1'000'000));
+  if (!path) return refuse(incoming.client, path.error());
+  recording_path = path.value();
+  next_robot = now;
+  serve_telemetry();
+  agreement_scan.reset();
+  disagreement.reset();
+  disagreements = 0;
+  pending = std::move(call);
+  run.emplace(MotionRun::Options{.plan = plan,
+                                 .geometry = geometry(),
+                                 .countdown = config.countdown,
+                                 .now = now,
+                                 .flush = [this] { base.flush(); }},
+              base.controller());
+  event(messages::Severity::info, "motion", plan.name + " begins");
+}
+
+// Rule M9. The newest scan against one from a quarter of a metre or 30 degrees before.
+void Service::Impl::watch_agreement(const Scan& scan) {
+  if (!calibrator.match) return;
+  const auto moved = agreement_scan ? relative(agreement_pose, odometry.pose()) : routines::Pose{};
+  const bool judge = std::hypot(moved.x, moved.y) > 0.25 || std::abs(moved.yaw) > 0.6;
+  if (agreement_scan && !judge) return;
+  if (agreement_scan) {
+    const auto seen = calibrator.match(*agreement_scan, scan, moved, config.lidar_pose);
+    const auto why = seen ? safety::disagreement(moved, *seen) : std::nullopt;
+    // One bad match must not stop the robot; two in a row are a fact.
+    disagreements = why ? disagreements + 1 : 0;
+    if (disagreements >= 2) disagreement = why;
+  }
+  agreement_scan = scan;
+  agreement_pose = odometry.pose();
+}
+
+// Odometry and lidar of one move, both from rest to rest. Base motion in the frame of the move's start.
+ordered_json Service::Impl::leg_report(const Leg& leg) const {
+  const auto told = relative(leg.before, leg.after);
+  ordered_json body = {
+      {"move", leg.move.name}, {"begin", leg.begin}, {"end", leg.end}, {"odometry", json_of(told)}};
+  body["lidar"] = nullptr;
+  body["error"] = nullptr;
+  if (!calibrator.match || !leg.scan_before || !leg.scan_after) return body;
+  const auto lidar_pose =
+      active && active->parameter("lidar_x")
+          ? std::array{*active->parameter("lidar_x"), active->parameter("lidar_y").value_or(0.0),
+                       active->parameter("lidar_yaw").value_or(0.0)}
+          : config.lidar_pose;
+  auto seen = calibrator.match(*leg.scan_before, *leg.scan_after, told, lidar_pose);
+  if (!seen) return body;
+  // The lidar cannot count full turns: the nearest to what the odometry says.
+  const double difference = routines::wrapped(seen->yaw - told.yaw);
+  seen->yaw = told.yaw + difference;
+  body["lidar"] = json_of(*seen);
+  body["error"] = {{"distance", std::hypot(told.x, told.y) - std::hypot(seen->x, seen->y)},
+                   {"yaw", -difference}};
+  return body;
+}
+
+void Service::Impl::motion_ended() {
+  const auto error = run->error();
+  ordered_json legs = ordered_json::array();
+  if (!error && pending && pending->method != "Calibrate")
+    for (const Leg& leg : run->legs()) legs.push_back(leg_report(leg));
+  const auto path = telemetry.recorder.finish();
+  run.reset();
+  encoders.commanded(0.0, 0.0, now);
+  if (error) {
+    last_stop = error->text();
+    event(messages::Severity::stop, "stopped", error->text());
+    return fail_pending(*error);
+  }
+  event(messages::Severity::info, "motion", "motion finished");
+  if (!path) return fail_pending(path.error());
+  if (pending && pending->method == "Calibrate") {
+    solver.emplace(calibrator, path.value(), pending->effects);
+    return;
+  }
+  finish_pending({{"recording", path.value().string()}, {"moves", legs}});
+}
+
+}  // namespace odomcalib

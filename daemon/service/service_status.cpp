@@ -1,0 +1,146 @@
+// What the service tells about itself.
+#include <array>
+#include <cmath>
+
+#include "daemon/service/service_impl.hpp"
+#include "odomcalib_version.hpp"
+
+namespace odomcalib {
+namespace {
+
+ordered_json check(const std::string& name, bool good, const std::string& found, const std::string& remedy) {
+  return {
+      {"name", name}, {"outcome", good ? "ok" : "fail"}, {"found", found}, {"remedy", good ? "" : remedy}};
+}
+
+std::string text_of(const std::optional<Error>& problem) { return problem ? problem->text() : ""; }
+
+}  // namespace
+
+std::string name_of(drivers::ControllerState state) {
+  constexpr std::array kNames = {"absent", "configuring", "disabled", "enabling", "enabled", "fault"};
+  return kNames.at(static_cast<std::size_t>(state));
+}
+
+std::string Service::Impl::activity() const {
+  if (run) return "moving: " + run->activity();
+  if (solver) return "solving";
+  if (transaction.busy()) return "reading or writing parameters";
+  if (pending && pending->method == "Record") return "recording";
+  return "idle";
+}
+
+ordered_json Service::Impl::status() const {
+  const RobotDescription all = robot();
+  ordered_json body;
+  body["schema"] = 1;
+  body["state"] = activity();
+  body["version"] = kVersion;
+  body["controller"] = {{"device", base.device()},
+                        {"connected", base.connected()},
+                        {"state", name_of(base.controller().state())},
+                        {"problem", text_of(base.problem())},
+                        {"watchdog_armed", base.controller().watchdog_armed()},
+                        {"ticks", tick_count},
+                        {"stale", encoders.stale(now).value_or("")},
+                        {"counters", base.counters()}};
+  if (const auto id = base.controller().identity())
+    body["controller"]["identity"] = {{"vendor", id->vendor},
+                                      {"product", id->product},
+                                      {"revision", id->revision},
+                                      {"serial", id->serial},
+                                      {"name", id->name}};
+  body["lidar"] = {{"device", lidar.device()},
+                   {"connected", lidar.connected()},
+                   {"problem", text_of(lidar.problem())},
+                   {"scans", scan_count},
+                   {"stale", scans.stale(now).value_or("")},
+                   {"counters", lidar.counters()}};
+  body["robot"] = {{"left_wheel_diameter", all.left_wheel_diameter},
+                   {"right_wheel_diameter", all.right_wheel_diameter},
+                   {"track_width", all.track_width},
+                   {"ticks_per_rev", all.ticks_per_rev},
+                   {"in_controller", !in_force.empty()}};
+  const auto& pose = odometry.pose();
+  body["odometry"] = {pose.x, pose.y, routines::wrapped(pose.yaw)};
+  body["calibrated"] = active.has_value();
+  body["operator_needed"] = operator_needed;
+  body["last_stop"] = last_stop;
+  body["lcm"] = {{"sent", telemetry.publisher.sent()}, {"failed", telemetry.publisher.failed()}};
+  body["clients"] = {{"connected", server.clients()},
+                     {"not_permitted", server.counters().not_permitted},
+                     {"malformed", server.counters().malformed},
+                     {"too_many", server.counters().too_many}};
+  body["recording_bytes"] = telemetry.recorder.bytes();
+  return body;
+}
+
+ordered_json Service::Impl::describe() const {
+  return {
+      {"version", kVersion},
+      {"controller", {{"device", config.controller_device}, {"profile", config.controller_profile}}},
+      {"lidar", {{"device", config.lidar_device}, {"type", config.lidar_type}, {"pose", config.lidar_pose}}},
+      {"limits",
+       {{"speed", config.limits.speed},
+        {"turn_rate", config.limits.turn_rate},
+        {"acceleration", config.limits.acceleration},
+        {"area", {config.area_length, config.area_width}},
+        {"countdown", config.countdown}}},
+      {"lcm", {{"url", config.lcm_enabled ? config.lcm_url : ""}, {"channel_prefix", config.channel_prefix}}},
+      {"state_dir", config.state_dir.string()}};
+}
+
+ordered_json Service::Impl::checks() const {
+  using drivers::ControllerState;
+  const auto state = base.controller().state();
+  const RobotDescription all = robot();
+  ordered_json list = ordered_json::array();
+  list.push_back(check("bus", base.connected(), text_of(base.problem()),
+                       "connect the adapter; check controller.device"));
+  list.push_back(check("controller", state == ControllerState::disabled || state == ControllerState::enabled,
+                       name_of(state),
+                       "switch the controller on; check the profile's node id and the bit rate"));
+  list.push_back(check("watchdog", base.controller().watchdog_armed(), "controller stops by itself",
+                       "use a profile with a watchdog"));
+  list.push_back(check("encoders", !encoders.stale(now), encoders.stale(now).value_or("counts arrive"),
+                       "check the bus"));
+  list.push_back(
+      check("lidar port", lidar.connected(), text_of(lidar.problem()), "connect it; check lidar.device"));
+  list.push_back(check("scans", !scans.stale(now), scans.stale(now).value_or("scans arrive"),
+                       "check lidar and baud rate"));
+  list.push_back(check("geometry",
+                       all.left_wheel_diameter > 0.0 && all.track_width > 0.0 && all.ticks_per_rev > 0.0,
+                       in_force.empty() ? "from the configuration" : "from the controller",
+                       "state robot.wheel_diameter, robot.track_width; ticks in the profile"));
+  list.push_back(
+      check("write-back", !operator_needed, "nothing unfinished", "connect the controller and restart"));
+  std::error_code error;
+  const auto space = std::filesystem::space(config.state_dir, error);
+  list.push_back(check("disk", !error && space.available > (std::uintmax_t{64} << 20),
+                       error ? error.message() : "enough space", "remove old recordings"));
+  return list;
+}
+
+ordered_json Service::Impl::parameters() const {
+  const RobotDescription all = robot();
+  const std::array<std::pair<const char*, double>, 3> values = {
+      {{"left_wheel_diameter", all.left_wheel_diameter},
+       {"right_wheel_diameter", all.right_wheel_diameter},
+       {"track_width", all.track_width}}};
+  ordered_json list = ordered_json::array();
+  for (const auto& [name, value] : values) {
+    const bool stored = std::any_of(in_force.begin(), in_force.end(),
+                                    [n = std::string(name)](const auto& p) { return p.quantity == n; });
+    ordered_json entry = {{"name", name}, {"unit", "m"}, {"value", nullptr}, {"calibrated", nullptr}};
+    if (value > 0.0) entry["value"] = value;
+    const auto calibrated = active ? active->parameter(name) : std::nullopt;
+    if (calibrated) entry["calibrated"] = *calibrated;
+    // What rounding in the controller leaves over is applied in the corrected odometry.
+    if (calibrated) entry["remainder"] = *calibrated - value;
+    entry["stored_in"] = stored ? "controller" : "host";
+    list.push_back(entry);
+  }
+  return list;
+}
+
+}  // namespace odomcalib

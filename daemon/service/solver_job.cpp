@@ -1,0 +1,65 @@
+#include "daemon/service/solver_job.hpp"
+
+#include <exception>
+#include <mutex>
+#include <thread>
+
+namespace odomcalib {
+
+// Shared with the thread, which may outlive the job when the daemon ends.
+struct SolverJob::State {
+  mutable std::mutex mutex;
+  std::string phase = "reading";
+  double fraction = 0.0;
+  std::optional<Result<Calibration>> result;
+
+  void report(const std::string& name, double share) {
+    const std::lock_guard lock(mutex);
+    phase = name;
+    fraction = share;
+  }
+  void finish(Result<Calibration> calibration) {
+    const std::lock_guard lock(mutex);
+    result.emplace(std::move(calibration));
+  }
+};
+
+namespace {
+
+Result<Calibration> solve(const Calibrator& calibrator, const std::filesystem::path& path,
+                          const std::vector<std::string>& effects, const Calibrator::Progress& progress) {
+  auto recording = read_recording(path);
+  if (!recording) return recording.error();
+  std::vector<Recording> recordings;
+  recordings.push_back(std::move(recording).value());
+  try {
+    return calibrator.solve(recordings, effects, progress);
+  } catch (const std::exception& error) {
+    return Error{ErrorCode::format, error.what(), path.string(), "report this recording"};
+  }
+}
+
+}  // namespace
+
+SolverJob::SolverJob(const Calibrator& calibrator, std::filesystem::path recording,
+                     std::vector<std::string> effects)
+    : state_(std::make_shared<State>()) {
+  std::thread([calibrator, path = std::move(recording), effects = std::move(effects), state = state_] {
+    const auto progress = [&state](const std::string& phase, double share) { state->report(phase, share); };
+    state->finish(solve(calibrator, path, effects, progress));
+  }).detach();
+}
+
+SolverJob::~SolverJob() = default;
+
+std::pair<std::string, double> SolverJob::progress() const {
+  const std::lock_guard lock(state_->mutex);
+  return {state_->phase, state_->fraction};
+}
+
+std::optional<Result<Calibration>> SolverJob::take_result() {
+  const std::lock_guard lock(state_->mutex);
+  return std::exchange(state_->result, std::nullopt);
+}
+
+}  // namespace odomcalib

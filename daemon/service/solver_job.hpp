@@ -1,0 +1,30 @@
+// Solving a recording in a thread of its own, so that the loop never waits for it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/service/calibrator.hpp"
+
+namespace odomcalib {
+
+class SolverJob {
+ public:
+  struct State;
+  SolverJob(const Calibrator& calibrator, std::filesystem::path recording, std::vector<std::string> effects);
+  ~SolverJob();
+  SolverJob(const SolverJob&) = delete;
+  SolverJob& operator=(const SolverJob&) = delete;
+
+  [[nodiscard]] std::pair<std::string, double> progress() const;
+  /// Once, when it is there.
+  std::optional<Result<Calibration>> take_result();
+
+ private:
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace odomcalib
