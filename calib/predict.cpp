@@ -5,6 +5,7 @@
 
 #include "calib/effects/catalogue.hpp"
 #include "calib/model/drive_model.hpp"
+#include "calib/tracing/curve_json.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -33,10 +34,19 @@ Correction correction_of(const Calibration& calibration) {
   for (const EffectResult& result : calibration.effects) {
     if (result.parameters.empty()) continue;
     const auto effect = find_effect(result.name, result.parameters.front().first);
-    if (!effect || result.parameters.size() != effect->parameters().size()) continue;
+    // What belongs to the place or the day would make odometry worse elsewhere and tomorrow.
+    if (!effect || effect->storage() == Storage::nowhere ||
+        result.parameters.size() != effect->parameters().size())
+      continue;
     correction.effects.push_back(effect);
     for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
   }
+  if (const auto member = calibration.extensions.find(kCurvesMember); member != calibration.extensions.end())
+    for (const auto& [curve, coefficients] : curves_from_json(member->second)) {
+      if (belongs_to_the_place(curve.variable)) continue;
+      correction.effects.push_back(make_curve_effect(curve));
+      values.insert(values.end(), coefficients.begin(), coefficients.end());
+    }
   correction.parameters =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   return correction;

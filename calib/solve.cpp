@@ -7,6 +7,8 @@
 #include "calib/gate.hpp"
 #include "calib/report.hpp"
 #include "calib/session/start_values.hpp"
+#include "calib/tracing/curve_json.hpp"
+#include "calib/tracing/search.hpp"
 #include "calib/validation/held_out.hpp"
 
 namespace odomcalib::calib {
@@ -39,7 +41,11 @@ class Solver {
       calibration_.methods.push_back(joint);
       return refuse(fit.error());
     }
-    fill(fit.value());
+    if (automatic_ && recordings_.front().increments.empty())
+      search(fit.value());
+    else
+      outcome_ = {effects_, fit.value(), {}, std::nullopt};
+    fill();
     return calibration_;
   }
 
@@ -60,11 +66,11 @@ class Solver {
     automatic_ = options_.effects == std::vector<std::string>{"auto"};
     if (automatic_ || options_.effects == std::vector<std::string>{"none"}) return std::nullopt;
     for (const std::string& name : options_.effects) {
-      const auto effect = find_effect(name);
-      if (!effect)
+      const EffectList found = find_effects(name);
+      if (found.empty())
         return Error{ErrorCode::usage, "there is no effect named \"" + name + "\"", "--effects",
                      "see odomcalibctl(1)"};
-      effects_.push_back(effect);
+      effects_.insert(effects_.end(), found.begin(), found.end());
     }
     return std::nullopt;
   }
@@ -99,14 +105,14 @@ class Solver {
   /// Fits, matches again with the fitted parameters (guess and de-skew), and fits again. Noise of a match
   /// made with wrong parameters must not reach the result.
   Result<FitResult> settle() {
-    report("fitting", 0.2);
+    report("fitting", 0.0);
     auto fit = fit_now();
     for (int pass = 0; pass < 2 && fit; ++pass) {
       parameters_ = fit.value().parameters;
       if (pass == 0) drop_idle_offset(fit.value());
-      report("matching", 0.3 + 0.3 * pass);
+      report("matching", 0.33 * (pass + 1));
       session_->measure(parameters_, effects_, PairOptions{});
-      report("fitting", 0.5 + 0.3 * pass);
+      report("fitting", 0.5 * (pass + 1));
       fit = fit_now();
     }
     if (fit) parameters_ = fit.value().parameters;
@@ -128,59 +134,125 @@ class Solver {
     parameters_ = parameters_.head(kBaseCount).eval();
   }
 
-  void fill(const FitResult& fit) {
+  /// What is missing beyond the delay: stepwise, each step proved on held-out data.
+  void search(const FitResult& fit) {
+    outcome_ = search_effects(session_->data(), effects_, fit, session_->fixed(0),
+                              [&](double fraction) { report("tracing the residual", fraction); });
+    effects_ = outcome_.effects;
+    parameters_ = outcome_.fit.parameters;
+  }
+
+  void fill() {
+    const FitResult& fit = outcome_.fit;
     const std::span<const double> p(fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size()));
     calibration_.parameters = base_quantities(to_base(p), fit.covariance);
     calibration_.covariance_order = base_quantity_names();
     calibration_.covariance = diameter_covariance(fit.covariance);
     calibration_.methods.push_back(joint_method(fit));
-    report("validating", 0.9);
-    fill_residual(fit);
-    fill_effects(fit);
+    report("validating", 0.0);
+    fit_plain();
+    fill_residual();
+    fill_effects();
+    fill_unnamed();
     const GateResult gate = judge(calibration_, fit.converged);
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;
-    report("done", 1.0);
+    report("validating", 1.0);
   }
 
-  void fill_residual(const FitResult& fit) {
-    const auto after =
-        held_out_residual(session_->data(), effects_, fit, session_->fixed(count_parameters(effects_)));
-    if (!after) {
-      calibration_.residual.held_out = false;
+  /// The six base parameters alone, on the same pairs: what the effects are measured against.
+  void fit_plain() {
+    if (effects_.empty()) {
+      plain_ = outcome_.fit;
       return;
     }
-    calibration_.residual.after = after->rms;
-    calibration_.residual.noise_floor = after->noise_floor;
-    calibration_.residual.before = effects_.empty() ? after->rms : plain_held_out().value_or(after->rms);
-  }
-
-  /// Held-out residual of the six base parameters alone, on the same pairs.
-  std::optional<std::array<double, 3>> plain_held_out() {
     FitOptions options;
     options.fixed = session_->fixed(0);
-    const auto plain = fit_joint(session_->data(), {}, parameters_.head(kBaseCount), options);
-    if (!plain) return std::nullopt;
-    const auto before = held_out_residual(session_->data(), {}, plain.value(), options.fixed);
-    return before ? std::optional(before->rms) : std::nullopt;
+    auto plain = fit_joint(session_->data(), {}, parameters_.head(kBaseCount), options);
+    if (plain) plain_ = std::move(plain).value();
   }
 
-  void fill_effects(const FitResult& fit) {
+  void fill_residual() {
+    const auto after = held_out_residual(session_->data(), effects_, outcome_.fit,
+                                         session_->fixed(count_parameters(effects_)));
+    calibration_.residual.held_out = after.has_value();
+    if (!after) return;
+    calibration_.residual.after = after->rms;
+    calibration_.residual.noise_floor = after->noise_floor;
+    calibration_.residual.before = after->rms;
+    if (effects_.empty() || !plain_) return;
+    const auto before = held_out_residual(session_->data(), {}, *plain_, session_->fixed(0));
+    if (before) calibration_.residual.before = before->rms;
+  }
+
+  [[nodiscard]] const Finding* finding_of(const Effect* effect) const {
+    for (const Finding& finding : outcome_.findings)
+      if (finding.effect.get() == effect) return &finding;
+    return nullptr;
+  }
+
+  /// Evidence for an effect that the search did not add: the delay found before it, or what the user asked
+  /// for.
+  [[nodiscard]] Evidence evidence_against_plain(double z) const {
+    Evidence evidence;
+    evidence.p_value = std::erfc(z / std::sqrt(2.0));
+    if (!plain_) return evidence;
+    const auto before = horizon_error(session_->data(), {}, *plain_, session_->fixed(0));
+    const auto after =
+        horizon_error(session_->data(), effects_, outcome_.fit, session_->fixed(count_parameters(effects_)));
+    if (before) evidence.held_out_before = before->rms_position();
+    if (after) evidence.held_out_after = after->rms_position();
+    return evidence;
+  }
+
+  void fill_effects() {
+    const std::size_t curves = outcome_.unnamed ? outcome_.unnamed->curves.size() : 0;
     Eigen::Index index = kBaseCount;
-    for (const auto& effect : effects_) {
-      EffectResult result;
-      result.name = effect->name();
-      result.aliases = effect->aliases();
-      double z = 0.0;
-      for (const EffectParameter& parameter : effect->parameters()) {
-        const double deviation = std::sqrt(std::max(fit.covariance(index, index), 0.0));
-        result.parameters.push_back({parameter.name, {fit.parameters(index), deviation, parameter.unit}});
-        if (deviation > 0.0) z = std::max(z, std::abs(fit.parameters(index)) / deviation);
-        ++index;
-      }
-      result.evidence.p_value = std::erfc(z / std::sqrt(2.0));
-      calibration_.effects.push_back(result);
+    for (std::size_t e = 0; e + curves < effects_.size(); ++e) {
+      calibration_.effects.push_back(describe(*effects_[e], index));
+      index += static_cast<Eigen::Index>(effects_[e]->parameters().size());
     }
+  }
+
+  /// @param index of the effect's first parameter in the parameter vector
+  [[nodiscard]] EffectResult describe(const Effect& effect, Eigen::Index index) const {
+    EffectResult result;
+    result.name = effect.name();
+    double z = 0.0;
+    for (const EffectParameter& parameter : effect.parameters()) {
+      const double value = outcome_.fit.parameters(index);
+      const double deviation = std::sqrt(std::max(outcome_.fit.covariance(index, index), 0.0));
+      result.parameters.push_back({parameter.name, {value, deviation, parameter.unit}});
+      if (deviation > 0.0) z = std::max(z, std::abs(value) / deviation);
+      ++index;
+    }
+    const Finding* finding = finding_of(&effect);
+    result.aliases = finding != nullptr ? finding->aliases : effect.always_alike();
+    result.evidence = finding != nullptr ? Evidence{finding->family_p_value, finding->before, finding->after}
+                                         : evidence_against_plain(z);
+    return result;
+  }
+
+  void fill_unnamed() {
+    if (!outcome_.unnamed) return;
+    Unexplained unexplained;
+    unexplained.p_value = outcome_.unnamed->p_value;
+    unexplained.share = outcome_.unnamed->share;
+    std::size_t values = 0;
+    for (const Curve& curve : outcome_.unnamed->curves) values += basis(curve, curve.low).size();
+    Eigen::Index index = outcome_.fit.parameters.size() - static_cast<Eigen::Index>(values);
+    std::vector<FittedCurve> fitted;
+    for (const Curve& curve : outcome_.unnamed->curves) {
+      const std::string name = to_string(curve.variable);
+      auto& names = unexplained.depends_on;
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      std::vector<double> coefficients;
+      for (std::size_t k = 0; k < basis(curve, curve.low).size(); ++k)
+        coefficients.push_back(outcome_.fit.parameters(index++));
+      fitted.emplace_back(curve, coefficients);
+    }
+    calibration_.unexplained = unexplained;
+    calibration_.extensions[kCurvesMember] = curves_to_json(fitted);
   }
 
   std::span<const Recording> recordings_;
@@ -190,6 +262,8 @@ class Solver {
   std::unique_ptr<Session> session_;
   bool automatic_ = false;
   EffectList effects_;
+  SearchResult outcome_;
+  std::optional<FitResult> plain_;
   Eigen::VectorXd parameters_;
 };
 

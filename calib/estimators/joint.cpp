@@ -149,7 +149,8 @@ std::vector<double> distances(std::span<const FitData> data, const Stack& stack,
 std::vector<double> robust_weights(const std::vector<double>& squared) {
   std::vector<double> weights;
   weights.reserve(squared.size());
-  for (const double q : squared) weights.push_back(kStudentConsistency * (kStudentDof + 3.0) / (kStudentDof + kStudentConsistency * q));
+  for (const double q : squared)
+    weights.push_back(kStudentConsistency * (kStudentDof + 3.0) / (kStudentDof + kStudentConsistency * q));
   return weights;
 }
 
@@ -305,7 +306,8 @@ void conclude(std::span<const FitData> data, const EffectList& effects, const st
   fit.whitened_residual = whitened(data, stack, fit.noise, fit.weights, stack.residual);
   fit.whitened_jacobian = whitened(data, stack, fit.noise, fit.weights, stack.jacobian);
   fit.cost = 0.0;
-  for (const double q : squared) fit.cost += (kStudentDof + 3.0) * std::log1p(kStudentConsistency * q / kStudentDof);
+  for (const double q : squared)
+    fit.cost += (kStudentDof + 3.0) * std::log1p(kStudentConsistency * q / kStudentDof);
   count_outliers(squared, fit);
   set_covariance(data, stack, fixed, fit);
 }

@@ -26,10 +26,10 @@ struct StepContext {
   double turn_rate = 0.0;                                    ///< rad/s
   double heading = 0.0;                                      ///< rad, from the plain model
   double x = 0.0, y = 0.0;                                   ///< m, from the plain model
-  double since_reversal = 0.0;  ///< distance driven since the direction of travel last changed, m
+  double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;
-  double direction = 0.0;       ///< sign of the forward speed, kept while standing
+  double direction = 0.0;  ///< sign of the forward speed, kept while standing
 };
 
 }  // namespace odomcalib::calib

@@ -27,7 +27,8 @@ double misfit(const Observation& o, const NoiseModel& noise) {
     const Eigen::Vector3d z = llt.matrixL().solve(o.residuals[k]);
     double log_determinant = 0.0;
     for (Eigen::Index i = 0; i < 3; ++i) log_determinant += 2.0 * std::log(llt.matrixLLT()(i, i));
-    sum += log_determinant + (kStudentDof + 3.0) * std::log1p(kStudentConsistency * z.squaredNorm() / kStudentDof);
+    sum += log_determinant +
+           (kStudentDof + 3.0) * std::log1p(kStudentConsistency * z.squaredNorm() / kStudentDof);
   }
   return sum;
 }
@@ -122,7 +123,8 @@ double median_magnitude(const Observation& o, std::initializer_list<Eigen::Index
   return *middle;
 }
 
-/// The heavy-tailed likelihood is flat far from the truth: the search begins where all spread is process noise.
+/// The heavy-tailed likelihood is flat far from the truth: the search begins where all spread is process
+/// noise.
 void begin_at_spread(const Observation& o, NoiseModel& noise) {
   constexpr double kMadToSigma = 1.4826;
   noise.process_translation = kMadToSigma * median_magnitude(o, {0, 1});

@@ -14,8 +14,8 @@ namespace odomcalib::calib {
 /// bumps).
 inline constexpr double kStudentDof = 4.0;
 
-/// Factor on squared distances that makes the t likelihood read normally distributed noise at its true size: the root f of
-/// E[(dof + 3) f q / (dof + f q)] = 3 for q ~ chi-squared with 3 degrees of freedom.
+/// Factor on squared distances that makes the t likelihood read normally distributed noise at its true size:
+/// the root f of E[(dof + 3) f q / (dof + f q)] = 3 for q ~ chi-squared with 3 degrees of freedom.
 inline constexpr double kStudentConsistency = 1.3229464;
 
 /// Maximises the t likelihood of the single pairs over matcher scale, process noise and stamp jitter by

@@ -17,8 +17,8 @@ struct PairOptions {
   double min_overlap = 0.4;
 };
 
-/// The customary keyframe spacing of 0.5 m and 0.5 rad. A pose reference does not drift and its error does not grow with the baseline:
-/// there, and errors of its time stamps weigh less.
+/// The customary keyframe spacing of 0.5 m and 0.5 rad. A pose reference does not drift and its error does
+/// not grow with the baseline: there, and errors of its time stamps weigh less.
 inline PairOptions pose_pair_options() { return {0.5, 0.5, 10.0, 0.4}; }
 
 struct PairSet {

@@ -166,8 +166,9 @@ Improvement compare(const HorizonError& before, const HorizonError& after) {
           ratios[static_cast<std::size_t>(0.025 * kDraws)]};
 }
 
-HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before, const std::vector<bool>& fixed_before,
-                          const FitResult& after, const std::vector<bool>& fixed_after) {
+HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before,
+                          const std::vector<bool>& fixed_before, const FitResult& after,
+                          const std::vector<bool>& fixed_after) {
   constexpr double kClipSquared = 3.5 * 3.5;
   const auto folds = folds_of(data);
   std::vector<double> gains(folds.size(), 0.0);
@@ -177,7 +178,8 @@ HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before
       for (std::size_t k = 0; k < folds.size(); ++k) {
         if (folds[k] != fold) continue;
         const auto row = static_cast<Eigen::Index>(3 * k);
-        const Eigen::Vector3d r = fit.whitened_residual.segment<3>(row) - fit.whitened_jacobian.middleRows<3>(row) * change;
+        const Eigen::Vector3d r =
+            fit.whitened_residual.segment<3>(row) - fit.whitened_jacobian.middleRows<3>(row) * change;
         gains[k] += sign * r.cwiseAbs2().cwiseMin(kClipSquared).sum();
       }
     }

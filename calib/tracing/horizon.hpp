@@ -36,13 +36,15 @@ struct Improvement {
 /// the distance over which it acts, half a metre) count together.
 Improvement compare(const HorizonError& before, const HorizonError& after);
 
-/// Drop of the whitened squared residual on held-out folds, summed over the recording, and its 2.5 % bound by block bootstrap.
+/// Drop of the whitened squared residual on held-out folds, summed over the recording, and its 2.5 % bound by
+/// block bootstrap.
 struct HeldOutGain {
   double total = 0.0;
   double lower = 0.0;
 };
 /// Both fits must stand on one noise model.
-HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before, const std::vector<bool>& fixed_before,
-                          const FitResult& after, const std::vector<bool>& fixed_after);
+HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before,
+                          const std::vector<bool>& fixed_before, const FitResult& after,
+                          const std::vector<bool>& fixed_after);
 
 }  // namespace odomcalib::calib

@@ -10,14 +10,15 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kNamedLevel = 0.003;    ///< family-wise; a nominal 1 % test would exceed 1 % of robots in many campaigns
+constexpr double kNamedLevel =
+    0.003;  ///< family-wise; a nominal 1 % test would exceed 1 % of robots in many campaigns
 constexpr double kUnnamedLevel = 0.0025;
 constexpr int kMaxFindings = 3;
 constexpr int kMaxCurves = 3;
-constexpr std::size_t kRefits = 4;       ///< candidates refitted jointly per step
-constexpr double kAmbiguity = 6.0;       ///< units of BIC
-constexpr double kAlias = 0.9;           ///< canonical correlation that counts as indistinguishable
-constexpr double kSameLaw = 0.6;         ///< share of a curve's statistic that a name inside it must reach
+constexpr std::size_t kRefits = 4;  ///< candidates refitted jointly per step
+constexpr double kAmbiguity = 6.0;  ///< units of BIC
+constexpr double kAlias = 0.9;      ///< canonical correlation that counts as indistinguishable
+constexpr double kSameLaw = 0.6;    ///< share of a curve's statistic that a name inside it must reach
 
 struct Trial {
   std::size_t candidate = 0;
@@ -27,8 +28,8 @@ struct Trial {
 
 class Search {
  public:
-  Search(std::span<const FitData> data, const EffectList& given, const FitResult& fit, const std::vector<bool>& base_fixed,
-         const std::function<void(double)>& progress)
+  Search(std::span<const FitData> data, const EffectList& given, const FitResult& fit,
+         const std::vector<bool>& base_fixed, const std::function<void(double)>& progress)
       : data_(data), base_fixed_(base_fixed), progress_(progress) {
     result_.effects = given;
     result_.fit = fit;
@@ -64,8 +65,11 @@ class Search {
   bool advance() {
     EffectList candidates = named_;
     for (const Curve& curve : curves_) candidates.push_back(make_curve_effect(curve));
-    const ScoreTable table = score_candidates(data_, result_.effects, result_.fit, fixed(result_.effects), candidates);
-    const auto name = result_.findings.size() < kMaxFindings && !result_.unnamed ? best_name(table, candidates) : std::nullopt;
+    const ScoreTable table =
+        score_candidates(data_, result_.effects, result_.fit, fixed(result_.effects), candidates);
+    const auto name = result_.findings.size() < kMaxFindings && !result_.unnamed
+                          ? best_name(table, candidates)
+                          : std::nullopt;
     const auto curve = best_curve(table);
     if (name && !(curve && curve_beats(table, *name, *curve))) {
       if (accept_name(table, candidates, *name)) return true;
@@ -95,10 +99,12 @@ class Search {
     return best == trials_.end() ? std::nullopt : std::optional(*best);
   }
 
-  std::optional<Trial> refit(std::size_t index, const std::shared_ptr<const Effect>& effect, bool keep_noise) {
+  std::optional<Trial> refit(std::size_t index, const std::shared_ptr<const Effect>& effect,
+                             bool keep_noise) {
     EffectList effects = result_.effects;
     effects.push_back(effect);
-    Eigen::VectorXd start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kBaseCount + count_parameters(effects)));
+    Eigen::VectorXd start =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kBaseCount + count_parameters(effects)));
     start.head(result_.fit.parameters.size()) = result_.fit.parameters;
     FitOptions options;
     options.fixed = fixed(effects);
@@ -127,9 +133,11 @@ class Search {
   bool curve_beats(const ScoreTable& table, const Trial& name, std::size_t curve) const {
     const Score& free_form = table.scores[curve];
     const Score& named = table.scores[name.candidate];
-    const double lead = (free_form.statistic - penalty(free_form.degrees)) - (named.statistic - penalty(named.degrees));
+    const double lead =
+        (free_form.statistic - penalty(free_form.degrees)) - (named.statistic - penalty(named.degrees));
     if (lead <= kAmbiguity) return false;
-    const double overlap = table.correlation(static_cast<Eigen::Index>(name.candidate), static_cast<Eigen::Index>(curve));
+    const double overlap =
+        table.correlation(static_cast<Eigen::Index>(name.candidate), static_cast<Eigen::Index>(curve));
     return !(overlap > kAlias && named.statistic > kSameLaw * free_form.statistic);
   }
 
@@ -137,7 +145,8 @@ class Search {
   bool proves_itself(const EffectList& effects, const FitResult& candidate, Finding& finding) const {
     const auto before = horizon_error(data_, result_.effects, result_.fit, fixed(result_.effects));
     const auto after = horizon_error(data_, effects, candidate, fixed(effects));
-    const HeldOutGain gain = held_out_gain(data_, result_.fit, fixed(result_.effects), candidate, fixed(effects));
+    const HeldOutGain gain =
+        held_out_gain(data_, result_.fit, fixed(result_.effects), candidate, fixed(effects));
     if (before && after) {
       finding.before = before->rms_position();
       finding.after = after->rms_position();
@@ -166,18 +175,21 @@ class Search {
     return true;
   }
 
-  std::vector<std::string> aliases_of(const ScoreTable& table, const EffectList& candidates, const Trial& best) const {
+  std::vector<std::string> aliases_of(const ScoreTable& table, const EffectList& candidates,
+                                      const Trial& best) const {
     std::vector<std::string> aliases = candidates[best.candidate]->always_alike();
     const auto add = [&](std::size_t k) {
       const std::string name = candidates[k]->name();
-      if (name != candidates[best.candidate]->name() && std::find(aliases.begin(), aliases.end(), name) == aliases.end())
+      if (name != candidates[best.candidate]->name() &&
+          std::find(aliases.begin(), aliases.end(), name) == aliases.end())
         aliases.push_back(name);
     };
     for (const Trial& trial : trials_)
       if (best.gain - trial.gain < kAmbiguity) add(trial.candidate);
     for (std::size_t k = 0; k < named_.size(); ++k)
       if (k != best.candidate && table.scores[k].family_p_value <= kNamedLevel &&
-          table.correlation(static_cast<Eigen::Index>(best.candidate), static_cast<Eigen::Index>(k)) > kAlias &&
+          table.correlation(static_cast<Eigen::Index>(best.candidate), static_cast<Eigen::Index>(k)) >
+              kAlias &&
           too_close(table, best.candidate, k))
         add(k);
     return aliases;
@@ -222,7 +234,8 @@ class Search {
 }  // namespace
 
 SearchResult search_effects(std::span<const FitData> data, const EffectList& given, const FitResult& fit,
-                            const std::vector<bool>& base_fixed, const std::function<void(double)>& progress) {
+                            const std::vector<bool>& base_fixed,
+                            const std::function<void(double)>& progress) {
   return Search(data, given, fit, base_fixed, progress).run();
 }
 
