@@ -1,7 +1,9 @@
 // odomcalib-sim-record: one simulated recording with known truth, for demonstrations and scripts.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <iomanip>
 
 #include "proto/recording.hpp"
 #include "tests/sim/effects/blind_case.hpp"
@@ -14,7 +16,7 @@ using namespace odomcalib::sim;
 
 struct Arguments {
   std::uint64_t seed = 1;
-  std::string out, truth, effect, room = "furnished", drive = "guided";
+  std::string out, truth, path, effect, room = "furnished", drive = "guided";
   double size = -1.0, duration = 0.0;
 };
 
@@ -28,6 +30,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", arguments.seed, "robot, noise and random room are drawn from this number");
   app.add_option("--out", arguments.out, "recording to write (.jsonl or .jsonl.gz)")->required();
   app.add_option("--truth", arguments.truth, "file for the true parameters (JSON)");
+  app.add_option("--path", arguments.path, "file for the true poses of the base (TUM)");
   app.add_option("--effect", arguments.effect, "something that the plain model lacks")
       ->check(CLI::IsMember(effect_names()));
   app.add_option("--size", arguments.size, "of the effect, in its unit; default: its largest usual size");
@@ -67,6 +70,14 @@ BlindAnswer add_effect(const Arguments& arguments, SimulationConfig& config) {
   return answer;
 }
 
+void write_path(const SimulatedRun& run, const std::string& file) {
+  std::ofstream out(file);
+  out << std::fixed << std::setprecision(9);
+  for (const TruthSample& sample : run.path)
+    out << sample.t << ' ' << sample.pose.x << ' ' << sample.pose.y << " 0 0 0 "
+        << std::sin(0.5 * sample.pose.yaw) << ' ' << std::cos(0.5 * sample.pose.yaw) << '\n';
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -87,6 +98,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (!arguments.truth.empty()) std::ofstream(arguments.truth) << answers_json({answer});
+  if (!arguments.path.empty()) write_path(run, arguments.path);
   if (run.least_clearance < 0.2)
     std::fprintf(stderr, "odomcalib-sim-record: the robot came within %.2f m of a wall\n",
                  run.least_clearance);
