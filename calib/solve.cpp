@@ -17,7 +17,7 @@ namespace {
 /// A time offset counts as present when its estimate is this many standard deviations from zero ...
 constexpr double kOffsetSignificance = 4.0;
 /// ... and longer than what a careful driver leaves, s.
-constexpr double kNegligibleOffset = 2e-3;
+constexpr double kNegligibleOffset = 3e-3;
 
 class Solver {
  public:

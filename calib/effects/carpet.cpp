@@ -10,7 +10,7 @@ class Carpet final : public StepEffect<Carpet> {
  public:
   [[nodiscard]] std::string name() const override { return "carpet"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"p_x", "1", 5e-3, -0.2, 0.2}, {"p_y", "1", 5e-3, -0.2, 0.2}};
+    return {{"p_x", "1", 0.015, -0.2, 0.2}, {"p_y", "1", 0.015, -0.2, 0.2}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"floor_slope"}; }
   [[nodiscard]] std::string separating_motion() const override { return "straight lines on four headings"; }

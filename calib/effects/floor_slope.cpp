@@ -10,7 +10,7 @@ class FloorSlope final : public StepEffect<FloorSlope> {
  public:
   [[nodiscard]] std::string name() const override { return "floor_slope"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"kappa_x", "1", 5e-3, -0.1, 0.1}, {"kappa_y", "1", 5e-3, -0.1, 0.1}};
+    return {{"kappa_x", "1", 0.015, -0.1, 0.1}, {"kappa_y", "1", 0.015, -0.1, 0.1}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"carpet"}; }
   [[nodiscard]] std::string separating_motion() const override {

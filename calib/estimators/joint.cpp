@@ -11,7 +11,7 @@ namespace odomcalib::calib {
 namespace {
 
 constexpr double kOutlier = 5.0;       ///< sigma of a standardised residual vector
-constexpr int kNoiseRounds = 4;        ///< noise and weights are settled over this many outer rounds
+constexpr int kNoiseRounds = 3;        ///< noise and weights are settled over this many outer rounds
 constexpr double kBlockSeconds = 5.0;  ///< cluster length of the robust covariance
 constexpr double kMinRelativePivot = 1e-12;
 

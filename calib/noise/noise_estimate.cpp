@@ -15,14 +15,21 @@ struct Observation {
   std::span<const SensorPair> pairs;
   std::span<const PairState> states;
   std::vector<Eigen::Vector3d> residuals;  ///< in room axes
+  std::vector<Eigen::Matrix3d> matcher;    ///< covariance the matcher states, in room axes
+  std::vector<Eigen::Matrix3d> jitter;     ///< what a stamp error of 1 s would add
 };
 
 /// -2 log likelihood of independent t-distributed pairs; neighbours' correlation does not matter for the
 /// scale.
 double misfit(const Observation& o, const NoiseModel& noise) {
+  const double matcher = noise.matcher_scale * noise.matcher_scale;
+  const double jitter = noise.stamp_jitter * noise.stamp_jitter;
+  const double translation = noise.process_translation * noise.process_translation;
+  const Eigen::Vector3d process(translation, translation, noise.process_rotation * noise.process_rotation);
   double sum = 0.0;
   for (std::size_t k = 0; k < o.pairs.size(); ++k) {
-    const Eigen::Matrix3d covariance = full_covariance(o.pairs[k], o.states[k], noise);
+    Eigen::Matrix3d covariance = matcher * o.matcher[k] + jitter * o.jitter[k];
+    covariance.diagonal() += process;
     const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
     const Eigen::Vector3d z = llt.matrixL().solve(o.residuals[k]);
     double log_determinant = 0.0;
@@ -57,7 +64,7 @@ void improve(const Observation& o, const Range& range, NoiseModel& noise) {
   double d = a + ratio * (b - a);
   double at_c = value_at(c);
   double at_d = value_at(d);
-  while (b - a > 0.05) {
+  while (b - a > 0.08) {
     if (at_c < at_d) {
       b = d;
       d = c;
@@ -135,9 +142,16 @@ void begin_at_spread(const Observation& o, NoiseModel& noise) {
 
 Observation observe(std::span<const SensorPair> pairs, std::span<const PairState> states,
                     std::span<const Eigen::Vector3d> residuals) {
-  Observation o{pairs, states, {}};
-  o.residuals.reserve(residuals.size());
-  for (std::size_t k = 0; k < pairs.size(); ++k) o.residuals.push_back(to_room(residuals[k], states[k]));
+  Observation o{pairs, states, {}, {}, {}};
+  NoiseModel matcher_only;
+  NoiseModel one_second;
+  one_second.matcher_scale = 0.0;
+  one_second.stamp_jitter = 1.0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    o.residuals.push_back(to_room(residuals[k], states[k]));
+    o.matcher.push_back(base_covariance(pairs[k], states[k], matcher_only));
+    o.jitter.push_back(full_covariance(pairs[k], states[k], one_second));
+  }
   return o;
 }
 

@@ -111,6 +111,29 @@ std::pair<double, double> range_of(Variable variable, std::span<const DriveModel
   return {low, at(0.995)};
 }
 
+std::vector<double> raw_basis(const Curve& curve, double z) {
+  std::vector<double> functions;
+  if (is_angle(curve.variable)) {
+    for (std::size_t k = 1; k <= kHarmonics; ++k) {
+      functions.push_back(std::cos(static_cast<double>(k) * z));
+      functions.push_back(std::sin(static_cast<double>(k) * z));
+    }
+    return functions;
+  }
+  const double x = std::clamp(2.0 * (z - curve.low) / (curve.high - curve.low) - 1.0, -1.0, 1.0);
+  double before = 1.0;
+  double here = x;
+  for (std::size_t n = 1; n <= kDegrees; ++n) {
+    functions.push_back(here);
+    const double order = static_cast<double>(n);
+    const double next =
+        ((2.0 * order + 1.0) * x * here - order * before) / (order + 1.0);  // Bonnet's recursion
+    before = here;
+    here = next;
+  }
+  return functions;
+}
+
 }  // namespace
 
 std::string to_string(Variable variable) {
@@ -166,25 +189,11 @@ double value_of(Variable variable, const StepContext& c) {
 }
 
 std::vector<double> basis(const Curve& curve, double z) {
-  std::vector<double> functions;
-  if (is_angle(curve.variable)) {
-    for (std::size_t k = 1; k <= kHarmonics; ++k) {
-      functions.push_back(std::cos(static_cast<double>(k) * z));
-      functions.push_back(std::sin(static_cast<double>(k) * z));
-    }
-    return functions;
-  }
-  const double x = std::clamp(2.0 * (z - curve.low) / (curve.high - curve.low) - 1.0, -1.0, 1.0);
-  double before = 1.0;
-  double here = x;
-  for (std::size_t n = 1; n <= kDegrees; ++n) {
-    functions.push_back(here);
-    const double order = static_cast<double>(n);
-    const double next =
-        ((2.0 * order + 1.0) * x * here - order * before) / (order + 1.0);  // Bonnet's recursion
-    before = here;
-    here = next;
-  }
+  std::vector<double> functions = raw_basis(curve, z);
+  if (is_angle(curve.variable) || curve.variable == Variable::time) return functions;
+  // Zero at rest: the base parameters keep their meaning of slow, steady motion.
+  const std::vector<double> at_rest = raw_basis(curve, 0.0);
+  for (std::size_t k = 0; k < functions.size(); ++k) functions[k] -= at_rest[k];
   return functions;
 }
 

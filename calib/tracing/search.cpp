@@ -15,6 +15,7 @@ constexpr double kNamedLevel =
 constexpr double kUnnamedLevel = 0.0025;
 constexpr int kMaxFindings = 3;
 constexpr int kMaxCurves = 3;
+constexpr int kMaxSteps = 8;        ///< additions and failed proofs together
 constexpr std::size_t kRefits = 4;  ///< candidates refitted jointly per step
 constexpr double kAmbiguity = 6.0;  ///< units of BIC
 constexpr double kAlias = 0.9;      ///< canonical correlation that counts as indistinguishable
@@ -39,8 +40,8 @@ class Search {
   SearchResult run() {
     named_ = remaining_names();
     curves_ = candidate_curves(models_);
-    for (int step = 0; step < kMaxFindings + kMaxCurves; ++step) {
-      progress_(static_cast<double>(step) / (kMaxFindings + kMaxCurves));
+    for (int step = 0; step < kMaxSteps; ++step) {
+      progress_(static_cast<double>(step) / kMaxSteps);
       if (!advance()) break;
     }
     return std::move(result_);
@@ -165,13 +166,31 @@ class Search {
     finding.effect = effect;
     finding.family_p_value = table.scores[best.candidate].family_p_value;
     finding.aliases = aliases_of(table, candidates, best);
-    if (!proves_itself(effects, best.fit, finding)) return false;
+    if (negligible(*effect, best.fit) || !proves_itself(effects, best.fit, finding))
+      return drop(best.candidate);
     auto settled = refit(best.candidate, effect, false);
-    if (!settled) return false;
+    if (!settled) return drop(best.candidate);
     result_.fit = std::move(settled->fit);
     result_.effects = std::move(effects);
     result_.findings.push_back(std::move(finding));
-    named_ = remaining_names();
+    named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(best.candidate));
+    return true;
+  }
+
+  /// Too small to matter: every parameter below a share of its typical size.
+  static bool negligible(const Effect& effect, const FitResult& fit) {
+    const auto parameters = effect.parameters();
+    const auto first = fit.parameters.size() - static_cast<Eigen::Index>(parameters.size());
+    double largest = 0.0;
+    for (std::size_t k = 0; k < parameters.size(); ++k)
+      largest = std::max(
+          largest, std::abs(fit.parameters(first + static_cast<Eigen::Index>(k))) / parameters[k].scale);
+    return largest < kNegligibleShare;
+  }
+
+  /// A candidate that failed its proof is not asked again; the search goes on with the others.
+  bool drop(std::size_t candidate) {
+    named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(candidate));
     return true;
   }
 
@@ -209,15 +228,21 @@ class Search {
     effects.push_back(effect);
     const auto trial = refit(index, effect, true);
     Finding proof;
-    if (!trial || !proves_itself(effects, trial->fit, proof)) return false;
+    if (!trial || negligible(*effect, trial->fit) || !proves_itself(effects, trial->fit, proof))
+      return drop_curve(index);
     auto settled = refit(index, effect, false);
-    if (!settled) return false;
+    if (!settled) return drop_curve(index);
     if (!result_.unnamed) result_.unnamed = Unnamed{{}, table.scores[index].family_p_value, 0.0};
     result_.unnamed->curves.push_back(curve);
     const double ratio = proof.before > 0.0 ? proof.after / proof.before : 1.0;
     result_.unnamed->share = 1.0 - (1.0 - result_.unnamed->share) * std::min(ratio * ratio, 1.0);
     result_.fit = std::move(settled->fit);
     result_.effects = std::move(effects);
+    return true;
+  }
+
+  bool drop_curve(std::size_t index) {
+    curves_.erase(curves_.begin() + static_cast<std::ptrdiff_t>(index - named_.size()));
     return true;
   }
 
