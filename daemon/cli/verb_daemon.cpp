@@ -9,6 +9,7 @@
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/document.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/verbs.hpp"
 
 namespace odomcalib::cli {
@@ -63,23 +64,11 @@ void print_checks(const ordered_json& checks, const Session& session) {
 }
 
 void print_parameters(const ordered_json& parameters, const Session& session) {
-  Document document{"Parameters in force", {}};
-  Section section{"", {}, {{"", "value m", "calibrated m", "stored in"}, {}}};
-  for (const auto& p : parameters)
-    section.table.rows.push_back(
-        {text_of(p["name"]), text_of(p["value"]), text_of(p["calibrated"]), text_of(p["stored_in"])});
-  document.sections.push_back(section);
-  std::cout << to_text(document, session.legend);
+  std::cout << to_text(describe_parameters(parameters), session.legend);
 }
 
 void print_history(const ordered_json& entries, const Session& session) {
-  Document document{"Write-backs, newest first", {}};
-  Section section{"", {}, {{"id", "action", "outcome", "before", "after"}, {}}};
-  for (const auto& e : entries)
-    section.table.rows.push_back({text_of(e["id"]), text_of(e["action"]), text_of(e["outcome"]),
-                                  e["before"].dump(), e["after"].dump()});
-  document.sections.push_back(section);
-  std::cout << to_text(document, session.legend);
+  std::cout << to_text(describe_history(entries), session.legend);
 }
 
 void add_question(CLI::App& app, Session& session, const char* verb, const char* help, const char* method,

@@ -12,6 +12,7 @@
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration.hpp"
 #include "proto/file_bytes.hpp"
@@ -78,6 +79,8 @@ int print_result(const Session& session, const Result<ordered_json>& result) {
   } else if (body.contains("moves") && body["moves"].is_array()) {
     for (const auto& move : body["moves"]) std::cout << describe_move(move) << '\n';
     std::cout << "recording " << body.value("recording", "") << '\n';
+  } else if (body.contains("steps")) {
+    std::cout << to_text(describe_write_back(body), session.legend);
   } else {
     std::cout << body.dump(2) << '\n';
   }

@@ -1,0 +1,68 @@
+#include "daemon/cli/parameter_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array kQuantities = {"left_wheel_diameter", "right_wheel_diameter", "track_width"};
+
+std::string millimetres(const ordered_json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end() || !found->is_number()) return "-";
+  return fmt::format("{:.3f}", 1000.0 * found->get<double>());
+}
+
+std::string readable(std::string name) {
+  for (char& c : name)
+    if (c == '_') c = ' ';
+  return name;
+}
+
+Section parameter_section(const ordered_json& parameters) {
+  Section section{"", {}, {{"", "in force mm", "calibrated mm", "stored in"}, {}}};
+  for (const auto& p : parameters)
+    section.table.rows.push_back({readable(p.value("name", "")), millimetres(p, "value"),
+                                  millimetres(p, "calibrated"), p.value("stored_in", "")});
+  return section;
+}
+
+std::string change_of(const ordered_json& entry, const char* name) {
+  const auto side = [&](const char* when) {
+    return millimetres(entry.value(when, ordered_json::object()), name);
+  };
+  return side("before") + " -> " + side("after");
+}
+
+}  // namespace
+
+Document describe_parameters(const ordered_json& parameters) {
+  return {"Parameters in force", {parameter_section(parameters)}};
+}
+
+Document describe_history(const ordered_json& entries) {
+  Section section{"", {}, {{"id", "action", "outcome"}, {}}};
+  for (const char* name : kQuantities) section.table.head.push_back(readable(name) + " mm");
+  for (const auto& entry : entries) {
+    section.table.rows.push_back(
+        {entry.value("id", ""), entry.value("action", ""), entry.value("outcome", "")});
+    for (const char* name : kQuantities) section.table.rows.back().push_back(change_of(entry, name));
+  }
+  return {"Write-backs, newest first", {section}};
+}
+
+Document describe_write_back(const ordered_json& result) {
+  std::string steps;
+  for (const auto& step : result.value("steps", ordered_json::array()))
+    steps += (steps.empty() ? "" : ", ") + readable(step.is_string() ? step.get<std::string>() : step.dump());
+  Document document{readable(result.value("outcome", "")), {{"", {steps}, {}}}};
+  document.sections.push_back(parameter_section(result.value("parameters", ordered_json::array())));
+  return document;
+}
+
+}  // namespace odomcalib::cli
