@@ -11,6 +11,11 @@ namespace odomcalib::calib {
 /// @param covariance of the base parameters in radii; fixed ones have zero variance and get no deviation
 QuantityList base_quantities(const BaseParameters& base, const Eigen::MatrixXd& covariance);
 
+/// Adds what the statistics of one recording cannot show: all lengths inherit the scale error of scan
+/// matching, which depends on the room and was 0.02 % over simulated rooms
+/// (tests/integration/accuracy_test.cpp).
+Eigen::MatrixXd with_matcher_scale(const Eigen::MatrixXd& covariance, const BaseParameters& base);
+
 /// Covariance of the quantities above from that of the radii.
 std::vector<std::vector<double>> diameter_covariance(const Eigen::MatrixXd& covariance);
 

@@ -145,9 +145,12 @@ class Solver {
   void fill() {
     const FitResult& fit = outcome_.fit;
     const std::span<const double> p(fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size()));
-    calibration_.parameters = base_quantities(to_base(p), fit.covariance);
+    const bool matched = !recordings_.front().scans.empty() && !session_->reference_is_base();
+    const Eigen::MatrixXd covariance =
+        matched ? with_matcher_scale(fit.covariance, to_base(p)) : fit.covariance;
+    calibration_.parameters = base_quantities(to_base(p), covariance);
     calibration_.covariance_order = base_quantity_names();
-    calibration_.covariance = diameter_covariance(fit.covariance);
+    calibration_.covariance = diameter_covariance(covariance);
     calibration_.methods.push_back(joint_method(fit));
     report("validating", 0.0);
     fit_plain();
