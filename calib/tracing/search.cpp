@@ -10,8 +10,10 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kNamedLevel =
-    0.003;  ///< family-wise; a nominal 1 % test would exceed 1 % of robots in many campaigns
+/// Family-wise; a nominal 1 % test exceeds 1 % of robots in many campaigns.
+constexpr double kNamedLevel = 0.0009;
+/// A delay hardly shows in odometry and cannot spoil it; what changes odometry must be beyond doubt.
+constexpr double kClockLevel = 0.003;
 constexpr double kUnnamedLevel = 0.0025;
 constexpr int kMaxFindings = 3;
 constexpr int kMaxCurves = 3;
@@ -82,11 +84,15 @@ class Search {
     return static_cast<double>(degrees) * std::log(static_cast<double>(result_.fit.whitened_residual.size()));
   }
 
+  static double level(const Effect& effect) {
+    return effect.storage() == Storage::driver ? kClockLevel : kNamedLevel;
+  }
+
   /// Joint refits of the most promising names on the noise model of the current fit.
   std::optional<Trial> best_name(const ScoreTable& table, const EffectList& candidates) {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < named_.size(); ++k)
-      if (table.scores[k].family_p_value <= kNamedLevel) order.push_back(k);
+      if (table.scores[k].family_p_value <= level(*candidates[k])) order.push_back(k);
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return table.scores[a].statistic - penalty(table.scores[a].degrees) >
              table.scores[b].statistic - penalty(table.scores[b].degrees);
@@ -166,7 +172,7 @@ class Search {
     finding.effect = effect;
     finding.family_p_value = table.scores[best.candidate].family_p_value;
     finding.aliases = aliases_of(table, candidates, best);
-    if (negligible(*effect, best.fit) || !proves_itself(effects, best.fit, finding))
+    if (implausible(*effect, best.fit) || spoils_base(best.fit) || !proves_itself(effects, best.fit, finding))
       return drop(best.candidate);
     auto settled = refit(best.candidate, effect, false);
     if (!settled) return drop(best.candidate);
@@ -177,14 +183,24 @@ class Search {
     return true;
   }
 
-  /// Too small to matter: every parameter below a share of its typical size.
-  static bool negligible(const Effect& effect, const FitResult& fit) {
+  /// This drive cannot tell the addition from the wheels: it would trade a known geometry for a guess.
+  [[nodiscard]] bool spoils_base(const FitResult& fit) const {
+    constexpr double kMaxInflation = 3.0;  // of a standard deviation
+    for (const auto k : {kLeftRadius, kRightRadius, kTrackWidth})
+      if (fit.covariance(k, k) > kMaxInflation * kMaxInflation * result_.fit.covariance(k, k)) return true;
+    return false;
+  }
+
+  /// Too small to matter (every parameter below a share of its typical size) or physically implausible.
+  static bool implausible(const Effect& effect, const FitResult& fit) {
     const auto parameters = effect.parameters();
     const auto first = fit.parameters.size() - static_cast<Eigen::Index>(parameters.size());
     double largest = 0.0;
-    for (std::size_t k = 0; k < parameters.size(); ++k)
-      largest = std::max(
-          largest, std::abs(fit.parameters(first + static_cast<Eigen::Index>(k))) / parameters[k].scale);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const double value = fit.parameters(first + static_cast<Eigen::Index>(k));
+      if (value < parameters[k].lower || value > parameters[k].upper) return true;
+      largest = std::max(largest, std::abs(value) / parameters[k].scale);
+    }
     return largest < kNegligibleShare;
   }
 
@@ -228,7 +244,8 @@ class Search {
     effects.push_back(effect);
     const auto trial = refit(index, effect, true);
     Finding proof;
-    if (!trial || negligible(*effect, trial->fit) || !proves_itself(effects, trial->fit, proof))
+    if (!trial || implausible(*effect, trial->fit) || spoils_base(trial->fit) ||
+        !proves_itself(effects, trial->fit, proof))
       return drop_curve(index);
     auto settled = refit(index, effect, false);
     if (!settled) return drop_curve(index);
