@@ -2,7 +2,7 @@
 # A robot whose dimensions differ from its papers is calibrated through its wires. The robot is simulated (CANopen drive
 # behind an slcan port, 2D lidar on a serial port); the daemon and the command line are the real ones. Needs no hardware.
 #
-# Works on a fresh Debian 12 as root, or as a user with sudo; installs and builds what is missing. About 10 minutes on
+# Works on a fresh Debian 12 as root, or as a user with sudo; installs and builds what is missing. About 12 minutes on
 # two processors the first time, 5 after that.
 #
 # usage: ./demo.sh [--full] [SEED]     SEED: number that the robot is drawn from; default: another each time
