@@ -137,7 +137,8 @@ TEST(Surface, deskewing_straightens_a_sweep_taken_while_turning) {
   const auto worst_wall_error = [](const Surface& surface) {
     double worst = 0.0;
     for (const SurfacePoint& p : surface.points)
-      if (p.position.y() < -1.5 && std::abs(p.position.x() - 0.5) < 3.0) worst = std::max(worst, std::abs(p.position.y() + 2.0));
+      if (p.position.y() < -1.5 && std::abs(p.position.x() - 0.5) < 3.0)
+        worst = std::max(worst, std::abs(p.position.y() + 2.0));
     return worst;
   };
   EXPECT_LT(worst_wall_error(straight), 2e-3);

@@ -74,8 +74,8 @@ TEST(Slcan, a_line_cut_off_at_any_place_is_not_a_frame) {
 
 TEST(Slcan, rejects_lines_that_break_one_rule) {
   for (const std::string line : {"t8000", "t12390102030405060708", "t12G0", "t123", "T200000000", "T1234567",
-                                 "t1232AAB", "t1231AABBCCDDEE", "t1231-1", "t1231 1", "t1231+1", "r1232AABBCC",
-                                 "t1231AAEA60", "x", "q12", "t0x10", "T1FFFFFFF"}) {
+                                 "t1232AAB", "t1231AABBCCDDEE", "t1231-1", "t1231 1", "t1231+1",
+                                 "r1232AABBCC", "t1231AAEA60", "x", "q12", "t0x10", "T1FFFFFFF"}) {
     SlcanParser parser;
     EXPECT_EQ(frames_in(parser.on_bytes(bytes_of(line + "\r"))), 0U) << line;
     EXPECT_EQ(parser.counters()["bad_line"], 1U) << line;
