@@ -33,9 +33,9 @@ class Client {
   control::FrameDecoder decoder_;
 };
 
-/// Runs a method that needs the lease: acquires it, renews it every 60 ms on a connection of its own, and
-/// lets go of it on Ctrl-C, SIGTERM and SIGHUP. A suspended or killed process renews nothing, and the robot
-/// stops.
+/// Runs a method that needs the lease: acquires it, renews it every 30 ms on a connection of its own, and
+/// lets go of it on Ctrl-C, Ctrl-Z, SIGTERM and SIGHUP. A suspended or killed process renews nothing, and the
+/// robot stops.
 /// @param parameters JSON object text without "lease"
 /// @param progress called with the JSON text of each progress object
 Result<std::string> call_with_lease(const std::string& socket, const std::string& method,

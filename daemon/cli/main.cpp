@@ -35,7 +35,9 @@ int run(int argc, char** argv) {
   odomcalib::cli::add_solve(app, session);
   odomcalib::cli::add_predict(app, session);
   odomcalib::cli::add_decode(app, session);
+  odomcalib::cli::add_match(app, session);
   odomcalib::cli::add_questions(app, session);
+  odomcalib::cli::add_record(app, session);
   odomcalib::cli::add_motions(app, session);
   try {
     app.parse(argc, argv);

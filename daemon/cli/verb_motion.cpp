@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -28,6 +29,7 @@ struct Options {
   double distance = 1.0, turns = 1.0;
   std::string direction = "both", file, id;
   bool dry_run = false, quick = false;
+  std::vector<std::string> assignments;
 };
 
 // Rule M11: somebody has looked at the robot.
@@ -112,6 +114,28 @@ int apply(const Session& session, const Options& options) {
   return print_result(session, run_method(session, options, "Apply", {{"calibration", body}}));
 }
 
+// "NAME=VALUE", in m. Error: usage.
+Result<ordered_json> parsed_values(const std::vector<std::string>& assignments) {
+  ordered_json values = ordered_json::object();
+  for (const auto& text : assignments) {
+    const auto equals = text.find('=');
+    double value = 0.0;
+    const char* end = text.data() + text.size();
+    const auto parsed = equals == std::string::npos ? std::from_chars_result{end, std::errc::invalid_argument}
+                                                    : std::from_chars(text.data() + equals + 1, end, value);
+    if (parsed.ec != std::errc{} || parsed.ptr != end || equals == 0)
+      return Error{ErrorCode::usage, "not NAME=VALUE with a value in m", text, "odomcalibctl params get"};
+    values[text.substr(0, equals)] = value;
+  }
+  return values;
+}
+
+int set_parameters(const Session& session, const Options& options) {
+  const auto values = parsed_values(options.assignments);
+  if (!values) return report_error(values.error(), session.json);
+  return print_result(session, run_method(session, options, "SetParameters", {{"values", values.value()}}));
+}
+
 int rollback(const Session& session, const Options& options) {
   ordered_json parameters = ordered_json::object();
   if (!options.id.empty()) parameters["id"] = options.id;
@@ -153,6 +177,10 @@ void add_motions(CLI::App& app, Session& session) {
   all->add_option("--out", options->file, "calibration file to write");
   add_action(app, session, options, "apply", "Write a calibration to the controller", apply)
       ->add_option("CALIBRATION", options->file)
+      ->required();
+  add_action(*app.get_subcommand("params"), session, options, "set", "Write values to the controller",
+             set_parameters)
+      ->add_option("NAME=VALUE", options->assignments, "in m, e.g. track_width=0.4033")
       ->required();
   add_action(app, session, options, "rollback", "Restore the values before a write-back", rollback)
       ->add_option("ID", options->id, "history entry, default: the newest");

@@ -25,10 +25,12 @@ struct Session {
 void add_solve(CLI::App& app, Session& session);
 void add_predict(CLI::App& app, Session& session);
 void add_decode(CLI::App& app, Session& session);
+void add_match(CLI::App& app, Session& session);
 
 // Ask the daemon.
 int show_status(const Session& session);
 void add_questions(CLI::App& app, Session& session);
+void add_record(CLI::App& app, Session& session);
 void add_motions(CLI::App& app, Session& session);
 
 }  // namespace odomcalib::cli

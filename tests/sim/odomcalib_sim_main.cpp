@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -29,7 +30,7 @@ struct Arguments {
   double speed = 1.0;
   double duration = 0.0;
   std::string room = "furnished";
-  std::string link_dir, truth_file, can, effect;
+  std::string link_dir, truth_file, wheel_log, can, effect;
   double effect_size = -1.0;
   bool exact = false, commands = false;
 };
@@ -44,6 +45,8 @@ void declare(CLI::App& app, Arguments& arguments) {
                  "folder in which to make the links `can` and `lidar` to the ports");
   app.add_option("--truth", arguments.truth_file,
                  "file to write the true parameters to (JSON), refreshed every second");
+  app.add_option("--wheel-log", arguments.wheel_log,
+                 "file to append a line to every 2 ms: monotonic clock in s, simulated s, faster rim in m/s");
   app.add_option("--can", arguments.can, "SocketCAN interface to use instead of an slcan port");
   app.add_option("--effect", arguments.effect, "something that the plain model lacks, e.g. gear_play");
   app.add_option("--effect-size", arguments.effect_size, "in its unit; default: its largest usual size");
@@ -100,12 +103,33 @@ class CommandReader {
   std::string pending_;
 };
 
+/// True wheel speed over time, complete lines only, for whoever measures how long a stop took.
+class WheelLog {
+ public:
+  explicit WheelLog(const std::string& path)
+      : file_(path.empty() ? nullptr : std::fopen(path.c_str(), "we")) {
+    if (file_) std::setvbuf(file_.get(), nullptr, _IOLBF, 4096);
+  }
+  void add(const SimRobot& robot) {
+    if (!file_) return;
+    const std::chrono::duration<double> clock = std::chrono::steady_clock::now().time_since_epoch();
+    std::fprintf(file_.get(), "%.6f %.6f %.6f\n", clock.count(), robot.now(), robot.fastest_rim());
+  }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
 /// @return exit status
 int run(SimRobot& robot, const Arguments& arguments) {
   using Clock = std::chrono::steady_clock;
   constexpr double kChunk = 0.002;  // s of real time between exchanges
   const auto start = Clock::now();
   double truth_due = 0.0;
+  WheelLog wheel_log(arguments.wheel_log);
   std::optional<CommandReader> commands;
   if (arguments.commands) commands.emplace();
   for (int i = 1; stop_requested == 0; ++i) {
@@ -116,6 +140,7 @@ int run(SimRobot& robot, const Arguments& arguments) {
     }
     if (commands) commands->serve(robot);
     robot.step(kChunk * arguments.speed);
+    wheel_log.add(robot);
     if (arguments.duration > 0.0 && robot.now() >= arguments.duration) break;
     std::this_thread::sleep_until(
         start + i * std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kChunk)));

@@ -1,0 +1,111 @@
+// Scan pairs in, motions out: one JSON object a line. A line that cannot be used gets an answer of its own.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "calib/match.hpp"
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/verbs.hpp"
+#include "proto/recording.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json refused(const std::string& status, const std::string& what) {
+  return {{"status", status}, {"pose", nullptr}, {"covariance", nullptr},
+          {"inliers", 0},     {"time_us", 0},    {"error", what}};
+}
+
+// The scan goes through the reader of recordings, so that both mean the same by every member.
+Result<Scan> scan_of(const ordered_json& pair, const char* name) {
+  if (!pair.contains(name) || !pair[name].is_object())
+    return Error{ErrorCode::format, "no scan of this name", name, ""};
+  ordered_json line = pair[name];
+  line["type"] = "scan";
+  if (!line.contains("t")) line["t"] = 0.0;
+  RobotDescription any;  // the reader asks for one; nothing here depends on it
+  any.left_wheel_diameter = any.right_wheel_diameter = any.track_width = any.ticks_per_rev = 1.0;
+  auto recording = read_recording_bytes(line.dump() + "\n", name, &any);
+  if (!recording) return recording.error();
+  if (recording.value().scans.size() != 1)
+    return Error{ErrorCode::format,
+                 recording.value().discarded.empty() ? "no scan" : recording.value().discarded.front().reason,
+                 name, ""};
+  return std::move(recording.value().scans.front());
+}
+
+std::optional<std::array<double, 3>> guess_of(const ordered_json& pair) {
+  std::array<double, 3> guess{};
+  if (!pair.contains("guess")) return guess;
+  const auto& given = pair["guess"];
+  if (!given.is_array() || given.size() != 3) return std::nullopt;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!given[i].is_number() || !std::isfinite(given[i].get<double>())) return std::nullopt;
+    guess.at(i) = given[i].get<double>();
+  }
+  return guess;
+}
+
+ordered_json describe(const calib::ScanMatch& match, std::chrono::microseconds time) {
+  ordered_json body{{"status", match.status},
+                    {"pose", nullptr},
+                    {"covariance", nullptr},
+                    {"inliers", match.inliers},
+                    {"time_us", time.count()}};
+  if (!match.ok()) return body;
+  body["pose"] = match.pose;
+  body["covariance"] = match.covariance;
+  return body;
+}
+
+ordered_json match_pair(const ordered_json& pair) {
+  if (!pair.is_object()) return refused("malformed", "the line is no JSON object");
+  const auto reference = scan_of(pair, "reference");
+  if (!reference) return refused("malformed", reference.error().text());
+  const auto scan = scan_of(pair, "scan");
+  if (!scan) return refused("malformed", scan.error().text());
+  const auto guess = guess_of(pair);
+  if (!guess) return refused("malformed", "guess is not three numbers");
+  std::optional<double> sigma;
+  if (pair.contains("sigma") && !pair["sigma"].is_null()) {
+    sigma = pair["sigma"].is_number() ? pair["sigma"].get<double>() : -1.0;
+    if (!(*sigma > 0.0 && *sigma < 10.0)) return refused("malformed", "sigma is not a length in m above 0");
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const auto match = calib::match_scans(reference.value(), scan.value(), *guess, sigma);
+  const auto time = std::chrono::steady_clock::now() - begin;
+  return describe(match, std::chrono::duration_cast<std::chrono::microseconds>(time));
+}
+
+int match_file(const std::string& path, const Session& session) {
+  std::ifstream file(path);
+  if (!file)
+    return report_error({ErrorCode::io, "cannot open", path, "check the name and the rights"}, session.json);
+  std::size_t pairs = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    ++pairs;
+    std::cout << match_pair(ordered_json::parse(line, nullptr, false)).dump() << '\n';
+  }
+  if (pairs == 0)
+    return report_error({ErrorCode::empty, "no pair of scans", path, "one JSON object a line"}, session.json);
+  return kDone;
+}
+
+}  // namespace
+
+void add_match(CLI::App& app, Session& session) {
+  auto* verb = app.add_subcommand("match", "Motion between pairs of scans, JSON Lines in and out");
+  auto path = std::make_shared<std::string>();
+  verb->add_option("PAIRS", *path, R"(lines {"reference":scan,"scan":scan,"guess":[x,y,yaw],"sigma":m})")
+      ->required();
+  verb->callback([&session, path] { session.run = [&session, path] { return match_file(*path, session); }; });
+}
+
+}  // namespace odomcalib::cli

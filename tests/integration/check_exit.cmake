@@ -1,0 +1,12 @@
+# Runs a command and judges its exit status and what it says: cmake -DCOMMAND=... -DSTATUS=n -DSAYS=regex -P this
+separate_arguments(words UNIX_COMMAND "${COMMAND}")
+if(DEFINED CONTENT)
+  file(WRITE "${INPUT}" "${CONTENT}")
+endif()
+execute_process(COMMAND ${words} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE err TIMEOUT 60)
+if(NOT status STREQUAL STATUS)
+  message(FATAL_ERROR "exit status ${status} instead of ${STATUS}: ${out}${err}")
+endif()
+if(NOT "${out}${err}" MATCHES "${SAYS}")
+  message(FATAL_ERROR "\"${out}${err}\" does not say ${SAYS}")
+endif()

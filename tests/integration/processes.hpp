@@ -1,0 +1,85 @@
+// Whole programs under test: started, watched and ended with the test, whatever ends it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace odomcalib::testing {
+
+/// s of the monotonic clock, the one in the wheel log of odomcalib-sim.
+double monotonic();
+
+/// Asks again every few milliseconds until `condition` holds. @return false when it did not within `seconds`
+bool wait_until(const std::function<bool()>& condition, double seconds);
+
+class Process {
+ public:
+  /// @param output file that takes standard output and standard error
+  Process(const std::vector<std::string>& arguments, const std::filesystem::path& output);
+  ~Process();  ///< SIGKILL when it still runs
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void signal(int number) const;
+  void tell(const std::string& line) const;  ///< to its standard input
+  /// Exit status, 128 + signal when a signal ended it, nullopt when it still runs after `seconds`.
+  std::optional<int> wait(double seconds);
+
+ private:
+  pid_t pid_ = -1;
+  int input_ = -1;
+  std::optional<int> status_;
+};
+
+struct WheelSpeed {
+  double clock = 0.0, simulated = 0.0, rim = 0.0;  ///< s, s, m/s
+};
+
+/// What the simulator wrote about its wheels so far.
+class WheelLog {
+ public:
+  explicit WheelLog(std::filesystem::path path) : path_(std::move(path)) {}
+  const std::vector<WheelSpeed>& read();
+
+ private:
+  std::filesystem::path path_;
+  std::ifstream file_;
+  std::string rest_;
+  std::vector<WheelSpeed> speeds_;
+};
+
+/// Simulator and daemon on a configuration of their own in a temporary folder.
+class RobotAndDaemon {
+ public:
+  explicit RobotAndDaemon(int seed);
+  ~RobotAndDaemon();
+
+  void start_daemon();
+  [[nodiscard]] bool ready() const;          ///< drive disabled, values read, scans arrive
+  [[nodiscard]] std::string status() const;  ///< JSON text, empty when the daemon does not answer
+  std::unique_ptr<Process> run(std::vector<std::string> arguments);  ///< odomcalibctl
+  [[nodiscard]] std::string output() const;                          ///< of the odomcalibctl started last
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+  /// From `clock` until the rim is below 5 mm/s and stays there for 0.3 s, in simulated s. Waits for it.
+  std::optional<double> time_to_rest(double clock);
+  [[nodiscard]] double rim();  ///< m/s, now
+
+  std::unique_ptr<Process> robot, daemon;
+
+ private:
+  void write_configuration() const;
+
+  std::filesystem::path folder_;
+  std::unique_ptr<WheelLog> wheels_;
+  int clients_ = 0;
+};
+
+}  // namespace odomcalib::testing
