@@ -123,7 +123,7 @@ drive() { # FILE VERB...
   for _ in 1 2 3; do
     status=0
     "$bin/odomcalibctl" --socket "$dir/control" --json=short "$@" --yes > "$file" || status=$?
-    case $status in 0) break ;; 5 | 6) echo "exit status $status; once more" ;; *) fail "exit status $status" ;; esac
+    case $status in 0) break ;; 4 | 5 | 6) echo "exit status $status; once more" ;; *) fail "exit status $status" ;; esac
     sleep 2
   done
   [ "$status" -eq 0 ] || fail "exit status $status"
