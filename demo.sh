@@ -143,7 +143,7 @@ calibrate() {
   for _ in 1 2 3; do
     status=0
     run calibrate $plan --yes --out build/demo/calibration.json || status=$?
-    case $status in 0) return ;; 3) fail "the calibration was refused" ;; 5 | 6) echo "exit status $status; once more" ;;
+    case $status in 0) return ;; 3) fail "the calibration was refused" ;; 4 | 5 | 6) echo "exit status $status; once more" ;;
       *) fail "exit status $status" ;; esac
     sleep 2
   done
