@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/statistics/median.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -21,12 +23,6 @@ struct Comparison {
   double seen = 0.0;
 };
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Slope through the origin of `seen` on `claimed`, after cutting what deviates grossly from the median
 /// ratio.
 Ratio robust_slope(const std::vector<Comparison>& all) {
@@ -35,7 +31,7 @@ Ratio robust_slope(const std::vector<Comparison>& all) {
   const double centre = median_of(ratios);
   std::vector<double> deviations;
   for (const Comparison& c : all) deviations.push_back(std::abs(c.seen - centre * c.claimed));
-  const double limit = kOutlier * 1.4826 * std::max(median_of(deviations), 1e-9);
+  const double limit = kOutlier * kMadToSigma * std::max(median_of(deviations), 1e-9);
   Ratio result;
   double xy = 0.0;
   double xx = 0.0;

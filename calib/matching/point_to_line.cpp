@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nanoflann.hpp>
 
+#include "calib/statistics/median.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -79,9 +81,7 @@ double residual_scale(const std::vector<Correspondence>& pairs, const Pose& pose
   magnitudes.reserve(pairs.size());
   for (const Correspondence& pair : pairs)
     magnitudes.push_back(std::abs(distance(pair, pose)) / std::sqrt(pair.variance));
-  const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
-  std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-  return 1.4826 * *middle;
+  return kMadToSigma * median_of(std::move(magnitudes));
 }
 
 Linearised linearise(const std::vector<Correspondence>& pairs, const Pose& pose, double scale) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "calib/statistics/median.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -117,12 +119,6 @@ SurfacePoint beam_end(const Scan& scan, std::size_t beam, const BeamMotion& moti
   point.beam = {std::cos(angle), std::sin(angle)};
   point.position = Eigen::Vector2d(pose.x, pose.y) + point.range * point.beam;
   return point;
-}
-
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Median step between neighbouring beams; listed angles may wrap anywhere.

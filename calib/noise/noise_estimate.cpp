@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "calib/statistics/median.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -125,15 +127,12 @@ double median_magnitude(const Observation& o, std::initializer_list<Eigen::Index
   std::vector<double> magnitudes;
   for (const Eigen::Vector3d& r : o.residuals)
     for (const Eigen::Index axis : axes) magnitudes.push_back(std::abs(r(axis)));
-  const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
-  std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-  return *middle;
+  return median_of(std::move(magnitudes));
 }
 
 /// The heavy-tailed likelihood is flat far from the truth: the search begins where all spread is process
 /// noise.
 void begin_at_spread(const Observation& o, NoiseModel& noise) {
-  constexpr double kMadToSigma = 1.4826;
   noise.process_translation = kMadToSigma * median_magnitude(o, {0, 1});
   noise.process_rotation = kMadToSigma * median_magnitude(o, {2});
   noise.stamp_jitter = 0.0;
