@@ -9,11 +9,10 @@
 #include "calib/estimators/wheel_motion.hpp"
 #include "calib/model/effect.hpp"
 #include "calib/model/motion_step.hpp"
+#include "calib/model/placed_effects.hpp"
 #include "calib/wheels/wheel_track.hpp"
 
 namespace odomcalib::calib {
-
-using EffectList = std::vector<std::shared_ptr<const Effect>>;
 
 /// Order of the parameter vector: the base parameters, then those of each effect.
 enum BaseIndex { kLeftRadius, kRightRadius, kTrackWidth, kMountX, kMountY, kMountYaw, kBaseCount };
@@ -41,7 +40,7 @@ class Trajectory {
   std::vector<Pose> poses_;
   std::vector<Pose> twists_;
   std::vector<double> parameters_;
-  EffectList effects_;
+  PlacedEffects effects_;
 };
 
 class DriveModel {

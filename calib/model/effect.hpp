@@ -64,4 +64,6 @@ class Effect {
   }
 };
 
+using EffectList = std::vector<std::shared_ptr<const Effect>>;
+
 }  // namespace odomcalib::calib
