@@ -7,6 +7,8 @@
 namespace odomcalib::drivers {
 namespace {
 
+constexpr unsigned kAnyBaud = 115'200;  // USB-CDC devices ignore it
+
 Result<unsigned> number(const DeviceString& device, const std::string& key, unsigned otherwise) {
   const std::string text = device.option(key, std::to_string(otherwise));
   unsigned value = 0;
@@ -16,17 +18,19 @@ Result<unsigned> number(const DeviceString& device, const std::string& key, unsi
 }
 
 Result<std::unique_ptr<CanTransport>> open_slcan_device(const DeviceString& device) {
-  const SlcanOptions defaults;
-  const auto bitrate = number(device, "bitrate", defaults.bitrate);
+  const auto bitrate = number(device, "bitrate", SlcanOptions().bitrate);
   if (!bitrate) return bitrate.error();
-  const auto baud = number(device, "baud", defaults.baud);
+  const auto baud = number(device, "baud", kAnyBaud);
   if (!baud) return baud.error();
+  SlcanOptions options;
+  if (!device.option("baud", "").empty()) options.baud = baud.value();
   const auto stamps = number(device, "timestamps", 0);
   if (!stamps) return stamps.error();
   auto port = open_serial(device.path, baud.value());
   if (!port) return port.error();
-  return open_slcan(std::move(port).value(), device.path,
-                    {bitrate.value(), baud.value(), stamps.value() != 0});
+  options.bitrate = bitrate.value();
+  options.timestamps = stamps.value() != 0;
+  return open_slcan(std::move(port).value(), device.path, options);
 }
 
 }  // namespace

@@ -112,10 +112,15 @@ class SlcanTransport final : public CanTransport {
     }
   }
 
+  /// From the line's first byte to the end of the read, 10 bits a byte: the frame was over before it began.
+  double line_time(const SlcanItem& item) const {
+    const double bytes = static_cast<double>(item.bytes + item.bytes_after);
+    return options_.baud ? 10.0 * bytes / *options_.baud : 0.0;
+  }
+
   double time_of(const SlcanItem& item, double now) {
-    // 10 bits per byte; bytes that came after the line in the same read, and the line's own are over by then.
-    const double end = now - 10.0 * static_cast<double>(item.bytes_after) / options_.baud;
-    return item.stamp_ms ? clock_.to_host(*item.stamp_ms, end) : end;
+    const double seen = now - line_time(item);
+    return item.stamp_ms ? clock_.to_host(*item.stamp_ms, seen) : seen;
   }
 
   /// "sb...": bus-off is passed on like SocketCAN's error frame, so that there is one way to learn of it.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "drivers/can/transport.hpp"
@@ -11,8 +12,10 @@ namespace odomcalib::drivers {
 
 struct SlcanOptions {
   unsigned bitrate = 500'000;  ///< bit/s on the CAN side
-  unsigned baud = 115'200;     ///< of the serial side; irrelevant on USB-CDC
-  bool timestamps = false;     ///< ask the adapter for its own millisecond stamps
+  /// Of the serial side. Unset: a USB-CDC device, which sends a line at once whatever rate is set; frames
+  /// then carry the time of their arrival, because no transfer time is known.
+  std::optional<unsigned> baud;
+  bool timestamps = false;  ///< ask the adapter for its own millisecond stamps
 };
 
 /// Closes the adapter's channel, sets the bit rate and opens it again. Takes 0.1 s, at most 1.2 s with a

@@ -121,7 +121,8 @@ void SlcanParser::finish_line(std::vector<SlcanItem>& out, std::size_t bytes_aft
   if (!line.empty() && is_fd(line[0])) return reject(fd_frame_);
   auto item = parse_line(line);
   if (!item) return reject(bad_line_);
-  good_ += used_ + 1;
+  item->bytes = used_ + 1;
+  good_ += item->bytes;
   used_ = 0;
   if (item->kind == SlcanItem::Kind::frame) ++frames_;
   item->bytes_after = bytes_after;
@@ -146,7 +147,7 @@ std::vector<SlcanItem> SlcanParser::on_bytes(std::span<const std::uint8_t> bytes
       overlong_ = false;
       ++good_;
       ++refused_;
-      out.push_back({SlcanItem::Kind::refused, {}, {}, {}, after});
+      out.push_back({SlcanItem::Kind::refused, {}, {}, {}, 1, after});
     } else if (overlong_) {
       ++skipped_;
     } else if (used_ == kLongestLine) {

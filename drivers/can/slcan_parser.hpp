@@ -25,7 +25,8 @@ struct SlcanItem {
   CanFrame frame;
   std::optional<std::uint16_t> stamp_ms;  ///< frame: adapter's clock 0..59999, when switched on
   std::string text;
-  std::size_t bytes_after = 0;  ///< bytes of the same read that came after this item, to date it
+  std::size_t bytes = 0;        ///< of this item, with its CR; with the next one they date it
+  std::size_t bytes_after = 0;  ///< bytes of the same read that came after this item
 };
 
 class SlcanParser {

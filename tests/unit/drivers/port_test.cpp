@@ -163,13 +163,30 @@ TEST(SlcanPort, sets_up_the_adapter_and_passes_frames) {
   ASSERT_TRUE(frames.ok());
   ASSERT_EQ(frames.value().size(), 1U);
   EXPECT_EQ(frames.value()[0].id, 0x123U);
-  EXPECT_NEAR(frames.value()[0].t, 5.0, 0.01);
+  EXPECT_EQ(frames.value()[0].t, 5.0);  // without a baud rate no transfer time is known
   CanFrame frame;
   frame.id = 0x601;
   frame.length = 1;
   frame.data[0] = 0x40;
   EXPECT_TRUE(can.value()->send(frame).ok());
   EXPECT_EQ(pty.hear(), "t601140\r");
+}
+
+TEST(SlcanPort, frames_of_one_read_are_dated_by_what_came_after_them) {
+  Pty pty;
+  std::string heard;
+  std::thread adapter([&] { play_adapter(pty, "\r", "\r", heard); });
+  auto can = open_can("slcan:" + pty.path + "?bitrate=500000&baud=115200");
+  adapter.join();
+  ASSERT_TRUE(can.ok()) << can.error().text();
+  pty.say("t1232AABB\rt1240\r");  // 10 and 6 characters of 10 bits each
+  pollfd state{can.value()->fd(), POLLIN, 0};
+  ASSERT_EQ(poll(&state, 1, 1000), 1);
+  const auto frames = can.value()->receive(5.0);
+  ASSERT_TRUE(frames.ok());
+  ASSERT_EQ(frames.value().size(), 2U);
+  EXPECT_NEAR(frames.value()[0].t, 5.0 - 160.0 / 115200.0, 1e-9);
+  EXPECT_NEAR(frames.value()[1].t, 5.0 - 60.0 / 115200.0, 1e-9);
 }
 
 TEST(SlcanPort, a_silent_or_refusing_adapter_is_named_as_such) {
