@@ -5,7 +5,7 @@
 
 #include "calib/effects/catalogue.hpp"
 #include "calib/model/drive_model.hpp"
-#include "calib/tracing/curve_json.hpp"
+#include "calib/tracing/tracing_json.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -42,8 +42,8 @@ Correction correction_of(const Calibration& calibration) {
     for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
   }
   if (const auto member = calibration.extensions.find(kCurvesMember); member != calibration.extensions.end())
-    for (const auto& [curve, coefficients] : curves_from_json(member->second)) {
-      if (belongs_to_the_place(curve.variable)) continue;
+    for (const auto& [curve, coefficients, law_of] : curves_from_json(member->second)) {
+      if (belongs_to_the_place(curve.law.variable)) continue;
       correction.effects.push_back(make_curve_effect(curve));
       values.insert(values.end(), coefficients.begin(), coefficients.end());
     }

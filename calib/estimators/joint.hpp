@@ -34,6 +34,7 @@ struct FitResult {
   std::vector<NoiseModel> noise;      ///< per recording
   Eigen::VectorXd whitened_residual;  ///< 3 n, unit variance if the model is complete
   Eigen::MatrixXd whitened_jacobian;  ///< 3 n x parameters, of the prediction
+  Eigen::VectorXd prior_information;  ///< per parameter, of priors about zero; already part of the covariance
   Eigen::Vector3d rms;                ///< of the residuals of the pairs that are not outliers: m, m, rad
   double cost = 0.0;                  ///< robust -2 log likelihood up to a constant, on `noise`
   std::size_t used = 0;
@@ -49,7 +50,8 @@ Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& eff
                             const Eigen::VectorXd& start, const FitOptions& options = {});
 
 /// Whitened derivatives of the prediction by the parameters of `candidates`, which act on top of `effects`
-/// with value zero, at the fit and with its weights: 3 n x parameters of the candidates.
+/// at their start (where they change nothing), at the fit and with its weights: 3 n x parameters of the
+/// candidates.
 Eigen::MatrixXd whitened_columns(std::span<const FitData> data, const EffectList& effects,
                                  const FitResult& fit, const EffectList& candidates);
 

@@ -82,11 +82,17 @@ class DriveHistory {
     double since = 1e3;  ///< rad; the drive begins as if the last reversal lay far back
     double advance(double delta);
   };
+  void remember_stop(StepContext& context, double path);
+  void remember_turn(StepContext& context, double yaw);
+
   BaseParameters nominal_;
   Pose pose_;
   Wheel left_, right_;
   double direction_ = 0.0;
   double since_reversal_ = 1e3;
+  double stood_ = 0.0;  ///< s
+  double since_stop_ = 1e3;
+  double previous_turn_ = 0.0;
 };
 
 /// Observable variables of each tick interval, from smoothed wheel angles and nominal geometry.

@@ -6,33 +6,16 @@
 #include <map>
 #include <random>
 
+#include "calib/validation/folds.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
-constexpr std::size_t kFolds = 5;
-constexpr double kFoldBlockSeconds = 20.0;
 constexpr double kBootstrapBlockSeconds = 30.0;
 constexpr std::size_t kMinWindows = 10;
 constexpr int kDraws = 1000;
 constexpr unsigned kSeed = 19960612;
 constexpr double kHeadingLever = 0.5;  ///< m
-
-/// Fold of each pair, blocks dealt out in turn.
-std::vector<std::size_t> folds_of(std::span<const FitData> data) {
-  std::vector<std::size_t> folds;
-  std::size_t block = 0;
-  for (const FitData& d : data) {
-    double begin = -1e300;
-    for (const SensorPair& pair : d.pairs) {
-      if (pair.interval.begin > begin + kFoldBlockSeconds) {
-        begin = pair.interval.begin;
-        ++block;
-      }
-      folds.push_back(block % kFolds);
-    }
-  }
-  return folds;
-}
 
 /// Parameters without the fold: one Gauss-Newton step on the remaining whitened rows.
 Eigen::VectorXd without_fold(const FitResult& fit, const std::vector<std::size_t>& folds, std::size_t fold,
@@ -47,6 +30,8 @@ Eigen::VectorXd without_fold(const FitResult& fit, const std::vector<std::size_t
     gradient.noalias() +=
         rows.transpose() * fit.whitened_residual.segment<3>(static_cast<Eigen::Index>(3 * k));
   }
+  normal.diagonal() += fit.prior_information;
+  gradient -= fit.prior_information.cwiseProduct(fit.parameters);
   for (Eigen::Index k = 0; k < p; ++k) {
     if (!fixed[static_cast<std::size_t>(k)]) continue;
     normal.row(k).setZero();
@@ -124,6 +109,7 @@ std::optional<HorizonError> horizon_error(std::span<const FitData> data, const E
         error.position.push_back(
             std::hypot(predicted[k].x - windows[k].measured.x, predicted[k].y - windows[k].measured.y));
         error.heading.push_back(wrap_angle(predicted[k].yaw - windows[k].measured.yaw));
+        error.fold.push_back(fold);
         error.block.push_back(1000 * d +
                               static_cast<std::size_t>(std::max(
                                   0.0, (windows[k].interval.begin - data[d].pairs.front().interval.begin) /
@@ -133,6 +119,18 @@ std::optional<HorizonError> horizon_error(std::span<const FitData> data, const E
   }
   if (error.position.size() < kMinWindows) return std::nullopt;
   return error;
+}
+
+HorizonError where_selected(const HorizonError& before, const HorizonError& after,
+                            const FoldFlags& selected) {
+  HorizonError mixed = before;
+  const std::size_t count = std::min(before.position.size(), after.position.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!selected[before.fold[k]]) continue;
+    mixed.position[k] = after.position[k];
+    mixed.heading[k] = after.heading[k];
+  }
+  return mixed;
 }
 
 Improvement compare(const HorizonError& before, const HorizonError& after) {
@@ -168,12 +166,13 @@ Improvement compare(const HorizonError& before, const HorizonError& after) {
 
 HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before,
                           const std::vector<bool>& fixed_before, const FitResult& after,
-                          const std::vector<bool>& fixed_after) {
+                          const std::vector<bool>& fixed_after, const FoldFlags& selected) {
   constexpr double kClipSquared = 3.5 * 3.5;
   const auto folds = folds_of(data);
   std::vector<double> gains(folds.size(), 0.0);
   const auto add = [&](const FitResult& fit, const std::vector<bool>& fixed, double sign) {
     for (std::size_t fold = 0; fold < kFolds; ++fold) {
+      if (!selected[fold]) continue;
       const Eigen::VectorXd change = without_fold(fit, folds, fold, fixed) - fit.parameters;
       for (std::size_t k = 0; k < folds.size(); ++k) {
         if (folds[k] != fold) continue;

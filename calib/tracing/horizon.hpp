@@ -1,11 +1,13 @@
 // Open-loop odometry error over ten seconds on data that was not fitted: what a user feels.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "calib/estimators/joint.hpp"
+#include "calib/validation/folds.hpp"
 
 namespace odomcalib::calib {
 
@@ -14,6 +16,7 @@ inline constexpr double kHorizonSeconds = 10.0;
 struct HorizonError {
   std::vector<double> position;    ///< per window, m
   std::vector<double> heading;     ///< per window, rad
+  std::vector<std::size_t> fold;   ///< that each window was held out in
   std::vector<std::size_t> block;  ///< block of 30 s each window belongs to
   [[nodiscard]] double rms_position() const;
   [[nodiscard]] double rms_heading() const;
@@ -25,6 +28,13 @@ struct HorizonError {
 /// windows exist.
 std::optional<HorizonError> horizon_error(std::span<const FitData> data, const EffectList& effects,
                                           const FitResult& fit, const std::vector<bool>& fixed);
+
+/// Whether a candidate would have been chosen without the data of each fold.
+using FoldFlags = std::array<bool, kFolds>;
+
+/// `after` in the folds whose training data select the candidate, `before` in the others: so the choice
+/// itself is held out too.
+HorizonError where_selected(const HorizonError& before, const HorizonError& after, const FoldFlags& selected);
 
 struct Improvement {
   double ratio = 1.0;  ///< rms after over rms before, position
@@ -45,6 +55,6 @@ struct HeldOutGain {
 /// Both fits must stand on one noise model.
 HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before,
                           const std::vector<bool>& fixed_before, const FitResult& after,
-                          const std::vector<bool>& fixed_after);
+                          const std::vector<bool>& fixed_after, const FoldFlags& selected);
 
 }  // namespace odomcalib::calib

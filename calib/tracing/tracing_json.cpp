@@ -1,4 +1,4 @@
-#include "calib/tracing/curve_json.hpp"
+#include "calib/tracing/tracing_json.hpp"
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,25 +15,38 @@ std::optional<Enum> enum_from(const std::string& name, Enum last) {
 
 std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   if (!entry.is_object()) return std::nullopt;
-  const auto variable = enum_from(entry.value("variable", ""), Variable::since_reversal);
-  const auto carrier = enum_from(entry.value("carrier", ""), Carrier::sideways);
+  const auto variable = enum_from(entry.value("variable", ""), kLastVariable);
+  const auto carrier = enum_from(entry.value("carrier", ""), kLastCarrier);
   if (!variable || !carrier) return std::nullopt;
-  const Curve curve{*variable, *carrier, entry.value("low", 0.0), entry.value("high", 0.0)};
+  const Curve curve{
+      {*variable, *carrier}, entry.value("low", 0.0), entry.value("high", 0.0), entry.value("period", 0.0)};
   const auto coefficients = entry.value("coefficients", std::vector<double>{});
-  if (!(curve.high > curve.low) || coefficients.size() != basis(curve, curve.low).size()) return std::nullopt;
-  return FittedCurve{curve, coefficients};
+  if (!(curve.high > curve.low) || coefficients.size() != basis_size(curve)) return std::nullopt;
+  return FittedCurve{curve, coefficients, entry.value("law_of", "")};
 }
 
 }  // namespace
 
+std::string considered_to_json(const std::vector<Considered>& considered) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Considered& c : considered)
+    list.push_back({{"candidate", c.name},
+                    {"statistic", c.statistic},
+                    {"p_value", c.family_p_value},
+                    {"outcome", c.outcome}});
+  return list.dump();
+}
+
 std::string curves_to_json(const std::vector<FittedCurve>& curves) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const auto& [curve, coefficients] : curves)
-    list.push_back({{"variable", to_string(curve.variable)},
-                    {"carrier", to_string(curve.carrier)},
+  for (const auto& [curve, coefficients, law_of] : curves)
+    list.push_back({{"variable", to_string(curve.law.variable)},
+                    {"carrier", to_string(curve.law.carrier)},
                     {"low", curve.low},
                     {"high", curve.high},
-                    {"coefficients", coefficients}});
+                    {"period", curve.period},
+                    {"coefficients", coefficients},
+                    {"law_of", law_of}});
   return list.dump();
 }
 
