@@ -6,6 +6,7 @@
 #include "calib/effects/catalogue.hpp"
 #include "calib/gate.hpp"
 #include "calib/report.hpp"
+#include "calib/report_data.hpp"
 #include "calib/session/start_values.hpp"
 #include "calib/tracing/search.hpp"
 #include "calib/tracing/tracing_json.hpp"
@@ -162,6 +163,7 @@ class Solver {
     fill_unnamed();
     if (!outcome_.considered.empty())
       calibration_.extensions["considered"] = considered_to_json(outcome_.considered);
+    store_report_data(make_report_data(*session_, effects_, outcome_.fit, plain_), calibration_);
     const GateResult gate = judge(calibration_, fit.converged);
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;

@@ -1,4 +1,4 @@
-// Bounds-checked little-endian reading: the only way bytes from a wire become numbers in this folder.
+// Bounds-checked reading: the only way bytes from a wire become numbers in this folder.
 #pragma once
 
 #include <cstddef>
@@ -34,6 +34,13 @@ class ByteReader {
       value |= static_cast<std::uint64_t>(byte) << shift;
       shift += 8;
     }
+    return value;
+  }
+
+  /// Unsigned big-endian number of n <= 8 bytes.
+  std::uint64_t big_endian(std::size_t n) {
+    std::uint64_t value = 0;
+    for (const std::uint8_t byte : take(n)) value = value << 8U | byte;
     return value;
   }
 

@@ -1,92 +1,105 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "drivers/decode_parts.hpp"
-#include "drivers/lidar/ld06/ld06.hpp"
+#include "drivers/lidar/lidar.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr unsigned kBaud =
-    230'400;  // bytes of a file are fed packet by packet, so the rate dates nothing here
+constexpr std::size_t kPiece =
+    256;  // bytes fed at once, so that messages and scans come in the order of the file
 
-ordered_json scan_json(const Scan& scan) {
-  ordered_json ranges = ordered_json::array();
-  for (const float range : scan.ranges)
-    ranges.push_back(range > 0.0F ? ordered_json(range) : ordered_json(nullptr));
+ordered_json scan_json(const LidarScan& given) {
+  const Scan& scan = given.scan;
   ordered_json line = {{"type", "scan"},
                        {"t", scan.t},
-                       {"device_time", scan.t},
                        {"angle_min", scan.angle_min},
                        {"angle_increment", scan.angle_increment},
                        {"time_increment", scan.time_increment.value_or(0.0)},
                        {"range_min", scan.range_min},
                        {"range_max", scan.range_max}};
-  line["ranges"] = std::move(ranges);
-  line["angles"] = scan.angles;
-  line["times"] = scan.times;
-  line["intensities"] = scan.intensities;
+  if (given.device_time) line["device_time"] = *given.device_time;
+  if (given.counter) line["counter"] = *given.counter;
+  if (given.partial) line["partial"] = true;
+  line["ranges"] = ordered_json::array();
+  for (const float range : scan.ranges)
+    line["ranges"].push_back(range > 0.0F ? ordered_json(range) : ordered_json(nullptr));
+  if (!scan.angles.empty()) line["angles"] = scan.angles;
+  if (!scan.times.empty()) line["times"] = scan.times;
+  if (!scan.intensities.empty()) line["intensities"] = scan.intensities;
   return line;
 }
 
-ordered_json packet_json(const ld06::Packet& packet) {
-  ordered_json line = {{"type", "message"},
-                       {"name", "ld06_packet"},
-                       {"speed_deg_s", packet.speed_deg_s},
-                       {"start_deg", 0.01 * packet.start_cdeg},
-                       {"end_deg", 0.01 * ((packet.start_cdeg + packet.span_cdeg) % 36'000)},
-                       {"device_time", 1e-3 * packet.stamp_ms}};
-  for (const ld06::Point& point : packet.points) {
-    line["ranges"].push_back(point.range_mm == 0 ? ordered_json(nullptr)
-                                                 : ordered_json(1e-3 * point.range_mm));
-    line["intensities"].push_back(point.intensity);
+struct ToJson {
+  ordered_json operator()(const std::vector<double>& values) const {
+    ordered_json out = ordered_json::array();
+    for (const double value : values)
+      out.push_back(std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr));
+    return out;
   }
-  return line;
+  template <typename Other>
+  ordered_json operator()(const Other& value) const {
+    return value;
+  }
+};
+
+std::string text_of(const ordered_json& line) {
+  // Device text is data: what is not UTF-8 is replaced.
+  return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-/// Seconds of the device's clock without its wrap.
-class Unwrapped {
+std::string message_text(const LidarMessage& message) {
+  ordered_json line = {{"type", "message"}, {"name", message.name}};
+  for (const auto& [key, value] : message.fields) line[key] = std::visit(ToJson{}, value);
+  return text_of(line);
+}
+
+/// Lines in the order of the file. Packets are shown only when the file is too short for a whole turn.
+class Lines {
  public:
-  double operator()(unsigned stamp_ms) {
-    total_ms_ += (stamp_ms + ld06::kClockModulus_ms - last_) % ld06::kClockModulus_ms;
-    last_ = stamp_ms;
-    return 1e-3 * static_cast<double>(total_ms_);
+  void add(const LidarMessage& message) { lines_.push_back({message_text(message), message.is_packet}); }
+  void add(const LidarScan& scan) {
+    lines_.push_back({text_of(scan_json(scan)), false});
+    if (scan.partial || any_scan_) return;
+    any_scan_ = true;
+    std::erase_if(lines_, [](const Line& line) { return line.is_packet; });
+  }
+  [[nodiscard]] std::string text() const {
+    std::string out;
+    for (const Line& line : lines_)
+      if (!line.is_packet || !any_scan_) out += line.text;
+    return out;
   }
 
  private:
-  unsigned last_ = 0;
-  std::uint64_t total_ms_ = 0;
+  struct Line {
+    std::string text;
+    bool is_packet = false;
+  };
+  std::vector<Line> lines_;
+  bool any_scan_ = false;
 };
 
 }  // namespace
 
-/// A file has no arrival times: each packet is taken to arrive at its own stamp, so that times are the
-/// device's.
-std::string decode_ld06(std::span<const std::uint8_t> bytes) {
-  ld06::PacketFinder finder(4500.0);
-  Ld06 lidar(kBaud);
-  Unwrapped clock;
-  std::string out;
-  std::vector<ld06::Packet> packets;
-  std::size_t given = 0;
-  double now = 0.0;
-  bool any_scan = false;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const auto found = finder.on_bytes(bytes.subspan(i, 1));
-    if (found.empty()) continue;
-    packets.push_back(found.front());
-    now = clock(found.front().stamp_ms);
-    lidar.on_bytes(bytes.subspan(given, i + 1 - given), now);
-    given = i + 1;
-    for (const Scan& scan : lidar.take_scans()) {
-      out += scan_json(scan).dump() + "\n";
-      any_scan = true;
-    }
+/// A file has no arrival times: all times are the device's own, or counted samples.
+std::string decode_lidar(Lidar& lidar, std::span<const std::uint8_t> bytes) {
+  Lines lines;
+  lidar.set_listener([&lines](const LidarMessage& message) { lines.add(message); });
+  while (!bytes.empty()) {
+    const auto piece = bytes.first(std::min(kPiece, bytes.size()));
+    lidar.on_bytes(piece, 0.0);
+    bytes = bytes.subspan(piece.size());
+    for (const LidarScan& scan : lidar.take_scans()) lines.add(scan);
   }
-  lidar.on_bytes(bytes.subspan(given), now);
-  if (!any_scan)  // too little for a whole turn: then the packets themselves are what can be shown
-    for (const ld06::Packet& packet : packets) out += packet_json(packet).dump() + "\n";
-  return out + summary_line(lidar.counters(), {"bad_checksum", "bad_field", "bad_span", "motor_stopped",
-                                               "short_scans", "partial_scans"});
+  lidar.finish();
+  for (const LidarScan& scan : lidar.take_scans()) lines.add(scan);
+  lidar.set_listener(nullptr);
+  return lines.text() + summary_line(lidar.counters(), lidar.rejected());
 }
 
 }  // namespace odomcalib::drivers

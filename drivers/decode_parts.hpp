@@ -10,26 +10,28 @@
 
 #include "drivers/base/profile.hpp"
 #include "drivers/can/transport.hpp"
+#include "drivers/lidar/lidar.hpp"
 
 namespace odomcalib::drivers {
 
-std::string decode_ld06(std::span<const std::uint8_t> bytes);
+std::string decode_lidar(Lidar& lidar, std::span<const std::uint8_t> bytes);
 std::string decode_candump(const Profile& profile, std::string_view text);
 
-/// The last line: byte accounting, and the named counters as rejections.
-inline std::string summary_line(const Counters& counters, std::initializer_list<const char*> rejections) {
-  const auto count = [&](const std::string& name) {
-    const auto found = counters.find(name);
-    return found == counters.end() ? std::uint64_t{0} : found->second;
-  };
+/// The last line: byte accounting, and the rejections by name.
+inline std::string summary_line(Counters counters, const Counters& rejected) {
   nlohmann::ordered_json line = {{"type", "summary"},
-                                 {"bytes_in", count("bytes_in")},
-                                 {"good", count("good")},
-                                 {"skipped", count("skipped")},
-                                 {"buffered", count("buffered")}};
-  line["rejected"] = nlohmann::ordered_json::object();
-  for (const char* name : rejections) line["rejected"][name] = count(name);
+                                 {"bytes_in", counters["bytes_in"]},
+                                 {"good", counters["good"]},
+                                 {"skipped", counters["skipped"]},
+                                 {"buffered", counters["buffered"]}};
+  line["rejected"] = rejected;
   return line.dump() + "\n";
+}
+
+inline std::string summary_line(const Counters& counters, std::initializer_list<const char*> rejections) {
+  Counters rejected;
+  for (const char* name : rejections) rejected[name] = counters.contains(name) ? counters.at(name) : 0;
+  return summary_line(counters, rejected);
 }
 
 }  // namespace odomcalib::drivers

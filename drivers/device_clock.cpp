@@ -15,23 +15,24 @@ constexpr double kRestart_s = 0.5;
 
 }  // namespace
 
-void DeviceClock::reset() { last_ms_.reset(); }
+void DeviceClock::reset() { last_count_.reset(); }
 
-void DeviceClock::unwrap(std::uint32_t device_ms, double arrival) {
-  const std::uint32_t step_ms = (device_ms + modulus_ms_ - *last_ms_) % modulus_ms_;
-  const double modulus_s = modulus_ms_ * 1e-3;
-  const double step = step_ms * 1e-3;
+void DeviceClock::unwrap(std::uint64_t count, double arrival) {
+  const std::uint64_t steps = (count + modulus_ - *last_count_) % modulus_;
+  const double modulus_s = static_cast<double>(modulus_) * tick_s_;
+  const double step = static_cast<double>(steps) * tick_s_;
   // Whole turns that passed unseen, e.g. while the port was unplugged.
-  const double missed = std::round((arrival - last_arrival_ - step) / modulus_s);
+  const double missed = device_time_ ? 0.0 : std::round((arrival - last_arrival_ - step) / modulus_s);
   device_s_ += step + std::max(0.0, missed) * modulus_s;
 }
 
-double DeviceClock::to_host(std::uint32_t device_ms, double arrival) {
-  const bool first = !last_ms_.has_value();
-  if (!first) unwrap(device_ms, arrival);
-  if (first) device_s_ = device_ms * 1e-3;
-  last_ms_ = device_ms;
+double DeviceClock::to_host(std::uint64_t count, double arrival) {
+  const bool first = !last_count_.has_value();
+  if (!first) unwrap(count, arrival);
+  if (first) device_s_ = static_cast<double>(count) * tick_s_;
+  last_count_ = count;
   last_arrival_ = arrival;
+  if (device_time_) return device_s_;
   const double delay = arrival - device_s_;
   if (first || std::abs(delay - offset_) > kRestart_s) {
     offset_ = delay;

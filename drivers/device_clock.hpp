@@ -1,4 +1,4 @@
-// Maps a device's wrapping millisecond clock to the caller's clock by the lower envelope of the arrival
+// Maps a device's wrapping clock to the caller's clock by the lower envelope of the arrival
 // delays: a transport can only add delay, never remove it, so the smallest difference seen is the best
 // estimate of the offset.
 #pragma once
@@ -10,21 +10,26 @@ namespace odomcalib::drivers {
 
 class DeviceClock {
  public:
-  /// @param modulus_ms value at which the device's counter starts again at 0, e.g. 30000
-  explicit DeviceClock(std::uint32_t modulus_ms) : modulus_ms_(modulus_ms) {}
+  /// @param modulus value at which the device's counter starts again at 0, e.g. 30000
+  /// @param tick_s one count, s
+  /// @param device_time whether to stay on the device's own clock, for recordings without arrival times
+  explicit DeviceClock(std::uint64_t modulus, double tick_s = 1e-3, bool device_time = false)
+      : modulus_(modulus), tick_s_(tick_s), device_time_(device_time) {}
 
-  /// @param device_ms stamp, less than the modulus
+  /// @param count stamp, less than the modulus
   /// @param arrival s on the caller's clock, later than or equal to the stamped instant
   /// @return the stamped instant on the caller's clock, never later than arrival
-  double to_host(std::uint32_t device_ms, double arrival);
+  double to_host(std::uint64_t count, double arrival);
 
   void reset();
 
  private:
-  void unwrap(std::uint32_t device_ms, double arrival);
+  void unwrap(std::uint64_t count, double arrival);
 
-  std::uint32_t modulus_ms_;
-  std::optional<std::uint32_t> last_ms_;
+  std::uint64_t modulus_;
+  double tick_s_;
+  bool device_time_;
+  std::optional<std::uint64_t> last_count_;
   double last_arrival_ = 0.0;
   double device_s_ = 0.0;  // unwrapped
   double offset_ = 0.0;    // s, host - device: the envelope

@@ -1,62 +1,150 @@
 #include "daemon/service/lidar_link.hpp"
 
+#include <algorithm>
 #include <charconv>
+
+#include "drivers/tcp/tcp_stream.hpp"
 
 namespace odomcalib {
 namespace {
 
-constexpr double kRetry = 0.5;  // s
+// A device that is back is found within 2 s: the longest pause and one attempt to connect.
+constexpr double kFirstRetry_s = 0.2, kLastRetry_s = 0.8;
+constexpr double kConnect_s = 1.0;
+constexpr double kWatch_s = 2.0;  // without one valid packet: told as a problem
 
-unsigned baud_of(const std::string& text) {
-  unsigned baud = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), baud);
-  return parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size() ? baud : 0;
+unsigned number_of(const std::string& text) {
+  unsigned number = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
+  return parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size() ? number : 0;
+}
+
+/// "host" to "host:port"; an IPv6 address is in brackets.
+std::string with_port(const std::string& path, unsigned port) {
+  const std::size_t bracket = path.find(']');
+  const bool has_port = path.find(':', bracket == std::string::npos ? 0 : bracket) != std::string::npos;
+  return has_port ? path : path + ":" + std::to_string(port);
 }
 
 }  // namespace
 
-LidarLink::LidarLink(std::string device, std::string path, unsigned baud,
-                     std::unique_ptr<drivers::Lidar> lidar)
-    : device_(std::move(device)), path_(std::move(path)), baud_(baud), lidar_(std::move(lidar)) {}
+LidarLink::LidarLink(std::string device, Address address, std::unique_ptr<drivers::Lidar> lidar)
+    : device_(std::move(device)), address_(std::move(address)), lidar_(std::move(lidar)) {}
 
-Result<LidarLink> LidarLink::create(const std::string& device, const std::string& type) {
+LidarLink::~LidarLink() {
+  if (stream_ && connected_) (void)stream_->write(lidar_->stop_bytes());
+}
+
+Result<LidarLink::Address> LidarLink::address_of(const std::string& device, const drivers::LidarType& type) {
   const auto parsed = drivers::parse_device(device);
   if (!parsed) return parsed.error();
-  const unsigned baud = baud_of(parsed.value().option("baud", "230400"));
-  if (parsed.value().scheme != "serial" || baud == 0)
-    return Error{ErrorCode::usage, "a lidar needs a device like \"serial:/dev/ttyUSB0?baud=230400\"", device,
-                 "correct lidar.device in the configuration"};
-  auto lidar = drivers::make_lidar(type, baud);
+  const drivers::DeviceString& parts = parsed.value();
+  if (parts.scheme == "tcp" && type.port != 0) return Address{true, with_port(parts.path, type.port), 0, {}};
+  const unsigned baud = number_of(parts.option("baud", std::to_string(type.baud)));
+  const std::string dtr = parts.option("dtr", type.dtr ? "1" : "0");
+  if (parts.scheme == "serial" && type.baud != 0 && baud != 0 && (dtr == "0" || dtr == "1"))
+    return Address{false, parts.path, baud, {dtr == "1", true}};
+  const std::string serial = "\"serial:/dev/ttyUSB0?baud=" + std::to_string(type.baud) + "\"";
+  const std::string network = "\"tcp:192.168.0.10:" + std::to_string(type.port) + "\"";
+  return Error{ErrorCode::usage,
+               "a lidar of type " + type.name + " needs a device like " +
+                   (type.baud == 0   ? network
+                    : type.port == 0 ? serial
+                                     : serial + " or " + network),
+               device, "correct lidar.device in the configuration"};
+}
+
+Result<LidarLink> LidarLink::create(const std::string& device, const std::string& type) {
+  const auto known = drivers::find_lidar_type(type);
+  if (!known) return known.error();
+  auto address = address_of(device, known.value());
+  if (!address) return address.error();
+  drivers::LidarOptions options;
+  options.baud = address.value().baud;
+  auto lidar = drivers::make_lidar(type, options);
   if (!lidar) return lidar.error();
-  return LidarLink(device, parsed.value().path, baud, std::move(lidar).value());
+  return LidarLink(device, std::move(address).value(), std::move(lidar).value());
 }
 
 void LidarLink::lose(const Error& error, double now) {
   problem_ = error;
-  port_.reset();
+  stream_.reset();
+  connected_ = false;
   lidar_->reset();
-  next_try_ = now + kRetry;
+  next_try_ =
+      now + std::min(kFirstRetry_s * static_cast<double>(1U << std::min(failures_, 4U)), kLastRetry_s);
+  ++failures_;
 }
 
 void LidarLink::open_when_due(double now) {
-  if (port_ || now < next_try_) return;
-  auto opened = drivers::open_serial(path_, baud_);
+  if (stream_ || now < next_try_) return;
+  auto opened = address_.network ? drivers::open_tcp(address_.path)
+                                 : drivers::open_serial(address_.path, address_.baud, address_.lines);
   if (!opened) return lose(opened.error(), now);
-  port_ = std::move(opened).value();
+  stream_ = std::move(opened).value();
+  opened_at_ = now;
+}
+
+bool LidarLink::finish_connecting(double now) {
+  if (connected_) return true;
+  const auto done = stream_->connected();
+  if (!done) return lose(done.error(), now), false;
+  if (!done.value() && now - opened_at_ > kConnect_s)
+    return lose({ErrorCode::timeout, "the device does not accept a connection", device_,
+                 "check power, cable and address: ping the device"},
+                now),
+           false;
+  if (!done.value()) return false;
+  connected_ = true;
   problem_.reset();
   ++opened_;
+  const auto counters = lidar_->counters();
+  watch_ = {now, counters.at("bytes_in"), counters.at("good")};
+  return true;
+}
+
+Error LidarLink::nothing_valid(bool silent) const {
+  if (silent)
+    return {ErrorCode::timeout, "connected, but nothing arrives", device_,
+            "check the lidar's power and wiring, and lidar.type"};
+  return {ErrorCode::format, "bytes arrive, but none of them is a valid packet", device_,
+          address_.network ? "check lidar.type" : "check the baud rate in lidar.device, and lidar.type"};
+}
+
+/// Names what is wrong when a while has brought no valid packet. A silent network connection may be dead
+/// without knowing it, so it is made anew.
+void LidarLink::watch(double now) {
+  if (now - watch_.since < kWatch_s) return;
+  const auto counters = lidar_->counters();
+  const Watch before = std::exchange(watch_, {now, counters.at("bytes_in"), counters.at("good")});
+  const bool silent = watch_.bytes == before.bytes;
+  problem_.reset();
+  if (watch_.good != before.good) {
+    failures_ = 0;
+  } else {
+    problem_ = nothing_valid(silent);
+    if (silent && address_.network) lose(*problem_, now);
+  }
 }
 
 void LidarLink::step(double now) {
   open_when_due(now);
-  if (!port_) return;
-  const auto bytes = port_->read();
+  if (!stream_ || !finish_connecting(now)) return;
+  const auto bytes = stream_->read();
   if (!bytes) return lose(bytes.error(), now);
   lidar_->on_bytes(bytes.value(), now);
-  const auto output = lidar_->take_output();
-  if (output.empty()) return;
-  if (const auto written = port_->write(output); !written) lose(written.error(), now);
+  if (const auto written = stream_->write(lidar_->take_output()); !written) return lose(written.error(), now);
+  watch(now);
 }
+
+std::vector<Scan> LidarLink::take_scans() {
+  std::vector<Scan> out;
+  for (drivers::LidarScan& given : lidar_->take_scans())
+    if (!given.partial) out.push_back(std::move(given.scan));
+  return out;
+}
+
+std::optional<Error> LidarLink::problem() const { return problem_ ? problem_ : lidar_->problem(); }
 
 drivers::Counters LidarLink::counters() const {
   drivers::Counters all = lidar_->counters();

@@ -1,4 +1,5 @@
-// The lidar behind its serial port: opens the port, reopens it after it was lost, carries bytes both ways.
+// The lidar behind its serial port or TCP connection: opens it, reopens it after it was lost, carries bytes
+// both ways, and says what is wrong when no scans come.
 #pragma once
 
 #include <memory>
@@ -6,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/byte_stream.hpp"
 #include "drivers/lidar/lidar.hpp"
 #include "drivers/serial/port.hpp"
 
@@ -15,27 +17,53 @@ class LidarLink {
  public:
   /// Errors: usage (device string, lidar type). The device may be absent.
   static Result<LidarLink> create(const std::string& device, const std::string& type);
+  LidarLink(LidarLink&&) = default;
+  LidarLink& operator=(LidarLink&&) = delete;
+  /// Stops the device.
+  ~LidarLink();
 
-  [[nodiscard]] int fd() const { return port_ ? port_->fd() : -1; }
+  [[nodiscard]] int fd() const { return stream_ ? stream_->fd() : -1; }
   void step(double now);
-  std::vector<Scan> take_scans() { return lidar_->take_scans(); }
+  /// Whole turns only.
+  std::vector<Scan> take_scans();
 
-  [[nodiscard]] bool connected() const { return port_ != nullptr; }
-  [[nodiscard]] const std::optional<Error>& problem() const { return problem_; }
+  [[nodiscard]] bool connected() const { return connected_; }
+  [[nodiscard]] std::optional<Error> problem() const;
   [[nodiscard]] drivers::Counters counters() const;
   [[nodiscard]] const std::string& device() const { return device_; }
+  /// As the device told it; empty before.
+  [[nodiscard]] std::string identity() const { return lidar_->identity(); }
 
  private:
-  LidarLink(std::string device, std::string path, unsigned baud, std::unique_ptr<drivers::Lidar> lidar);
+  /// How to reach the device.
+  struct Address {
+    bool network = false;
+    std::string path;  ///< of the port, or host:port
+    unsigned baud = 0;
+    drivers::ModemLines lines;
+  };
+  /// What had come at the beginning of the watched interval.
+  struct Watch {
+    double since = 0.0;
+    std::uint64_t bytes = 0, good = 0;
+  };
+  LidarLink(std::string device, Address address, std::unique_ptr<drivers::Lidar> lidar);
+  static Result<Address> address_of(const std::string& device, const drivers::LidarType& type);
   void open_when_due(double now);
+  bool finish_connecting(double now);
   void lose(const Error& error, double now);
+  void watch(double now);
+  [[nodiscard]] Error nothing_valid(bool silent) const;
 
-  std::string device_, path_;
-  unsigned baud_;
+  std::string device_;
+  Address address_;
   std::unique_ptr<drivers::Lidar> lidar_;
-  std::unique_ptr<drivers::SerialPort> port_;
+  std::unique_ptr<drivers::ByteStream> stream_;
+  bool connected_ = false;
   std::optional<Error> problem_;
-  double next_try_ = 0.0;
+  Watch watch_;
+  double next_try_ = 0.0, opened_at_ = 0.0;
+  unsigned failures_ = 0;
   std::uint64_t opened_ = 0;
 };
 

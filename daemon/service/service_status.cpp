@@ -51,6 +51,7 @@ ordered_json Service::Impl::status() const {
                                       {"serial", id->serial},
                                       {"name", id->name}};
   body["lidar"] = {{"device", lidar.device()},
+                   {"identity", lidar.identity()},
                    {"connected", lidar.connected()},
                    {"problem", text_of(lidar.problem())},
                    {"scans", scan_count},

@@ -29,7 +29,7 @@ std::string bitrate_command(unsigned bitrate) {
 
 class SlcanTransport final : public CanTransport {
  public:
-  SlcanTransport(std::unique_ptr<SerialPort> port, std::string name, const SlcanOptions& options)
+  SlcanTransport(std::unique_ptr<ByteStream> port, std::string name, const SlcanOptions& options)
       : port_(std::move(port)), name_(std::move(name)), options_(options) {}
 
   ~SlcanTransport() override { (void)port_->write(as_bytes("C\r")); }
@@ -139,7 +139,7 @@ class SlcanTransport final : public CanTransport {
     if (frame.id != 0) out.push_back(frame);
   }
 
-  std::unique_ptr<SerialPort> port_;
+  std::unique_ptr<ByteStream> port_;
   std::string name_;
   SlcanOptions options_;
   SlcanParser parser_;
@@ -174,7 +174,7 @@ Result<void> SlcanTransport::set_up() {
 
 }  // namespace
 
-Result<std::unique_ptr<CanTransport>> open_slcan(std::unique_ptr<SerialPort> port, const std::string& name,
+Result<std::unique_ptr<CanTransport>> open_slcan(std::unique_ptr<ByteStream> port, const std::string& name,
                                                  const SlcanOptions& options) {
   auto transport = std::make_unique<SlcanTransport>(std::move(port), name, options);
   if (auto ready = transport->set_up(); !ready) return ready.error();

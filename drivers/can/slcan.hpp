@@ -21,7 +21,7 @@ struct SlcanOptions {
 /// Closes the adapter's channel, sets the bit rate and opens it again. Takes 0.1 s, at most 1.2 s with a
 /// silent adapter. Errors: usage (bit rate that the protocol has no command for), device (no answer,
 /// refused).
-Result<std::unique_ptr<CanTransport>> open_slcan(std::unique_ptr<SerialPort> port, const std::string& name,
+Result<std::unique_ptr<CanTransport>> open_slcan(std::unique_ptr<ByteStream> port, const std::string& name,
                                                  const SlcanOptions& options);
 
 }  // namespace odomcalib::drivers

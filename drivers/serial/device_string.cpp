@@ -9,9 +9,10 @@ namespace {
 constexpr std::array<const char*, 4> kSchemes = {"socketcan", "slcan", "serial", "tcp"};
 
 Error bad_device(const std::string& text, const std::string& what) {
-  return {
-      ErrorCode::usage, what, "device \"" + text + "\"",
-      "write it like serial:/dev/ttyUSB0?baud=230400, slcan:/dev/ttyACM0?bitrate=500000 or socketcan:can0"};
+  return {ErrorCode::usage, what, "device \"" + text + "\"",
+          "write it like serial:/dev/ttyUSB0?baud=230400, tcp:192.168.0.10:2112, "
+          "slcan:/dev/ttyACM0?bitrate=500000 or "
+          "socketcan:can0"};
 }
 
 /// Splits "a=1&b=2"; false when a part is not key=value or a key comes twice.

@@ -46,7 +46,7 @@ class OpenFile {
   int fd_;
 };
 
-class TtyPort final : public SerialPort {
+class TtyPort final : public ByteStream {
  public:
   TtyPort(std::string path, std::unique_ptr<OpenFile> file)
       : path_(std::move(path)), file_(std::move(file)), fd_(file_->fd()) {}
@@ -163,14 +163,16 @@ bool make_raw(int fd, termios settings) {
 
 /// Other programs are kept away by a lock, and by TIOCEXCL on real ports: on a pseudo-terminal that flag
 /// would outlive us. A pseudo-terminal has no modem lines either, so a refusal is tolerated.
-bool claim(int fd, const std::string& path) {
+bool claim(int fd, const std::string& path, const ModemLines& wanted) {
   if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
   std::array<char, PATH_MAX> real{};
   const bool pseudo =
       realpath(path.c_str(), real.data()) != nullptr && std::strncmp(real.data(), "/dev/pts/", 9) == 0;
   ioctl(fd, pseudo ? TIOCNXCL : TIOCEXCL);
-  const int lines = TIOCM_DTR | TIOCM_RTS;
-  ioctl(fd, TIOCMBIS, &lines);
+  const int on = (wanted.dtr ? TIOCM_DTR : 0) | (wanted.rts ? TIOCM_RTS : 0);
+  const int off = (TIOCM_DTR | TIOCM_RTS) & ~on;
+  ioctl(fd, TIOCMBIS, &on);
+  ioctl(fd, TIOCMBIC, &off);
   return true;
 }
 
@@ -183,7 +185,8 @@ Error cannot_open(const std::string& path, int cause) {
 
 }  // namespace
 
-Result<std::unique_ptr<SerialPort>> open_serial(const std::string& path, unsigned baud) {
+Result<std::unique_ptr<ByteStream>> open_serial(const std::string& path, unsigned baud,
+                                                const ModemLines& lines) {
   if (baud < 50 || baud > 4'000'000)
     return Error{ErrorCode::usage, "baud rate " + std::to_string(baud) + " is not within 50 and 4000000",
                  path, ""};
@@ -197,9 +200,9 @@ Result<std::unique_ptr<SerialPort>> open_serial(const std::string& path, unsigne
   if (!settings) return settings.error();
   if (!make_raw(fd, settings.value()) || (!rate && !set_custom_baud(fd, baud)))
     return port_error(path, "cannot set " + std::to_string(baud) + " baud, 8N1: " + std::strerror(errno), "");
-  if (!claim(fd, path)) return cannot_open(path, EBUSY);
+  if (!claim(fd, path, lines)) return cannot_open(path, EBUSY);
   tcflush(fd, TCIOFLUSH);
-  return std::unique_ptr<SerialPort>(std::make_unique<TtyPort>(path, std::move(file)));
+  return std::unique_ptr<ByteStream>(std::make_unique<TtyPort>(path, std::move(file)));
 }
 
 }  // namespace odomcalib::drivers

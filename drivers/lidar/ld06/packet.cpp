@@ -21,21 +21,14 @@ constexpr std::array<std::uint8_t, 256> make_table() {
 constexpr auto kCrcTable = make_table();
 
 /// Whether these bytes can be the beginning of a packet.
-bool may_begin(std::span<const std::uint8_t> rest) {
-  return rest[0] == kHeader && (rest.size() < 2 || rest[1] == kTypeAndCount);
-}
+bool may_begin(Bytes rest) { return rest[0] == kHeader && (rest.size() < 2 || rest[1] == kTypeAndCount); }
 
 }  // namespace
 
-std::uint8_t crc8(std::span<const std::uint8_t> bytes) {
+std::uint8_t crc8(Bytes bytes) {
   std::uint8_t crc = 0;
   for (const std::uint8_t byte : bytes) crc = kCrcTable[crc ^ byte];
   return crc;
-}
-
-void PacketFinder::reset() {
-  skipped_ += buffer_.size();
-  buffer_.clear();
 }
 
 bool PacketFinder::span_fits(const Packet& packet) const {
@@ -45,7 +38,21 @@ bool PacketFinder::span_fits(const Packet& packet) const {
   return packet.span_cdeg >= expected_cdeg / 2.0 && packet.span_cdeg <= expected_cdeg * 2.0;
 }
 
-std::optional<Packet> PacketFinder::accept(std::span<const std::uint8_t> bytes) {
+/// Why a packet with the right checksum is not believed; nullptr when it is.
+const char* PacketFinder::fault_of(const Packet& packet, unsigned end_cdeg) const {
+  if (packet.start_cdeg >= kFullTurn_cdeg || end_cdeg >= kFullTurn_cdeg ||
+      packet.stamp_ms >= kClockModulus_ms)
+    return "bad_field";
+  if (packet.speed_deg_s == 0) return "motor_stopped";
+  return span_fits(packet) ? nullptr : "bad_span";
+}
+
+Verdict PacketFinder::look(Bytes rest, std::vector<Packet>& out) const {
+  if (!may_begin(rest)) return Verdict::noise();
+  if (rest.size() < kPacketBytes) return Verdict::wait();
+  const Bytes bytes = rest.first(kPacketBytes);
+  // After a wrong checksum go on at the next byte only: the next header may be inside.
+  if (crc8(bytes.first(kPacketBytes - 1)) != bytes.back()) return Verdict::reject("bad_checksum");
   ByteReader reader(bytes.subspan(2));
   Packet packet;
   packet.speed_deg_s = reader.u16();
@@ -53,51 +60,17 @@ std::optional<Packet> PacketFinder::accept(std::span<const std::uint8_t> bytes) 
   for (Point& point : packet.points) point = {reader.u16(), reader.u8()};
   const unsigned end_cdeg = reader.u16();
   packet.stamp_ms = reader.u16();
-  if (!reader.ok() || packet.start_cdeg >= kFullTurn_cdeg || end_cdeg >= kFullTurn_cdeg ||
-      packet.stamp_ms >= kClockModulus_ms)
-    return ++bad_field_, std::nullopt;
-  if (packet.speed_deg_s == 0) return ++motor_stopped_, std::nullopt;
   packet.span_cdeg = (end_cdeg + kFullTurn_cdeg - packet.start_cdeg) % kFullTurn_cdeg;
-  if (!span_fits(packet)) return ++bad_span_, std::nullopt;
-  return packet;
+  packet.bytes_after = rest.size() - kPacketBytes;
+  if (const char* fault = fault_of(packet, end_cdeg)) return Verdict::reject(fault, kPacketBytes);
+  out.push_back(packet);
+  return Verdict::good(kPacketBytes);
 }
 
-/// Consumes one packet or skips one byte; false when more bytes are needed.
-bool PacketFinder::step(std::span<const std::uint8_t> rest, std::size_t& used, std::vector<Packet>& out) {
-  if (rest.empty()) return false;
-  if (!may_begin(rest)) return ++skipped_, ++used, true;
-  if (rest.size() < kPacketBytes) return false;
-  const auto bytes = rest.first(kPacketBytes);
-  if (crc8(bytes.first(kPacketBytes - 1)) != bytes.back()) {
-    // The next header may be inside: go on at the next byte only.
-    return ++bad_checksum_, ++skipped_, ++used, true;
-  }
-  used += kPacketBytes;
-  auto packet = accept(bytes);
-  if (!packet) return skipped_ += kPacketBytes, true;
-  good_ += kPacketBytes;
-  ++packets_;
-  packet->bytes_after = rest.size() - kPacketBytes;
-  out.push_back(*packet);
-  return true;
-}
-
-std::vector<Packet> PacketFinder::on_bytes(std::span<const std::uint8_t> bytes) {
-  bytes_in_ += bytes.size();
-  buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
-  const std::span<const std::uint8_t> all(buffer_);
+std::vector<Packet> PacketFinder::on_bytes(Bytes bytes) {
   std::vector<Packet> out;
-  std::size_t used = 0;
-  while (step(all.subspan(used), used, out)) {
-  }
-  buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(used));
+  frames_.feed(bytes, [&](Bytes rest) { return look(rest, out); });
   return out;
-}
-
-Counters PacketFinder::counters() const {
-  return {{"bytes_in", bytes_in_},      {"good", good_},         {"skipped", skipped_},
-          {"buffered", buffer_.size()}, {"packets", packets_},   {"bad_checksum", bad_checksum_},
-          {"bad_field", bad_field_},    {"bad_span", bad_span_}, {"motor_stopped", motor_stopped_}};
 }
 
 }  // namespace odomcalib::drivers::ld06

@@ -4,11 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <span>
 #include <vector>
 
-#include "drivers/can/transport.hpp"  // Counters
+#include "drivers/lidar/frame_buffer.hpp"
 
 namespace odomcalib::drivers::ld06 {
 
@@ -31,7 +29,7 @@ struct Packet {
 };
 
 /// CRC-8, polynomial 4Dh, initial value 0, not reflected.
-std::uint8_t crc8(std::span<const std::uint8_t> bytes);
+std::uint8_t crc8(Bytes bytes);
 
 class PacketFinder {
  public:
@@ -39,21 +37,17 @@ class PacketFinder {
   /// rate
   explicit PacketFinder(double points_per_s) : points_per_s_(points_per_s) {}
 
-  std::vector<Packet> on_bytes(std::span<const std::uint8_t> bytes);
-  void reset();
-  /// bytes_in = good + skipped + buffered; bad_checksum, bad_field, bad_span, motor_stopped name each
-  /// rejection.
-  [[nodiscard]] Counters counters() const;
+  std::vector<Packet> on_bytes(Bytes bytes);
+  void reset() { frames_.reset(); }
+  [[nodiscard]] const FrameBuffer& frames() const { return frames_; }
 
  private:
-  bool step(std::span<const std::uint8_t> rest, std::size_t& used, std::vector<Packet>& out);
-  std::optional<Packet> accept(std::span<const std::uint8_t> bytes);
+  Verdict look(Bytes rest, std::vector<Packet>& out) const;
+  [[nodiscard]] const char* fault_of(const Packet& packet, unsigned end_cdeg) const;
   [[nodiscard]] bool span_fits(const Packet& packet) const;
 
   double points_per_s_;
-  std::vector<std::uint8_t> buffer_;  // less than one packet between calls
-  std::uint64_t bytes_in_ = 0, good_ = 0, skipped_ = 0, packets_ = 0;
-  std::uint64_t bad_checksum_ = 0, bad_field_ = 0, bad_span_ = 0, motor_stopped_ = 0;
+  FrameBuffer frames_{"bad_checksum", "bad_field", "bad_span", "motor_stopped"};
 };
 
 }  // namespace odomcalib::drivers::ld06

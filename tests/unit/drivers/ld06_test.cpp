@@ -15,6 +15,7 @@ using test::ByteString;
 using test::expect_accounted;
 
 constexpr double kPeriod = 12.0 / 4500.0;
+constexpr double kTransmission = 47 * 10.0 / 230'400;
 
 void put16(ByteString& out, unsigned value) {
   out.push_back(static_cast<std::uint8_t>(value));
@@ -70,15 +71,15 @@ TEST(Ld06, rejects_a_packet_with_a_wrong_checksum) {
       bad[at] = static_cast<std::uint8_t>(bad[at] ^ (1 << bit));
       ld06::PacketFinder finder(4500.0);
       EXPECT_TRUE(finder.on_bytes(bad).empty()) << "byte " << at << " bit " << bit;
-      expect_accounted(finder.counters());
-      EXPECT_EQ(finder.counters()["good"], 0U);
+      expect_accounted(finder.frames().counters());
+      EXPECT_EQ(finder.frames().counters()["good"], 0U);
     }
 }
 
 TEST(Ld06, accepts_the_same_packet_unharmed) {
   ld06::PacketFinder finder(4500.0);
   EXPECT_EQ(finder.on_bytes(packet(0, 880, 5)).size(), 1U);
-  EXPECT_EQ(finder.counters()["good"], 47U);
+  EXPECT_EQ(finder.frames().counters()["good"], 47U);
 }
 
 TEST(Ld06, waits_for_the_rest_of_a_packet_cut_at_any_byte) {
@@ -88,10 +89,10 @@ TEST(Ld06, waits_for_the_rest_of_a_packet_cut_at_any_byte) {
     const std::span<const std::uint8_t> all(good);
     auto found = finder.on_bytes(all.first(cut));
     EXPECT_EQ(found.size(), cut == good.size() ? 1U : 0U);
-    expect_accounted(finder.counters());
+    expect_accounted(finder.frames().counters());
     const auto rest = finder.on_bytes(all.subspan(cut));
     EXPECT_EQ(found.size() + rest.size(), 1U);
-    expect_accounted(finder.counters());
+    expect_accounted(finder.frames().counters());
   }
 }
 
@@ -106,7 +107,7 @@ TEST(Ld06, finds_packets_between_noise) {
     // A false header in the noise may wait for 47 bytes: two more packets push it through.
     for (int k = 0; k < 2; ++k) stream.insert(stream.end(), good.begin(), good.end());
     EXPECT_EQ(finder.on_bytes(stream).size(), 3U);
-    expect_accounted(finder.counters());
+    expect_accounted(finder.frames().counters());
   }
 }
 
@@ -114,8 +115,8 @@ TEST(Ld06, rejects_a_span_that_does_not_fit_the_speed) {
   const auto counted = [](unsigned span, unsigned speed) {
     ld06::PacketFinder finder(4500.0);
     (void)finder.on_bytes(packet(100, span, 5, speed));
-    expect_accounted(finder.counters());
-    return finder.counters();
+    expect_accounted(finder.frames().counters());
+    return finder.frames().counters();
   };
   EXPECT_EQ(counted(880, 3600).at("packets"), 1U);
   EXPECT_EQ(counted(1750, 3600).at("packets"), 1U);
@@ -133,22 +134,22 @@ TEST(Ld06, rejects_angles_and_stamps_out_of_range) {
     bad.back() = ld06::crc8(std::span<const std::uint8_t>(bad).first(46));
     ld06::PacketFinder finder(4500.0);
     EXPECT_TRUE(finder.on_bytes(bad).empty());
-    EXPECT_EQ(finder.counters()["bad_field"], 1U);
+    EXPECT_EQ(finder.frames().counters()["bad_field"], 1U);
   }
 }
 
 std::vector<Scan> run(Ld06& lidar, unsigned packets, double lag_s = 0.001, double first_device_s = 0.0) {
   std::vector<Scan> scans;
   for (unsigned k = 0; k < packets; ++k) {
-    lidar.on_bytes(packet_number(k, first_device_s), 100.0 + kPeriod * (k + 1) + lag_s);
-    for (Scan& scan : lidar.take_scans()) scans.push_back(std::move(scan));
+    lidar.on_bytes(packet_number(k, first_device_s), 100.0 + kPeriod * (k + 1) + kTransmission + lag_s);
+    for (Scan& scan : test::whole_scans(lidar)) scans.push_back(std::move(scan));
     expect_accounted(lidar.counters());
   }
   return scans;
 }
 
 TEST(Ld06, drops_the_first_partial_turn_and_publishes_whole_ones) {
-  Ld06 lidar(230400);
+  Ld06 lidar({230400});
   const auto scans = run(lidar, 400);
   ASSERT_EQ(scans.size(), 9U);
   EXPECT_EQ(lidar.counters()["partial_scans"], 1U);
@@ -160,7 +161,7 @@ TEST(Ld06, drops_the_first_partial_turn_and_publishes_whole_ones) {
 }
 
 TEST(Ld06, turns_clockwise_angles_into_negative_ones) {
-  Ld06 lidar(230400);
+  Ld06 lidar({230400});
   const Scan scan = run(lidar, 200).at(0);
   EXPECT_LT(scan.angle_increment, 0.0);
   for (std::size_t i = 1; i < scan.angles.size(); ++i) EXPECT_LT(scan.angles[i], scan.angles[i - 1]);
@@ -168,7 +169,7 @@ TEST(Ld06, turns_clockwise_angles_into_negative_ones) {
 }
 
 TEST(Ld06, dates_beams_by_the_device_clock_within_a_millisecond) {
-  Ld06 lidar(230400);
+  Ld06 lidar({230400});
   const auto scans = run(lidar, 8000, 0.0, 25.0);  // 21 s, the stamp wraps at 30 s
   ASSERT_GT(scans.size(), 200U);
   for (const Scan& scan : scans) {
@@ -181,12 +182,12 @@ TEST(Ld06, dates_beams_by_the_device_clock_within_a_millisecond) {
 
 TEST(Ld06, follows_the_least_delayed_bytes) {
   auto random = test::seeded(5);
-  Ld06 lidar(230400);
+  Ld06 lidar({230400});
   std::vector<Scan> scans;
   for (unsigned k = 0; k < 4000; ++k) {
     const double jitter = 0.016 * static_cast<double>(random() % 1000) / 1000.0;  // a USB latency timer
-    lidar.on_bytes(packet_number(k), 100.0 + kPeriod * (k + 1) + jitter);
-    for (Scan& scan : lidar.take_scans()) scans.push_back(std::move(scan));
+    lidar.on_bytes(packet_number(k), 100.0 + kPeriod * (k + 1) + kTransmission + jitter);
+    for (Scan& scan : test::whole_scans(lidar)) scans.push_back(std::move(scan));
   }
   ASSERT_GT(scans.size(), 90U);
   for (std::size_t i = 10; i < scans.size(); ++i) {
@@ -196,12 +197,12 @@ TEST(Ld06, follows_the_least_delayed_bytes) {
 }
 
 TEST(Ld06, counts_a_turn_with_a_hole_instead_of_publishing_it) {
-  Ld06 lidar(230400);
+  Ld06 lidar({230400});
   unsigned published = 0;
   for (unsigned k = 0; k < 375; ++k) {
     if (k >= 100 && k < 106) continue;  // 16 ms lost
     lidar.on_bytes(packet_number(k), 100.0 + kPeriod * (k + 1));
-    for (const Scan& scan : lidar.take_scans()) {
+    for (const Scan& scan : test::whole_scans(lidar)) {
       EXPECT_EQ(scan.ranges.size(), 450U);
       ++published;
     }
@@ -211,20 +212,20 @@ TEST(Ld06, counts_a_turn_with_a_hole_instead_of_publishing_it) {
 }
 
 TEST(Ld06, what_the_sensor_did_not_see_is_no_reading) {
-  Ld06 lidar(230400);
+  Ld06 lidar({230400});
   std::vector<Scan> scans;
   for (unsigned k = 0; k < 200; ++k) {
     const unsigned end_ms = static_cast<unsigned>(kPeriod * (k + 1) * 1000.0);
     lidar.on_bytes(packet(k * 960 % 36000, 880, end_ms, 3600, k % 2 == 0 ? 0 : 13000),
                    100.0 + kPeriod * (k + 1));
-    for (Scan& scan : lidar.take_scans()) scans.push_back(std::move(scan));
+    for (Scan& scan : test::whole_scans(lidar)) scans.push_back(std::move(scan));
   }
   ASSERT_FALSE(scans.empty());
   for (const float range : scans[0].ranges) EXPECT_EQ(range, 0.0F);
 }
 
 TEST(Ld06, starts_anew_after_a_reset) {
-  Ld06 lidar(230400);
+  Ld06 lidar({230400});
   (void)run(lidar, 60);
   lidar.reset();
   expect_accounted(lidar.counters());
@@ -232,10 +233,10 @@ TEST(Ld06, starts_anew_after_a_reset) {
 }
 
 TEST(Lidar, unknown_types_are_refused_with_the_known_ones) {
-  const auto made = make_lidar("ld99", 230400);
+  const auto made = make_lidar("ld99", {230400});
   ASSERT_FALSE(made.ok());
   EXPECT_NE(made.error().text().find("ld06"), std::string::npos);
-  EXPECT_TRUE(make_lidar("ld19", 230400).ok());
+  EXPECT_TRUE(make_lidar("ld19", {230400}).ok());
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ class Pty {
   int master_;
 };
 
-Result<std::vector<std::uint8_t>> read_soon(SerialPort& port) {
+Result<std::vector<std::uint8_t>> read_soon(ByteStream& port) {
   pollfd state{port.fd(), POLLIN, 0};
   poll(&state, 1, 1000);
   return port.read();

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/transport.hpp"
+#include "drivers/lidar/lidar.hpp"
 
 namespace odomcalib::drivers::test {
 
@@ -43,6 +43,14 @@ inline ByteString bytes_of(const std::string& text) { return {text.begin(), text
 /// bytes_in = good + skipped + buffered, at any moment.
 inline void expect_accounted(const Counters& counters) {
   EXPECT_EQ(counters.at("bytes_in"), counters.at("good") + counters.at("skipped") + counters.at("buffered"));
+}
+
+/// Scans of whole turns since the last call.
+inline std::vector<Scan> whole_scans(Lidar& lidar) {
+  std::vector<Scan> out;
+  for (LidarScan& given : lidar.take_scans())
+    if (!given.partial) out.push_back(std::move(given.scan));
+  return out;
 }
 
 /// Folder of real captures; empty when it is absent.

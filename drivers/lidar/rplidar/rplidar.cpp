@@ -1,0 +1,180 @@
+#include "drivers/lidar/rplidar/rplidar.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/lidar/rplidar/answer_text.hpp"
+#include "drivers/lidar/units.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+using rplidar::Item;
+using rplidar::Point;
+
+// Data sheets: from 0.15 m (A1) or 0.05 m (S, C series) on. The far end is told by newer models.
+constexpr Sweep::Limits kLimits{0.05, 40.0, true};
+constexpr double kFastest_hz = 100.0;   // turns a second that no model reaches
+constexpr double kLostFactor = 1.5;     // of the usual span: a capsule is missing
+constexpr double kSpanGain = 0.1;       // of the filter for the usual span; the motor's speed drifts slowly
+constexpr double kMostBackwards = 2.0;  // degrees; standard points may swap by a little
+constexpr double kMostStep = 30.0;      // degrees between two standard points
+constexpr double kFilterDelay = 1.5;    // samples: half a sample, and one of filtering in the device
+
+double forward(double from, double to) { return std::fmod(to - from + 720.0, 360.0); }
+
+}  // namespace
+
+Rplidar::Rplidar(const LidarOptions& options, Mode mode, rplidar::PacketType guessed)
+    : options_(options),
+      stream_(options.device_time, guessed),
+      startup_(mode),
+      clock_(options.device_time),
+      sweep_(kLimits) {}
+
+void Rplidar::forget_motion() {
+  waiting_.reset();
+  last_angle_.reset();
+  usual_span_ = 0.0;
+}
+
+void Rplidar::reset() {
+  stream_.reset();
+  startup_.reset();
+  clock_.reset();
+  sweep_.reset();
+  forget_motion();
+}
+
+void Rplidar::on_bytes(std::span<const std::uint8_t> bytes, double now) {
+  for (const Item& item : stream_.on_bytes(bytes)) on_item(item, now);
+  if (options_.device_time) return;
+  const bool was_discarding = startup_.discarding();
+  startup_.step(now);
+  if (startup_.discarding() && !was_discarding) sweep_.interrupt();
+  if (startup_.discarding()) stream_.expect_descriptor();
+}
+
+void Rplidar::on_item(const Item& item, double now) {
+  if (item.kind == Item::Kind::packet) return on_packet(item, now);
+  if (item.kind == Item::Kind::answer) {
+    tell_answer(item);
+    if (const auto sample = rplidar::told_sample_time(item.type, item.bytes)) told_sample_s_ = sample;
+    if (!options_.device_time) startup_.on_answer(item.type, item.bytes, now);
+    return;
+  }
+  const rplidar::PacketFormat* format = rplidar::find_format(item.type);
+  if (format == nullptr) return;
+  sweep_.interrupt();
+  forget_motion();
+  clock_.reset();
+}
+
+/// End of a packet's measurement and transmission; `packets` have passed since the one before.
+double Rplidar::date(unsigned packets, double arrival) {
+  const double sample = startup_.sample_s().value_or(told_sample_s_.value_or(format_->sample_s));
+  const auto stamp = clock_.on_packet(packets * format_->points * sample, arrival);
+  if (!stamp.continuous) sweep_.interrupt();
+  return stamp.t;
+}
+
+void Rplidar::on_packet(const Item& item, double now) {
+  format_ = rplidar::find_format(item.type);
+  if (const auto range = startup_.range_max_m()) sweep_.set_range_max(*range);
+  if (!options_.device_time) startup_.on_measurements(now);
+  const double arrival = now - wire_time(item.bytes_after, options_.baud);
+  if (rplidar::is_capsule(format_->type)) return on_capsule(item, arrival);
+  const double t_end = date(1, arrival);
+  const auto points = rplidar::own_points(format_->type, item.bytes);
+  emit(points, t_end, 0.0);
+}
+
+/// Whether the angle between two capsules can be theirs; a multiple of the usual one means that some were
+/// lost.
+bool Rplidar::believable(double span, unsigned& packets) {
+  const double fastest = format_->sample_s * format_->points * kFastest_hz * 360.0;
+  if (span <= 0.0) {
+    stream_.frames().reject("motor_stopped");
+    return false;
+  }
+  const bool lost = usual_span_ > 0.0 && span > kLostFactor * usual_span_;
+  if (lost) {
+    packets = static_cast<unsigned>(std::lround(span / usual_span_));
+    stream_.frames().reject("lost_packets", packets - 1);
+  }
+  const bool too_fast = span > fastest || span >= 180.0;
+  if (too_fast && !lost) stream_.frames().reject("bad_span");
+  if (!too_fast) usual_span_ += (usual_span_ > 0.0 ? kSpanGain : 1.0) * (span - usual_span_);
+  return !lost && !too_fast;
+}
+
+void Rplidar::on_capsule(const Item& item, double arrival) {
+  const double start = rplidar::start_angle(format_->type, item.bytes);
+  const bool follows = waiting_ && !rplidar::begins_run(format_->type, item.bytes);
+  unsigned packets = 1;
+  if (follows) {
+    const double span = forward(rplidar::start_angle(format_->type, waiting_->bytes), start);
+    const bool whole = believable(span, packets);
+    if (whole)
+      emit(rplidar::capsule_points(format_->type, waiting_->bytes, item.bytes, span), waiting_->t_end, span);
+  } else if (waiting_) {
+    sweep_.interrupt();
+  }
+  waiting_ = Waiting{item.bytes, date(packets, arrival)};
+}
+
+/// Point i of N was measured N - 1 - i samples before the end, and the packet then took its time on the line.
+void Rplidar::emit(const std::vector<Point>& points, double t_end, double span) {
+  tell_points(points);
+  const double n = static_cast<double>(points.size());
+  const double nominal = startup_.sample_s().value_or(told_sample_s_.value_or(format_->sample_s));
+  const double sample = nominal * clock_.rate();
+  const double t_last = t_end - wire_time(format_->bytes, options_.baud) - kFilterDelay * sample;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& point = points[i];
+    double step = span / n;
+    if (span == 0.0 && last_angle_) {
+      step = forward(*last_angle_, point.clockwise);
+      if (step > kMostStep && step < 360.0 - kMostBackwards) stream_.frames().reject("angle_backwards");
+      if (step > kMostStep) step = 0.0;
+    }
+    last_angle_ = point.clockwise;
+    if (point.start) sweep_.begin_turn();
+    const double t = t_last - sample * (n - 1.0 - static_cast<double>(i));
+    sweep_.add({t, -radians(point.clockwise), 1e-3 * point.range_mm, static_cast<double>(point.quality)},
+               radians(step));
+  }
+}
+
+void Rplidar::tell_answer(const Item& item) const {
+  if (has_listener()) tell(rplidar::describe_answer(item.type, item.bytes));
+}
+
+void Rplidar::tell_points(const std::vector<Point>& points) const {
+  if (!has_listener() || points.size() < 2) return;
+  std::vector<double> angles, ranges;
+  std::vector<std::int64_t> qualities;
+  for (const Point& point : points) {
+    angles.push_back(-radians(point.clockwise));
+    ranges.push_back(point.range_mm > 0.0 ? 1e-3 * point.range_mm : kNoReading);
+    qualities.push_back(point.quality);
+  }
+  tell({std::string("rplidar_") + format_->name,
+        {{"angles", std::move(angles)}, {"ranges", std::move(ranges)}, {"intensities", std::move(qualities)}},
+        true});
+}
+
+Counters Rplidar::counters() const {
+  Counters all = stream_.frames().counters();
+  sweep_.count_into(all);
+  return all;
+}
+
+std::optional<Error> Rplidar::problem() const {
+  if (stream_.frames().rejected().at("unknown_packet_type") > 0)
+    return Error{ErrorCode::device, "the lidar sends measurements in a form that this driver does not know",
+                 "rplidar", "use lidar.type = \"rplidar:standard\""};
+  return startup_.problem();
+}
+
+}  // namespace odomcalib::drivers
