@@ -207,9 +207,10 @@ class Solver {
     Evidence evidence;
     evidence.p_value = std::erfc(z / std::sqrt(2.0));
     if (!plain_) return evidence;
-    const auto before = horizon_error(session_->data(), {}, *plain_, session_->fixed(0));
-    const auto after =
-        horizon_error(session_->data(), effects_, outcome_.fit, fixed_with(session_->fixed(0), effects_));
+    const std::vector<bool> trusted = trusted_pairs(*plain_, outcome_.fit);
+    const auto before = horizon_error(session_->data(), {}, *plain_, session_->fixed(0), trusted);
+    const auto after = horizon_error(session_->data(), effects_, outcome_.fit,
+                                     fixed_with(session_->fixed(0), effects_), trusted);
     if (before) evidence.held_out_before = before->rms_position();
     if (after) evidence.held_out_after = after->rms_position();
     return evidence;

@@ -5,8 +5,8 @@ namespace odomcalib::calib {
 namespace {
 
 // Warm tyres grow and a leaking one shrinks: both diameters change with time (common), and the wheels against
-// each other (differential), as 1 - exp(-t / time constant), scaled to be t / 100 s at the beginning; a long
-// time constant makes it linear.
+// each other (differential), as 1 - exp(-t / time constant), scaled to one after 100 s; a long time constant
+// makes it linear.
 class DriftWithTime final : public StepEffect<DriftWithTime> {
  public:
   explicit DriftWithTime(double time_constant) : time_constant_(time_constant) {}
@@ -36,7 +36,7 @@ class DriftWithTime final : public StepEffect<DriftWithTime> {
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
     using std::exp;
-    const T hundreds = p[2] * (1.0 - exp(-c.t / p[2])) / 100.0;
+    const T hundreds = (1.0 - exp(-c.t / p[2])) / (1.0 - exp(-100.0 / p[2]));
     step.left *= 1.0 + hundreds * (p[0] - p[1]);
     step.right *= 1.0 + hundreds * (p[0] + p[1]);
   }

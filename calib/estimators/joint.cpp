@@ -360,6 +360,15 @@ Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& eff
   return fit;
 }
 
+FitResult with_weights(std::span<const FitData> data, const EffectList& effects, FitResult fit,
+                       const std::vector<double>& weights) {
+  const Stack stack = make_stack(data, effects, fit.parameters, true);
+  fit.weights = weights;
+  fit.whitened_residual = whitened(data, stack, fit.noise, fit.weights, stack.residual);
+  fit.whitened_jacobian = whitened(data, stack, fit.noise, fit.weights, stack.jacobian);
+  return fit;
+}
+
 Eigen::MatrixXd whitened_columns(std::span<const FitData> data, const EffectList& effects,
                                  const FitResult& fit, const EffectList& candidates) {
   EffectList all = effects;

@@ -49,6 +49,12 @@ struct FitResult {
 Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects,
                             const Eigen::VectorXd& start, const FitOptions& options = {});
 
+/// The same fit seen with other weights: whitened residual and Jacobian are made anew, nothing is fitted. Two
+/// models can be compared only with the same weights, since each model's own weights spare what it explains
+/// badly.
+FitResult with_weights(std::span<const FitData> data, const EffectList& effects, FitResult fit,
+                       const std::vector<double>& weights);
+
 /// Whitened derivatives of the prediction by the parameters of `candidates`, which act on top of `effects`
 /// at their start (where they change nothing), at the fit and with its weights: 3 n x parameters of the
 /// candidates.

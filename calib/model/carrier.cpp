@@ -36,6 +36,11 @@ bool belongs_to_the_place(Variable variable) {
   return variable == Variable::time || variable == Variable::heading || variable == Variable::position;
 }
 
+bool begins_with_the_recording(Variable variable) {
+  return belongs_to_the_place(variable) || variable == Variable::left_phase ||
+         variable == Variable::right_phase;
+}
+
 bool is_angle(Variable variable) {
   return variable == Variable::left_phase || variable == Variable::right_phase ||
          variable == Variable::heading;

@@ -32,6 +32,8 @@ std::string to_string(Variable variable);
 
 /// Dependence on time, heading or position is a property of the day or of the place, not of the robot.
 bool belongs_to_the_place(Variable variable);
+/// Counted from where each recording begins: recordings of one robot share no zero of it.
+bool begins_with_the_recording(Variable variable);
 bool is_angle(Variable variable);
 /// A distance or angle since an event: the defect fades with it.
 bool is_distance_since(Variable variable);

@@ -10,7 +10,8 @@ namespace odomcalib::calib {
 namespace {
 
 constexpr std::size_t kDegrees = 4;
-constexpr std::size_t kHarmonics = 3;
+constexpr int kHarmonics = 3;
+constexpr int kHighestHarmonic = 8;                     ///< poles of encoder magnets, lugs, spokes
 constexpr double kMoving = 0.01;                        ///< m/s of either wheel; standing still shows nothing
 constexpr std::array kFadeLengths = {0.02, 0.07, 0.2};  ///< m of the base
 constexpr std::array kFadeAngles = {0.1, 0.5, 2.0};     ///< rad of a wheel
@@ -62,7 +63,8 @@ class CurveEffect final : public StepEffect<CurveEffect> {
     std::vector<EffectParameter> list;
     for (std::size_t k = 0; k < basis_size(curve_); ++k) {
       std::string name(1, 'c');
-      list.push_back({name.append(std::to_string(k + 1)), "1", typical_size(), -0.5, 0.5, 0.0, prior()});
+      list.push_back({name.append(std::to_string(k + 1)), "1", typical_size(), -largest_size(),
+                      largest_size(), 0.0, prior()});
     }
     return list;
   }
@@ -83,6 +85,11 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   [[nodiscard]] double typical_size() const {
     if (curve_.law.carrier == Carrier::yaw_path) return 0.02;
     return curve_.law.carrier == Carrier::turn_path ? 1e-3 : 5e-3;
+  }
+  /// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
+  /// bad.
+  [[nodiscard]] double largest_size() const {
+    return typical_size() * (is_distance_since(curve_.law.variable) ? 100.0 : 10.0);
   }
   /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a curve must
   /// do no harm in other drives.
@@ -115,12 +122,34 @@ double scaled(const Curve& curve, double z) {
   return std::clamp(2.0 * (z - curve.low) / (curve.high - curve.low) - 1.0, -1.0, 1.0);
 }
 
-std::vector<double> harmonics(double angle, std::size_t count) {
+std::vector<double> harmonics(double angle, int first, int last) {
   std::vector<double> functions;
-  for (std::size_t k = 1; k <= count; ++k) {
-    functions.push_back(std::cos(static_cast<double>(k) * angle));
-    functions.push_back(std::sin(static_cast<double>(k) * angle));
+  for (int k = first; k <= last; ++k) {
+    functions.push_back(std::cos(k * angle));
+    functions.push_back(std::sin(k * angle));
   }
+  return functions;
+}
+
+bool is_signed_speed(Variable variable) {
+  return variable == Variable::left_speed || variable == Variable::right_speed ||
+         variable == Variable::speed || variable == Variable::turn_rate;
+}
+
+/// Direction as a step, smooth over a few percent of the range so that noise about zero does not flip it.
+double direction_of(double relative) { return std::tanh(relative / 0.03); }
+
+/// Zero at rest; hats about four magnitudes, the direction, and the direction times the magnitude.
+std::vector<double> speed_functions(const Curve& curve, double z) {
+  constexpr int kKnots = 4;
+  const double relative = std::clamp(z / std::max(std::abs(curve.low), std::abs(curve.high)), -1.0, 1.0);
+  const double direction = direction_of(relative), magnitude = std::abs(relative);
+  if (curve.law.carrier == Carrier::turn_path) return {1.0, magnitude, direction, relative};
+  std::vector<double> functions;
+  for (int k = 1; k <= kKnots; ++k)
+    functions.push_back(std::max(0.0, 1.0 - std::abs(kKnots * magnitude - k)));
+  functions.push_back(direction);
+  functions.push_back(relative);
   return functions;
 }
 
@@ -155,11 +184,20 @@ std::vector<double> zero_at_rest(const Curve& curve, double z) {
   return functions;
 }
 
-void add_periods(Carrier carrier, double duration, std::vector<Curve>& curves) {
+/// Periods closer than this many cycles per recording look alike.
+void add_periods(double duration, std::vector<Curve>& curves) {
   constexpr double kShortest = 8.0;  // s
-  constexpr double kRatio = 1.4;
-  for (double period = kShortest; period < duration / 2.0; period *= kRatio)
-    curves.push_back({{Variable::time, carrier}, 0.0, duration, period});
+  constexpr double kFewestCycles = 1.5;
+  constexpr double kStep = 0.7;  // cycles
+  for (double cycles = kFewestCycles; duration / cycles > kShortest; cycles += kStep)
+    curves.push_back({{Variable::time, Carrier::both_travel}, 0.0, duration, duration / cycles, 0});
+}
+
+void add_harmonics(const Curve& curve, std::vector<Curve>& curves) {
+  for (int harmonic = kHarmonics + 1; harmonic <= kHighestHarmonic; ++harmonic) {
+    curves.push_back(curve);
+    curves.back().harmonic = harmonic;
+  }
 }
 
 }  // namespace
@@ -167,19 +205,16 @@ void add_periods(Carrier carrier, double duration, std::vector<Curve>& curves) {
 std::vector<double> basis(const Curve& curve, const StepContext& c) {
   const Variable variable = curve.law.variable;
   const double z = value_of(variable, c);
-  if (is_angle(variable)) return harmonics(z, kHarmonics);
+  if (is_angle(variable))
+    return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
   if (is_distance_since(variable)) return fading(variable, z);
-  if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1);
+  if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);
   if (variable == Variable::time) return legendre(scaled(curve, z));
   if (variable == Variable::position) {
     const double x = scaled(curve, c.x), y = scaled(curve, c.y);
     return {x, y, x * x, x * y, y * y};
   }
-  if (curve.law.carrier != Carrier::turn_path) return zero_at_rest(curve, z);
-  std::vector<double> functions = legendre(scaled(curve, z));
-  functions.insert(functions.begin(), 1.0);
-  functions.pop_back();
-  return functions;
+  return is_signed_speed(variable) ? speed_functions(curve, z) : zero_at_rest(curve, z);
 }
 
 std::size_t basis_size(const Curve& curve) { return basis(curve, StepContext{}).size(); }
@@ -192,13 +227,15 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
   std::vector<Curve> curves;
   for (int v = 0; v <= static_cast<int>(kLastVariable); ++v) {
     const auto variable = static_cast<Variable>(v);
+    if (models.size() > 1 && begins_with_the_recording(variable)) continue;
     const auto [low, high] = range_of(variable, models);
     if (!(high - low > 1e-6)) continue;
     for (const Carrier carrier : carriers_of(variable)) {
-      curves.push_back({{variable, carrier}, low, high, 0.0});
-      // Recordings of one robot share no phase of a swing.
-      if (variable == Variable::time && models.size() == 1) add_periods(carrier, high - low, curves);
+      const Curve curve{{variable, carrier}, low, high, 0.0, 0};
+      curves.push_back(curve);
+      if (variable == Variable::left_phase || variable == Variable::right_phase) add_harmonics(curve, curves);
     }
+    if (variable == Variable::time) add_periods(high - low, curves);
   }
   return curves;
 }

@@ -11,10 +11,12 @@
 namespace odomcalib::calib {
 
 /// f(z) = sum of coefficients times basis functions of the variable z:
-/// - angles: harmonics 1 to 3;
+/// - angles: harmonics 1 to 3, or one higher harmonic;
 /// - distances since an event: exponentials that fade over three lengths;
 /// - time with a period: one cosine and one sine;
 /// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both;
+/// - speeds and turn rate: piecewise linear in the magnitude (four knots), a step with the direction, and the
+///   magnitude times the direction;
 /// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
 /// A constant is a base parameter's, except on the turn path, where it is the first function.
 struct Curve {
@@ -22,6 +24,7 @@ struct Curve {
   double low = -1.0;
   double high = 1.0;
   double period = 0.0;  ///< s, of time only; 0: none
+  int harmonic = 0;     ///< of angles only: this one alone; 0: the first three
 };
 
 std::vector<double> basis(const Curve& curve, const StepContext& context);
@@ -30,7 +33,8 @@ std::size_t basis_size(const Curve& curve);
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve);
 
 /// Curves worth trying on this data: every sensible (variable, carrier) whose variable varies, on its 0.5 to
-/// 99.5 % range, and periods of time between 8 s and half the recording.
+/// 99.5 % range, higher harmonics of the wheels, and
+/// periods of time between 8 s and two thirds of the recording.
 std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models);
 
 }  // namespace odomcalib::calib

@@ -24,8 +24,7 @@ struct Window {
 
 /// Windows of unbroken, well-matched pairs inside one fold, half overlapping.
 std::vector<Window> windows_of(const FitData& data, std::size_t first, const std::vector<std::size_t>& folds,
-                               const FitResult& fit, std::size_t fold) {
-  constexpr double kTrustedWeight = 0.3;  // a pair far out on the tail may be a failed match
+                               const std::vector<bool>& trusted, std::size_t fold) {
   std::vector<Window> windows;
   for (std::size_t begin = 0; begin < data.pairs.size();) {
     Pose chained;
@@ -33,7 +32,7 @@ std::vector<Window> windows_of(const FitData& data, std::size_t first, const std
     std::size_t half = begin + 1;
     for (; k < data.pairs.size(); ++k) {
       const bool joined = k == begin || data.pairs[k].follows_previous;
-      if (!joined || folds[first + k] != fold || fit.weights[first + k] < kTrustedWeight) break;
+      if (!joined || folds[first + k] != fold || !trusted[first + k]) break;
       chained = compose(chained, data.pairs[k].motion);
       const double elapsed = data.pairs[k].interval.end - data.pairs[begin].interval.begin;
       if (elapsed < kHorizonSeconds / 2.0) half = k + 1;
@@ -64,15 +63,24 @@ double combined_square(const HorizonError& e, std::size_t k) {
 double HorizonError::rms_position() const { return rms(position); }
 double HorizonError::rms_heading() const { return rms(heading); }
 
+std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b) {
+  constexpr double kTrustedWeight = 0.3;
+  std::vector<bool> trusted;
+  for (std::size_t k = 0; k < std::min(a.weights.size(), b.weights.size()); ++k)
+    trusted.push_back(std::max(a.weights[k], b.weights[k]) >= kTrustedWeight);
+  return trusted;
+}
+
 std::optional<HorizonError> horizon_error(std::span<const FitData> data, const EffectList& effects,
-                                          const FitResult& fit, const std::vector<bool>& fixed) {
+                                          const FitResult& fit, const std::vector<bool>& fixed,
+                                          const std::vector<bool>& trusted) {
   const auto folds = folds_of(data);
   HorizonError error;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const Eigen::VectorXd parameters = without_fold(fit, folds, fold, fixed);
     std::size_t first = 0;
     for (std::size_t d = 0; d < data.size(); ++d) {
-      const auto windows = windows_of(data[d], first, folds, fit, fold);
+      const auto windows = windows_of(data[d], first, folds, trusted, fold);
       first += data[d].pairs.size();
       std::vector<Interval> intervals;
       for (const Window& w : windows) intervals.push_back(w.interval);

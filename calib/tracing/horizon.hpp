@@ -22,12 +22,19 @@ struct HorizonError {
   [[nodiscard]] double rms_heading() const;
 };
 
+/// A pair counts unless it is far out for both models: then its match has failed.
+std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b);
+
 /// Error of the predicted sensor motion over windows of kHorizonSeconds against the chained measured pairs.
 /// Five folds of blocks of 20 s: the parameters for a window's fold come from all others (one Gauss-Newton
 /// step from the full fit, which for a nearly linear problem is the refit). nullopt when fewer than ten
 /// windows exist.
+/// @param trusted one flag per pair; windows do not cross a pair whose match has failed. Two models are
+/// compared on
+///        the same windows, so the flags must not come from one of them alone
 std::optional<HorizonError> horizon_error(std::span<const FitData> data, const EffectList& effects,
-                                          const FitResult& fit, const std::vector<bool>& fixed);
+                                          const FitResult& fit, const std::vector<bool>& fixed,
+                                          const std::vector<bool>& trusted);
 
 /// Whether a candidate would have been chosen without the data of each fold.
 using FoldFlags = std::array<bool, kFolds>;
@@ -52,7 +59,7 @@ struct HeldOutGain {
   double total = 0.0;
   double lower = 0.0;
 };
-/// Both fits must stand on one noise model.
+/// Both fits must stand on one noise model and on the same weights.
 HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before,
                           const std::vector<bool>& fixed_before, const FitResult& after,
                           const std::vector<bool>& fixed_after, const FoldFlags& selected);

@@ -39,7 +39,8 @@ bool is_negligible(const Effect& effect, const FitResult& fit) {
   return largest < kNegligibleShare;
 }
 
-bool spoils_base(const FitResult& before, const FitResult& after) {
+bool spoils_base(const Effect& effect, const FitResult& before, const FitResult& after) {
+  if (effect.storage() == Storage::nowhere) return false;
   constexpr double kMaxInflation = 3.0;  // of a standard deviation
   for (const auto k : {kLeftRadius, kRightRadius, kTrackWidth})
     if (after.covariance(k, k) > kMaxInflation * kMaxInflation * before.covariance(k, k)) return true;

@@ -26,6 +26,9 @@ constexpr double kAlias = 0.9;      ///< canonical correlation that counts as in
 constexpr double kSameLaw = 0.5;    ///< share of a curve's statistic that a name with that law must reach
 /// Share of the error that a curve, or an effect of the place, must leave at most: less is not worth a model.
 constexpr double kWorthwhile = 0.95;
+/// Family-wise level at which the data outside a fold must point to a candidate that all data together have
+/// chosen.
+constexpr double kFoldLevel = 0.05;
 constexpr double kTelling = 10.0;  ///< expected gap of -2 log L that tells two candidates apart
 
 /// One thing that may be missing: a named effect (one of its variants) or a curve.
@@ -45,6 +48,12 @@ std::string key_of(const Effect& effect) { return effect.name() + "/" + effect.p
 
 bool contains(const std::vector<Law>& laws, const Law& law) {
   return std::find(laws.begin(), laws.end(), law) != laws.end();
+}
+
+bool belongs_to_one_recording(const Effect& effect) {
+  const auto laws = effect.laws();
+  return std::any_of(laws.begin(), laws.end(),
+                     [](const Law& law) { return begins_with_the_recording(law.variable); });
 }
 
 std::size_t count_sizes(const Effect& effect) {
@@ -76,7 +85,8 @@ class Search {
     std::set<std::string> present;
     for (const auto& effect : result_.effects) present.insert(key_of(*effect));
     for (const auto& effect : effect_catalogue()) {
-      if (present.count(key_of(*effect)) > 0) continue;
+      if (present.count(key_of(*effect)) > 0 || (data_.size() > 1 && belongs_to_one_recording(*effect)))
+        continue;
       EffectList shapes = effect->variants();
       if (shapes.empty()) shapes.push_back(effect);
       for (const auto& shape : shapes) candidates_.push_back({shape, std::nullopt, key_of(*shape)});
@@ -85,7 +95,9 @@ class Search {
     for (const FitData& d : data_) models.push_back(d.model);
     for (const Curve& curve : candidate_curves(models)) {
       const auto effect = make_curve_effect(curve);
-      candidates_.push_back({effect, curve, effect->name() + "/" + std::to_string(curve.period)});
+      candidates_.push_back(
+          {effect, curve,
+           effect->name() + "/" + std::to_string(curve.period) + "/" + std::to_string(curve.harmonic)});
     }
   }
 
@@ -188,20 +200,28 @@ class Search {
     return !(same_ground && named.statistic > kSameLaw * free_form.statistic);
   }
 
+  /// Scan matching has a bias of its own in a room, and in a scripted drive what happened before stands for
+  /// the place in the script: what goes with such variables must be more than that.
   static bool must_be_worthwhile(const Candidate& candidate) {
-    return candidate.curve || candidate.effect->storage() == Storage::nowhere;
+    const auto laws = candidate.curve ? std::vector<Law>{candidate.curve->law} : candidate.effect->laws();
+    return std::any_of(laws.begin(), laws.end(), [&](const Law& law) {
+      const bool of_room = law.variable == Variable::heading || law.variable == Variable::position;
+      const bool of_history = law.variable == Variable::previous_turn || is_distance_since(law.variable);
+      return of_room || (of_history && candidate.curve);
+    });
   }
 
-  /// Held-out proof on one noise model: error at the horizon, and whitened residual per block. The choice
-  /// itself is held out: a fold counts only if the others would have chosen the candidate too.
+  /// Held-out proof on one noise model: error at the horizon, or whitened residual per block. The choice
+  /// itself is held out: a fold counts only if the others point to the candidate too.
   /// @return empty if it holds, otherwise what is missing
   std::string objection(const ScoreTable& table, const Trial& trial, const EffectList& effects,
                         Proof& proof) const {
     const Candidate& candidate = candidates_[trial.candidate];
-    const FoldFlags selected = table.selected_without(trial.candidate, level(candidate));
+    const FoldFlags selected = table.selected_without(trial.candidate, kFoldLevel);
     proof.family_p_value = table.scores()[trial.candidate].family_p_value;
-    const auto before = horizon_error(data_, result_.effects, result_.fit, fixed(result_.effects));
-    const auto after = horizon_error(data_, effects, trial.fit, fixed(effects));
+    const std::vector<bool> trusted = trusted_pairs(result_.fit, trial.fit);
+    const auto before = horizon_error(data_, result_.effects, result_.fit, fixed(result_.effects), trusted);
+    const auto after = horizon_error(data_, effects, trial.fit, fixed(effects), trusted);
     if (before && after) {
       const HorizonError mixed = where_selected(*before, *after, selected);
       proof.before = before->rms_position();
@@ -211,15 +231,23 @@ class Search {
       if (proof.improvement.upper < 1.0) return {};
       if (proof.improvement.lower > 1.0) return "held-out error rises";
     }
-    const HeldOutGain gain =
-        held_out_gain(data_, result_.fit, fixed(result_.effects), trial.fit, fixed(effects), selected);
-    return gain.lower > 0.0 ? "" : "no gain on held-out data";
+    return gain_on_held_out(trial.fit, effects, selected) ? "" : "no gain on held-out data";
+  }
+
+  [[nodiscard]] bool gain_on_held_out(const FitResult& fit, const EffectList& effects,
+                                      const FoldFlags& selected) const {
+    std::vector<double> weights(fit.weights.size());
+    std::transform(fit.weights.begin(), fit.weights.end(), result_.fit.weights.begin(), weights.begin(),
+                   [](double a, double b) { return std::max(a, b); });
+    const FitResult before = with_weights(data_, result_.effects, result_.fit, weights);
+    const FitResult after = with_weights(data_, effects, fit, weights);
+    return held_out_gain(data_, before, fixed(result_.effects), after, fixed(effects), selected).lower > 0.0;
   }
 
   [[nodiscard]] std::string implausibility(const Effect& effect, const FitResult& fit) const {
     if (is_impossible(effect, fit)) return "outside its physical range";
     if (is_negligible(effect, fit)) return "too small to matter";
-    return spoils_base(result_.fit, fit) ? "this drive cannot tell it from the wheels" : "";
+    return spoils_base(effect, result_.fit, fit) ? "this drive cannot tell it from the wheels" : "";
   }
 
   /// Adds the candidate if it is plausible and proves itself; otherwise strikes it off the list.
