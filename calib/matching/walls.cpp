@@ -15,6 +15,7 @@ constexpr double kMinGap = 0.02;      ///< m
 constexpr double kMaxJoinGap = 1.0;   ///< m between the ends of two pieces of one wall
 constexpr double kMaxJoinSquares = 12.0;  ///< chi-square of two degrees of freedom, 99.8 %
 constexpr double kMinJoinCosine = 0.9;    ///< between the normals of the pieces
+constexpr double kMinEndMargin = 0.03;    ///< m, about one beam to the next
 constexpr double kSurfaceFloor = 1e-3;    ///< m, unevenness of surfaces and angular error of beams
 
 struct Piece {
@@ -145,18 +146,42 @@ std::vector<JoinedPieces> group(const std::vector<PieceOfWall>& pieces, const Su
   return groups;
 }
 
-void take(const JoinedPieces& pieces, const Surface& surface, Walls& out) {
-  Wall wall = pieces.whole.wall;
-  wall.low = 1e30;
-  wall.high = -1e30;
-  const Eigen::Vector2d along = wall.line.direction();
+/// Near a corner a reading of one wall lies within the noise of the other, always on the same side of it. The
+/// two scans would not be misled alike, so neither uses the ends of a wall.
+double end_margin(double range_noise) { return std::max(3.0 * range_noise, kMinEndMargin); }
+
+/// Indices of the points of all pieces, with their place along the line.
+std::vector<std::pair<std::size_t, double>> places_along(const JoinedPieces& pieces, const Surface& surface) {
+  const FittedLine& line = pieces.whole.wall.line;
+  std::vector<std::pair<std::size_t, double>> places;
   for (const Piece& member : pieces.members)
-    for (std::size_t i = member.first; i <= member.last; ++i) {
-      const double s = along.dot(surface.points[i].position - wall.line.centre);
-      wall.low = std::min(wall.low, s);
-      wall.high = std::max(wall.high, s);
-      out.of_point[i] = out.walls.size();
-    }
+    for (std::size_t i = member.first; i <= member.last; ++i)
+      places.emplace_back(i, line.direction().dot(surface.points[i].position - line.centre));
+  return places;
+}
+
+void take(const JoinedPieces& pieces, const Surface& surface, double range_noise, Walls& out) {
+  const FittedLine& line = pieces.whole.wall.line;
+  const auto places = places_along(pieces, surface);
+  const auto [lowest, highest] =
+      std::minmax_element(places.begin(), places.end(), [](auto& a, auto& b) { return a.second < b.second; });
+  Wall wall;
+  wall.low = lowest->second + end_margin(range_noise);
+  wall.high = highest->second - end_margin(range_noise);
+  for (const auto& [i, s] : places) {
+    if (s < wall.low || s > wall.high) continue;
+    const SurfacePoint& point = surface.points[i];
+    wall.sums.add(point.position, 1.0 / distance_variance(point.beam.dot(line.normal), range_noise));
+  }
+  if (wall.sums.count < kMinWallPoints) return;
+  wall.line = fit_line(wall.sums);
+  // The ends are told from the line's centre, which has moved with the readings left out.
+  const double moved = line.direction().dot(wall.line.centre - line.centre);
+  const bool turned = line.direction().dot(wall.line.direction()) < 0.0;
+  const double low = wall.low - moved, high = wall.high - moved;
+  wall.low = turned ? -high : low;
+  wall.high = turned ? -low : high;
+  for (const auto& [i, s] : places) out.of_point[i] = out.walls.size();
   out.walls.push_back(wall);
 }
 
@@ -200,7 +225,7 @@ Walls find_walls(const Surface& surface, double range_noise) {
   if (surface.points.size() < kMinWallPoints) return found;
   std::vector<PieceOfWall> pieces;
   for (const Piece& run : split_at_gaps(surface)) split(surface, run, range_noise, pieces);
-  for (const JoinedPieces& joined : group(pieces, surface)) take(joined, surface, found);
+  for (const JoinedPieces& joined : group(pieces, surface)) take(joined, surface, range_noise, found);
   return found;
 }
 
