@@ -12,7 +12,7 @@ class CasterKick final : public StepEffect<CasterKick> {
   explicit CasterKick(double length) : length_(length) {}
   [[nodiscard]] std::string name() const override { return "caster_kick"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"kappa", "rad", 0.01, -0.2, 0.2}, {"length", "m", 1e9, 0.005, 1.0, length_, true}};
+    return {{"kappa", "rad", 0.01, -0.2, 0.2}, {"length", "m", 1e9, 0.005, 1.0, length_, 0.0, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
   [[nodiscard]] std::string separating_motion() const override {

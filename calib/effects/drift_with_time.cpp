@@ -14,7 +14,7 @@ class DriftWithTime final : public StepEffect<DriftWithTime> {
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
     return {{"common", "1/(100 s)", 1e-3, -0.05, 0.05},
             {"differential", "1/(100 s)", 1e-3, -0.05, 0.05},
-            {"time_constant", "s", 1e9, 1.0, 1e6, time_constant_, true}};
+            {"time_constant", "s", 1e9, 1.0, 1e6, time_constant_, 0.0, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {}; }
   [[nodiscard]] std::string separating_motion() const override {

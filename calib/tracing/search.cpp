@@ -6,6 +6,7 @@
 #include <set>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/noise/noise_estimate.hpp"
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/score.hpp"
 
@@ -62,6 +63,34 @@ std::size_t count_sizes(const Effect& effect) {
       std::count_if(parameters.begin(), parameters.end(), [](const EffectParameter& p) { return !p.fixed; }));
 }
 
+/// Squared distance that a pair's weight stands for (the inverse of Student's t weight).
+double squared_distance(double weight) {
+  return ((kStudentDof + 3.0) / weight) - kStudentDof / kStudentConsistency;
+}
+
+/// How much larger the noise would have to be for the largest twentieth of the residuals to be noise. A
+/// failed match is rare; where many pairs are far out, something systematic is, and weights must not take it
+/// for failures.
+double excess_of_outliers(const FitResult& fit) {
+  constexpr double kShare = 0.95;
+  constexpr double kExpected = 7.815;  // quantile of chi-squared with three degrees of freedom
+  if (fit.weights.empty()) return 1.0;
+  std::vector<double> squared;
+  for (const double w : fit.weights) squared.push_back(squared_distance(w));
+  const auto nth =
+      squared.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(squared.size() - 1));
+  std::nth_element(squared.begin(), nth, squared.end());
+  return std::sqrt(std::max(*nth, 0.0) / kExpected);
+}
+
+NoiseModel widened(NoiseModel noise, double factor) {
+  noise.matcher_scale *= factor;
+  noise.process_translation *= factor;
+  noise.process_rotation *= factor;
+  noise.stamp_jitter *= factor;
+  return noise;
+}
+
 class Search {
  public:
   Search(std::span<const FitData> data, const EffectList& given, const FitResult& fit,
@@ -105,11 +134,26 @@ class Search {
     return fixed_with(base_fixed_, effects);
   }
 
+  /// The fit that candidates are tested on: the result's, or one with wider noise where many pairs are far
+  /// out.
+  void choose_basis() {
+    constexpr double kTolerated = 1.3;
+    basis_ = result_.fit;
+    const double excess = excess_of_outliers(result_.fit);
+    if (excess < kTolerated) return;
+    FitOptions options;
+    options.fixed = fixed(result_.effects);
+    for (const NoiseModel& noise : result_.fit.noise) options.noise.push_back(widened(noise, excess));
+    auto fit = fit_joint(data_, result_.effects, result_.fit.parameters, options);
+    if (fit) basis_ = std::move(fit).value();
+  }
+
   /// One step; false when nothing more is justified.
   bool advance() {
+    choose_basis();
     EffectList effects;
     for (const Candidate& c : candidates_) effects.push_back(c.effect);
-    const ScoreTable table(data_, result_.effects, result_.fit, fixed(result_.effects), effects);
+    const ScoreTable table(data_, result_.effects, basis_, fixed(result_.effects), effects);
     const auto name = may_name() ? best_name(table) : std::nullopt;
     const auto curve = best_curve(table);
     if (name && !(curve && curve_beats(table, *name, *curve)) && accept_name(table, *name)) return true;
@@ -121,7 +165,7 @@ class Search {
   }
 
   [[nodiscard]] double penalty(std::size_t degrees) const {
-    return static_cast<double>(degrees) * std::log(static_cast<double>(result_.fit.whitened_residual.size()));
+    return static_cast<double>(degrees) * std::log(static_cast<double>(basis_.whitened_residual.size()));
   }
 
   [[nodiscard]] double penalised(const Score& score) const {
@@ -159,12 +203,12 @@ class Search {
     effects.push_back(effect);
     Eigen::VectorXd start(static_cast<Eigen::Index>(kBaseCount + count_parameters(effects)));
     const std::vector<double> own = start_of({effect});
-    start << result_.fit.parameters,
+    start << basis_.parameters,
         Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
     auto fit = fit_from(effects, start, keep_noise);
     if (!fit) return std::nullopt;
     Trial trial{index, std::move(*fit), 0.0};
-    trial.gain = result_.fit.cost - trial.fit.cost - penalty(count_sizes(*effect));
+    trial.gain = basis_.cost - trial.fit.cost - penalty(count_sizes(*effect));
     return trial;
   }
 
@@ -173,7 +217,7 @@ class Search {
     FitOptions options;
     options.fixed = fixed(effects);
     options.max_iterations = 24;
-    if (keep_noise) options.noise = result_.fit.noise;
+    if (keep_noise) options.noise = basis_.noise;
     auto fit = fit_joint(data_, effects, start, options);
     if (!fit) return std::nullopt;
     return std::move(fit).value();
@@ -219,8 +263,8 @@ class Search {
     const Candidate& candidate = candidates_[trial.candidate];
     const FoldFlags selected = table.selected_without(trial.candidate, kFoldLevel);
     proof.family_p_value = table.scores()[trial.candidate].family_p_value;
-    const std::vector<bool> trusted = trusted_pairs(result_.fit, trial.fit);
-    const auto before = horizon_error(data_, result_.effects, result_.fit, fixed(result_.effects), trusted);
+    const std::vector<bool> trusted = trusted_pairs(basis_, trial.fit);
+    const auto before = horizon_error(data_, result_.effects, basis_, fixed(result_.effects), trusted);
     const auto after = horizon_error(data_, effects, trial.fit, fixed(effects), trusted);
     if (before && after) {
       const HorizonError mixed = where_selected(*before, *after, selected);
@@ -237,9 +281,9 @@ class Search {
   [[nodiscard]] bool gain_on_held_out(const FitResult& fit, const EffectList& effects,
                                       const FoldFlags& selected) const {
     std::vector<double> weights(fit.weights.size());
-    std::transform(fit.weights.begin(), fit.weights.end(), result_.fit.weights.begin(), weights.begin(),
+    std::transform(fit.weights.begin(), fit.weights.end(), basis_.weights.begin(), weights.begin(),
                    [](double a, double b) { return std::max(a, b); });
-    const FitResult before = with_weights(data_, result_.effects, result_.fit, weights);
+    const FitResult before = with_weights(data_, result_.effects, basis_, weights);
     const FitResult after = with_weights(data_, effects, fit, weights);
     return held_out_gain(data_, before, fixed(result_.effects), after, fixed(effects), selected).lower > 0.0;
   }
@@ -247,7 +291,7 @@ class Search {
   [[nodiscard]] std::string implausibility(const Effect& effect, const FitResult& fit) const {
     if (is_impossible(effect, fit)) return "outside its physical range";
     if (is_negligible(effect, fit)) return "too small to matter";
-    return spoils_base(effect, result_.fit, fit) ? "this drive cannot tell it from the wheels" : "";
+    return spoils_base(effect, basis_, fit) ? "this drive cannot tell it from the wheels" : "";
   }
 
   /// Adds the candidate if it is plausible and proves itself; otherwise strikes it off the list.
@@ -371,6 +415,7 @@ class Search {
   std::vector<Candidate> candidates_;
   std::vector<Trial> trials_;
   SearchResult result_;
+  FitResult basis_;
 };
 
 }  // namespace

@@ -1,0 +1,225 @@
+// From residual to missing effect, on wheels and sensor motions made from the model alone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "calib/effects/catalogue.hpp"
+#include "calib/tracing/curve.hpp"
+#include "calib/tracing/plausibility.hpp"
+#include "calib/tracing/score.hpp"
+#include "calib/tracing/search.hpp"
+#include "calib/tracing/tracing_json.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+const BaseParameters kBase{0.075, 0.074, 0.4, {0.1, 0.02, 0.3}};
+constexpr unsigned kSeed = 4711;
+
+/// Four minutes in which both wheels speed up, slow down and reverse on their own.
+DriveModel lively_model() {
+  WheelTrack track;
+  for (int k = 0; k <= 6000; ++k) {
+    const double t = 0.04 * k;
+    track.t.push_back(t);
+    track.left.push_back(9.0 * std::sin(0.31 * t) + 4.0 * std::sin(0.113 * t) + 0.4 * t);
+    track.right.push_back(8.0 * std::sin(0.43 * t + 0.5) + 5.0 * std::sin(0.097 * t) + 0.5 * t);
+    track.segment.push_back(0);
+  }
+  const auto context = make_context(track, kBase);
+  return {std::move(track), context};
+}
+
+std::span<const double> as_span(const Eigen::VectorXd& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+/// What a sensor with 0.5 mm and 0.5 mrad of noise would have measured, had the robot these effects.
+FitData measured(const DriveModel& model, const EffectList& effects, const std::vector<double>& values) {
+  Eigen::VectorXd p = to_vector(kBase, values.size());
+  std::copy(values.begin(), values.end(), p.data() + kBaseCount);
+  std::vector<Interval> intervals;
+  for (double t = 0.513; t < 238.0; t += 0.5) intervals.push_back({t, t + 0.5});
+  const auto motions = model.predict(as_span(p), effects, intervals);
+  std::mt19937 engine(kSeed);
+  std::normal_distribution<double> noise(0.0, 5e-4);
+  FitData data{&model, {}};
+  for (std::size_t k = 0; k < intervals.size(); ++k) {
+    const Pose& m = motions[k];
+    data.pairs.push_back({intervals[k],
+                          {m.x + noise(engine), m.y + noise(engine), m.yaw + noise(engine)},
+                          Eigen::Vector3d::Constant(25e-8).asDiagonal(),
+                          false});
+  }
+  return data;
+}
+
+SearchResult searched(const FitData& data) {
+  const auto fit = fit_joint({&data, 1}, {}, to_vector(kBase));
+  EXPECT_TRUE(fit) << "seed " << kSeed;
+  return search_effects({&data, 1}, {}, fit.value(), std::vector<bool>(kBaseCount, false), [](double) {});
+}
+
+TEST(Tracing, adds_nothing_when_nothing_is_missing) {
+  const DriveModel model = lively_model();
+  const SearchResult result = searched(measured(model, {}, {}));
+  EXPECT_TRUE(result.findings.empty());
+  EXPECT_TRUE(result.curves.empty());
+  EXPECT_EQ(result.fit.parameters.size(), kBaseCount);
+}
+
+TEST(Tracing, names_what_is_in_the_catalogue_and_finds_its_size) {
+  const DriveModel model = lively_model();
+  struct Case {
+    const char* name;
+    std::vector<double> values;
+  };
+  for (const Case& c : {Case{"wheel_eccentricity", {0.008, -0.004}}, Case{"speed_dependent_radius", {0.02}},
+                        Case{"tick_loss", {-0.02, 0.0, 0.15}}, Case{"turn_direction_asymmetry", {0.01}}}) {
+    const SearchResult result = searched(measured(model, {find_effect(c.name)}, c.values));
+    ASSERT_EQ(result.findings.size(), 1U) << c.name << ", seed " << kSeed;
+    EXPECT_EQ(result.findings[0].effect->name(), c.name);
+    EXPECT_LT(result.findings[0].proof.after, result.findings[0].proof.before) << c.name;
+    for (std::size_t k = 0; k < c.values.size(); ++k) {
+      const auto index = static_cast<Eigen::Index>(kBaseCount + k);
+      EXPECT_NEAR(result.fit.parameters(index), c.values[k],
+                  4.0 * std::sqrt(result.fit.covariance(index, index)) + 1e-3)
+          << c.name << " " << k;
+    }
+  }
+}
+
+TEST(Tracing, shapes_that_are_tried_are_not_fitted) {
+  for (const char* name : {"drift_with_time", "caster_kick"}) {
+    const auto parameters = find_effect(name)->parameters();
+    EXPECT_TRUE(parameters.back().fixed) << name;
+    EXPECT_NE(parameters.back().start, 0.0) << name;
+    EXPECT_FALSE(parameters.front().fixed) << name;
+  }
+}
+
+TEST(Tracing, says_which_variable_when_it_has_no_name) {
+  const DriveModel model = lively_model();
+  const Curve swing{{Variable::left_phase, Carrier::left_travel}, 0.0, 1.0, 0.0, 5};
+  const SearchResult result = searched(measured(model, {make_curve_effect(swing)}, {0.03, 0.01}));
+  EXPECT_TRUE(result.findings.empty());
+  ASSERT_TRUE(result.has_unnamed());
+  EXPECT_EQ(result.curves[0].curve.law, swing.law);
+  EXPECT_EQ(result.curves[0].curve.harmonic, 5);
+}
+
+TEST(Tracing, several_recordings_share_no_zero_of_time_heading_or_phase) {
+  const DriveModel model = lively_model();
+  const std::vector<const DriveModel*> one = {&model}, two = {&model, &model};
+  const auto begins = [](const Curve& c) { return begins_with_the_recording(c.law.variable); };
+  const auto alone = candidate_curves(one), together = candidate_curves(two);
+  EXPECT_TRUE(std::any_of(alone.begin(), alone.end(), begins));
+  EXPECT_TRUE(std::none_of(together.begin(), together.end(), begins));
+}
+
+TEST(Curve, is_zero_at_rest_but_on_the_turn_path) {
+  for (int v = 0; v <= static_cast<int>(kLastVariable); ++v) {
+    const auto variable = static_cast<Variable>(v);
+    if (begins_with_the_recording(variable) || is_distance_since(variable)) continue;
+    const Curve curve{{variable, Carrier::both_travel}, -0.7, 0.9, 0.0, 0};
+    for (const double f : basis(curve, StepContext{})) EXPECT_NEAR(f, 0.0, 1e-12) << to_string(variable);
+  }
+  const Curve turn{{Variable::turn_rate, Carrier::turn_path}, -1.0, 1.0, 0.0, 0};
+  EXPECT_EQ(basis(turn, StepContext{})[0], 1.0);
+}
+
+TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
+  StepContext ahead;
+  ahead.dt = 0.02;
+  ahead.speed = 0.3;
+  ahead.turn_rate = 0.5;
+  ahead.left_delta = ahead.right_delta = 0.08;
+  StepContext back = ahead;
+  back.speed = -0.3;
+  back.turn_rate = -0.5;
+  back.left_delta = back.right_delta = -0.08;
+  for (int c = 0; c <= static_cast<int>(kLastCarrier); ++c) {
+    const auto carrier = static_cast<Carrier>(c);
+    const auto change = [&](const StepContext& context) {
+      WheelStep<double> step{0.006, 0.006};
+      if (context.speed < 0.0) step.left = step.right = -0.006;
+      const WheelStep<double> before = step;
+      carry(carrier, context, 0.01, step);
+      return std::array{step.left - before.left, step.right - before.right, step.side, step.yaw,
+                        step.track - 1.0};
+    };
+    const auto forth = change(ahead), reverse = change(back);
+    const bool signed_by_motion = carrier == Carrier::left_travel || carrier == Carrier::right_travel ||
+                                  carrier == Carrier::both_travel || carrier == Carrier::sideways;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < forth.size(); ++k) {
+      EXPECT_NEAR(reverse[k], signed_by_motion ? -forth[k] : forth[k], 1e-15) << to_string(carrier);
+      largest = std::max(largest, std::abs(forth[k]));
+    }
+    EXPECT_GT(largest, 0.0) << to_string(carrier);
+  }
+}
+
+TEST(Curve, survives_the_calibration_file) {
+  const Curve curve{{Variable::time, Carrier::both_travel}, 0.0, 290.0, 61.5, 0};
+  const auto read = curves_from_json(curves_to_json({{curve, {0.01, -0.02}, "drift_with_time"}}));
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].curve.law, curve.law);
+  EXPECT_EQ(read[0].curve.period, curve.period);
+  EXPECT_EQ(read[0].coefficients, (std::vector<double>{0.01, -0.02}));
+  EXPECT_EQ(read[0].law_of, "drift_with_time");
+  EXPECT_TRUE(curves_from_json(R"([{"variable":"mood","carrier":"track","low":0,"high":1}])").empty());
+  EXPECT_TRUE(curves_from_json("[{").empty());
+}
+
+/// A fit whose last parameters are those of the effect.
+FitResult fit_with(const std::vector<double>& values, double deviation) {
+  FitResult fit;
+  fit.parameters = to_vector(kBase, values.size());
+  std::copy(values.begin(), values.end(), fit.parameters.data() + kBaseCount);
+  fit.covariance =
+      deviation * deviation * Eigen::MatrixXd::Identity(fit.parameters.size(), fit.parameters.size());
+  return fit;
+}
+
+TEST(Plausibility, bounds_size_and_need_are_judged_both_ways) {
+  const auto effect = find_effect("speed_dependent_radius");
+  EXPECT_FALSE(is_impossible(*effect, fit_with({0.02}, 1e-3)));
+  EXPECT_TRUE(is_impossible(*effect, fit_with({0.3}, 1e-3)));
+  EXPECT_TRUE(is_impossible(*effect, fit_with({std::nan("")}, 1e-3)));
+  EXPECT_FALSE(is_negligible(*effect, fit_with({0.002}, 1e-3)));
+  EXPECT_TRUE(is_negligible(*effect, fit_with({0.001}, 1e-3)));
+  EXPECT_FALSE(is_superfluous(*effect, kBaseCount, fit_with({0.003}, 1e-3)));
+  EXPECT_TRUE(is_superfluous(*effect, kBaseCount, fit_with({0.001}, 1e-3)));
+  EXPECT_FALSE(spoils_base(*effect, fit_with({0.0}, 1e-3), fit_with({0.0}, 2.9e-3)));
+  EXPECT_TRUE(spoils_base(*effect, fit_with({0.0}, 1e-3), fit_with({0.0}, 3.1e-3)));
+  EXPECT_FALSE(spoils_base(*find_effect("drift_with_time"), fit_with({0.0}, 1e-3), fit_with({0.0}, 9e-3)));
+}
+
+TEST(Plausibility, the_shape_of_an_effect_is_no_size) {
+  EXPECT_TRUE(is_negligible(*find_effect("tick_loss"), fit_with({1e-4, 0.0, 0.4}, 1e-3)));
+  EXPECT_FALSE(is_negligible(*find_effect("tick_loss"), fit_with({0.01, 0.0, 0.4}, 1e-3)));
+}
+
+TEST(Score, tail_of_chi_squared_agrees_with_tables) {
+  EXPECT_NEAR(chi_squared_tail(3.841, 1), 0.05, 1e-4);
+  EXPECT_NEAR(chi_squared_tail(16.812, 6), 0.01, 1e-5);
+  EXPECT_EQ(chi_squared_tail(0.0, 3), 1.0);
+  EXPECT_EQ(chi_squared_tail(7.0, 0), 1.0);
+}
+
+TEST(Horizon, a_fold_that_would_not_have_chosen_keeps_its_error) {
+  HorizonError before, after;
+  before.position = {1.0, 2.0, 3.0};
+  before.heading = {0.1, 0.2, 0.3};
+  before.fold = {0, 1, 4};
+  before.block = {0, 1, 2};
+  after = before;
+  after.position = {0.1, 0.2, 0.3};
+  const HorizonError mixed = where_selected(before, after, {true, false, true, true, false});
+  EXPECT_EQ(mixed.position, (std::vector<double>{0.1, 2.0, 3.0}));
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
