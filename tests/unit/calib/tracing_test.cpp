@@ -80,7 +80,7 @@ TEST(Tracing, names_what_is_in_the_catalogue_and_finds_its_size) {
     const SearchResult result = searched(measured(model, {find_effect(c.name)}, c.values));
     ASSERT_EQ(result.findings.size(), 1U) << c.name << ", seed " << kSeed;
     EXPECT_EQ(result.findings[0].effect->name(), c.name);
-    EXPECT_LT(result.findings[0].proof.after, result.findings[0].proof.before) << c.name;
+    EXPECT_LE(result.findings[0].proof.family_p_value, 0.003) << c.name;
     for (std::size_t k = 0; k < c.values.size(); ++k) {
       const auto index = static_cast<Eigen::Index>(kBaseCount + k);
       EXPECT_NEAR(result.fit.parameters(index), c.values[k],
