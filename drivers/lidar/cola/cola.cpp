@@ -18,7 +18,7 @@ constexpr double kRangeMax_m = 80.0;  // LMS5xx
 constexpr unsigned kError = 1, kPollution = 4;  // bits of the status
 // "Time since start" of a model that sends before a sweep's length has passed since cannot be the beginning
 // of that sweep: it is its end, and 0 to 3 ms of processing lie between (measured on LMS111 and TiM).
-constexpr double kProcessing_s = 1.5e-3;
+constexpr double kUntilEnd_s = 1.5e-3;
 
 }  // namespace
 
@@ -67,7 +67,7 @@ double Cola::date(const ScanData& data, double arrival, double sweep_turns) {
   const double started = clock_.to_host(data.sent_us, arrival) - since_start;
   finder_.frames().reject("lost_scans", line_.add(started, nominal).lost);
   const double sweep = sweep_turns * line_.period();
-  return since_start < sweep ? started - sweep + kProcessing_s : started;
+  return since_start < sweep ? started - sweep + kUntilEnd_s : started;
 }
 
 void Cola::on_scan(const ScanData& data, double arrival) {

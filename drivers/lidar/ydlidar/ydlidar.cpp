@@ -110,7 +110,7 @@ Counters Ydlidar::counters() const {
 std::optional<Error> Ydlidar::problem() const {
   const FrameBuffer& frames = finder_.frames();
   if (frames.frames() == 0 && frames.rejected().at("bad_checksum") > kAllWrong)
-    return Error{ErrorCode::device, "every checksum is wrong", "ydlidar",
+    return Error{ErrorCode::format, "every checksum is wrong", "ydlidar",
                  std::string("lidar.type says model ") + model_.name +
                      "; a model with another sample format does this: correct lidar.type"};
   return startup_.problem();
