@@ -10,7 +10,7 @@ ScanMatch match_scans(const Scan& reference, const Scan& scan, const std::array<
   MatchOptions options;
   options.range_noise = range_noise.value_or(estimate_range_noise(both));
   const BeamMotion at_rest = [](double) { return Pose{}; };
-  const MatchReference prepared(make_surface(reference, at_rest, options.range_noise));
+  const MatchReference prepared(make_surface(reference, at_rest, options.range_noise), options.range_noise);
   const Surface surface = make_surface(scan, at_rest, options.range_noise);
   const MatchResult result = match_point_to_line(prepared, surface, {guess[0], guess[1], guess[2]}, options);
   ScanMatch match;

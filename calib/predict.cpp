@@ -4,8 +4,9 @@
 #include <deque>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/effects/reference_effect.hpp"
 #include "calib/model/drive_model.hpp"
-#include "calib/tracing/curve_json.hpp"
+#include "calib/tracing/tracing_json.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -22,6 +23,12 @@ double value_or(const Calibration& calibration, const std::string& name, double 
   return calibration.parameter(name).value_or(otherwise);
 }
 
+/// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the
+/// lidar is none of odometry.
+bool corrects_odometry(const Effect& effect) {
+  return effect.storage() != Storage::nowhere && !concerns_reference(effect);
+}
+
 Correction correction_of(const Calibration& calibration) {
   BaseParameters base;
   base.left_radius =
@@ -34,16 +41,14 @@ Correction correction_of(const Calibration& calibration) {
   for (const EffectResult& result : calibration.effects) {
     if (result.parameters.empty()) continue;
     const auto effect = find_effect(result.name, result.parameters.front().first);
-    // What belongs to the place or the day would make odometry worse elsewhere and tomorrow.
-    if (!effect || effect->storage() == Storage::nowhere ||
-        result.parameters.size() != effect->parameters().size())
+    if (!effect || !corrects_odometry(*effect) || result.parameters.size() != effect->parameters().size())
       continue;
     correction.effects.push_back(effect);
     for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
   }
   if (const auto member = calibration.extensions.find(kCurvesMember); member != calibration.extensions.end())
-    for (const auto& [curve, coefficients] : curves_from_json(member->second)) {
-      if (belongs_to_the_place(curve.variable)) continue;
+    for (const auto& [curve, coefficients, law_of] : curves_from_json(member->second)) {
+      if (belongs_to_the_place(curve.law.variable)) continue;
       correction.effects.push_back(make_curve_effect(curve));
       values.insert(values.end(), coefficients.begin(), coefficients.end());
     }

@@ -6,9 +6,10 @@
 #include "calib/effects/catalogue.hpp"
 #include "calib/gate.hpp"
 #include "calib/report.hpp"
+#include "calib/report_data.hpp"
 #include "calib/session/start_values.hpp"
-#include "calib/tracing/curve_json.hpp"
 #include "calib/tracing/search.hpp"
+#include "calib/tracing/tracing_json.hpp"
 #include "calib/validation/held_out.hpp"
 
 namespace odomcalib::calib {
@@ -44,7 +45,7 @@ class Solver {
     if (automatic_ && recordings_.front().increments.empty())
       search(fit.value());
     else
-      outcome_ = {effects_, fit.value(), {}, std::nullopt};
+      outcome_ = {effects_, fit.value(), {}, {}, {}};
     fill();
     return calibration_;
   }
@@ -99,6 +100,9 @@ class Solver {
     if (automatic_ && recordings_.front().increments.empty()) effects_.push_back(find_effect("time_offset"));
     const double delay = has_offset() ? search_delay(session_->data()) : 0.0;
     parameters_ = to_vector(start_values(*session_, delay), count_parameters(effects_));
+    const std::vector<double> own = start_of(effects_);
+    parameters_.tail(static_cast<Eigen::Index>(own.size())) =
+        Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
     if (has_offset()) parameters_(offset_index()) = delay;
   }
 
@@ -121,7 +125,7 @@ class Solver {
 
   Result<FitResult> fit_now() {
     FitOptions options;
-    options.fixed = session_->fixed(count_parameters(effects_));
+    options.fixed = fixed_with(session_->fixed(0), effects_);
     return fit_joint(session_->data(), effects_, parameters_, options);
   }
 
@@ -157,6 +161,9 @@ class Solver {
     fill_residual();
     fill_effects();
     fill_unnamed();
+    if (!outcome_.considered.empty())
+      calibration_.extensions["considered"] = considered_to_json(outcome_.considered);
+    store_report_data(make_report_data(*session_, effects_, outcome_.fit, plain_), calibration_);
     const GateResult gate = judge(calibration_, fit.converged);
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;
@@ -176,8 +183,8 @@ class Solver {
   }
 
   void fill_residual() {
-    const auto after = held_out_residual(session_->data(), effects_, outcome_.fit,
-                                         session_->fixed(count_parameters(effects_)));
+    const auto after =
+        held_out_residual(session_->data(), effects_, outcome_.fit, fixed_with(session_->fixed(0), effects_));
     calibration_.residual.held_out = after.has_value();
     if (!after) return;
     calibration_.residual.after = after->rms;
@@ -200,21 +207,34 @@ class Solver {
     Evidence evidence;
     evidence.p_value = std::erfc(z / std::sqrt(2.0));
     if (!plain_) return evidence;
-    const auto before = horizon_error(session_->data(), {}, *plain_, session_->fixed(0));
-    const auto after =
-        horizon_error(session_->data(), effects_, outcome_.fit, session_->fixed(count_parameters(effects_)));
+    const std::vector<bool> trusted = trusted_pairs(*plain_, outcome_.fit);
+    const auto before = horizon_error(session_->data(), {}, *plain_, session_->fixed(0), trusted);
+    const auto after = horizon_error(session_->data(), effects_, outcome_.fit,
+                                     fixed_with(session_->fixed(0), effects_), trusted);
     if (before) evidence.held_out_before = before->rms_position();
     if (after) evidence.held_out_after = after->rms_position();
     return evidence;
   }
 
   void fill_effects() {
-    const std::size_t curves = outcome_.unnamed ? outcome_.unnamed->curves.size() : 0;
     Eigen::Index index = kBaseCount;
-    for (std::size_t e = 0; e + curves < effects_.size(); ++e) {
-      calibration_.effects.push_back(describe(*effects_[e], index));
-      index += static_cast<Eigen::Index>(effects_[e]->parameters().size());
+    for (const auto& effect : effects_) {
+      const auto curve = std::find_if(outcome_.curves.begin(), outcome_.curves.end(),
+                                      [&](const AddedCurve& c) { return c.effect == effect; });
+      if (curve == outcome_.curves.end())
+        calibration_.effects.push_back(describe(*effect, index));
+      else
+        fitted_curves_.push_back(fitted(*curve, index));
+      index += static_cast<Eigen::Index>(effect->parameters().size());
     }
+    if (!fitted_curves_.empty()) calibration_.extensions[kCurvesMember] = curves_to_json(fitted_curves_);
+  }
+
+  [[nodiscard]] FittedCurve fitted(const AddedCurve& added, Eigen::Index index) const {
+    FittedCurve curve{added.curve, {}, added.law_of ? added.law_of->name() : ""};
+    for (std::size_t k = 0; k < basis_size(added.curve); ++k)
+      curve.coefficients.push_back(outcome_.fit.parameters(index++));
+    return curve;
   }
 
   /// @param index of the effect's first parameter in the parameter vector
@@ -225,37 +245,35 @@ class Solver {
     for (const EffectParameter& parameter : effect.parameters()) {
       const double value = outcome_.fit.parameters(index);
       const double deviation = std::sqrt(std::max(outcome_.fit.covariance(index, index), 0.0));
-      result.parameters.push_back({parameter.name, {value, deviation, parameter.unit}});
-      if (deviation > 0.0) z = std::max(z, std::abs(value) / deviation);
+      result.parameters.push_back(
+          {parameter.name, {value, parameter.fixed ? -1.0 : deviation, parameter.unit}});
+      if (deviation > 0.0 && parameter.start == 0.0) z = std::max(z, std::abs(value) / deviation);
       ++index;
     }
     const Finding* finding = finding_of(&effect);
     result.aliases = finding != nullptr ? finding->aliases : effect.always_alike();
-    result.evidence = finding != nullptr ? Evidence{finding->family_p_value, finding->before, finding->after}
+    result.evidence = finding != nullptr ? Evidence{finding->proof.family_p_value, finding->proof.before,
+                                                    finding->proof.after}
                                          : evidence_against_plain(z);
     return result;
   }
 
+  /// Curves without a name: variables they depend on, in the order found.
   void fill_unnamed() {
-    if (!outcome_.unnamed) return;
+    if (!outcome_.has_unnamed()) return;
     Unexplained unexplained;
-    unexplained.p_value = outcome_.unnamed->p_value;
-    unexplained.share = outcome_.unnamed->share;
-    std::size_t values = 0;
-    for (const Curve& curve : outcome_.unnamed->curves) values += basis(curve, curve.low).size();
-    Eigen::Index index = outcome_.fit.parameters.size() - static_cast<Eigen::Index>(values);
-    std::vector<FittedCurve> fitted;
-    for (const Curve& curve : outcome_.unnamed->curves) {
-      const std::string name = to_string(curve.variable);
+    double left = 1.0;  // of the squared error
+    for (const AddedCurve& added : outcome_.curves) {
+      if (added.law_of) continue;
       auto& names = unexplained.depends_on;
+      const std::string name = to_string(added.curve.law.variable);
+      if (names.empty()) unexplained.p_value = added.proof.family_p_value;
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-      std::vector<double> coefficients;
-      for (std::size_t k = 0; k < basis(curve, curve.low).size(); ++k)
-        coefficients.push_back(outcome_.fit.parameters(index++));
-      fitted.emplace_back(curve, coefficients);
+      const double ratio = added.proof.before > 0.0 ? added.proof.after / added.proof.before : 1.0;
+      left *= std::min(ratio * ratio, 1.0);
     }
+    unexplained.share = 1.0 - left;
     calibration_.unexplained = unexplained;
-    calibration_.extensions[kCurvesMember] = curves_to_json(fitted);
   }
 
   std::span<const Recording> recordings_;
@@ -267,6 +285,7 @@ class Solver {
   EffectList effects_;
   SearchResult outcome_;
   std::optional<FitResult> plain_;
+  std::vector<FittedCurve> fitted_curves_;
   Eigen::VectorXd parameters_;
 };
 

@@ -132,19 +132,24 @@ Json data(const std::vector<DataUse>& uses) {
   return out;
 }
 
-/// Members of other modules; text that is no JSON is kept as a string, so that nothing gets lost silently.
-void add_extensions(Json& out, const std::map<std::string, std::string>& extensions) {
+/// Members of other modules, one line each: their points would fill pages. Text that is no JSON is kept as a
+/// string, so that nothing gets lost silently.
+std::string extension_lines(const Json& known, const std::map<std::string, std::string>& extensions) {
+  std::string out;
   for (const auto& [name, text] : extensions) {
-    if (out.contains(name)) continue;
-    Json value = Json::parse(text, nullptr, false);
-    out[name] = value.is_discarded() ? Json(text) : std::move(value);
+    if (known.contains(name)) continue;
+    const Json parsed = Json::parse(text, nullptr, false);
+    const Json value = parsed.is_discarded() ? Json(text) : parsed;
+    out += ",\n  " + Json(name).dump(-1, ' ', false, Json::error_handler_t::replace) + ": " +
+           value.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
+  return out;
 }
 
 }  // namespace
 
 std::string to_json(const Calibration& calibration) {
-  Json out{
+  const Json out{
       {"format", "odomcalib-calibration/1"},
       {"verdict", verdict(calibration.verdict)},
       {"reasons", calibration.reasons},
@@ -157,8 +162,9 @@ std::string to_json(const Calibration& calibration) {
       {"unexplained", unexplained(calibration.unexplained)},
       {"residual", residual(calibration.residual)},
       {"data", data(calibration.data)}};
-  add_extensions(out, calibration.extensions);
-  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text = out.dump(2, ' ', false, Json::error_handler_t::replace);
+  text.insert(text.size() - 2, extension_lines(out, calibration.extensions));  // before the closing "\n}"
+  return text + "\n";
 }
 
 Result<void> write_calibration(const Calibration& calibration, const std::filesystem::path& path) {

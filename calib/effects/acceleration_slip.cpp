@@ -16,6 +16,10 @@ class AccelerationSlip final : public StepEffect<AccelerationSlip> {
   [[nodiscard]] std::string separating_motion() const override {
     return "equal accelerations at low and at high speed";
   }
+  [[nodiscard]] std::vector<Law> laws() const override {
+    return {{Variable::left_acceleration, Carrier::left_path},
+            {Variable::right_acceleration, Carrier::right_path}};
+  }
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {

@@ -18,6 +18,10 @@ class Backlash final : public StepEffect<Backlash> {
     return "reversals at low and high speed; spins left and right, where the wheels reverse and the robot "
            "does not";
   }
+  [[nodiscard]] std::vector<Law> laws() const override {
+    return {{Variable::left_since_reversal, Carrier::left_travel},
+            {Variable::right_since_reversal, Carrier::right_travel}};
+  }
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {

@@ -15,6 +15,9 @@ class Carpet final : public StepEffect<Carpet> {
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"floor_slope"}; }
   [[nodiscard]] std::string separating_motion() const override { return "straight lines on four headings"; }
   [[nodiscard]] Storage storage() const override { return Storage::nowhere; }
+  [[nodiscard]] std::vector<Law> laws() const override {
+    return {{Variable::heading, Carrier::both_path}, {Variable::heading, Carrier::sideways_path}};
+  }
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {

@@ -13,6 +13,7 @@ const EffectList& effect_catalogue() {
       make_scan_skew(),
       make_wheel_eccentricity_left(),
       make_wheel_eccentricity_right(),
+      make_tick_loss(),
       make_backlash(),
       make_direction_dependent_diameter(),
       make_speed_dependent_radius(),

@@ -18,6 +18,14 @@ class DirectionDependentDiameter final : public StepEffect<DirectionDependentDia
   [[nodiscard]] std::string separating_motion() const override {
     return "straight lines forward and backward at the same speed, and spins both ways";
   }
+  [[nodiscard]] std::vector<Law> laws() const override {
+    return {{Variable::left_speed, Carrier::left_travel},
+            {Variable::right_speed, Carrier::right_travel},
+            {Variable::speed, Carrier::both_travel},
+            {Variable::left_since_reversal, Carrier::left_travel},
+            {Variable::right_since_reversal, Carrier::right_travel},
+            {Variable::since_reversal, Carrier::both_travel}};
+  }
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {

@@ -17,6 +17,7 @@ class FloorSlope final : public StepEffect<FloorSlope> {
     return "straight lines on four headings, forward and backward on each";
   }
   [[nodiscard]] Storage storage() const override { return Storage::nowhere; }
+  [[nodiscard]] std::vector<Law> laws() const override { return {{Variable::heading, Carrier::both_path}}; }
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {

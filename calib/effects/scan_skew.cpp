@@ -19,6 +19,7 @@ class ScanSkew final : public StepEffect<ScanSkew> {
   [[nodiscard]] std::string separating_motion() const override {
     return "turns left and right at two or more rates of at least 1:3, and single-wheel turns";
   }
+  [[nodiscard]] std::vector<Law> laws() const override { return {{Variable::turn_rate, Carrier::track}}; }
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {

@@ -18,6 +18,11 @@ class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
     return "straight lines at three speeds over 1:3, and spins whose wheel speeds overlap those of the "
            "straights";
   }
+  [[nodiscard]] std::vector<Law> laws() const override {
+    return {{Variable::left_speed, Carrier::left_travel},
+            {Variable::right_speed, Carrier::right_travel},
+            {Variable::speed, Carrier::both_travel}};
+  }
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {

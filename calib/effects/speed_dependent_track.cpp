@@ -17,6 +17,7 @@ class SpeedDependentTrack final : public StepEffect<SpeedDependentTrack> {
   [[nodiscard]] std::string separating_motion() const override {
     return "spins at three rates, and arcs at the same turn rate and different speeds";
   }
+  [[nodiscard]] std::vector<Law> laws() const override { return {{Variable::turn_rate, Carrier::track}}; }
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {

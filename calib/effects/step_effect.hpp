@@ -8,17 +8,17 @@
 
 namespace odomcalib::calib {
 
-/// Derived supplies `template <typename T> static void act(const StepContext&, std::span<const T> p,
-/// WheelStep<T>&)`.
+/// Derived supplies `template <typename T> void act(const StepContext&, std::span<const T> p,
+/// WheelStep<T>&)`, static or const.
 template <typename Derived>
 class StepEffect : public Effect {
  public:
   void apply(const StepContext& context, std::span<const double> parameters,
              WheelStep<double>& step) const final {
-    Derived::template act<double>(context, parameters, step);
+    static_cast<const Derived&>(*this).template act<double>(context, parameters, step);
   }
   void apply(const StepContext& context, std::span<const Jet> parameters, WheelStep<Jet>& step) const final {
-    Derived::template act<Jet>(context, parameters, step);
+    static_cast<const Derived&>(*this).template act<Jet>(context, parameters, step);
   }
 };
 

@@ -19,6 +19,9 @@ class TrackDependsOnMotion final : public StepEffect<TrackDependsOnMotion> {
   [[nodiscard]] std::string separating_motion() const override {
     return "spins and arcs with equal wheel speeds";
   }
+  [[nodiscard]] std::vector<Law> laws() const override {
+    return {{Variable::turn_rate, Carrier::track}, {Variable::speed, Carrier::track}};
+  }
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {

@@ -1,4 +1,5 @@
 #include "calib/effects/factories.hpp"
+#include "calib/effects/step_effect.hpp"
 #include "calib/model/effect.hpp"
 
 #include <cmath>
@@ -10,7 +11,7 @@ enum class Side { left, right };
 
 /// An eccentric wheel or encoder disc: dL' = dL (1 + a cos phi + b sin phi) with phi the angle of that wheel.
 /// The phase is constant over a run; between runs it is known only if the counter keeps its value.
-class WheelEccentricity final : public Effect {
+class WheelEccentricity final : public StepEffect<WheelEccentricity> {
  public:
   explicit WheelEccentricity(Side side) : side_(side) {}
   [[nodiscard]] std::string name() const override { return "wheel_eccentricity"; }
@@ -21,20 +22,19 @@ class WheelEccentricity final : public Effect {
   [[nodiscard]] std::string separating_motion() const override {
     return "slow straight lines of five or more wheel turns";
   }
-  void apply(const StepContext& c, std::span<const double> p, WheelStep<double>& step) const override {
-    act(c, p, step);
-  }
-  void apply(const StepContext& c, std::span<const Jet> p, WheelStep<Jet>& step) const override {
-    act(c, p, step);
+  [[nodiscard]] std::vector<Law> laws() const override {
+    if (side_ == Side::left) return {{Variable::left_phase, Carrier::left_travel}};
+    return {{Variable::right_phase, Carrier::right_travel}};
   }
 
- private:
   template <typename T>
   void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) const {
     const double angle = side_ == Side::left ? c.left_angle : c.right_angle;
     const T factor = 1.0 + p[0] * std::cos(angle) + p[1] * std::sin(angle);
     (side_ == Side::left ? step.left : step.right) *= factor;
   }
+
+ private:
   Side side_;
 };
 

@@ -185,8 +185,9 @@ NormalSystem normal_system(const Eigen::MatrixXd& jacobian, const Eigen::VectorX
 
 std::optional<Error> check_rank(const NormalSystem& system, const std::vector<bool>& fixed) {
   std::vector<Eigen::Index> free;
+  // The shape of an effect of size zero changes nothing yet; it joins in as soon as the size does.
   for (Eigen::Index k = 0; k < system.scale.size(); ++k)
-    if (!fixed[static_cast<std::size_t>(k)]) free.push_back(k);
+    if (!fixed[static_cast<std::size_t>(k)] && (k < kBaseCount || system.scale(k) > 0.0)) free.push_back(k);
   const Eigen::MatrixXd matrix = system.matrix(free, free);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
   if (eigen.eigenvalues()(0) > kMinRelativePivot) return std::nullopt;
@@ -195,6 +196,18 @@ std::optional<Error> check_rank(const NormalSystem& system, const std::vector<bo
     direction(free[i]) = eigen.eigenvectors()(static_cast<Eigen::Index>(i), 0);
   return Error{ErrorCode::refused, "the motion does not determine: " + parameter_names(direction),
                "joint estimate", "record straight lines, arcs and turns on the spot, both ways"};
+}
+
+/// Rows of the priors: parameter over deviation, expected to be zero.
+void add_prior(const Eigen::VectorXd& information, const Eigen::VectorXd& p, NormalSystem& system) {
+  for (Eigen::Index k = 0; k < p.size(); ++k) {
+    system.matrix(k, k) += information(k) * system.scale(k) * system.scale(k);
+    system.right_side(k) -= information(k) * system.scale(k) * p(k);
+  }
+}
+
+double prior_cost(const Eigen::VectorXd& information, const Eigen::VectorXd& p) {
+  return information.dot(p.cwiseAbs2());
 }
 
 double sum_of_squares(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& p,
@@ -206,15 +219,17 @@ double sum_of_squares(std::span<const FitData> data, const EffectList& effects, 
 /// Levenberg-Marquardt on fixed weights; returns whether it settled.
 Result<bool> descend(std::span<const FitData> data, const EffectList& effects,
                      const std::vector<NoiseModel>& noise, const std::vector<double>& weights,
-                     const std::vector<bool>& fixed, int iterations, Eigen::VectorXd& p) {
+                     const std::vector<bool>& fixed, const Eigen::VectorXd& prior, int iterations,
+                     Eigen::VectorXd& p) {
   double damping = 1e-9;
   for (int i = 0; i < iterations; ++i) {
     const Stack stack = make_stack(data, effects, p, true);
     const Eigen::MatrixXd residual = whitened(data, stack, noise, weights, stack.residual);
     const Eigen::MatrixXd jacobian = whitened(data, stack, noise, weights, stack.jacobian);
-    const NormalSystem system = normal_system(jacobian, residual.col(0), fixed);
+    NormalSystem system = normal_system(jacobian, residual.col(0), fixed);
+    add_prior(prior, p, system);
     if (auto error = check_rank(system, fixed)) return *error;
-    const double before = residual.squaredNorm();
+    const double before = residual.squaredNorm() + prior_cost(prior, p);
     bool improved = false;
     for (int attempt = 0; attempt < 8 && !improved; ++attempt) {
       Eigen::MatrixXd damped = system.matrix;
@@ -222,7 +237,8 @@ Result<bool> descend(std::span<const FitData> data, const EffectList& effects,
         damped(k, k) = system.scale(k) > 0.0 ? damped(k, k) + damping : 1.0;
       const Eigen::VectorXd step = system.scale.asDiagonal() * damped.ldlt().solve(system.right_side);
       const Eigen::VectorXd candidate = p + step;
-      const double after = sum_of_squares(data, effects, candidate, noise, weights);
+      const double after =
+          sum_of_squares(data, effects, candidate, noise, weights) + prior_cost(prior, candidate);
       improved = after <= before * (1.0 + 1e-12);
       if (!improved) {
         damping = std::max(damping * 10.0, 1e-6);
@@ -268,7 +284,8 @@ Eigen::MatrixXd robust_covariance(std::span<const FitData> data, const Stack& st
 /// Model covariance, each parameter's deviation raised to the robust one where that is larger.
 void set_covariance(std::span<const FitData> data, const Stack& stack, const std::vector<bool>& fixed,
                     FitResult& fit) {
-  const NormalSystem system = normal_system(fit.whitened_jacobian, fit.whitened_residual, fixed);
+  NormalSystem system = normal_system(fit.whitened_jacobian, fit.whitened_residual, fixed);
+  add_prior(fit.prior_information, fit.parameters, system);
   Eigen::MatrixXd matrix = system.matrix;
   for (Eigen::Index k = 0; k < matrix.rows(); ++k)
     if (!(system.scale(k) > 0.0)) matrix(k, k) = 1.0;
@@ -320,6 +337,9 @@ Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& eff
   fit.parameters = start;
   std::vector<bool> fixed = options.fixed;
   fixed.resize(static_cast<std::size_t>(start.size()), false);
+  const std::vector<double> prior = prior_information(kBaseCount, effects);
+  fit.prior_information =
+      Eigen::Map<const Eigen::VectorXd>(prior.data(), static_cast<Eigen::Index>(prior.size()));
   fit.noise = options.noise.empty() ? std::vector<NoiseModel>(data.size()) : options.noise;
   Stack stack = make_stack(data, effects, start, false);
   if (stack.states.empty())
@@ -328,7 +348,7 @@ Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& eff
   for (int round = 0; round < kNoiseRounds; ++round) {
     if (options.noise.empty()) fit.noise = estimate_noise(data, stack, fit.noise);
     fit.weights = robust_weights(distances(data, stack, fit.noise));
-    const auto settled = descend(data, effects, fit.noise, fit.weights, fixed,
+    const auto settled = descend(data, effects, fit.noise, fit.weights, fixed, fit.prior_information,
                                  options.max_iterations / kNoiseRounds, fit.parameters);
     if (!settled) return settled.error();
     fit.converged = settled.value();
@@ -340,6 +360,15 @@ Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& eff
   return fit;
 }
 
+FitResult with_weights(std::span<const FitData> data, const EffectList& effects, FitResult fit,
+                       const std::vector<double>& weights) {
+  const Stack stack = make_stack(data, effects, fit.parameters, true);
+  fit.weights = weights;
+  fit.whitened_residual = whitened(data, stack, fit.noise, fit.weights, stack.residual);
+  fit.whitened_jacobian = whitened(data, stack, fit.noise, fit.weights, stack.jacobian);
+  return fit;
+}
+
 Eigen::MatrixXd whitened_columns(std::span<const FitData> data, const EffectList& effects,
                                  const FitResult& fit, const EffectList& candidates) {
   EffectList all = effects;
@@ -347,6 +376,9 @@ Eigen::MatrixXd whitened_columns(std::span<const FitData> data, const EffectList
   Eigen::VectorXd parameters =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kBaseCount + count_parameters(all)));
   parameters.head(fit.parameters.size()) = fit.parameters;
+  const std::vector<double> starts = start_of(candidates);
+  parameters.tail(static_cast<Eigen::Index>(starts.size())) =
+      Eigen::Map<const Eigen::VectorXd>(starts.data(), static_cast<Eigen::Index>(starts.size()));
   const Stack stack = make_stack(data, effects, fit.parameters, false);
   Eigen::MatrixXd columns(stack.residual.rows(), static_cast<Eigen::Index>(count_parameters(candidates)));
   for (std::size_t d = 0; d < data.size(); ++d) {

@@ -34,6 +34,7 @@ struct FitResult {
   std::vector<NoiseModel> noise;      ///< per recording
   Eigen::VectorXd whitened_residual;  ///< 3 n, unit variance if the model is complete
   Eigen::MatrixXd whitened_jacobian;  ///< 3 n x parameters, of the prediction
+  Eigen::VectorXd prior_information;  ///< per parameter, of priors about zero; already part of the covariance
   Eigen::Vector3d rms;                ///< of the residuals of the pairs that are not outliers: m, m, rad
   double cost = 0.0;                  ///< robust -2 log likelihood up to a constant, on `noise`
   std::size_t used = 0;
@@ -48,8 +49,15 @@ struct FitResult {
 Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects,
                             const Eigen::VectorXd& start, const FitOptions& options = {});
 
+/// The same fit seen with other weights: whitened residual and Jacobian are made anew, nothing is fitted. Two
+/// models can be compared only with the same weights, since each model's own weights spare what it explains
+/// badly.
+FitResult with_weights(std::span<const FitData> data, const EffectList& effects, FitResult fit,
+                       const std::vector<double>& weights);
+
 /// Whitened derivatives of the prediction by the parameters of `candidates`, which act on top of `effects`
-/// with value zero, at the fit and with its weights: 3 n x parameters of the candidates.
+/// at their start (where they change nothing), at the fit and with its weights: 3 n x parameters of the
+/// candidates.
 Eigen::MatrixXd whitened_columns(std::span<const FitData> data, const EffectList& effects,
                                  const FitResult& fit, const EffectList& candidates);
 

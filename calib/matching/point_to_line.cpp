@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nanoflann.hpp>
 
+#include "calib/matching/joint_lines.hpp"
 #include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
@@ -14,10 +15,11 @@ constexpr std::size_t kMinPoints = 20;
 constexpr double kMinNormalAgreement = 0.8;  ///< cosine between the two scans' normals
 constexpr double kMinIncidence = 0.2;        ///< cosine; flatter beams say little and err much
 constexpr double kTukey = 4.685;             ///< 95 % efficiency at the normal distribution
-constexpr double kSurfaceFloor = 1e-3;       ///< m, unevenness of surfaces and angular error of beams
 constexpr int kCoarseIterations = 4;
+constexpr std::size_t kCoarsePoints = 180;
 constexpr int kDampedFrom = 12;
-constexpr double kSettled = 0.05;  ///< sigma, a step that no longer matters
+constexpr double kSettled = 0.5;        ///< sigma, a step small enough to leave the rest to the walls
+constexpr double kSettledAlone = 0.05;  ///< sigma, without walls to refine on
 
 /// One point of the scan against one line of the reference.
 struct Correspondence {
@@ -48,17 +50,17 @@ Eigen::Vector2d rotate(double yaw, const Eigen::Vector2d& p) {
 /// Range noise acts along the beam; across the line only its projection counts. Reference lines average their
 /// own readings, but each reading serves several lines, so over the scan the reference adds as much as the
 /// scan itself.
-double distance_variance(const SurfacePoint& point, const Eigen::Vector2d& normal, double yaw,
-                         double range_noise) {
-  const double incidence = rotate(yaw, point.beam).dot(normal);
-  return 2.0 * (range_noise * range_noise * incidence * incidence + kSurfaceFloor * kSurfaceFloor);
+double pair_variance(const SurfacePoint& point, const Eigen::Vector2d& normal, double yaw,
+                     double range_noise) {
+  return 2.0 * distance_variance(rotate(yaw, point.beam).dot(normal), range_noise);
 }
 
 std::vector<Correspondence> correspond(const MatchReference& reference, const Surface& scan, const Pose& pose,
-                                       double gate, double range_noise) {
+                                       double gate, double range_noise, std::size_t stride) {
   std::vector<Correspondence> pairs;
   pairs.reserve(scan.points.size());
-  for (const SurfacePoint& point : scan.points) {
+  for (std::size_t k = 0; k < scan.points.size(); k += stride) {
+    const SurfacePoint& point = scan.points[k];
     const Eigen::Vector2d moved = transform(pose, point.position);
     const auto [index, squared] = reference.nearest(moved);
     const SurfacePoint& partner = reference.surface().points[index];
@@ -66,7 +68,7 @@ std::vector<Correspondence> correspond(const MatchReference& reference, const Su
     if (point.has_line && rotate(pose.yaw, point.normal).dot(partner.normal) < kMinNormalAgreement) continue;
     if (rotate(pose.yaw, point.beam).dot(partner.normal) > -kMinIncidence) continue;
     pairs.push_back({point.position, partner.anchor, partner.normal,
-                     distance_variance(point, partner.normal, pose.yaw, range_noise)});
+                     pair_variance(point, partner.normal, pose.yaw, range_noise)});
   }
   return pairs;
 }
@@ -113,16 +115,49 @@ void judge_observability(const Eigen::Matrix3d& information, MatchResult& result
   result.weak_direction = eigen.eigenvectors().col(0);
 }
 
+/// Whether the reference saw the part of the wall that a moved point is next to. Points beyond the ends of
+/// what one scan saw would be pulled back there, and the motion towards zero.
+bool lies_on(const Wall& wall, const Eigen::Vector2d& moved, double gate) {
+  const Eigen::Vector2d offset = moved - wall.line.centre;
+  const double s = wall.line.direction().dot(offset);
+  return s >= wall.low && s <= wall.high && std::abs(wall.line.normal.dot(offset)) <= gate;
+}
+
+/// Both beams come from the same side of the wall, neither too flat, and the scan sees a line that is alike.
+bool faces(const Wall& wall, const SurfacePoint& partner, const SurfacePoint& point, double yaw) {
+  const double cosine = rotate(yaw, point.beam).dot(wall.line.normal);
+  if (std::abs(cosine) < kMinWallIncidence || cosine * partner.beam.dot(wall.line.normal) < 0.0) return false;
+  return !point.has_line || std::abs(rotate(yaw, point.normal).dot(wall.line.normal)) >= kMinNormalAgreement;
+}
+
+std::vector<WallPoint> points_on_walls(const MatchReference& reference, const Surface& scan, const Pose& pose,
+                                       double gate, double range_noise) {
+  std::vector<WallPoint> found;
+  const Walls& walls = reference.walls();
+  for (const SurfacePoint& point : scan.points) {
+    const Eigen::Vector2d moved = transform(pose, point.position);
+    const auto [index, squared] = reference.nearest(moved);
+    const std::size_t w = walls.of_point[index];
+    if (squared > gate * gate || w == Walls::kNone) continue;
+    const Wall& wall = walls.walls[w];
+    if (!lies_on(wall, moved, gate) || !faces(wall, reference.surface().points[index], point, pose.yaw))
+      continue;
+    const double cosine = rotate(pose.yaw, point.beam).dot(wall.line.normal);
+    found.push_back({point.position, w, distance_variance(cosine, range_noise)});
+  }
+  return found;
+}
+
 std::size_t count_lines(const Surface& surface) {
   return static_cast<std::size_t>(std::count_if(surface.points.begin(), surface.points.end(),
                                                 [](const SurfacePoint& p) { return p.has_line; }));
 }
 
+/// A few times the distance between neighbouring beams.
+double last_gate(const MatchOptions& options) { return std::max(0.10, 6.0 * options.range_noise); }
+
 double gate_at(int iteration, const MatchOptions& options) {
-  // Geometric decrease from the first gate to a few times the distance between neighbouring beams.
-  const double last = std::max(0.10, 6.0 * options.range_noise);
-  const double gate = options.max_distance * std::pow(0.6, iteration);
-  return std::max(gate, last);
+  return std::max(options.max_distance * std::pow(0.6, iteration), last_gate(options));
 }
 
 void conclude(MatchResult& result, const Linearised& system, double scale, std::size_t lines, bool converged,
@@ -162,6 +197,7 @@ std::string to_string(MatchStatus status) {
 
 struct MatchReference::Tree {
   Surface surface;
+  Walls walls;
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return surface.points.size(); }
   [[nodiscard]] double kdtree_get_pt(std::size_t point, std::size_t axis) const {
     return surface.points[point].position(static_cast<Eigen::Index>(axis));
@@ -175,8 +211,9 @@ struct MatchReference::Tree {
   std::unique_ptr<Index> kd_tree;
 };
 
-MatchReference::MatchReference(Surface surface) : tree_(std::make_unique<Tree>()) {
+MatchReference::MatchReference(Surface surface, double range_noise) : tree_(std::make_unique<Tree>()) {
   tree_->surface = std::move(surface);
+  tree_->walls = find_walls(tree_->surface, range_noise);
   tree_->kd_tree = std::make_unique<Tree::Index>(2, *tree_, nanoflann::KDTreeSingleIndexAdaptorParams(8));
   if (!tree_->surface.points.empty()) tree_->kd_tree->buildIndex();
 }
@@ -185,6 +222,7 @@ MatchReference::MatchReference(MatchReference&&) noexcept = default;
 MatchReference& MatchReference::operator=(MatchReference&&) noexcept = default;
 
 const Surface& MatchReference::surface() const { return tree_->surface; }
+const Walls& MatchReference::walls() const { return tree_->walls; }
 
 std::pair<std::size_t, double> MatchReference::nearest(const Eigen::Vector2d& position) const {
   std::size_t index = 0;
@@ -192,6 +230,72 @@ std::pair<std::size_t, double> MatchReference::nearest(const Eigen::Vector2d& po
   tree_->kd_tree->knnSearch(position.data(), 1, &index, &squared);
   return {index, squared};
 }
+
+namespace {
+
+/// State of the iteration on local lines.
+struct LocalMatch {
+  Pose motion;
+  Linearised system;
+  double scale = 1.0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Far from the solution a part of the points shows the way as well as all of them.
+std::size_t stride_at(int iteration, std::size_t points) {
+  return iteration < kCoarseIterations ? std::max<std::size_t>(1, points / kCoarsePoints) : 1;
+}
+
+/// One Gauss-Newton step; false when there is nothing to step on.
+bool iterate(const MatchReference& reference, const Surface& scan, const MatchOptions& options,
+             double settled, LocalMatch& match) {
+  const int i = match.iterations++;
+  const auto pairs = correspond(reference, scan, match.motion, gate_at(i, options), options.range_noise,
+                                stride_at(i, scan.points.size()));
+  if (pairs.size() < kMinPoints) return false;
+  match.scale = std::max(1.0, residual_scale(pairs, match.motion));
+  match.system = linearise(pairs, match.motion, match.scale);
+  const Eigen::Matrix3d& information = match.system.information;
+  const Eigen::Matrix3d damped = information + 1e-9 * information.trace() * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d step = damped.ldlt().solve(match.system.gradient);
+  if (!step.allFinite()) return false;
+  // Late, correspondences that flip to and fro are averaged.
+  const double length = i < kDampedFrom ? 1.0 : 0.5;
+  match.motion.x -= length * step(0);
+  match.motion.y -= length * step(1);
+  match.motion.yaw -= length * step(2);
+  // In units of the match's own uncertainty; smaller steps only follow correspondences that change back and
+  // forth.
+  const double largest = settled * match.scale;
+  match.converged = i >= kCoarseIterations && step.dot(information * step) < largest * largest;
+  return true;
+}
+
+/// False when too few correspondences are left.
+bool settle(const MatchReference& reference, const Surface& scan, const MatchOptions& options, double settled,
+            LocalMatch& match) {
+  match.converged = false;
+  while (match.iterations < options.max_iterations && !match.converged)
+    if (!iterate(reference, scan, options, settled, match)) return false;
+  return true;
+}
+
+/// True when the walls carry the match: then motion, information and scale are theirs.
+bool refine(const MatchReference& reference, const Surface& scan, const MatchOptions& options,
+            LocalMatch& match) {
+  const auto points = points_on_walls(reference, scan, match.motion, last_gate(options), options.range_noise);
+  const JointEstimate joint = refine_on_walls(reference.walls(), points, match.motion);
+  if (!joint.converged || joint.inliers < kMinPoints || 2 * joint.inliers < match.system.inliers)
+    return false;
+  match.motion = joint.motion;
+  match.system.information = joint.information;
+  match.scale = joint.scale;
+  match.converged = true;
+  return true;
+}
+
+}  // namespace
 
 MatchResult match_point_to_line(const MatchReference& reference, const Surface& scan, const Pose& guess,
                                 const MatchOptions& options) {
@@ -202,33 +306,15 @@ MatchResult match_point_to_line(const MatchReference& reference, const Surface& 
     result.status = MatchStatus::too_few_points;
     return result;
   }
-  Linearised system;
-  double scale = 1.0;
-  bool converged = false;
-  for (int i = 0; i < options.max_iterations && !converged; ++i) {
-    result.iterations = i + 1;
-    const auto pairs = correspond(reference, scan, result.motion, gate_at(i, options), options.range_noise);
-    if (pairs.size() < kMinPoints) {
-      result.status = MatchStatus::no_overlap;
-      return result;
-    }
-    scale = std::max(1.0, residual_scale(pairs, result.motion));
-    system = linearise(pairs, result.motion, scale);
-    const Eigen::Matrix3d damped =
-        system.information + 1e-9 * system.information.trace() * Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d step = damped.ldlt().solve(system.gradient);
-    if (!step.allFinite()) break;
-    const double length =
-        i < kDampedFrom ? 1.0 : 0.5;  // late, correspondences that flip to and fro are averaged
-    result.motion.x -= length * step(0);
-    result.motion.y -= length * step(1);
-    result.motion.yaw -= length * step(2);
-    // In units of the match's own uncertainty; smaller steps only follow correspondences that change back and
-    // forth.
-    converged =
-        i >= kCoarseIterations && step.dot(system.information * step) < kSettled * kSettled * scale * scale;
-  }
-  conclude(result, system, scale, lines, converged, options);
+  LocalMatch match;
+  match.motion = guess;
+  result.status = MatchStatus::no_overlap;
+  if (!settle(reference, scan, options, kSettled, match)) return result;
+  if (!refine(reference, scan, options, match) && !settle(reference, scan, options, kSettledAlone, match))
+    return result;
+  result.motion = match.motion;
+  result.iterations = match.iterations;
+  conclude(result, match.system, match.scale, lines, match.converged, options);
   return result;
 }
 

@@ -1,5 +1,6 @@
 // Point-to-line scan matching. A. Censi: An ICP variant using a point-to-line metric, ICRA 2008; here with
-// lines fitted to neighbourhoods instead of two points, so that the reference scan's noise is averaged.
+// lines fitted to neighbourhoods instead of two points, so that the reference scan's noise is averaged. What
+// it finds is refined on whole walls (joint_lines.hpp), wherever walls carry the match.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,6 +8,7 @@
 #include <string>
 
 #include "calib/matching/surface.hpp"
+#include "calib/matching/walls.hpp"
 
 namespace odomcalib::calib {
 
@@ -31,7 +33,7 @@ struct MatchResult {
   MatchStatus status = MatchStatus::not_converged;
   Pose motion;  ///< of the sensor, in the frame of the reference scan
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, yaw of `motion`; m^2, m rad, rad^2
-  std::size_t inliers = 0;
+  std::size_t inliers = 0;        ///< points of the scan that agree with lines of the reference
   double overlap = 0.0;           ///< share of usable points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest to largest eigenvalue of the translation information
   Eigen::Vector2d weak_direction = Eigen::Vector2d::Zero();  ///< eigenvector of the smallest one
@@ -43,11 +45,12 @@ struct MatchResult {
 /// A reference scan prepared once for several matches.
 class MatchReference {
  public:
-  explicit MatchReference(Surface surface);
+  MatchReference(Surface surface, double range_noise);
   ~MatchReference();
   MatchReference(MatchReference&&) noexcept;
   MatchReference& operator=(MatchReference&&) noexcept;
   [[nodiscard]] const Surface& surface() const;
+  [[nodiscard]] const Walls& walls() const;
   /// Index of the point next to `position`, and its squared distance.
   [[nodiscard]] std::pair<std::size_t, double> nearest(const Eigen::Vector2d& position) const;
 

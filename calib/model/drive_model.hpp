@@ -9,11 +9,10 @@
 #include "calib/estimators/wheel_motion.hpp"
 #include "calib/model/effect.hpp"
 #include "calib/model/motion_step.hpp"
+#include "calib/model/placed_effects.hpp"
 #include "calib/wheels/wheel_track.hpp"
 
 namespace odomcalib::calib {
-
-using EffectList = std::vector<std::shared_ptr<const Effect>>;
 
 /// Order of the parameter vector: the base parameters, then those of each effect.
 enum BaseIndex { kLeftRadius, kRightRadius, kTrackWidth, kMountX, kMountY, kMountYaw, kBaseCount };
@@ -41,7 +40,7 @@ class Trajectory {
   std::vector<Pose> poses_;
   std::vector<Pose> twists_;
   std::vector<double> parameters_;
-  EffectList effects_;
+  PlacedEffects effects_;
 };
 
 class DriveModel {
@@ -83,11 +82,17 @@ class DriveHistory {
     double since = 1e3;  ///< rad; the drive begins as if the last reversal lay far back
     double advance(double delta);
   };
+  void remember_stop(StepContext& context, double path);
+  void remember_turn(StepContext& context, double yaw);
+
   BaseParameters nominal_;
   Pose pose_;
   Wheel left_, right_;
   double direction_ = 0.0;
   double since_reversal_ = 1e3;
+  double stood_ = 0.0;  ///< s
+  double since_stop_ = 1e3;
+  double previous_turn_ = 0.0;
 };
 
 /// Observable variables of each tick interval, from smoothed wheel angles and nominal geometry.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/model/carrier.hpp"
 #include "calib/model/motion_step.hpp"
 
 namespace odomcalib::calib {
@@ -22,6 +23,10 @@ struct EffectParameter {
   double scale = 1.0;  ///< typical size; steps and tolerances are relative to it
   double lower = 0.0;  ///< physically plausible range
   double upper = 0.0;
+  double start = 0.0;  ///< where a fit begins; not zero for what gives the law its shape, such as a threshold
+  double prior =
+      0.0;  ///< deviation of a normal prior about zero; 0: none. What the data do not show stays small
+  bool fixed = false;  ///< a shape that is tried at several values instead of being fitted
 };
 
 /// Share of an effect's typical size below which it does not matter to odometry and is not claimed: what a
@@ -41,9 +46,14 @@ class Effect {
   /// Names that no motion can tell from this one: listed beside it whenever it is found.
   [[nodiscard]] virtual std::vector<std::string> always_alike() const { return {}; }
   [[nodiscard]] virtual std::string separating_motion() const { return {}; }
+  /// The same effect with other shapes to start from; a search tries them all and keeps the best.
+  [[nodiscard]] virtual std::vector<std::shared_ptr<const Effect>> variants() const { return {}; }
+  /// Where its signature lies. A rest that depends on these variables on these carriers is the same effect
+  /// with another law than the textbook's.
+  [[nodiscard]] virtual std::vector<Law> laws() const { return {}; }
   [[nodiscard]] virtual Storage storage() const { return Storage::host; }
 
-  /// Changes the motion of one tick interval in place. Zero parameters leave it unchanged.
+  /// Changes the motion of one tick interval in place. Parameters at their start leave it unchanged.
   virtual void apply(const StepContext& context, std::span<const double> parameters,
                      WheelStep<double>& step) const {
     (void)context, (void)parameters, (void)step;
@@ -63,5 +73,7 @@ class Effect {
     return Jet(0.0);
   }
 };
+
+using EffectList = std::vector<std::shared_ptr<const Effect>>;
 
 }  // namespace odomcalib::calib

@@ -93,10 +93,27 @@ void DriveHistory::advance(StepContext& c) {
   since_reversal_ += std::hypot(step.x, step.y);
   c.left_since_reversal = left_.advance(c.left_delta);
   c.right_since_reversal = right_.advance(c.right_delta);
+  remember_stop(c, std::hypot(step.x, step.y));
+  remember_turn(c, step.yaw);
   c.heading = pose_.yaw + step.yaw / 2.0;
   c.x = pose_.x;
   c.y = pose_.y;
   pose_ = compose(pose_, step);
+}
+
+void DriveHistory::remember_stop(StepContext& c, double path) {
+  constexpr double kStop = 0.1;  // s without a tick
+  const bool standing = c.left_delta == 0.0 && c.right_delta == 0.0;
+  stood_ = standing ? stood_ + c.dt : 0.0;
+  if (stood_ > kStop) since_stop_ = 0.0;
+  c.since_stop = since_stop_;
+  since_stop_ += path;
+}
+
+void DriveHistory::remember_turn(StepContext& c, double yaw) {
+  c.previous_turn = previous_turn_;
+  const double forgetting = -std::expm1(-std::abs(yaw));
+  previous_turn_ += forgetting * (std::copysign(1.0, yaw) - previous_turn_);
 }
 
 std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& nominal) {

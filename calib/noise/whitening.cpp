@@ -25,6 +25,14 @@ Eigen::Matrix3d jitter_covariance(const Eigen::Vector3d& velocity, const NoiseMo
   return noise.stamp_jitter * noise.stamp_jitter * velocity * velocity.transpose();
 }
 
+/// @param root, previous_root symmetric roots of the base covariances of a pair and of the one before it
+Eigen::Matrix3d shared_covariance(const Eigen::Matrix3d& root, const Eigen::Matrix3d& previous_root,
+                                  const PairState& state, const NoiseModel& noise) {
+  const Eigen::Vector3d correlation(noise.correlation[0], noise.correlation[1], noise.correlation[2]);
+  return root * correlation.asDiagonal() * previous_root.transpose() -
+         jitter_covariance(state.begin_velocity, noise);
+}
+
 }  // namespace
 
 Eigen::Matrix3d base_covariance(const SensorPair& pair, const PairState& state, const NoiseModel& noise) {
@@ -43,13 +51,20 @@ Eigen::Matrix3d full_covariance(const SensorPair& pair, const PairState& state, 
          jitter_covariance(state.end_velocity, noise);
 }
 
+Eigen::Matrix3d neighbour_covariance(const SensorPair& previous, const PairState& previous_state,
+                                     const SensorPair& pair, const PairState& state,
+                                     const NoiseModel& noise) {
+  if (!pair.follows_previous) return Eigen::Matrix3d::Zero();
+  return shared_covariance(symmetric_root(base_covariance(pair, state, noise)),
+                           symmetric_root(base_covariance(previous, previous_state, noise)), state, noise);
+}
+
 Eigen::Vector3d to_room(const Eigen::Vector3d& residual, const PairState& state) {
   return rotation_about_z(state.heading) * residual;
 }
 
 Whitener::Whitener(std::span<const SensorPair> pairs, std::span<const PairState> states,
                    const NoiseModel& noise, std::span<const double> weights) {
-  const Eigen::Vector3d correlation(noise.correlation[0], noise.correlation[1], noise.correlation[2]);
   Eigen::Matrix3d previous_root = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     turn_.push_back(std::sqrt(weights[k]) * rotation_about_z(states[k].heading));
@@ -57,9 +72,7 @@ Whitener::Whitener(std::span<const SensorPair> pairs, std::span<const PairState>
     Eigen::Matrix3d diagonal = full_covariance(pairs[k], states[k], noise);
     Eigen::Matrix3d link = Eigen::Matrix3d::Zero();
     if (k > 0 && pairs[k].follows_previous) {
-      const Eigen::Matrix3d shared = root * correlation.asDiagonal() * previous_root.transpose() -
-                                     jitter_covariance(states[k].begin_velocity, noise);
-      link = shared * inverse_.back().transpose();
+      link = shared_covariance(root, previous_root, states[k], noise) * inverse_.back().transpose();
       diagonal -= link * link.transpose();
     }
     const Eigen::Matrix3d lower = diagonal.llt().matrixL();

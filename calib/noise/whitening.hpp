@@ -32,6 +32,11 @@ struct PairState {
 Eigen::Matrix3d base_covariance(const SensorPair& pair, const PairState& state, const NoiseModel& noise);
 Eigen::Matrix3d full_covariance(const SensorPair& pair, const PairState& state, const NoiseModel& noise);
 
+/// Covariance of a pair's error (rows) with that of the pair before it, in room axes; zero unless they share
+/// a scan.
+Eigen::Matrix3d neighbour_covariance(const SensorPair& previous, const PairState& previous_state,
+                                     const SensorPair& pair, const PairState& state, const NoiseModel& noise);
+
 /// Residual of a pair turned into room axes.
 Eigen::Vector3d to_room(const Eigen::Vector3d& residual, const PairState& state);
 

@@ -114,12 +114,12 @@ class ScanChain {
     odometry_ = poses_at(trajectory_, times_);
     const auto keyframes = choose_keyframes(times_, odometry_, options_);
     if (keyframes.empty()) return;
-    auto reference = std::make_unique<MatchReference>(surface(keyframes[0]));
+    auto reference = std::make_unique<MatchReference>(surface(keyframes[0]), set_.range_noise);
     bool linked = false;
     for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) {
       Surface next = surface(keyframes[k + 1]);
       linked = add_pair(*reference, next, keyframes[k], keyframes[k + 1], linked);
-      reference = std::make_unique<MatchReference>(std::move(next));
+      reference = std::make_unique<MatchReference>(std::move(next), set_.range_noise);
     }
   }
 

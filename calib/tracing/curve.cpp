@@ -4,92 +4,97 @@
 #include <array>
 #include <cmath>
 
+#include "calib/effects/step_effect.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
 constexpr std::size_t kDegrees = 4;
-constexpr std::size_t kHarmonics = 3;
-constexpr double kMoving = 0.01;  ///< m/s of either wheel; standing still shows nothing
+constexpr int kHarmonics = 3;
+constexpr int kHighestHarmonic = 8;                     ///< poles of encoder magnets, lugs, spokes
+constexpr double kMoving = 0.01;                        ///< m/s of either wheel; standing still shows nothing
+constexpr std::array kFadeLengths = {0.02, 0.07, 0.2};  ///< m of the base
+constexpr std::array kFadeAngles = {0.1, 0.5, 2.0};     ///< rad of a wheel
 
-constexpr std::array kVariables = {Variable::left_speed,
-                                   Variable::right_speed,
-                                   Variable::speed,
-                                   Variable::turn_rate,
-                                   Variable::lateral_acceleration,
-                                   Variable::left_acceleration,
-                                   Variable::right_acceleration,
-                                   Variable::left_phase,
-                                   Variable::right_phase,
-                                   Variable::time,
-                                   Variable::heading,
-                                   Variable::since_reversal};
-constexpr std::array kCarriers = {Carrier::left_travel, Carrier::right_travel, Carrier::both_travel,
-                                  Carrier::track, Carrier::sideways};
+using Carriers = std::vector<Carrier>;
 
 /// A wheel's own variables act on that wheel; a pair that no mechanism links only adds false alarms.
-bool sensible(Variable variable, Carrier carrier) {
+Carriers carriers_of(Variable variable) {
+  using enum Carrier;
   switch (variable) {
     case Variable::left_speed:
-    case Variable::left_acceleration:
     case Variable::left_phase:
-      return carrier == Carrier::left_travel;
+    case Variable::left_since_reversal:
+      return {left_travel};
     case Variable::right_speed:
-    case Variable::right_acceleration:
     case Variable::right_phase:
-      return carrier == Carrier::right_travel;
+    case Variable::right_since_reversal:
+      return {right_travel};
+    case Variable::left_acceleration:
+      return {left_travel, left_path};
+    case Variable::right_acceleration:
+      return {right_travel, right_path};
+    case Variable::speed:
+      return {both_travel, track, sideways};
+    case Variable::turn_rate:
+      return {both_travel, left_travel, right_travel, track, sideways, turn_path};
     case Variable::lateral_acceleration:
-      return carrier == Carrier::sideways || carrier == Carrier::track;
-    default:
-      return true;
+      return {sideways, sideways_path, track};
+    case Variable::time:
+      return {both_travel, left_travel, right_travel, track, sideways};
+    case Variable::heading:
+    case Variable::position:
+      return {both_travel, left_travel, right_travel, both_path, sideways_path, yaw_path};
+    case Variable::since_reversal:
+    case Variable::since_stop:
+    case Variable::previous_turn:
+      return {both_travel, left_travel, right_travel, track, sideways_path, yaw_path};
   }
+  return {};
 }
 
-class CurveEffect final : public Effect {
+class CurveEffect final : public StepEffect<CurveEffect> {
  public:
   explicit CurveEffect(const Curve& curve) : curve_(curve) {}
   [[nodiscard]] std::string name() const override {
-    return "curve of " + to_string(curve_.variable) + " on " + to_string(curve_.carrier);
+    return "curve of " + to_string(curve_.law.variable) + " on " + to_string(curve_.law.carrier);
   }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
     std::vector<EffectParameter> list;
-    for (std::size_t k = 0; k < basis(curve_, curve_.low).size(); ++k) {
+    for (std::size_t k = 0; k < basis_size(curve_); ++k) {
       std::string name(1, 'c');
-      list.push_back({name.append(std::to_string(k + 1)), "1", 5e-3, -0.5, 0.5});
+      list.push_back({name.append(std::to_string(k + 1)), "1", typical_size(), -largest_size(),
+                      largest_size(), 0.0, prior()});
     }
     return list;
   }
-  void apply(const StepContext& c, std::span<const double> p, WheelStep<double>& step) const override {
-    act(c, p, step);
+  [[nodiscard]] Storage storage() const override {
+    return belongs_to_the_place(curve_.law.variable) ? Storage::nowhere : Storage::host;
   }
-  void apply(const StepContext& c, std::span<const Jet> p, WheelStep<Jet>& step) const override {
-    act(c, p, step);
+
+  template <typename T>
+  void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) const {
+    const std::vector<double> functions = basis(curve_, c);
+    T f(0.0);
+    for (std::size_t k = 0; k < functions.size(); ++k) f += p[k] * functions[k];
+    carry(curve_.law.carrier, c, f, step);
   }
 
  private:
-  template <typename T>
-  void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) const {
-    const std::vector<double> functions = basis(curve_, value_of(curve_.variable, c));
-    T f(0.0);
-    for (std::size_t k = 0; k < functions.size(); ++k) f += p[k] * functions[k];
-    switch (curve_.carrier) {
-      case Carrier::left_travel:
-        step.left *= 1.0 + f;
-        break;
-      case Carrier::right_travel:
-        step.right *= 1.0 + f;
-        break;
-      case Carrier::both_travel:
-        step.left *= 1.0 + f;
-        step.right *= 1.0 + f;
-        break;
-      case Carrier::track:
-        step.track *= 1.0 + f;
-        break;
-      case Carrier::sideways:
-        step.side += f * (c.speed * c.dt);
-        break;
-    }
+  /// Relative; rad per m; m per rad.
+  [[nodiscard]] double typical_size() const {
+    if (curve_.law.carrier == Carrier::yaw_path) return 0.02;
+    return curve_.law.carrier == Carrier::turn_path ? 1e-3 : 5e-3;
   }
+  /// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
+  /// bad.
+  [[nodiscard]] double largest_size() const {
+    return typical_size() * (is_distance_since(curve_.law.variable) ? 100.0 : 10.0);
+  }
+  /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a curve must
+  /// do no harm in other drives.
+  [[nodiscard]] double prior() const { return 4.0 * typical_size(); }
+
   Curve curve_;
 };
 
@@ -97,10 +102,12 @@ class CurveEffect final : public Effect {
 std::pair<double, double> range_of(Variable variable, std::span<const DriveModel* const> models) {
   std::vector<double> values;
   for (const DriveModel* model : models)
-    for (const StepContext& c : model->context())
-      if (std::max(std::abs(c.left_speed), std::abs(c.right_speed)) > kMoving)
-        values.push_back(value_of(variable, c));
-  if (values.size() < 200) return {0.0, 0.0};
+    for (const StepContext& c : model->context()) {
+      if (std::abs(c.left_speed) <= kMoving && std::abs(c.right_speed) <= kMoving) continue;
+      values.push_back(value_of(variable, c));
+      if (variable == Variable::position) values.push_back(c.y);
+    }
+  if (values.size() < 10) return {0.0, 0.0};
   const auto at = [&](double share) {
     const auto nth =
         values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -111,91 +118,106 @@ std::pair<double, double> range_of(Variable variable, std::span<const DriveModel
   return {low, at(0.995)};
 }
 
-std::vector<double> raw_basis(const Curve& curve, double z) {
+double scaled(const Curve& curve, double z) {
+  return std::clamp(2.0 * (z - curve.low) / (curve.high - curve.low) - 1.0, -1.0, 1.0);
+}
+
+std::vector<double> harmonics(double angle, int first, int last) {
   std::vector<double> functions;
-  if (is_angle(curve.variable)) {
-    for (std::size_t k = 1; k <= kHarmonics; ++k) {
-      functions.push_back(std::cos(static_cast<double>(k) * z));
-      functions.push_back(std::sin(static_cast<double>(k) * z));
-    }
-    return functions;
+  for (int k = first; k <= last; ++k) {
+    functions.push_back(std::cos(k * angle));
+    functions.push_back(std::sin(k * angle));
   }
-  const double x = std::clamp(2.0 * (z - curve.low) / (curve.high - curve.low) - 1.0, -1.0, 1.0);
+  return functions;
+}
+
+bool is_signed_speed(Variable variable) {
+  return variable == Variable::left_speed || variable == Variable::right_speed ||
+         variable == Variable::speed || variable == Variable::turn_rate;
+}
+
+/// Direction as a step, smooth over a few percent of the range so that noise about zero does not flip it.
+double direction_of(double relative) { return std::tanh(relative / 0.03); }
+
+/// Zero at rest; hats about four magnitudes, the direction, and the direction times the magnitude.
+std::vector<double> speed_functions(const Curve& curve, double z) {
+  constexpr int kKnots = 4;
+  const double relative = std::clamp(z / std::max(std::abs(curve.low), std::abs(curve.high)), -1.0, 1.0);
+  const double direction = direction_of(relative), magnitude = std::abs(relative);
+  if (curve.law.carrier == Carrier::turn_path) return {1.0, magnitude, direction, relative};
+  std::vector<double> functions;
+  for (int k = 1; k <= kKnots; ++k)
+    functions.push_back(std::max(0.0, 1.0 - std::abs(kKnots * magnitude - k)));
+  functions.push_back(direction);
+  functions.push_back(relative);
+  return functions;
+}
+
+std::vector<double> fading(Variable variable, double distance) {
+  const bool of_wheel = variable != Variable::since_reversal && variable != Variable::since_stop;
+  std::vector<double> functions;
+  for (const double length : of_wheel ? kFadeAngles : kFadeLengths)
+    functions.push_back(std::exp(-distance / length));
+  return functions;
+}
+
+/// Legendre polynomials of degree 1 to kDegrees by Bonnet's recursion.
+std::vector<double> legendre(double x) {
+  std::vector<double> functions;
   double before = 1.0;
   double here = x;
   for (std::size_t n = 1; n <= kDegrees; ++n) {
     functions.push_back(here);
     const double order = static_cast<double>(n);
-    const double next =
-        ((2.0 * order + 1.0) * x * here - order * before) / (order + 1.0);  // Bonnet's recursion
+    const double next = ((2.0 * order + 1.0) * x * here - order * before) / (order + 1.0);
     before = here;
     here = next;
   }
   return functions;
 }
 
-}  // namespace
-
-std::string to_string(Variable variable) {
-  static constexpr const char* kNames[] = {
-      "left_speed",        "right_speed",        "speed",      "turn_rate",   "lateral_acceleration",
-      "left_acceleration", "right_acceleration", "left_phase", "right_phase", "time",
-      "heading",           "since_reversal"};
-  return kNames[static_cast<std::size_t>(variable)];
-}
-
-std::string to_string(Carrier carrier) {
-  static constexpr const char* kNames[] = {"left_travel", "right_travel", "both_travel", "track", "sideways"};
-  return kNames[static_cast<std::size_t>(carrier)];
-}
-
-bool belongs_to_the_place(Variable variable) {
-  return variable == Variable::time || variable == Variable::heading;
-}
-
-bool is_angle(Variable variable) {
-  return variable == Variable::left_phase || variable == Variable::right_phase ||
-         variable == Variable::heading;
-}
-
-double value_of(Variable variable, const StepContext& c) {
-  switch (variable) {
-    case Variable::left_speed:
-      return c.left_speed;
-    case Variable::right_speed:
-      return c.right_speed;
-    case Variable::speed:
-      return c.speed;
-    case Variable::turn_rate:
-      return c.turn_rate;
-    case Variable::lateral_acceleration:
-      return c.speed * c.turn_rate;
-    case Variable::left_acceleration:
-      return c.left_acceleration;
-    case Variable::right_acceleration:
-      return c.right_acceleration;
-    case Variable::left_phase:
-      return c.left_angle;
-    case Variable::right_phase:
-      return c.right_angle;
-    case Variable::time:
-      return c.t;
-    case Variable::heading:
-      return c.heading;
-    case Variable::since_reversal:
-      return std::min(c.since_reversal, 0.5);
-  }
-  return 0.0;
-}
-
-std::vector<double> basis(const Curve& curve, double z) {
-  std::vector<double> functions = raw_basis(curve, z);
-  if (is_angle(curve.variable) || curve.variable == Variable::time) return functions;
-  // Zero at rest: the base parameters keep their meaning of slow, steady motion.
-  const std::vector<double> at_rest = raw_basis(curve, 0.0);
+/// Zero at rest, so that the base parameters keep their meaning of slow, steady motion.
+std::vector<double> zero_at_rest(const Curve& curve, double z) {
+  std::vector<double> functions = legendre(scaled(curve, z));
+  const std::vector<double> at_rest = legendre(scaled(curve, 0.0));
   for (std::size_t k = 0; k < functions.size(); ++k) functions[k] -= at_rest[k];
   return functions;
 }
+
+/// Periods closer than this many cycles per recording look alike.
+void add_periods(double duration, std::vector<Curve>& curves) {
+  constexpr double kShortest = 8.0;  // s
+  constexpr double kFewestCycles = 1.5;
+  constexpr double kStep = 0.7;  // cycles
+  for (double cycles = kFewestCycles; duration / cycles > kShortest; cycles += kStep)
+    curves.push_back({{Variable::time, Carrier::both_travel}, 0.0, duration, duration / cycles, 0});
+}
+
+void add_harmonics(const Curve& curve, std::vector<Curve>& curves) {
+  for (int harmonic = kHarmonics + 1; harmonic <= kHighestHarmonic; ++harmonic) {
+    curves.push_back(curve);
+    curves.back().harmonic = harmonic;
+  }
+}
+
+}  // namespace
+
+std::vector<double> basis(const Curve& curve, const StepContext& c) {
+  const Variable variable = curve.law.variable;
+  const double z = value_of(variable, c);
+  if (is_angle(variable))
+    return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
+  if (is_distance_since(variable)) return fading(variable, z);
+  if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);
+  if (variable == Variable::time) return legendre(scaled(curve, z));
+  if (variable == Variable::position) {
+    const double x = scaled(curve, c.x), y = scaled(curve, c.y);
+    return {x, y, x * x, x * y, y * y};
+  }
+  return is_signed_speed(variable) ? speed_functions(curve, z) : zero_at_rest(curve, z);
+}
+
+std::size_t basis_size(const Curve& curve) { return basis(curve, StepContext{}).size(); }
 
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve) {
   return std::make_shared<CurveEffect>(curve);
@@ -203,11 +225,17 @@ std::shared_ptr<const Effect> make_curve_effect(const Curve& curve) {
 
 std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
   std::vector<Curve> curves;
-  for (const Variable variable : kVariables) {
+  for (int v = 0; v <= static_cast<int>(kLastVariable); ++v) {
+    const auto variable = static_cast<Variable>(v);
+    if (models.size() > 1 && begins_with_the_recording(variable)) continue;
     const auto [low, high] = range_of(variable, models);
     if (!(high - low > 1e-6)) continue;
-    for (const Carrier carrier : kCarriers)
-      if (sensible(variable, carrier)) curves.push_back({variable, carrier, low, high});
+    for (const Carrier carrier : carriers_of(variable)) {
+      const Curve curve{{variable, carrier}, low, high, 0.0, 0};
+      curves.push_back(curve);
+      if (variable == Variable::left_phase || variable == Variable::right_phase) add_harmonics(curve, curves);
+    }
+    if (variable == Variable::time) add_periods(high - low, curves);
   }
   return curves;
 }

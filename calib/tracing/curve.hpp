@@ -5,50 +5,36 @@
 #include <string>
 #include <vector>
 
+#include "calib/model/carrier.hpp"
 #include "calib/model/drive_model.hpp"
 
 namespace odomcalib::calib {
 
-/// What a defect may depend on.
-enum class Variable {
-  left_speed,
-  right_speed,
-  speed,
-  turn_rate,
-  lateral_acceleration,
-  left_acceleration,
-  right_acceleration,
-  left_phase,
-  right_phase,
-  time,
-  heading,
-  since_reversal,
-};
-std::string to_string(Variable variable);
-/// Dependence on time or heading is a property of the day or of the place, not of the robot.
-bool belongs_to_the_place(Variable variable);
-
-/// How the defect enters: relative travel of a wheel, of both wheels, or sideways motion per metre.
-enum class Carrier { left_travel, right_travel, both_travel, track, sideways };
-std::string to_string(Carrier carrier);
-
-/// f(z) = sum of coefficients times basis functions: Legendre polynomials of degree 1 to 4 on [low, high]
-/// (the constant is a base parameter's), clamped outside; harmonics 1 to 3 for angles.
+/// f(z) = sum of coefficients times basis functions of the variable z:
+/// - angles: harmonics 1 to 3, or one higher harmonic;
+/// - distances since an event: exponentials that fade over three lengths;
+/// - time with a period: one cosine and one sine;
+/// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both;
+/// - speeds and turn rate: piecewise linear in the magnitude (four knots), a step with the direction, and the
+///   magnitude times the direction;
+/// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
+/// A constant is a base parameter's, except on the turn path, where it is the first function.
 struct Curve {
-  Variable variable = Variable::speed;
-  Carrier carrier = Carrier::both_travel;
+  Law law;
   double low = -1.0;
   double high = 1.0;
+  double period = 0.0;  ///< s, of time only; 0: none
+  int harmonic = 0;     ///< of angles only: this one alone; 0: the first three
 };
 
-double value_of(Variable variable, const StepContext& context);
-bool is_angle(Variable variable);
-std::vector<double> basis(const Curve& curve, double z);
+std::vector<double> basis(const Curve& curve, const StepContext& context);
+std::size_t basis_size(const Curve& curve);
 
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve);
 
-/// Curves worth trying on this data: every (variable, carrier) whose variable varies, on its 0.5 to 99.5 %
-/// range.
+/// Curves worth trying on this data: every sensible (variable, carrier) whose variable varies, on its 0.5 to
+/// 99.5 % range, higher harmonics of the wheels, and
+/// periods of time between 8 s and two thirds of the recording.
 std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models);
 
 }  // namespace odomcalib::calib

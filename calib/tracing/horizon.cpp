@@ -6,58 +6,16 @@
 #include <map>
 #include <random>
 
+#include "calib/validation/folds.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
-constexpr std::size_t kFolds = 5;
-constexpr double kFoldBlockSeconds = 20.0;
 constexpr double kBootstrapBlockSeconds = 30.0;
 constexpr std::size_t kMinWindows = 10;
 constexpr int kDraws = 1000;
 constexpr unsigned kSeed = 19960612;
 constexpr double kHeadingLever = 0.5;  ///< m
-
-/// Fold of each pair, blocks dealt out in turn.
-std::vector<std::size_t> folds_of(std::span<const FitData> data) {
-  std::vector<std::size_t> folds;
-  std::size_t block = 0;
-  for (const FitData& d : data) {
-    double begin = -1e300;
-    for (const SensorPair& pair : d.pairs) {
-      if (pair.interval.begin > begin + kFoldBlockSeconds) {
-        begin = pair.interval.begin;
-        ++block;
-      }
-      folds.push_back(block % kFolds);
-    }
-  }
-  return folds;
-}
-
-/// Parameters without the fold: one Gauss-Newton step on the remaining whitened rows.
-Eigen::VectorXd without_fold(const FitResult& fit, const std::vector<std::size_t>& folds, std::size_t fold,
-                             const std::vector<bool>& fixed) {
-  const Eigen::Index p = fit.parameters.size();
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
-  for (std::size_t k = 0; k < folds.size(); ++k) {
-    if (folds[k] == fold) continue;
-    const auto rows = fit.whitened_jacobian.middleRows<3>(static_cast<Eigen::Index>(3 * k));
-    normal.noalias() += rows.transpose() * rows;
-    gradient.noalias() +=
-        rows.transpose() * fit.whitened_residual.segment<3>(static_cast<Eigen::Index>(3 * k));
-  }
-  for (Eigen::Index k = 0; k < p; ++k) {
-    if (!fixed[static_cast<std::size_t>(k)]) continue;
-    normal.row(k).setZero();
-    normal.col(k).setZero();
-    normal(k, k) = 1.0;
-    gradient(k) = 0.0;
-  }
-  const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  return fit.parameters + scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * gradient);
-}
 
 struct Window {
   Interval interval;
@@ -66,8 +24,7 @@ struct Window {
 
 /// Windows of unbroken, well-matched pairs inside one fold, half overlapping.
 std::vector<Window> windows_of(const FitData& data, std::size_t first, const std::vector<std::size_t>& folds,
-                               const FitResult& fit, std::size_t fold) {
-  constexpr double kTrustedWeight = 0.3;  // a pair far out on the tail may be a failed match
+                               const std::vector<bool>& trusted, std::size_t fold) {
   std::vector<Window> windows;
   for (std::size_t begin = 0; begin < data.pairs.size();) {
     Pose chained;
@@ -75,7 +32,7 @@ std::vector<Window> windows_of(const FitData& data, std::size_t first, const std
     std::size_t half = begin + 1;
     for (; k < data.pairs.size(); ++k) {
       const bool joined = k == begin || data.pairs[k].follows_previous;
-      if (!joined || folds[first + k] != fold || fit.weights[first + k] < kTrustedWeight) break;
+      if (!joined || folds[first + k] != fold || !trusted[first + k]) break;
       chained = compose(chained, data.pairs[k].motion);
       const double elapsed = data.pairs[k].interval.end - data.pairs[begin].interval.begin;
       if (elapsed < kHorizonSeconds / 2.0) half = k + 1;
@@ -106,15 +63,24 @@ double combined_square(const HorizonError& e, std::size_t k) {
 double HorizonError::rms_position() const { return rms(position); }
 double HorizonError::rms_heading() const { return rms(heading); }
 
+std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b) {
+  constexpr double kTrustedWeight = 0.3;
+  std::vector<bool> trusted;
+  for (std::size_t k = 0; k < std::min(a.weights.size(), b.weights.size()); ++k)
+    trusted.push_back(std::max(a.weights[k], b.weights[k]) >= kTrustedWeight);
+  return trusted;
+}
+
 std::optional<HorizonError> horizon_error(std::span<const FitData> data, const EffectList& effects,
-                                          const FitResult& fit, const std::vector<bool>& fixed) {
+                                          const FitResult& fit, const std::vector<bool>& fixed,
+                                          const std::vector<bool>& trusted) {
   const auto folds = folds_of(data);
   HorizonError error;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const Eigen::VectorXd parameters = without_fold(fit, folds, fold, fixed);
     std::size_t first = 0;
     for (std::size_t d = 0; d < data.size(); ++d) {
-      const auto windows = windows_of(data[d], first, folds, fit, fold);
+      const auto windows = windows_of(data[d], first, folds, trusted, fold);
       first += data[d].pairs.size();
       std::vector<Interval> intervals;
       for (const Window& w : windows) intervals.push_back(w.interval);
@@ -124,6 +90,7 @@ std::optional<HorizonError> horizon_error(std::span<const FitData> data, const E
         error.position.push_back(
             std::hypot(predicted[k].x - windows[k].measured.x, predicted[k].y - windows[k].measured.y));
         error.heading.push_back(wrap_angle(predicted[k].yaw - windows[k].measured.yaw));
+        error.fold.push_back(fold);
         error.block.push_back(1000 * d +
                               static_cast<std::size_t>(std::max(
                                   0.0, (windows[k].interval.begin - data[d].pairs.front().interval.begin) /
@@ -133,6 +100,18 @@ std::optional<HorizonError> horizon_error(std::span<const FitData> data, const E
   }
   if (error.position.size() < kMinWindows) return std::nullopt;
   return error;
+}
+
+HorizonError where_selected(const HorizonError& before, const HorizonError& after,
+                            const FoldFlags& selected) {
+  HorizonError mixed = before;
+  const std::size_t count = std::min(before.position.size(), after.position.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!selected[before.fold[k]]) continue;
+    mixed.position[k] = after.position[k];
+    mixed.heading[k] = after.heading[k];
+  }
+  return mixed;
 }
 
 Improvement compare(const HorizonError& before, const HorizonError& after) {
@@ -168,12 +147,13 @@ Improvement compare(const HorizonError& before, const HorizonError& after) {
 
 HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before,
                           const std::vector<bool>& fixed_before, const FitResult& after,
-                          const std::vector<bool>& fixed_after) {
+                          const std::vector<bool>& fixed_after, const FoldFlags& selected) {
   constexpr double kClipSquared = 3.5 * 3.5;
   const auto folds = folds_of(data);
   std::vector<double> gains(folds.size(), 0.0);
   const auto add = [&](const FitResult& fit, const std::vector<bool>& fixed, double sign) {
     for (std::size_t fold = 0; fold < kFolds; ++fold) {
+      if (!selected[fold]) continue;
       const Eigen::VectorXd change = without_fold(fit, folds, fold, fixed) - fit.parameters;
       for (std::size_t k = 0; k < folds.size(); ++k) {
         if (folds[k] != fold) continue;

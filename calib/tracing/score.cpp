@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <map>
 #include <random>
 
 namespace odomcalib::calib {
@@ -15,22 +17,30 @@ constexpr double kClip = 3.5;    ///< sigma; one bad match must not decide
 constexpr double kGauge = 1e-6;  ///< share of a signature that counts as fully absorbed
 constexpr double kRidge = 1e-9;
 
-/// First whitened row of each block of kBlockSeconds, and the end.
-std::vector<Eigen::Index> block_borders(std::span<const FitData> data) {
+struct Blocks {
   std::vector<Eigen::Index> borders;
-  Eigen::Index row = 0;
+  std::vector<std::size_t> folds;
+};
+
+/// Blocks of kBlockSeconds, none across a recording or a fold.
+Blocks blocks_of(std::span<const FitData> data) {
+  const std::vector<std::size_t> folds = folds_of(data);
+  Blocks blocks;
+  std::size_t k = 0;
   for (const FitData& d : data) {
     double begin = -1e300;
     for (const SensorPair& pair : d.pairs) {
-      if (pair.interval.begin > begin + kBlockSeconds) {
-        borders.push_back(row);
+      const bool other_fold = !blocks.folds.empty() && blocks.folds.back() != folds[k];
+      if (pair.interval.begin > begin + kBlockSeconds || other_fold) {
+        blocks.borders.push_back(static_cast<Eigen::Index>(3 * k));
+        blocks.folds.push_back(folds[k]);
         begin = pair.interval.begin;
       }
-      row += 3;
+      ++k;
     }
   }
-  borders.push_back(row);
-  return borders;
+  blocks.borders.push_back(static_cast<Eigen::Index>(3 * k));
+  return blocks;
 }
 
 /// Columns of each candidate, made for as many at a time as one sweep of automatic derivatives carries.
@@ -83,6 +93,8 @@ double significance(double statistic, Eigen::Index degrees) {
   return -std::log10(std::max(chi_squared_tail(statistic, static_cast<std::size_t>(degrees)), 1e-300));
 }
 
+/// The largest significance over all candidates of each draw of signs. Candidates of equal degrees are
+/// compared by their statistic, which spares most of the tail probabilities.
 std::vector<double> largest_of_draws(const std::vector<Eigen::MatrixXd>& scores, double variance) {
   std::mt19937 engine(kSeed);
   std::vector<double> largest;
@@ -91,97 +103,102 @@ std::vector<double> largest_of_draws(const std::vector<Eigen::MatrixXd>& scores,
   Eigen::VectorXd signs(blocks);
   for (int draw = 0; draw < kDraws; ++draw) {
     for (Eigen::Index b = 0; b < blocks; ++b) signs(b) = (engine() & 1U) != 0U ? 1.0 : -1.0;
+    std::map<Eigen::Index, double> best_of_degrees;
+    for (const Eigen::MatrixXd& s : scores) {
+      double& best = best_of_degrees[s.rows()];
+      best = std::max(best, (s * signs).squaredNorm() / variance);
+    }
     double best = 0.0;
-    for (const Eigen::MatrixXd& s : scores)
-      if (s.rows() > 0) best = std::max(best, significance((s * signs).squaredNorm() / variance, s.rows()));
+    for (const auto& [degrees, statistic] : best_of_degrees)
+      if (degrees > 0) best = std::max(best, significance(statistic, degrees));
     largest.push_back(best);
   }
   std::sort(largest.begin(), largest.end());
   return largest;
 }
 
-/// Regularised lower incomplete gamma by series, upper by continued fraction (Abramowitz and
-/// Stegun 6.5.29, 6.5.31).
-double upper_gamma(double a, double x) {
-  if (x <= 0.0) return 1.0;
-  const double front = std::exp(-x + a * std::log(x) - std::lgamma(a));
-  if (x < a + 1.0) {
-    double term = 1.0 / a;
-    double sum = term;
-    for (int n = 1; n < 500 && term > sum * 1e-16; ++n) sum += term *= x / (a + n);
-    return 1.0 - front * sum;
+/// The fit's own columns, normalised; projecting on what they leave is one solve per candidate.
+class Projection {
+ public:
+  Projection(const FitResult& fit, const std::vector<bool>& fixed) : fitted_(fit.whitened_jacobian) {
+    for (Eigen::Index k = 0; k < fitted_.cols(); ++k) {
+      if (fixed[static_cast<std::size_t>(k)]) fitted_.col(k).setZero();
+      const double norm = fitted_.col(k).norm();
+      if (norm > 0.0) fitted_.col(k) /= norm;
+    }
+    ldlt_.compute(fitted_.transpose() * fitted_ +
+                  kRidge * Eigen::MatrixXd::Identity(fitted_.cols(), fitted_.cols()));
   }
-  double b = x + 1.0 - a;
-  double c = 1e300;
-  double d = 1.0 / b;
-  double h = d;
-  for (int n = 1; n < 500; ++n) {
-    const double an = -n * (n - a);
-    b += 2.0;
-    d = 1.0 / (an * d + b);
-    c = b + an / c;
-    const double delta = d * c;
-    h *= delta;
-    if (std::abs(delta - 1.0) < 1e-15) break;
+  [[nodiscard]] Eigen::MatrixXd rest(const Eigen::MatrixXd& columns) const {
+    return columns - fitted_ * ldlt_.solve(fitted_.transpose() * columns);
   }
-  return front * h;
-}
+
+ private:
+  Eigen::MatrixXd fitted_;
+  Eigen::LDLT<Eigen::MatrixXd> ldlt_;
+};
 
 }  // namespace
 
 double chi_squared_tail(double statistic, std::size_t degrees) {
-  if (degrees == 0) return 1.0;
-  return upper_gamma(static_cast<double>(degrees) / 2.0, statistic / 2.0);
+  if (degrees == 0 || !(statistic > 0.0)) return 1.0;
+  return boost::math::gamma_q(static_cast<double>(degrees) / 2.0, std::min(statistic, 1e6) / 2.0);
 }
 
-ScoreTable score_candidates(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,
-                            const std::vector<bool>& fixed, const EffectList& candidates) {
-  ScoreTable table;
-  Eigen::MatrixXd fitted = fit.whitened_jacobian;
-  for (Eigen::Index k = 0; k < fitted.cols(); ++k) {
-    if (fixed[static_cast<std::size_t>(k)]) fitted.col(k).setZero();
-    const double norm = fitted.col(k).norm();
-    if (norm > 0.0) fitted.col(k) /= norm;
-  }
-  const Eigen::MatrixXd normal =
-      fitted.transpose() * fitted + kRidge * Eigen::MatrixXd::Identity(fitted.cols(), fitted.cols());
-  const Eigen::LDLT<Eigen::MatrixXd> ldlt(normal);
-  const Eigen::VectorXd residual = fit.whitened_residual.cwiseMax(-kClip).cwiseMin(kClip);
-  const double variance = residual.squaredNorm() / std::max(static_cast<double>(residual.size()), 1.0);
-  const auto borders = block_borders(data);
+ScoreTable::ScoreTable(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,
+                       const std::vector<bool>& fixed, const EffectList& candidates)
+    : residual_(fit.whitened_residual.cwiseMax(-kClip).cwiseMin(kClip)) {
+  variance_ = residual_.squaredNorm() / std::max(static_cast<double>(residual_.size()), 1.0);
+  Blocks blocks = blocks_of(data);
+  borders_ = std::move(blocks.borders);
+  block_folds_ = std::move(blocks.folds);
+  const Projection projection(fit, fixed);
+  for (const Eigen::MatrixXd& raw : candidate_columns(data, effects, fit, candidates))
+    add(raw, projection.rest(raw));
+  largest_ = largest_of_draws(block_scores_, variance_);
+  for (Score& score : scores_) score.family_p_value = family_p_value(score.statistic, score.degrees);
+}
 
-  std::vector<Eigen::MatrixXd> bases;
-  std::vector<Eigen::MatrixXd> scores;
-  for (const Eigen::MatrixXd& raw : candidate_columns(data, effects, fit, candidates)) {
-    const Eigen::MatrixXd projected = raw - fitted * ldlt.solve(fitted.transpose() * raw);
-    const double scale = raw.norm();
-    bases.push_back(scale > 0.0 ? orthonormal(projected, scale) : Eigen::MatrixXd(raw.rows(), 0));
-    scores.push_back(block_scores(bases.back(), residual, borders));
-    Score score;
-    score.candidate = table.scores.size();
-    score.degrees = static_cast<std::size_t>(bases.back().cols());
-    score.statistic = scores.back().rowwise().sum().squaredNorm() / variance;
-    score.p_value = chi_squared_tail(score.statistic, score.degrees);
-    score.unabsorbed = scale > 0.0 ? projected.squaredNorm() / raw.squaredNorm() : 0.0;
-    table.scores.push_back(score);
-  }
-  const auto largest = largest_of_draws(scores, variance);
-  for (Score& score : table.scores) {
-    const double own = significance(score.statistic, static_cast<Eigen::Index>(score.degrees));
-    const auto above = largest.end() - std::lower_bound(largest.begin(), largest.end(), own);
-    score.family_p_value = (1.0 + static_cast<double>(above)) / (1.0 + kDraws);
-  }
-  const auto n = static_cast<Eigen::Index>(bases.size());
-  table.correlation = Eigen::MatrixXd::Identity(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < i; ++j) {
-      const Eigen::MatrixXd overlap =
-          bases[static_cast<std::size_t>(i)].transpose() * bases[static_cast<std::size_t>(j)];
-      const double largest_value =
-          overlap.size() == 0 ? 0.0 : Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues()(0);
-      table.correlation(i, j) = table.correlation(j, i) = std::min(largest_value, 1.0);
+void ScoreTable::add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected) {
+  const double scale = raw.norm();
+  bases_.push_back(scale > 0.0 ? orthonormal(projected, scale) : Eigen::MatrixXd(raw.rows(), 0));
+  block_scores_.push_back(block_scores(bases_.back(), residual_, borders_));
+  Score score;
+  score.degrees = static_cast<std::size_t>(bases_.back().cols());
+  score.statistic = block_scores_.back().rowwise().sum().squaredNorm() / variance_;
+  score.p_value = chi_squared_tail(score.statistic, score.degrees);
+  score.unabsorbed = scale > 0.0 ? projected.squaredNorm() / raw.squaredNorm() : 0.0;
+  scores_.push_back(score);
+}
+
+double ScoreTable::family_p_value(double statistic, std::size_t degrees) const {
+  const double own = significance(statistic, static_cast<Eigen::Index>(degrees));
+  const auto above = largest_.end() - std::lower_bound(largest_.begin(), largest_.end(), own);
+  return (1.0 + static_cast<double>(above)) / (1.0 + kDraws);
+}
+
+double ScoreTable::correlation(std::size_t a, std::size_t b) const {
+  const Eigen::MatrixXd overlap = bases_[a].transpose() * bases_[b];
+  if (overlap.size() == 0) return 0.0;
+  return std::min(Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues()(0), 1.0);
+}
+
+FoldFlags ScoreTable::selected_without(std::size_t candidate, double level) const {
+  FoldFlags selected{};
+  const Eigen::MatrixXd& basis = bases_[candidate];
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    Eigen::VectorXd score = Eigen::VectorXd::Zero(basis.cols());
+    Eigen::MatrixXd gram = kRidge * Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
+    for (std::size_t b = 0; b + 1 < borders_.size(); ++b) {
+      if (block_folds_[b] == fold) continue;
+      const auto rows = basis.middleRows(borders_[b], borders_[b + 1] - borders_[b]);
+      score += block_scores_[candidate].col(static_cast<Eigen::Index>(b));
+      gram.noalias() += rows.transpose() * rows;
     }
-  return table;
+    const double statistic = score.dot(gram.ldlt().solve(score)) / variance_;
+    selected[fold] = family_p_value(statistic, scores_[candidate].degrees) <= level;
+  }
+  return selected;
 }
 
 }  // namespace odomcalib::calib

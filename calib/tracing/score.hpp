@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "calib/estimators/joint.hpp"
+#include "calib/tracing/horizon.hpp"
 
 namespace odomcalib::calib {
 
 struct Score {
-  std::size_t candidate = 0;  ///< index into the candidates
   double statistic =
       0.0;  ///< T ~ chi-squared with `degrees` under "nothing missing"; expected drop of -2 log L
   std::size_t degrees = 0;
@@ -21,19 +21,36 @@ struct Score {
   double unabsorbed = 0.0;  ///< share of the candidate's signature that the fitted parameters cannot absorb
 };
 
-struct ScoreTable {
-  std::vector<Score> scores;    ///< in the order of the candidates
-  Eigen::MatrixXd correlation;  ///< largest canonical correlation of each pair of projected signatures
-};
-
 /// Upper tail of the chi-squared distribution.
 double chi_squared_tail(double statistic, std::size_t degrees);
 
-/// Tests every candidate effect (at zero) on top of the fitted model.
+/// Score tests (Rao 1948) of every candidate, at its start, on top of the fitted model.
 /// Family-wise significance: block scores of 5 s get random signs (Rademacher), 1999 draws with a fixed seed;
-/// the largest statistic of each draw is compared, so that correlation between candidates, heavy tails and
+/// the largest significance of each draw is compared, so that correlation between candidates, heavy tails and
 /// what autocorrelation is left are respected.
-ScoreTable score_candidates(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,
-                            const std::vector<bool>& fixed, const EffectList& candidates);
+class ScoreTable {
+ public:
+  ScoreTable(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,
+             const std::vector<bool>& fixed, const EffectList& candidates);
+
+  [[nodiscard]] const std::vector<Score>& scores() const { return scores_; }  ///< in the candidates' order
+  /// Largest canonical correlation of two candidates' projected signatures.
+  [[nodiscard]] double correlation(std::size_t a, std::size_t b) const;
+  /// Whether the candidate passes the family-wise level without the data of each fold.
+  [[nodiscard]] FoldFlags selected_without(std::size_t candidate, double level) const;
+
+ private:
+  void add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected);
+  [[nodiscard]] double family_p_value(double statistic, std::size_t degrees) const;
+
+  Eigen::VectorXd residual_;
+  double variance_ = 1.0;
+  std::vector<Eigen::Index> borders_;          ///< first row of each block, and the end
+  std::vector<std::size_t> block_folds_;       ///< fold of each block
+  std::vector<Eigen::MatrixXd> bases_;         ///< orthonormal, 3 n x degrees
+  std::vector<Eigen::MatrixXd> block_scores_;  ///< degrees x blocks
+  std::vector<double> largest_;                ///< significance of the best candidate in each draw, ascending
+  std::vector<Score> scores_;
+};
 
 }  // namespace odomcalib::calib

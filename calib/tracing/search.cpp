@@ -3,8 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/score.hpp"
 
 namespace odomcalib::calib {
@@ -15,19 +17,50 @@ constexpr double kNamedLevel = 0.0009;
 /// A delay hardly shows in odometry and cannot spoil it; what changes odometry must be beyond doubt.
 constexpr double kClockLevel = 0.003;
 constexpr double kUnnamedLevel = 0.0025;
-constexpr int kMaxFindings = 3;
-constexpr int kMaxCurves = 3;
-constexpr int kMaxSteps = 8;        ///< additions and failed proofs together
+constexpr std::size_t kMaxFindings = 3;
+constexpr std::size_t kMaxCurves = 4;
+constexpr int kMaxSteps = 12;       ///< additions and failed proofs together
 constexpr std::size_t kRefits = 4;  ///< candidates refitted jointly per step
 constexpr double kAmbiguity = 6.0;  ///< units of BIC
 constexpr double kAlias = 0.9;      ///< canonical correlation that counts as indistinguishable
-constexpr double kSameLaw = 0.6;    ///< share of a curve's statistic that a name inside it must reach
+constexpr double kSameLaw = 0.5;    ///< share of a curve's statistic that a name with that law must reach
+/// Share of the error that a curve, or an effect of the place, must leave at most: less is not worth a model.
+constexpr double kWorthwhile = 0.95;
+/// Family-wise level at which the data outside a fold must point to a candidate that all data together have
+/// chosen.
+constexpr double kFoldLevel = 0.05;
+constexpr double kTelling = 10.0;  ///< expected gap of -2 log L that tells two candidates apart
+
+/// One thing that may be missing: a named effect (one of its variants) or a curve.
+struct Candidate {
+  std::shared_ptr<const Effect> effect;
+  std::optional<Curve> curve;
+  std::string key;  ///< variants of one effect share it
+};
 
 struct Trial {
   std::size_t candidate = 0;
   FitResult fit;
   double gain = 0.0;  ///< drop of -2 log L minus q log(3 n)
 };
+
+std::string key_of(const Effect& effect) { return effect.name() + "/" + effect.parameters().front().name; }
+
+bool contains(const std::vector<Law>& laws, const Law& law) {
+  return std::find(laws.begin(), laws.end(), law) != laws.end();
+}
+
+bool belongs_to_one_recording(const Effect& effect) {
+  const auto laws = effect.laws();
+  return std::any_of(laws.begin(), laws.end(),
+                     [](const Law& law) { return begins_with_the_recording(law.variable); });
+}
+
+std::size_t count_sizes(const Effect& effect) {
+  const auto parameters = effect.parameters();
+  return static_cast<std::size_t>(
+      std::count_if(parameters.begin(), parameters.end(), [](const EffectParameter& p) { return !p.fixed; }));
+}
 
 class Search {
  public:
@@ -36,12 +69,10 @@ class Search {
       : data_(data), base_fixed_(base_fixed), progress_(progress) {
     result_.effects = given;
     result_.fit = fit;
-    for (const FitData& d : data) models_.push_back(d.model);
+    collect_candidates();
   }
 
   SearchResult run() {
-    named_ = remaining_names();
-    curves_ = candidate_curves(models_);
     for (int step = 0; step < kMaxSteps; ++step) {
       progress_(static_cast<double>(step) / kMaxSteps);
       if (!advance()) break;
@@ -50,230 +81,303 @@ class Search {
   }
 
  private:
-  EffectList remaining_names() const {
-    EffectList names;
-    for (const auto& effect : effect_catalogue())
-      if (std::find(result_.effects.begin(), result_.effects.end(), effect) == result_.effects.end())
-        names.push_back(effect);
-    return names;
+  void collect_candidates() {
+    std::set<std::string> present;
+    for (const auto& effect : result_.effects) present.insert(key_of(*effect));
+    for (const auto& effect : effect_catalogue()) {
+      if (present.count(key_of(*effect)) > 0 || (data_.size() > 1 && belongs_to_one_recording(*effect)))
+        continue;
+      EffectList shapes = effect->variants();
+      if (shapes.empty()) shapes.push_back(effect);
+      for (const auto& shape : shapes) candidates_.push_back({shape, std::nullopt, key_of(*shape)});
+    }
+    std::vector<const DriveModel*> models;
+    for (const FitData& d : data_) models.push_back(d.model);
+    for (const Curve& curve : candidate_curves(models)) {
+      const auto effect = make_curve_effect(curve);
+      candidates_.push_back(
+          {effect, curve,
+           effect->name() + "/" + std::to_string(curve.period) + "/" + std::to_string(curve.harmonic)});
+    }
   }
 
   [[nodiscard]] std::vector<bool> fixed(const EffectList& effects) const {
-    std::vector<bool> all = base_fixed_;
-    all.resize(kBaseCount + count_parameters(effects), false);
-    return all;
+    return fixed_with(base_fixed_, effects);
   }
 
   /// One step; false when nothing more is justified.
   bool advance() {
-    EffectList candidates = named_;
-    for (const Curve& curve : curves_) candidates.push_back(make_curve_effect(curve));
-    const ScoreTable table =
-        score_candidates(data_, result_.effects, result_.fit, fixed(result_.effects), candidates);
-    const auto name = result_.findings.size() < kMaxFindings && !result_.unnamed
-                          ? best_name(table, candidates)
-                          : std::nullopt;
+    EffectList effects;
+    for (const Candidate& c : candidates_) effects.push_back(c.effect);
+    const ScoreTable table(data_, result_.effects, result_.fit, fixed(result_.effects), effects);
+    const auto name = may_name() ? best_name(table) : std::nullopt;
     const auto curve = best_curve(table);
-    if (name && !(curve && curve_beats(table, *name, *curve))) {
-      if (accept_name(table, candidates, *name)) return true;
-    }
+    if (name && !(curve && curve_beats(table, *name, *curve)) && accept_name(table, *name)) return true;
     return curve && accept_curve(table, *curve);
+  }
+
+  [[nodiscard]] bool may_name() const {
+    return result_.findings.size() < kMaxFindings && !result_.has_unnamed();
   }
 
   [[nodiscard]] double penalty(std::size_t degrees) const {
     return static_cast<double>(degrees) * std::log(static_cast<double>(result_.fit.whitened_residual.size()));
   }
 
-  static double level(const Effect& effect) {
-    return effect.storage() == Storage::driver ? kClockLevel : kNamedLevel;
+  [[nodiscard]] double penalised(const Score& score) const {
+    return score.statistic - penalty(score.degrees);
+  }
+
+  [[nodiscard]] double level(const Candidate& candidate) const {
+    if (candidate.curve) return completes(candidate) ? kNamedLevel : kUnnamedLevel;
+    return candidate.effect->storage() == Storage::driver ? kClockLevel : kNamedLevel;
   }
 
   /// Joint refits of the most promising names on the noise model of the current fit.
-  std::optional<Trial> best_name(const ScoreTable& table, const EffectList& candidates) {
+  std::optional<Trial> best_name(const ScoreTable& table) {
     std::vector<std::size_t> order;
-    for (std::size_t k = 0; k < named_.size(); ++k)
-      if (table.scores[k].family_p_value <= level(*candidates[k])) order.push_back(k);
+    for (std::size_t k = 0; k < candidates_.size(); ++k)
+      if (!candidates_[k].curve && table.scores()[k].family_p_value <= level(candidates_[k]))
+        order.push_back(k);
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return table.scores[a].statistic - penalty(table.scores[a].degrees) >
-             table.scores[b].statistic - penalty(table.scores[b].degrees);
+      return penalised(table.scores()[a]) > penalised(table.scores()[b]);
     });
-    order.resize(std::min(order.size(), kRefits));
     trials_.clear();
-    for (const std::size_t k : order)
-      if (auto trial = refit(k, candidates[k], true)) trials_.push_back(std::move(*trial));
+    std::set<std::string> tried;
+    for (const std::size_t k : order) {
+      if (tried.size() >= kRefits || !tried.insert(candidates_[k].key).second) continue;
+      if (auto trial = refit(k, true)) trials_.push_back(std::move(*trial));
+    }
     const auto best = std::max_element(trials_.begin(), trials_.end(),
                                        [](const Trial& a, const Trial& b) { return a.gain < b.gain; });
     return best == trials_.end() ? std::nullopt : std::optional(*best);
   }
 
-  std::optional<Trial> refit(std::size_t index, const std::shared_ptr<const Effect>& effect,
-                             bool keep_noise) {
+  std::optional<Trial> refit(std::size_t index, bool keep_noise) {
+    const auto& effect = candidates_[index].effect;
     EffectList effects = result_.effects;
     effects.push_back(effect);
-    Eigen::VectorXd start =
-        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kBaseCount + count_parameters(effects)));
-    start.head(result_.fit.parameters.size()) = result_.fit.parameters;
+    Eigen::VectorXd start(static_cast<Eigen::Index>(kBaseCount + count_parameters(effects)));
+    const std::vector<double> own = start_of({effect});
+    start << result_.fit.parameters,
+        Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
+    auto fit = fit_from(effects, start, keep_noise);
+    if (!fit) return std::nullopt;
+    Trial trial{index, std::move(*fit), 0.0};
+    trial.gain = result_.fit.cost - trial.fit.cost - penalty(count_sizes(*effect));
+    return trial;
+  }
+
+  std::optional<FitResult> fit_from(const EffectList& effects, const Eigen::VectorXd& start,
+                                    bool keep_noise) const {
     FitOptions options;
     options.fixed = fixed(effects);
     options.max_iterations = 24;
     if (keep_noise) options.noise = result_.fit.noise;
     auto fit = fit_joint(data_, effects, start, options);
     if (!fit) return std::nullopt;
-    Trial trial{index, std::move(fit).value(), 0.0};
-    trial.gain = result_.fit.cost - trial.fit.cost - penalty(effect->parameters().size());
-    return trial;
+    return std::move(fit).value();
   }
 
   [[nodiscard]] std::optional<std::size_t> best_curve(const ScoreTable& table) const {
     std::optional<std::size_t> best;
-    for (std::size_t k = named_.size(); k < table.scores.size(); ++k) {
-      const Score& score = table.scores[k];
-      if (score.family_p_value > kUnnamedLevel) continue;
-      if (!best || score.statistic - penalty(score.degrees) >
-                       table.scores[*best].statistic - penalty(table.scores[*best].degrees))
-        best = k;
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      if (!candidates_[k].curve || table.scores()[k].family_p_value > level(candidates_[k])) continue;
+      if (!best || penalised(table.scores()[k]) > penalised(table.scores()[*best])) best = k;
     }
     return best;
   }
 
-  /// A curve that contains the name's own law and explains little more is the same finding with a freer law.
+  /// A curve on the name's own ground that explains no more than about twice as much is the same finding with
+  /// a freer law.
   bool curve_beats(const ScoreTable& table, const Trial& name, std::size_t curve) const {
-    const Score& free_form = table.scores[curve];
-    const Score& named = table.scores[name.candidate];
-    const double lead =
-        (free_form.statistic - penalty(free_form.degrees)) - (named.statistic - penalty(named.degrees));
-    if (lead <= kAmbiguity) return false;
-    const double overlap =
-        table.correlation(static_cast<Eigen::Index>(name.candidate), static_cast<Eigen::Index>(curve));
-    return !(overlap > kAlias && named.statistic > kSameLaw * free_form.statistic);
+    const Score& free_form = table.scores()[curve];
+    const Score& named = table.scores()[name.candidate];
+    if (penalised(free_form) - penalised(named) <= kAmbiguity) return false;
+    const bool same_ground =
+        contains(candidates_[name.candidate].effect->laws(), candidates_[curve].curve->law) ||
+        table.correlation(name.candidate, curve) > kAlias;
+    return !(same_ground && named.statistic > kSameLaw * free_form.statistic);
   }
 
-  /// Held-out proof on one noise model: error at the horizon, and whitened residual per block.
-  bool proves_itself(const EffectList& effects, const FitResult& candidate, Finding& finding) const {
-    const auto before = horizon_error(data_, result_.effects, result_.fit, fixed(result_.effects));
-    const auto after = horizon_error(data_, effects, candidate, fixed(effects));
-    const HeldOutGain gain =
-        held_out_gain(data_, result_.fit, fixed(result_.effects), candidate, fixed(effects));
+  /// Scan matching has a bias of its own in a room, and in a scripted drive what happened before stands for
+  /// the place in the script: what goes with such variables must be more than that.
+  static bool must_be_worthwhile(const Candidate& candidate) {
+    const auto laws = candidate.curve ? std::vector<Law>{candidate.curve->law} : candidate.effect->laws();
+    return std::any_of(laws.begin(), laws.end(), [&](const Law& law) {
+      const bool of_room = law.variable == Variable::heading || law.variable == Variable::position;
+      const bool of_history = law.variable == Variable::previous_turn || is_distance_since(law.variable);
+      return of_room || (of_history && candidate.curve);
+    });
+  }
+
+  /// Held-out proof on one noise model: error at the horizon, or whitened residual per block. The choice
+  /// itself is held out: a fold counts only if the others point to the candidate too.
+  /// @return empty if it holds, otherwise what is missing
+  std::string objection(const ScoreTable& table, const Trial& trial, const EffectList& effects,
+                        Proof& proof) const {
+    const Candidate& candidate = candidates_[trial.candidate];
+    const FoldFlags selected = table.selected_without(trial.candidate, kFoldLevel);
+    proof.family_p_value = table.scores()[trial.candidate].family_p_value;
+    const std::vector<bool> trusted = trusted_pairs(result_.fit, trial.fit);
+    const auto before = horizon_error(data_, result_.effects, result_.fit, fixed(result_.effects), trusted);
+    const auto after = horizon_error(data_, effects, trial.fit, fixed(effects), trusted);
     if (before && after) {
-      finding.before = before->rms_position();
-      finding.after = after->rms_position();
-      finding.improvement = compare(*before, *after);
-      if (finding.improvement.upper < 1.0) return true;
-      if (finding.improvement.lower > 1.0) return false;
+      const HorizonError mixed = where_selected(*before, *after, selected);
+      proof.before = before->rms_position();
+      proof.after = mixed.rms_position();
+      proof.improvement = compare(*before, mixed);
+      if (must_be_worthwhile(candidate) && proof.improvement.ratio > kWorthwhile) return "too small a gain";
+      if (proof.improvement.upper < 1.0) return {};
+      if (proof.improvement.lower > 1.0) return "held-out error rises";
     }
-    return gain.lower > 0.0;
+    return gain_on_held_out(trial.fit, effects, selected) ? "" : "no gain on held-out data";
   }
 
-  bool accept_name(const ScoreTable& table, const EffectList& candidates, const Trial& best) {
-    const auto& effect = candidates[best.candidate];
+  [[nodiscard]] bool gain_on_held_out(const FitResult& fit, const EffectList& effects,
+                                      const FoldFlags& selected) const {
+    std::vector<double> weights(fit.weights.size());
+    std::transform(fit.weights.begin(), fit.weights.end(), result_.fit.weights.begin(), weights.begin(),
+                   [](double a, double b) { return std::max(a, b); });
+    const FitResult before = with_weights(data_, result_.effects, result_.fit, weights);
+    const FitResult after = with_weights(data_, effects, fit, weights);
+    return held_out_gain(data_, before, fixed(result_.effects), after, fixed(effects), selected).lower > 0.0;
+  }
+
+  [[nodiscard]] std::string implausibility(const Effect& effect, const FitResult& fit) const {
+    if (is_impossible(effect, fit)) return "outside its physical range";
+    if (is_negligible(effect, fit)) return "too small to matter";
+    return spoils_base(effect, result_.fit, fit) ? "this drive cannot tell it from the wheels" : "";
+  }
+
+  /// Adds the candidate if it is plausible and proves itself; otherwise strikes it off the list.
+  std::optional<Proof> accept(const ScoreTable& table, const Trial& trial) {
+    const auto effect = candidates_[trial.candidate].effect;
     EffectList effects = result_.effects;
     effects.push_back(effect);
-    Finding finding;
-    finding.effect = effect;
-    finding.family_p_value = table.scores[best.candidate].family_p_value;
-    finding.aliases = aliases_of(table, candidates, best);
-    if (implausible(*effect, best.fit) || spoils_base(best.fit) || !proves_itself(effects, best.fit, finding))
-      return drop(best.candidate);
-    auto settled = refit(best.candidate, effect, false);
-    if (!settled) return drop(best.candidate);
+    Proof proof;
+    std::string reason = implausibility(*effect, trial.fit);
+    if (reason.empty()) reason = objection(table, trial, effects, proof);
+    auto settled = reason.empty() ? refit(trial.candidate, false) : std::nullopt;
+    if (reason.empty() && !settled) reason = "the fit does not settle";
+    const Score& score = table.scores()[trial.candidate];
+    result_.considered.push_back(
+        {effect->name(), score.statistic, score.family_p_value, reason.empty() ? "added" : reason});
+    if (!reason.empty()) {
+      strike(candidates_[trial.candidate].key);
+      return std::nullopt;
+    }
     result_.fit = std::move(settled->fit);
     result_.effects = std::move(effects);
-    result_.findings.push_back(std::move(finding));
-    named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(best.candidate));
+    return proof;
+  }
+
+  bool accept_name(const ScoreTable& table, const Trial& best) {
+    const Candidate candidate = candidates_[best.candidate];
+    const std::vector<std::string> aliases = aliases_of(table, best);
+    const auto proof = accept(table, best);
+    if (!proof) return true;
+    result_.findings.push_back({candidate.effect, aliases, *proof});
+    strike(candidate.key);
+    retire_superfluous();
     return true;
   }
 
-  /// This drive cannot tell the addition from the wheels: it would trade a known geometry for a guess.
-  [[nodiscard]] bool spoils_base(const FitResult& fit) const {
-    constexpr double kMaxInflation = 3.0;  // of a standard deviation
-    for (const auto k : {kLeftRadius, kRightRadius, kTrackWidth})
-      if (fit.covariance(k, k) > kMaxInflation * kMaxInflation * result_.fit.covariance(k, k)) return true;
-    return false;
+  bool accept_curve(const ScoreTable& table, std::size_t index) {
+    if (result_.curves.size() >= kMaxCurves) return false;
+    const Candidate candidate = candidates_[index];
+    const auto law_of = completed_by(candidate);
+    const auto trial = refit(index, true);
+    const auto proof = trial ? accept(table, *trial) : std::nullopt;
+    if (!trial) strike(candidate.key);
+    if (!proof) return true;
+    result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of});
+    strike(candidate.key);
+    return true;
   }
 
-  /// Too small to matter (every parameter below a share of its typical size) or physically implausible.
-  static bool implausible(const Effect& effect, const FitResult& fit) {
-    const auto parameters = effect.parameters();
-    const auto first = fit.parameters.size() - static_cast<Eigen::Index>(parameters.size());
-    double largest = 0.0;
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-      const double value = fit.parameters(first + static_cast<Eigen::Index>(k));
-      if (value < parameters[k].lower || value > parameters[k].upper) return true;
-      largest = std::max(largest, std::abs(value) / parameters[k].scale);
+  /// The finding whose law this curve would replace, if any.
+  [[nodiscard]] std::shared_ptr<const Effect> completed_by(const Candidate& candidate) const {
+    for (const Finding& finding : result_.findings)
+      if (contains(finding.effect->laws(), candidate.curve->law)) return finding.effect;
+    return nullptr;
+  }
+  [[nodiscard]] bool completes(const Candidate& candidate) const {
+    return completed_by(candidate) != nullptr;
+  }
+
+  /// A candidate that was added, or failed its proof, is not asked again; the search goes on with the others.
+  void strike(const std::string& key) {
+    std::erase_if(candidates_, [&](const Candidate& c) { return c.key == key; });
+  }
+
+  /// What an earlier finding explained may belong to the one that was just added.
+  void retire_superfluous() {
+    std::size_t first = kBaseCount;
+    for (std::size_t e = 0; e < result_.effects.size(); ++e) {
+      const auto effect = result_.effects[e];
+      const std::size_t count = effect->parameters().size();
+      const auto finding = std::find_if(result_.findings.begin(), result_.findings.end(),
+                                        [&](const Finding& f) { return f.effect == effect; });
+      if (finding != result_.findings.end() && is_superfluous(*effect, first, result_.fit) &&
+          remove(e, first, count)) {
+        result_.findings.erase(finding);
+        return;
+      }
+      first += count;
     }
-    return largest < kNegligibleShare;
   }
 
-  /// A candidate that failed its proof is not asked again; the search goes on with the others.
-  bool drop(std::size_t candidate) {
-    named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(candidate));
+  bool remove(std::size_t index, std::size_t first, std::size_t count) {
+    EffectList effects = result_.effects;
+    effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(index));
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index k = 0; k < result_.fit.parameters.size(); ++k)
+      if (k < static_cast<Eigen::Index>(first) || k >= static_cast<Eigen::Index>(first + count))
+        kept.push_back(k);
+    auto fit = fit_from(effects, result_.fit.parameters(kept), false);
+    if (!fit) return false;
+    result_.fit = std::move(*fit);
+    result_.effects = std::move(effects);
     return true;
   }
 
-  std::vector<std::string> aliases_of(const ScoreTable& table, const EffectList& candidates,
-                                      const Trial& best) const {
-    std::vector<std::string> aliases = candidates[best.candidate]->always_alike();
+  std::vector<std::string> aliases_of(const ScoreTable& table, const Trial& best) const {
+    const Effect& effect = *candidates_[best.candidate].effect;
+    std::vector<std::string> aliases = effect.always_alike();
     const auto add = [&](std::size_t k) {
-      const std::string name = candidates[k]->name();
-      if (name != candidates[best.candidate]->name() &&
-          std::find(aliases.begin(), aliases.end(), name) == aliases.end())
+      const std::string name = candidates_[k].effect->name();
+      if (name != effect.name() && std::find(aliases.begin(), aliases.end(), name) == aliases.end())
         aliases.push_back(name);
     };
     for (const Trial& trial : trials_)
       if (best.gain - trial.gain < kAmbiguity) add(trial.candidate);
-    for (std::size_t k = 0; k < named_.size(); ++k)
-      if (k != best.candidate && table.scores[k].family_p_value <= kNamedLevel &&
-          table.correlation(static_cast<Eigen::Index>(best.candidate), static_cast<Eigen::Index>(k)) >
-              kAlias &&
+    for (std::size_t k = 0; k < candidates_.size(); ++k)
+      if (!candidates_[k].curve && table.scores()[k].family_p_value <= kNamedLevel &&
           too_close(table, best.candidate, k))
         add(k);
     return aliases;
   }
 
-  /// The expected gap between the true and the wrong one is T (1 - rho^2); below 10 the data do not decide.
+  /// The expected gap between the true and the wrong one is T (1 - rho^2).
   [[nodiscard]] bool too_close(const ScoreTable& table, std::size_t a, std::size_t b) const {
-    const double rho = table.correlation(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
-    return table.scores[a].statistic * (1.0 - rho * rho) < 10.0;
-  }
-
-  bool accept_curve(const ScoreTable& table, std::size_t index) {
-    if (result_.unnamed && result_.unnamed->curves.size() >= kMaxCurves) return false;
-    const Curve curve = curves_[index - named_.size()];
-    const auto effect = make_curve_effect(curve);
-    EffectList effects = result_.effects;
-    effects.push_back(effect);
-    const auto trial = refit(index, effect, true);
-    Finding proof;
-    if (!trial || implausible(*effect, trial->fit) || spoils_base(trial->fit) ||
-        !proves_itself(effects, trial->fit, proof))
-      return drop_curve(index);
-    auto settled = refit(index, effect, false);
-    if (!settled) return drop_curve(index);
-    if (!result_.unnamed) result_.unnamed = Unnamed{{}, table.scores[index].family_p_value, 0.0};
-    result_.unnamed->curves.push_back(curve);
-    const double ratio = proof.before > 0.0 ? proof.after / proof.before : 1.0;
-    result_.unnamed->share = 1.0 - (1.0 - result_.unnamed->share) * std::min(ratio * ratio, 1.0);
-    result_.fit = std::move(settled->fit);
-    result_.effects = std::move(effects);
-    return true;
-  }
-
-  bool drop_curve(std::size_t index) {
-    curves_.erase(curves_.begin() + static_cast<std::ptrdiff_t>(index - named_.size()));
-    return true;
+    const double rho = table.correlation(a, b);
+    return rho > kAlias && table.scores()[a].statistic * (1.0 - rho * rho) < kTelling;
   }
 
   std::span<const FitData> data_;
   std::vector<bool> base_fixed_;
   std::function<void(double)> progress_;
-  std::vector<const DriveModel*> models_;
-  EffectList named_;
-  std::vector<Curve> curves_;
+  std::vector<Candidate> candidates_;
   std::vector<Trial> trials_;
   SearchResult result_;
 };
 
 }  // namespace
+
+bool SearchResult::has_unnamed() const {
+  return std::any_of(curves.begin(), curves.end(), [](const AddedCurve& c) { return c.law_of == nullptr; });
+}
 
 SearchResult search_effects(std::span<const FitData> data, const EffectList& given, const FitResult& fit,
                             const std::vector<bool>& base_fixed,

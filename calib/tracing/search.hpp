@@ -12,26 +12,46 @@
 
 namespace odomcalib::calib {
 
-struct Finding {
-  std::shared_ptr<const Effect> effect;
+/// What speaks for an addition to the model.
+struct Proof {
   double family_p_value = 1.0;
-  std::vector<std::string> aliases;  ///< candidates the data cannot tell from it
-  double before = 0.0;               ///< held-out position error at the horizon, m
+  double before = 0.0;  ///< held-out position error at the horizon, m
   double after = 0.0;
   Improvement improvement;
 };
 
-struct Unnamed {
-  std::vector<Curve> curves;  ///< what was added to the model, in order
-  double p_value = 1.0;
-  double share = 0.0;  ///< of the excess error that the curves remove
+struct Finding {
+  std::shared_ptr<const Effect> effect;
+  std::vector<std::string> aliases;  ///< candidates the data cannot tell from it
+  Proof proof;
+};
+
+/// A curve that the search added to the model.
+struct AddedCurve {
+  std::shared_ptr<const Effect> effect;
+  Curve curve;
+  Proof proof;
+  /// The named effect whose law the curve completes: the data want another law than the textbook's. Null:
+  /// nothing in the catalogue explains it.
+  std::shared_ptr<const Effect> law_of;
+};
+
+/// A candidate that passed the score test, and what became of it.
+struct Considered {
+  std::string name;
+  double statistic = 0.0;
+  double family_p_value = 1.0;
+  std::string outcome;
 };
 
 struct SearchResult {
-  EffectList effects;  ///< in the order of the parameter vector: those given, then the findings, then curves
+  EffectList effects;  ///< in the order of the parameter vector: those given, then what was added
   FitResult fit;
   std::vector<Finding> findings;
-  std::optional<Unnamed> unnamed;
+  std::vector<AddedCurve> curves;
+  std::vector<Considered> considered;  ///< in the order tried
+
+  [[nodiscard]] bool has_unnamed() const;
 };
 
 /// Stepwise search from a fitted model. Nothing is added unless it passes family-wise and the held-out error

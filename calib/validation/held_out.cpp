@@ -4,48 +4,31 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/validation/folds.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
-constexpr std::size_t kFolds = 5;
-constexpr double kBlockSeconds = 20.0;
 constexpr std::size_t kMinPairs = 50;
 constexpr double kGrossError = 6.0;  ///< sigma; a failed match says nothing about the wheels
 
-/// Fold of each pair: blocks are dealt out in turn, so that every fold has early and late motion.
-std::vector<std::vector<std::size_t>> assign_folds(std::span<const FitData> data) {
-  std::vector<std::vector<std::size_t>> folds;
-  double block_begin = -1e300;
-  std::size_t block = 0;
-  for (const FitData& d : data) {
-    folds.emplace_back();
-    block_begin = -1e300;
-    for (const SensorPair& pair : d.pairs) {
-      if (pair.interval.begin > block_begin + kBlockSeconds) {
-        block_begin = pair.interval.begin;
-        ++block;
-      }
-      folds.back().push_back(block % kFolds);
-    }
-  }
-  return folds;
-}
-
 /// Pairs of one fold, or of all others; a pair next to the border keeps no link across it.
-std::vector<FitData> select(std::span<const FitData> data, const std::vector<std::vector<std::size_t>>& folds,
+std::vector<FitData> select(std::span<const FitData> data, const std::vector<std::size_t>& folds,
                             std::size_t fold, bool inside) {
   std::vector<FitData> selected;
+  std::size_t first = 0;
   for (std::size_t d = 0; d < data.size(); ++d) {
     FitData part{data[d].model, {}};
     bool previous_kept = false;
     for (std::size_t k = 0; k < data[d].pairs.size(); ++k) {
-      const bool keep = (folds[d][k] == fold) == inside;
+      const bool keep = (folds[first + k] == fold) == inside;
       if (keep) {
         part.pairs.push_back(data[d].pairs[k]);
         part.pairs.back().follows_previous = part.pairs.back().follows_previous && previous_kept;
       }
       previous_kept = keep;
     }
+    first += data[d].pairs.size();
     selected.push_back(std::move(part));
   }
   return selected;
@@ -92,7 +75,7 @@ std::array<double, 3> root(const Eigen::Vector3d& sum, std::size_t count) {
 
 std::optional<HeldOut> held_out_residual(std::span<const FitData> data, const EffectList& effects,
                                          const FitResult& fit, const std::vector<bool>& fixed) {
-  const auto folds = assign_folds(data);
+  const auto folds = folds_of(data);
   Sums sums;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const auto training = select(data, folds, fold, false);

@@ -5,32 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "daemon/cli/display.hpp"
+#include "daemon/cli/report_sections.hpp"
+
 namespace odomcalib::cli {
 namespace {
-
-// Lengths in mm and angles in degrees: what people have on their rulers.
-struct Display {
-  double factor;
-  const char* unit;
-  int digits;
-};
-
-Display display_of(const std::string& unit) {
-  if (unit == "m") return {1000.0, "mm", 3};
-  if (unit == "rad") return {180.0 / std::numbers::pi, "deg", 3};
-  if (unit == "s") return {1000.0, "ms", 3};
-  return {1.0, unit.c_str(), 6};
-}
-
-std::string number(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
-}
-
-std::string readable(std::string name) {
-  for (char& c : name)
-    if (c == '_') c = ' ';
-  return name;
-}
 
 std::optional<double> nominal_of(const RobotDescription& robot, const std::string& name) {
   if (name == "left_wheel_diameter") return robot.left_wheel_diameter;
@@ -52,7 +31,7 @@ std::vector<std::string> parameter_row(const RobotDescription& robot, const std:
   std::vector<std::string> row{readable(name), nominal ? number(*nominal * show.factor, show.digits) : "-",
                                number(quantity.value * show.factor, show.digits)};
   row.push_back(quantity.std >= 0.0 ? number(2.0 * quantity.std * show.factor, show.digits) : "-");
-  row.emplace_back(show.unit);
+  row.push_back(show.unit);
   const bool relative = nominal && *nominal != 0.0 && is_length_of_drive(name);
   row.push_back(relative ? fmt::format("{:+.3f} %", 100.0 * (quantity.value / *nominal - 1.0)) : "");
   return row;
@@ -62,6 +41,7 @@ Section parameters_of(const Calibration& calibration) {
   Section section{"Parameters", {}, {{"", "nominal", "value", "+-2 sigma", "unit", "change"}, {}}};
   for (const auto& [name, quantity] : calibration.parameters)
     section.table.rows.push_back(parameter_row(calibration.robot, name, quantity));
+  section.lines = effect_in_words(calibration);
   return section;
 }
 
@@ -127,6 +107,12 @@ Section effects_of(const Calibration& calibration) {
     section.lines.push_back(
         fmt::format("unexplained: the residual depends on {} (p {:.2g})", on, rest->p_value));
   }
+  for (const auto& effect : calibration.effects) {
+    std::string others;
+    for (const auto& alias : effect.aliases) others += (others.empty() ? "" : ", ") + readable(alias);
+    if (!others.empty())
+      section.lines.push_back(readable(effect.name) + " cannot be told from " + others + " with this drive");
+  }
   return section;
 }
 
@@ -137,10 +123,14 @@ std::vector<std::string> residual_row(const char* name, const std::optional<std:
 }
 
 Section residual_of(const ResidualReport& residual) {
-  Section section{
-      residual.held_out ? "Residual on data not used in the fit (RMS)" : "Residual (RMS)", {}, {}};
+  Section section{residual.held_out ? "Residual on data not used in the fit: without effects, with them (RMS)"
+                                    : "Residual (RMS)",
+                  {},
+                  {}};
+  if (!residual.before && !residual.after) return section;
   section.table.head = {"", "x mm", "y mm", "yaw deg"};
-  section.table.rows = {residual_row("before", residual.before), residual_row("after", residual.after),
+  section.table.rows = {residual_row("without effects", residual.before),
+                        residual_row("with effects", residual.after),
                         residual_row("noise floor", residual.noise_floor)};
   return section;
 }
@@ -149,7 +139,11 @@ Section data_of(const Calibration& calibration) {
   Section section{"Data", {}, {}};
   for (const auto& data : calibration.data) {
     std::string line = fmt::format("{}: {:.1f} s", data.name, data.duration);
-    for (const auto& [what, count] : data.counts) line += fmt::format(", {} {}", count, what);
+    for (const auto& [what, count] : data.counts) {
+      if (count == 0) continue;
+      line += fmt::format(", {} {}", count, what);
+      if (data.duration > 0.0) line += fmt::format(" ({:.1f}/s)", static_cast<double>(count) / data.duration);
+    }
     section.lines.push_back(line);
     for (const auto& [why, count] : data.discarded)
       section.lines.push_back(fmt::format("  not used: {} {}", count, why));
@@ -165,15 +159,38 @@ std::string headline(Verdict verdict) {
   return verdict == Verdict::refused ? "REFUSED" : "ACCEPTED WITH WARNINGS";
 }
 
+std::string next_step(Verdict verdict) {
+  if (verdict == Verdict::accepted) return "Next: odomcalibctl apply writes these values to the controller.";
+  if (verdict == Verdict::refused) return "Next: record again as the reasons say. Nothing was written.";
+  return "Next: usable; read the reasons first. A longer recording with more kinds of motion may remove "
+         "them.";
+}
+
 Document describe(const Calibration& calibration) {
-  Document document{headline(calibration.verdict), {}};
-  if (!calibration.reasons.empty()) document.sections.push_back({"", calibration.reasons, {}});
-  for (Section section : {parameters_of(calibration), methods_of(calibration), effects_of(calibration)})
+  const ReportData data = report_data_of(calibration);
+  Document document{headline(calibration.verdict), {{"", calibration.reasons, {}}}};
+  document.sections.front().lines.push_back(next_step(calibration.verdict));
+  std::vector<Section> sections = {parameters_of(calibration),
+                                   drive_errors_section(data),
+                                   effects_of(calibration),
+                                   traces_section(data),
+                                   path_section(data),
+                                   residual_of(calibration.residual),
+                                   methods_of(calibration),
+                                   determination_section(calibration),
+                                   repeatability_section(calibration, data),
+                                   residual_shape_section(data),
+                                   data_of(calibration),
+                                   settings_section(calibration)};
+  for (Section& section : sections)
     if (!section.lines.empty() || !section.table.rows.empty())
       document.sections.push_back(std::move(section));
-  const auto& residual = calibration.residual;
-  if (residual.before || residual.after) document.sections.push_back(residual_of(residual));
-  document.sections.push_back(data_of(calibration));
+  return document;
+}
+
+Document report(const Calibration& calibration) {
+  Document document = describe(calibration);
+  document.sections.push_back(reading_section());
   return document;
 }
 

@@ -8,6 +8,9 @@ namespace odomcalib::cli {
 
 Document describe(const Calibration& calibration);
 
+/// The same with an explanation for readers who have never seen one.
+Document report(const Calibration& calibration);
+
 /// "ACCEPTED", "ACCEPTED WITH WARNINGS" or "REFUSED".
 std::string headline(Verdict verdict);
 

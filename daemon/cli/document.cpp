@@ -42,42 +42,6 @@ std::string text_of(const Table& table, bool legend) {
   return out;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += c;
-  }
-  return out;
-}
-
-std::string html_row(const std::vector<std::string>& row, const char* cell) {
-  std::string out = "<tr>";
-  for (const auto& text : row) out += fmt::format("<{0}>{1}</{0}>", cell, escaped(text));
-  return out + "</tr>\n";
-}
-
-std::string html_of(const Section& section) {
-  std::string out;
-  if (!section.title.empty()) out += fmt::format("<h2>{}</h2>\n", escaped(section.title));
-  for (const auto& line : section.lines) out += fmt::format("<p>{}</p>\n", escaped(line));
-  if (section.table.rows.empty()) return out;
-  out += "<table>\n" + html_row(section.table.head, "th");
-  for (const auto& row : section.table.rows) out += html_row(row, "td");
-  return out + "</table>\n";
-}
-
-constexpr const char* kStyle =
-    "body{font:15px/1.4 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}"
-    "table{border-collapse:collapse;margin:.5em 0}td,th{padding:.2em .8em;border-bottom:1px solid #ddd;"
-    "text-align:right}td:first-child,th:first-child{text-align:left}";
-
 }  // namespace
 
 std::string to_text(const Document& document, bool legend) {
@@ -89,15 +53,6 @@ std::string to_text(const Document& document, bool legend) {
     out += text_of(section.table, legend);
   }
   return out;
-}
-
-std::string to_html(const Document& document) {
-  std::string out = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title>"
-      "<style>{1}</style></head><body>\n<h1>{0}</h1>\n",
-      escaped(document.headline), kStyle);
-  for (const Section& section : document.sections) out += html_of(section);
-  return out + "</body></html>\n";
 }
 
 }  // namespace odomcalib::cli

@@ -1,6 +1,8 @@
-// A result as headings, lines and tables, rendered as text or as one HTML page: the two cannot disagree.
+// A result as headings, lines, tables and figures, rendered as text or as one HTML page: the two cannot
+// disagree.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,10 +13,29 @@ struct Table {
   std::vector<std::vector<std::string>> rows;  ///< first column left-aligned, the others right-aligned
 };
 
+/// What is drawn of a figure; the tone tells what it stands for, in every figure the same.
+struct Curve {
+  enum class Style { line, dots, steps };
+  enum class Tone { before, after, reference };
+  std::string label;
+  Style style = Style::line;
+  Tone tone = Tone::after;
+  std::vector<std::array<double, 2>> points;
+  std::vector<double> errors = {};  ///< half widths of vertical bars, one a point, or none
+};
+
+struct Figure {
+  std::string caption;
+  std::string x_label, y_label;
+  bool equal_scales = false;  ///< a map: a metre is a metre both ways
+  std::vector<Curve> curves;
+};
+
 struct Section {
   std::string title;  ///< empty: no heading
   std::vector<std::string> lines;
   Table table;
+  std::vector<Figure> figures = {};  ///< in HTML only: whatever they show is said in lines or table too
 };
 
 struct Document {
@@ -24,7 +45,7 @@ struct Document {
 
 /// @param legend whether tables show their head
 std::string to_text(const Document& document, bool legend = true);
-/// Self-contained page without scripts; texts are escaped.
+/// Self-contained page without scripts, readable on light and on dark screens; texts are escaped.
 std::string to_html(const Document& document);
 
 }  // namespace odomcalib::cli

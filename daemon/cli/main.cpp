@@ -36,6 +36,8 @@ int run(int argc, char** argv) {
   odomcalib::cli::add_predict(app, session);
   odomcalib::cli::add_decode(app, session);
   odomcalib::cli::add_match(app, session);
+  odomcalib::cli::add_report(app, session);
+  odomcalib::cli::add_export(app, session);
   odomcalib::cli::add_questions(app, session);
   odomcalib::cli::add_record(app, session);
   odomcalib::cli::add_motions(app, session);

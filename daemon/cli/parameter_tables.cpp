@@ -5,6 +5,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "daemon/cli/display.hpp"
+
 namespace odomcalib::cli {
 namespace {
 
@@ -16,12 +18,6 @@ std::string millimetres(const ordered_json& object, const char* name) {
   const auto found = object.find(name);
   if (found == object.end() || !found->is_number()) return "-";
   return fmt::format("{:.3f}", 1000.0 * found->get<double>());
-}
-
-std::string readable(std::string name) {
-  for (char& c : name)
-    if (c == '_') c = ' ';
-  return name;
 }
 
 Section parameter_section(const ordered_json& parameters) {

@@ -3,12 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "calib/solve.hpp"
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/verbs.hpp"
+#include "odomcalib_version.hpp"
 #include "proto/calibration.hpp"
 #include "proto/file_bytes.hpp"
 
@@ -18,14 +20,21 @@ namespace {
 struct Options {
   std::vector<std::string> recordings;
   std::vector<std::string> effects{"auto"};
-  std::string robot, out, report;
+  std::string robot, out, report, note;
 };
 
 Result<void> write_results(const Options& options, const Calibration& calibration) {
   if (!options.out.empty())
     if (auto written = write_calibration(calibration, options.out); !written) return written;
-  if (!options.report.empty()) return replace_file(options.report, to_html(describe(calibration)));
+  if (!options.report.empty()) return replace_file(options.report, to_html(report(calibration)));
   return {};
+}
+
+// What a reader of the file must know to repeat the run.
+std::string settings_of(const Options& options) {
+  nlohmann::ordered_json settings = {{"version", kVersion}, {"effects", options.effects}};
+  if (!options.note.empty()) settings["note"] = options.note;
+  return settings.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 int solve_recordings(const Options& options, const Session& session) {
@@ -35,7 +44,8 @@ int solve_recordings(const Options& options, const Session& session) {
   const auto progress = [&line](const std::string& phase, double fraction) {
     line.show(fmt::format("{} {:3.0f} %", phase, 100.0 * fraction));
   };
-  const Calibration calibration = calib::solve(recordings.value(), {.effects = options.effects}, progress);
+  Calibration calibration = calib::solve(recordings.value(), {.effects = options.effects}, progress);
+  calibration.extensions["settings"] = settings_of(options);
   line.clear();
   if (auto written = write_results(options, calibration); !written)
     return report_error(written.error(), session.json);
@@ -57,6 +67,7 @@ void add_solve(CLI::App& app, Session& session) {
   verb->add_option("--effects", options->effects, "auto, none, or names of effects to fit")->delimiter(',');
   verb->add_option("--out", options->out, "calibration file to write, also when refused");
   verb->add_option("--report", options->report, "HTML report to write");
+  verb->add_option("--note", options->note, "surface, load, tyres: kept in file and report");
   verb->callback([&session, options] {
     session.run = [&session, options] { return solve_recordings(*options, session); };
   });

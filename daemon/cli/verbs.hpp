@@ -26,6 +26,8 @@ void add_solve(CLI::App& app, Session& session);
 void add_predict(CLI::App& app, Session& session);
 void add_decode(CLI::App& app, Session& session);
 void add_match(CLI::App& app, Session& session);
+void add_report(CLI::App& app, Session& session);
+void add_export(CLI::App& app, Session& session);
 
 // Ask the daemon.
 int show_status(const Session& session);

@@ -61,12 +61,9 @@ BlindAnswer add_effect(const Arguments& arguments, SimulationConfig& config) {
   const EffectKind* kind = find_effect(arguments.effect);
   if (kind == nullptr) return answer;
   Random random(arguments.seed);
-  answer.effect = kind->name;
-  answer.catalogue_name = kind->catalogue_name;
-  answer.depends_on = kind->depends_on;
-  answer.unit = kind->unit;
-  answer.size = arguments.size >= 0.0 ? arguments.size : kind->largest;
-  config.disturbances = {kind->make(answer.size, random)};
+  const double size = arguments.size >= 0.0 ? arguments.size : kind->largest;
+  answer.effects = {{kind->name, kind->catalogue_name, kind->depends_on, size, kind->unit}};
+  config.disturbances = {kind->make(size, random)};
   return answer;
 }
 

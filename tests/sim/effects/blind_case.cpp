@@ -14,16 +14,38 @@ namespace {
 constexpr double kEnoughClearance = 0.25;  // m; nearer the robot would have touched a wall
 constexpr int kAttempts = 20;
 
-Disturbances draw_effect(Random& random, const BlindOptions& options, BlindAnswer& answer) {
-  if (uniform(random, 0.0, 1.0) < options.share_without_effect) return {};
-  const EffectKind& kind = effect_kinds()[random() % effect_kinds().size()];
-  const double low = std::log(kind.smallest), high = std::log(kind.largest);
-  answer.effect = kind.name;
-  answer.catalogue_name = kind.catalogue_name;
-  answer.depends_on = kind.depends_on;
-  answer.unit = kind.unit;
-  answer.size = options.size_factor * std::exp(uniform(random, low, high));
-  return {kind.make(answer.size, random)};
+BlindEffect describe(const EffectKind& kind, double size) {
+  return {kind.name, kind.catalogue_name, kind.depends_on, size, kind.unit};
+}
+
+std::vector<const EffectKind*> drawable_kinds(const BlindOptions& options) {
+  std::vector<const EffectKind*> kinds;
+  for (const EffectKind& kind : effect_kinds())
+    if (!options.only_catalogue || !kind.catalogue_name.empty()) kinds.push_back(&kind);
+  return kinds;
+}
+
+/// Two effects that one name of the catalogue covers would be one finding.
+bool drawn_before(const EffectKind& kind, const std::vector<BlindEffect>& drawn) {
+  return std::any_of(drawn.begin(), drawn.end(), [&](const BlindEffect& other) {
+    return other.name == kind.name ||
+           (!kind.catalogue_name.empty() && other.catalogue_name == kind.catalogue_name);
+  });
+}
+
+Disturbances draw_effects(Random& random, const BlindOptions& options, BlindAnswer& answer) {
+  Disturbances disturbances;
+  if (uniform(random, 0.0, 1.0) < options.share_without_effect) return disturbances;
+  const auto kinds = drawable_kinds(options);
+  while (answer.effects.size() < options.effects) {
+    const EffectKind& kind = *kinds[random() % kinds.size()];
+    if (drawn_before(kind, answer.effects)) continue;
+    const double low = std::log(kind.smallest), high = std::log(kind.largest);
+    const double size = options.size_factor * std::exp(uniform(random, low, high));
+    answer.effects.push_back(describe(kind, size));
+    disturbances.push_back(kind.make(size, random));
+  }
+  return disturbances;
 }
 
 /// Pieces of the guided pattern that end about where they began may come in any order.
@@ -72,35 +94,92 @@ SimulationConfig draw_config(Random& random, std::uint64_t seed) {
   return config;
 }
 
-BlindCase attempt(std::uint64_t campaign, unsigned number, int attempt_number, const BlindOptions& options) {
+struct Draw {
+  SimulationConfig config;
+  Drive drive;
+  BlindAnswer answer;
+};
+
+/// A drive and the disturbances keep state, so every run needs a draw of its own.
+Draw draw(std::uint64_t campaign, unsigned number, int attempt, const BlindOptions& options) {
   std::seed_seq sequence{static_cast<unsigned>(campaign), static_cast<unsigned>(campaign >> 32U), number,
-                         static_cast<unsigned>(attempt_number)};
+                         static_cast<unsigned>(attempt)};
   Random random(sequence);
-  BlindCase out;
+  Draw out;
   out.answer.campaign = campaign;
   out.answer.number = number;
-  SimulationConfig config = draw_config(random, random());
-  const Drive drive = draw_drive(random, config.nominal, out.answer);
-  config.disturbances = draw_effect(random, options, out.answer);
-  out.run = simulate_recording(config, drive);
-  out.answer.truth = config.truth;
-  out.answer.least_clearance = out.run.least_clearance;
+  out.config = draw_config(random, random());
+  out.drive = draw_drive(random, out.config.nominal, out.answer);
+  out.config.disturbances = draw_effects(random, options, out.answer);
+  out.answer.truth = out.config.truth;
   return out;
+}
+
+struct Attempt {
+  BlindCase drawn;
+  int number = 0;
+};
+
+Attempt first_clear_attempt(std::uint64_t campaign, unsigned number, const BlindOptions& options) {
+  Attempt attempt;
+  for (; attempt.number < kAttempts; ++attempt.number) {
+    Draw one = draw(campaign, number, attempt.number, options);
+    attempt.drawn.run = simulate_recording(one.config, one.drive);
+    attempt.drawn.answer = std::move(one.answer);
+    attempt.drawn.answer.least_clearance = attempt.drawn.run.least_clearance;
+    if (attempt.drawn.run.least_clearance >= kEnoughClearance) break;
+  }
+  return attempt;
+}
+
+/// Random arcs for two minutes, with other noise; the whole circle of headings and all speeds.
+SimulatedRun fresh_drive(Draw one) {
+  constexpr double kDuration = 120.0;  // s
+  one.config.seed += 1000003;
+  one.config.duration = kDuration;
+  return simulate_recording(one.config, random_drive(one.config.nominal, one.config.seed, 0.9));
+}
+
+Draw without_effects(Draw one) {
+  one.config.disturbances.clear();
+  return one;
 }
 
 }  // namespace
 
 BlindCase make_blind_case(std::uint64_t campaign, unsigned number, const BlindOptions& options) {
-  BlindCase out;
-  for (int i = 0; i < kAttempts; ++i) {
-    out = attempt(campaign, number, i, options);
-    if (out.run.least_clearance >= kEnoughClearance) break;
-  }
+  BlindCase out = first_clear_attempt(campaign, number, options).drawn;
   const std::string label = "blind-" + std::to_string(campaign) + "-" + std::to_string(number);
   out.run.recording.name = label + ".jsonl.gz";
   out.run.recording.robot.robot_id = label;
   return out;
 }
+
+BlindProof make_blind_proof(std::uint64_t campaign, unsigned number, const BlindOptions& options) {
+  const int attempt = first_clear_attempt(campaign, number, options).number;
+  const auto again = [&] { return draw(campaign, number, attempt, options); };
+  BlindProof proof;
+  const Draw twin = without_effects(again());
+  proof.twin = simulate_recording(twin.config, twin.drive);
+  proof.fresh = fresh_drive(again());
+  proof.fresh_twin = fresh_drive(without_effects(again()));
+  return proof;
+}
+
+namespace {
+
+nlohmann::ordered_json effects_json(const std::vector<BlindEffect>& effects) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const BlindEffect& effect : effects)
+    list.push_back({{"name", effect.name},
+                    {"catalogue_name", effect.catalogue_name},
+                    {"depends_on", effect.depends_on},
+                    {"size", effect.size},
+                    {"unit", effect.unit}});
+  return list;
+}
+
+}  // namespace
 
 std::string answers_json(const std::vector<BlindAnswer>& answers) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -108,11 +187,7 @@ std::string answers_json(const std::vector<BlindAnswer>& answers) {
     const Geometry& truth = answer.truth;
     list.push_back({{"campaign", answer.campaign},
                     {"number", answer.number},
-                    {"effect", answer.effect},
-                    {"catalogue_name", answer.catalogue_name},
-                    {"depends_on", answer.depends_on},
-                    {"size", answer.size},
-                    {"unit", answer.unit},
+                    {"effects", effects_json(answer.effects)},
                     {"drive", answer.drive},
                     {"left_wheel_diameter", truth.left_diameter},
                     {"right_wheel_diameter", truth.right_diameter},

@@ -10,16 +10,20 @@
 
 namespace odomcalib::sim {
 
-/// What the estimators do not see.
-struct BlindAnswer {
-  std::uint64_t campaign = 0;
-  unsigned number = 0;
-  std::string effect;          ///< empty: nothing is missing in the model
+struct BlindEffect {
+  std::string name;
   std::string catalogue_name;  ///< nearest name in the catalogue; empty: outside
   std::vector<std::string> depends_on;
   double size = 0.0;
   std::string unit;
-  std::string drive;  ///< guided, shuffled or random
+};
+
+/// What the estimators do not see.
+struct BlindAnswer {
+  std::uint64_t campaign = 0;
+  unsigned number = 0;
+  std::vector<BlindEffect> effects;  ///< empty: nothing is missing in the model
+  std::string drive;                 ///< guided, shuffled or random
   Geometry truth;
   double least_clearance = 0.0;  ///< m
 };
@@ -32,10 +36,20 @@ struct BlindCase {
 struct BlindOptions {
   double share_without_effect = 0.2;
   double size_factor = 1.0;  ///< scales the range of sizes of every effect
+  unsigned effects = 1;      ///< of different kinds, in the recordings that have any
+  bool only_catalogue = false;
 };
 
 /// Same campaign and number, same case. The recording's names give nothing away but campaign and number.
 BlindCase make_blind_case(std::uint64_t campaign, unsigned number, const BlindOptions& options = {});
+
+/// Recordings to judge an answer by, which no estimator is given.
+struct BlindProof {
+  SimulatedRun twin;        ///< same robot, room, drive and noise, without the effects
+  SimulatedRun fresh;       ///< same robot with the effects, two minutes of another drive
+  SimulatedRun fresh_twin;  ///< the other drive without the effects
+};
+BlindProof make_blind_proof(std::uint64_t campaign, unsigned number, const BlindOptions& options = {});
 
 /// The answers as JSON text, in the order given.
 std::string answers_json(const std::vector<BlindAnswer>& answers);

@@ -61,8 +61,9 @@ TEST_P(JacobianOf, agrees_with_central_differences) {
   std::vector<double> steps(kBaseCount, 1e-6);
   for (const auto& effect : effects)
     for (const EffectParameter& parameter : effect->parameters()) {
-      p(static_cast<Eigen::Index>(steps.size())) = 0.25 * parameter.scale;
-      steps.push_back(1e-4 * parameter.scale);
+      const double typical = parameter.start != 0.0 ? parameter.start : 0.25 * parameter.scale;
+      p(static_cast<Eigen::Index>(steps.size())) = typical;
+      steps.push_back(4e-4 * typical);
     }
   const auto intervals = some_intervals();
   Eigen::MatrixXd jacobian;
@@ -93,14 +94,17 @@ INSTANTIATE_TEST_SUITE_P(Model, JacobianOf, ::testing::Range(std::size_t{0}, eff
                            return effect->name() + "_" + effect->parameters().front().name;
                          });
 
-TEST(Effects, change_nothing_when_their_parameters_are_zero) {
+TEST(Effects, change_nothing_where_their_fit_starts) {
   const WheelTrack track = lively_track();
   const DriveModel model(track, make_context(track, kBase));
   const auto intervals = some_intervals();
   const auto plain = model.predict(as_span(to_vector(kBase)), {}, intervals);
   for (const auto& effect : effect_catalogue()) {
     const EffectList one = {effect};
-    const auto with = model.predict(as_span(to_vector(kBase, count_parameters(one))), one, intervals);
+    Eigen::VectorXd p = to_vector(kBase, count_parameters(one));
+    const std::vector<double> start = start_of(one);
+    std::copy(start.begin(), start.end(), p.data() + kBaseCount);
+    const auto with = model.predict(as_span(p), one, intervals);
     for (std::size_t i = 0; i < plain.size(); ++i) {
       EXPECT_NEAR(with[i].x, plain[i].x, 1e-12) << effect->name();
       EXPECT_NEAR(with[i].yaw, plain[i].yaw, 1e-12) << effect->name();

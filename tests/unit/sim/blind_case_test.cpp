@@ -29,14 +29,15 @@ TEST(BlindCase, draws_many_effects_and_some_cases_without_and_keeps_clear_of_wal
   std::set<std::string> effects;
   for (unsigned number = 0; number < 12; ++number) {
     const BlindCase drawn = make_blind_case(9, number);
-    effects.insert(drawn.answer.effect);
     EXPECT_GE(drawn.answer.least_clearance, 0.25) << "case " << number;
     EXPECT_GT(drawn.run.recording.scans.size(), 2000U);
-    if (drawn.answer.effect.empty()) continue;
-    const EffectKind* kind = find_effect(drawn.answer.effect);
-    ASSERT_NE(kind, nullptr);
-    EXPECT_GE(drawn.answer.size, kind->smallest);
-    EXPECT_LE(drawn.answer.size, kind->largest);
+    for (const BlindEffect& effect : drawn.answer.effects) {
+      effects.insert(effect.name);
+      const EffectKind* kind = find_effect(effect.name);
+      ASSERT_NE(kind, nullptr);
+      EXPECT_GE(effect.size, kind->smallest);
+      EXPECT_LE(effect.size, kind->largest);
+    }
   }
   EXPECT_GE(effects.size(), 6U);
 }
@@ -45,7 +46,29 @@ TEST(BlindCase, without_effects_when_asked_for) {
   BlindOptions options;
   options.share_without_effect = 1.0;
   for (unsigned number = 0; number < 2; ++number)
-    EXPECT_TRUE(make_blind_case(1, number, options).answer.effect.empty());
+    EXPECT_TRUE(make_blind_case(1, number, options).answer.effects.empty());
+}
+
+TEST(BlindCase, pairs_are_of_two_kinds_and_of_two_names) {
+  BlindOptions options;
+  options.share_without_effect = 0.0;
+  options.effects = 2;
+  options.only_catalogue = true;
+  for (unsigned number = 0; number < 3; ++number) {
+    const auto effects = make_blind_case(5, number, options).answer.effects;
+    ASSERT_EQ(effects.size(), 2U);
+    EXPECT_FALSE(effects[0].catalogue_name.empty());
+    EXPECT_NE(effects[0].catalogue_name, effects[1].catalogue_name);
+  }
+}
+
+TEST(BlindCase, the_proof_has_the_same_robot_and_other_data) {
+  const BlindCase drawn = make_blind_case(42, 3);
+  const BlindProof proof = make_blind_proof(42, 3);
+  EXPECT_EQ(proof.fresh.truth.left_diameter, drawn.answer.truth.left_diameter);
+  EXPECT_EQ(proof.twin.truth.track_width, drawn.answer.truth.track_width);
+  EXPECT_NE(proof.fresh.recording.scans.front().ranges, drawn.run.recording.scans.front().ranges);
+  EXPECT_EQ(proof.twin.recording.ticks.size(), drawn.run.recording.ticks.size());
 }
 
 }  // namespace

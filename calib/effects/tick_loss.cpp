@@ -1,0 +1,55 @@
+#include "calib/effects/factories.hpp"
+#include "calib/effects/step_effect.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+/// A counter that misses edges above a wheel speed: dL' = dL (1 + kappa_L [|u_L| > threshold]). The step is
+/// given the width over which the smoothed speed changes anyway.
+class TickLoss final : public StepEffect<TickLoss> {
+ public:
+  explicit TickLoss(double threshold) : threshold_(threshold) {}
+  [[nodiscard]] std::string name() const override { return "tick_loss"; }
+  [[nodiscard]] std::vector<EffectParameter> parameters() const override {
+    return {{"left_kappa", "1", 0.01, -0.3, 0.3},
+            {"right_kappa", "1", 0.01, -0.3, 0.3},
+            {"threshold", "m/s", 1e9, 0.02, 5.0, threshold_}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override {
+    return {"speed_dependent_radius", "track_depends_on_motion"};
+  }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "straight lines above and below the threshold, and spins whose wheel speed stays below it";
+  }
+  [[nodiscard]] std::vector<std::shared_ptr<const Effect>> variants() const override {
+    std::vector<std::shared_ptr<const Effect>> all;
+    for (const double threshold : {0.1, 0.14, 0.19, 0.25, 0.32, 0.4, 0.5, 0.7, 1.0, 1.5})
+      all.push_back(std::make_shared<TickLoss>(threshold));
+    return all;
+  }
+  [[nodiscard]] std::vector<Law> laws() const override {
+    return {{Variable::left_speed, Carrier::left_travel}, {Variable::right_speed, Carrier::right_travel}};
+  }
+
+  template <typename T>
+  static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
+    step.left *= 1.0 + p[0] * above(std::abs(c.left_speed), p[2]);
+    step.right *= 1.0 + p[1] * above(std::abs(c.right_speed), p[2]);
+  }
+
+ private:
+  template <typename T>
+  static T above(double speed, const T& threshold) {
+    using std::exp;
+    constexpr double kWidth = 0.01;  // m/s
+    const T steps = (threshold - speed) / kWidth;
+    return 1.0 / (1.0 + exp(steps));
+  }
+  double threshold_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> make_tick_loss() { return std::make_shared<TickLoss>(0.25); }
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,232 @@
+#include "calib/matching/walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/statistics/median.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr std::size_t kMinWallPoints = 4;
+constexpr double kMaxAngleSigma = 0.08;  ///< rad; what is shorter may as well be a corner or a curve
+constexpr double kRelativeGap = 7.0;  ///< times the step across the beam, as on a surface seen at 82 degrees
+constexpr double kMinGap = 0.02;      ///< m
+constexpr double kMaxJoinGap = 1.0;   ///< m between the ends of two pieces of one wall
+constexpr double kMaxJoinSquares = 12.0;  ///< chi-square of two degrees of freedom, 99.8 %
+constexpr double kMinJoinCosine = 0.9;    ///< between the normals of the pieces
+constexpr double kMinEndMargin = 0.03;    ///< m, about one beam to the next
+constexpr double kSurfaceFloor = 1e-3;    ///< m, unevenness of surfaces and angular error of beams
+
+struct Piece {
+  std::size_t first, last;  ///< points of the surface, both included
+};
+
+/// Largest chi-square that a straight wall is allowed: four standard deviations above its mean, and a fifth
+/// for noise that is a little more than assumed.
+double straightness_limit(std::size_t count) {
+  const double freedom = static_cast<double>(count) - 2.0;
+  return 1.2 * freedom + 4.0 * std::sqrt(2.0 * freedom);
+}
+
+double median_step(const Surface& surface) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < surface.points.size(); ++i) {
+    const Eigen::Vector2d& a = surface.points[i - 1].beam;
+    const Eigen::Vector2d& b = surface.points[i].beam;
+    steps.push_back(std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b))));
+  }
+  return median_of(std::move(steps));
+}
+
+std::vector<Piece> split_at_gaps(const Surface& surface) {
+  const double step = median_step(surface);
+  std::vector<Piece> runs{{0, 0}};
+  for (std::size_t i = 1; i < surface.points.size(); ++i) {
+    const SurfacePoint& a = surface.points[i - 1];
+    const SurfacePoint& b = surface.points[i];
+    const double limit = std::max(kMinGap, kRelativeGap * std::min(a.range, b.range) * step);
+    if ((b.position - a.position).norm() > limit)
+      runs.push_back({i, i});
+    else
+      runs.back().last = i;
+  }
+  return runs;
+}
+
+LineSums sums_of(const Surface& surface, const Piece& piece, const Eigen::Vector2d& normal,
+                 double range_noise) {
+  LineSums sums;
+  for (std::size_t i = piece.first; i <= piece.last; ++i) {
+    const SurfacePoint& point = surface.points[i];
+    sums.add(point.position, 1.0 / distance_variance(point.beam.dot(normal), range_noise));
+  }
+  return sums;
+}
+
+/// Unweighted first: the weights depend on the direction of the wall.
+Wall wall_through(const Surface& surface, const Piece& piece, double range_noise) {
+  LineSums equal;
+  for (std::size_t i = piece.first; i <= piece.last; ++i) equal.add(surface.points[i].position, 1.0);
+  Wall wall;
+  wall.sums = sums_of(surface, piece, fit_line(equal).normal, range_noise);
+  wall.line = fit_line(wall.sums);
+  return wall;
+}
+
+bool is_straight(const Wall& wall) {
+  return wall.line.squares < straightness_limit(wall.sums.count) &&
+         wall.line.angle_variance < kMaxAngleSigma * kMaxAngleSigma;
+}
+
+/// The point farthest from the chord between the ends; an end itself when the piece is too short to cut.
+std::size_t farthest_from_chord(const Surface& surface, const Piece& piece) {
+  const Eigen::Vector2d a = surface.points[piece.first].position;
+  const Eigen::Vector2d chord = surface.points[piece.last].position - a;
+  std::size_t farthest = piece.first + (piece.last - piece.first) / 2;
+  double largest = 0.0;
+  for (std::size_t i = piece.first + 1; i < piece.last; ++i) {
+    const Eigen::Vector2d d = surface.points[i].position - a;
+    const double distance = std::abs(chord.x() * d.y() - chord.y() * d.x());
+    if (distance > largest) {
+      largest = distance;
+      farthest = i;
+    }
+  }
+  return farthest;
+}
+
+struct PieceOfWall {
+  Piece piece;
+  Wall wall;
+};
+
+struct JoinedPieces {
+  PieceOfWall whole;
+  std::vector<Piece> members;
+};
+
+void split(const Surface& surface, const Piece& piece, double range_noise, std::vector<PieceOfWall>& out) {
+  if (piece.last - piece.first + 1 < kMinWallPoints) return;
+  const Wall wall = wall_through(surface, piece, range_noise);
+  if (is_straight(wall)) {
+    out.push_back({piece, wall});
+    return;
+  }
+  const std::size_t cut = farthest_from_chord(surface, piece);
+  split(surface, {piece.first, cut - 1}, range_noise, out);
+  split(surface, {cut, piece.last}, range_noise, out);
+}
+
+/// Takes in the next piece if both are one line; each may be far below its own limit, so that what joining
+/// adds must be noise, too.
+bool join(PieceOfWall& into, const PieceOfWall& next, const Surface& surface) {
+  const double gap =
+      (surface.points[next.piece.first].position - surface.points[into.piece.last].position).norm();
+  if (gap > kMaxJoinGap || std::abs(into.wall.line.normal.dot(next.wall.line.normal)) < kMinJoinCosine)
+    return false;
+  Wall joined;
+  joined.sums = into.wall.sums;
+  joined.sums += next.wall.sums;
+  joined.line = fit_line(joined.sums);
+  if (!is_straight(joined)) return false;
+  const double added = joined.line.squares - into.wall.line.squares - next.wall.line.squares;
+  if (added > kMaxJoinSquares) return false;
+  into.wall = joined;
+  into.piece.last = next.piece.last;
+  return true;
+}
+
+std::vector<JoinedPieces> group(const std::vector<PieceOfWall>& pieces, const Surface& surface) {
+  std::vector<JoinedPieces> groups;
+  for (const PieceOfWall& next : pieces) {
+    if (groups.empty() || !join(groups.back().whole, next, surface)) groups.push_back({next, {}});
+    groups.back().members.push_back(next.piece);
+  }
+  return groups;
+}
+
+/// Near a corner a reading of one wall lies within the noise of the other, always on the same side of it. The
+/// two scans would not be misled alike, so neither uses the ends of a wall.
+double end_margin(double range_noise) { return std::max(3.0 * range_noise, kMinEndMargin); }
+
+/// Indices of the points of all pieces, with their place along the line.
+std::vector<std::pair<std::size_t, double>> places_along(const JoinedPieces& pieces, const Surface& surface) {
+  const FittedLine& line = pieces.whole.wall.line;
+  std::vector<std::pair<std::size_t, double>> places;
+  for (const Piece& member : pieces.members)
+    for (std::size_t i = member.first; i <= member.last; ++i)
+      places.emplace_back(i, line.direction().dot(surface.points[i].position - line.centre));
+  return places;
+}
+
+void take(const JoinedPieces& pieces, const Surface& surface, double range_noise, Walls& out) {
+  const FittedLine& line = pieces.whole.wall.line;
+  const auto places = places_along(pieces, surface);
+  const auto [lowest, highest] =
+      std::minmax_element(places.begin(), places.end(), [](auto& a, auto& b) { return a.second < b.second; });
+  Wall wall;
+  wall.low = lowest->second + end_margin(range_noise);
+  wall.high = highest->second - end_margin(range_noise);
+  for (const auto& [i, s] : places) {
+    if (s < wall.low || s > wall.high) continue;
+    const SurfacePoint& point = surface.points[i];
+    wall.sums.add(point.position, 1.0 / distance_variance(point.beam.dot(line.normal), range_noise));
+  }
+  if (wall.sums.count < kMinWallPoints) return;
+  wall.line = fit_line(wall.sums);
+  // The ends are told from the line's centre, which has moved with the readings left out.
+  const double moved = line.direction().dot(wall.line.centre - line.centre);
+  const bool turned = line.direction().dot(wall.line.direction()) < 0.0;
+  const double low = wall.low - moved, high = wall.high - moved;
+  wall.low = turned ? -high : low;
+  wall.high = turned ? -low : high;
+  for (const auto& [i, s] : places) out.of_point[i] = out.walls.size();
+  out.walls.push_back(wall);
+}
+
+}  // namespace
+
+void LineSums::add(const Eigen::Vector2d& point, double point_weight) {
+  weight += point_weight;
+  first += point_weight * point;
+  second += point_weight * point * point.transpose();
+  ++count;
+}
+
+LineSums& LineSums::operator+=(const LineSums& other) {
+  weight += other.weight;
+  first += other.first;
+  second += other.second;
+  count += other.count;
+  return *this;
+}
+
+FittedLine fit_line(const LineSums& sums) {
+  FittedLine line;
+  line.centre = sums.centre();
+  const Eigen::Matrix2d scatter = sums.second - sums.weight * line.centre * line.centre.transpose();
+  const double angle = 0.5 * std::atan2(2.0 * scatter(0, 1), scatter(0, 0) - scatter(1, 1));
+  line.normal = {-std::sin(angle), std::cos(angle)};
+  const double half_spread = 0.5 * std::hypot(scatter(0, 0) - scatter(1, 1), 2.0 * scatter(0, 1));
+  line.squares = std::max(0.5 * scatter.trace() - half_spread, 0.0);
+  line.angle_variance = 1.0 / std::max(0.5 * scatter.trace() + half_spread, 1e-30);
+  return line;
+}
+
+double distance_variance(double cosine_of_incidence, double range_noise) {
+  const double across = range_noise * cosine_of_incidence;
+  return across * across + kSurfaceFloor * kSurfaceFloor;
+}
+
+Walls find_walls(const Surface& surface, double range_noise) {
+  Walls found;
+  found.of_point.assign(surface.points.size(), Walls::kNone);
+  if (surface.points.size() < kMinWallPoints) return found;
+  std::vector<PieceOfWall> pieces;
+  for (const Piece& run : split_at_gaps(surface)) split(surface, run, range_noise, pieces);
+  for (const JoinedPieces& joined : group(pieces, surface)) take(joined, surface, range_noise, found);
+  return found;
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,94 @@
+#include "calib/model/carrier.hpp"
+
+#include <algorithm>
+
+namespace odomcalib::calib {
+
+std::string to_string(Variable variable) {
+  static constexpr const char* kNames[] = {"left_speed",
+                                           "right_speed",
+                                           "speed",
+                                           "turn_rate",
+                                           "lateral_acceleration",
+                                           "left_acceleration",
+                                           "right_acceleration",
+                                           "left_phase",
+                                           "right_phase",
+                                           "time",
+                                           "heading",
+                                           "position",
+                                           "since_reversal",
+                                           "left_since_reversal",
+                                           "right_since_reversal",
+                                           "since_stop",
+                                           "previous_turn"};
+  return kNames[static_cast<std::size_t>(variable)];
+}
+
+std::string to_string(Carrier carrier) {
+  static constexpr const char* kNames[] = {"left_travel",   "right_travel", "both_travel", "track",
+                                           "sideways",      "left_path",    "right_path",  "both_path",
+                                           "sideways_path", "yaw_path",     "turn_path"};
+  return kNames[static_cast<std::size_t>(carrier)];
+}
+
+bool belongs_to_the_place(Variable variable) {
+  return variable == Variable::time || variable == Variable::heading || variable == Variable::position;
+}
+
+bool begins_with_the_recording(Variable variable) {
+  return belongs_to_the_place(variable) || variable == Variable::left_phase ||
+         variable == Variable::right_phase;
+}
+
+bool is_angle(Variable variable) {
+  return variable == Variable::left_phase || variable == Variable::right_phase ||
+         variable == Variable::heading;
+}
+
+bool is_distance_since(Variable variable) {
+  return variable == Variable::since_reversal || variable == Variable::left_since_reversal ||
+         variable == Variable::right_since_reversal || variable == Variable::since_stop;
+}
+
+double value_of(Variable variable, const StepContext& c) {
+  switch (variable) {
+    case Variable::left_speed:
+      return c.left_speed;
+    case Variable::right_speed:
+      return c.right_speed;
+    case Variable::speed:
+      return c.speed;
+    case Variable::turn_rate:
+      return c.turn_rate;
+    case Variable::lateral_acceleration:
+      return c.speed * c.turn_rate;
+    case Variable::left_acceleration:
+      return c.left_acceleration;
+    case Variable::right_acceleration:
+      return c.right_acceleration;
+    case Variable::left_phase:
+      return c.left_angle;
+    case Variable::right_phase:
+      return c.right_angle;
+    case Variable::time:
+      return c.t;
+    case Variable::heading:
+      return c.heading;
+    case Variable::position:
+      return c.x;
+    case Variable::since_reversal:
+      return c.since_reversal;
+    case Variable::left_since_reversal:
+      return c.left_since_reversal;
+    case Variable::right_since_reversal:
+      return c.right_since_reversal;
+    case Variable::since_stop:
+      return c.since_stop;
+    case Variable::previous_turn:
+      return c.previous_turn;
+  }
+  return 0.0;
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,116 @@
+// What a defect may depend on, and how it enters the motion: the words of which effects and curves are made.
+#pragma once
+
+#include <string>
+
+#include "calib/model/motion_step.hpp"
+
+namespace odomcalib::calib {
+
+/// Observable variables of a tick interval.
+enum class Variable {
+  left_speed,
+  right_speed,
+  speed,
+  turn_rate,
+  lateral_acceleration,
+  left_acceleration,
+  right_acceleration,
+  left_phase,
+  right_phase,
+  time,
+  heading,
+  position,  ///< x and y together
+  since_reversal,
+  left_since_reversal,
+  right_since_reversal,
+  since_stop,
+  previous_turn,
+};
+inline constexpr Variable kLastVariable = Variable::previous_turn;
+std::string to_string(Variable variable);
+
+/// Dependence on time, heading or position is a property of the day or of the place, not of the robot.
+bool belongs_to_the_place(Variable variable);
+/// Counted from where each recording begins: recordings of one robot share no zero of it.
+bool begins_with_the_recording(Variable variable);
+bool is_angle(Variable variable);
+/// A distance or angle since an event: the defect fades with it.
+bool is_distance_since(Variable variable);
+
+/// Value in an interval; of the position, x.
+double value_of(Variable variable, const StepContext& context);
+
+/// `travel` is signed and reverses with the motion, `path` is unsigned. Left, right, both: relative to the
+/// travel of those wheels. Track: relative. Sideways: m per m of the base. Yaw path: rad per m of the base.
+/// Turn path: m ahead per rad of turning either way.
+enum class Carrier {
+  left_travel,
+  right_travel,
+  both_travel,
+  track,
+  sideways,
+  left_path,
+  right_path,
+  both_path,
+  sideways_path,
+  yaw_path,
+  turn_path,
+};
+inline constexpr Carrier kLastCarrier = Carrier::turn_path;
+std::string to_string(Carrier carrier);
+
+/// Lets a defect of size f act on the step.
+template <typename T>
+void carry(Carrier carrier, const StepContext& c, const T& f, WheelStep<T>& step) {
+  const double way = c.speed < 0.0 ? -1.0 : 1.0;
+  const double path = way * c.speed * c.dt;
+  const double turn = (c.turn_rate < 0.0 ? -c.turn_rate : c.turn_rate) * c.dt;
+  switch (carrier) {
+    case Carrier::left_travel:
+      step.left *= 1.0 + f;
+      break;
+    case Carrier::right_travel:
+      step.right *= 1.0 + f;
+      break;
+    case Carrier::both_travel:
+      step.left *= 1.0 + f;
+      step.right *= 1.0 + f;
+      break;
+    case Carrier::track:
+      step.track *= 1.0 + f;
+      break;
+    case Carrier::sideways:
+      step.side += f * (way * path);
+      break;
+    case Carrier::left_path:
+      step.left *= 1.0 + (c.left_delta < 0.0 ? -f : f);
+      break;
+    case Carrier::right_path:
+      step.right *= 1.0 + (c.right_delta < 0.0 ? -f : f);
+      break;
+    case Carrier::both_path:
+      step.left += f * path;
+      step.right += f * path;
+      break;
+    case Carrier::sideways_path:
+      step.side += f * path;
+      break;
+    case Carrier::yaw_path:
+      step.yaw += f * path;
+      break;
+    case Carrier::turn_path:
+      step.left += f * turn;
+      step.right += f * turn;
+      break;
+  }
+}
+
+/// A law of one variable on one carrier, whatever its shape.
+struct Law {
+  Variable variable = Variable::speed;
+  Carrier carrier = Carrier::both_travel;
+  friend bool operator==(const Law&, const Law&) = default;
+};
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,182 @@
+#include "calib/model/sensitivity.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "calib/model/step_twist.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+using Chunk = Eigen::Matrix<double, 3, kJetSize>;
+
+template <int N>
+using SmallJet = ceres::Jet<double, N>;
+
+template <int N>
+Eigen::Matrix<double, 3, N> derivatives_of(const Pose2<SmallJet<N>>& pose) {
+  Eigen::Matrix<double, 3, N> rows;
+  rows << pose.x.v.transpose(), pose.y.v.transpose(), pose.yaw.v.transpose();
+  return rows;
+}
+
+/// d exp(share w) / d w.
+Eigen::Matrix3d exp_derivative(const Pose& w, double share) {
+  using J = SmallJet<3>;
+  return derivatives_of<3>(exp_se2<J>(share * J(w.x, 0), share * J(w.y, 1), share * J(w.yaw, 2)));
+}
+
+/// Derivatives of m = mount^-1 * base * mount: columns base x, y, yaw, mount x, y, yaw.
+Eigen::Matrix<double, 3, 6> conjugate_derivative(const Pose& base, const Pose& mount) {
+  using J = SmallJet<6>;
+  return derivatives_of<6>(conjugate<J>({J(base.x, 0), J(base.y, 1), J(base.yaw, 2)},
+                                        {J(mount.x, 3), J(mount.y, 4), J(mount.yaw, 5)}));
+}
+
+/// One end of an interval on the trajectory.
+struct End {
+  std::size_t step = 0;
+  double share = 0.0;  ///< of the step's twist that lies before the end
+  Pose pose;
+  Eigen::Vector3d velocity;  ///< by encoder time, in room axes
+};
+
+End end_at(const Linearisation& at, double time) {
+  using J = SmallJet<1>;
+  End end;
+  end.step = at.track.interval_at(time);
+  const double begin = at.track.t[end.step];
+  const J share = (J(time, 0) - begin) / (at.track.t[end.step + 1] - begin);
+  const Pose& w = at.twists[end.step];
+  const Pose& p = at.poses[end.step];
+  const auto pose =
+      compose<J>({J(p.x), J(p.y), J(p.yaw)}, exp_se2<J>(share * w.x, share * w.y, share * w.yaw));
+  end.share = share.a;
+  end.pose = {pose.x.a, pose.y.a, pose.yaw.a};
+  end.velocity = derivatives_of<1>(pose);
+  return end;
+}
+
+/// What a change of the pose `here` (x, y in room axes, yaw) does to the base motion from `begin` to `end`,
+/// when everything after `here` is carried along rigidly.
+Eigen::Matrix3d carried(const Pose& begin, const Pose& here, const Pose& end) {
+  const double c = std::cos(begin.yaw), s = std::sin(begin.yaw);
+  const double lever_x = -(end.y - here.y), lever_y = end.x - here.x;
+  Eigen::Matrix3d m;
+  m << c, s, c * lever_x + s * lever_y, -s, c, c * lever_y - s * lever_x, 0.0, 0.0, 1.0;
+  return m;
+}
+
+Eigen::Matrix3d rotation(double yaw) {
+  Eigen::Matrix3d r;
+  r << std::cos(yaw), -std::sin(yaw), 0.0, std::sin(yaw), std::cos(yaw), 0.0, 0.0, 0.0, 1.0;
+  return r;
+}
+
+/// How the twist of a step changes a base motion: `part` of the twist from the pose `from` on leads to `to`.
+Eigen::Matrix3d twist_to_motion(const Pose& begin, const Pose& from, const Pose& to, const Pose& end,
+                                const Eigen::Matrix3d& part) {
+  return carried(begin, to, end) * rotation(from.yaw) * part;
+}
+
+/// Twist derivatives of every step by the parameters [first, first + kJetSize).
+std::vector<Chunk> twist_derivatives(const Linearisation& at, const std::vector<Jet>& jets,
+                                     const PlacedEffects& effects) {
+  std::vector<Chunk> all;
+  all.reserve(at.context.size());
+  for (const StepContext& context : at.context)
+    all.push_back(derivatives_of<kJetSize>(twist_of<Jet>(context, jets, effects)));
+  return all;
+}
+
+/// Parameters as jets; those in [first, first + kJetSize) carry derivatives.
+std::vector<Jet> seed(std::span<const double> parameters, std::size_t first) {
+  std::vector<Jet> jets;
+  jets.reserve(parameters.size());
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const bool active = k >= first && k < first + kJetSize;
+    jets.push_back(active ? Jet(parameters[k], static_cast<int>(k - first)) : Jet(parameters[k]));
+  }
+  return jets;
+}
+
+/// One interval with all that does not depend on which parameters are asked for.
+struct Path {
+  End begin, end;
+  Eigen::Matrix<double, 3, 6> to_sensor;  ///< by base motion, then by mount
+  std::vector<Eigen::Matrix3d> by_twist;  ///< base motion by the twist of each step from begin.step on
+  Eigen::Vector3d by_begin, by_end;       ///< base motion by the encoder times of the ends
+};
+
+Path path_of(const Linearisation& at, const Pose& mount, double begin, double end,
+             const std::vector<Eigen::Matrix3d>& whole_steps) {
+  Path path{end_at(at, begin), end_at(at, end), {}, {}, {}, {}};
+  const Pose &b = path.begin.pose, &e = path.end.pose;
+  path.to_sensor = conjugate_derivative(between(b, e), mount);
+  path.by_end = rotation(-b.yaw) * path.end.velocity;
+  path.by_begin = -carried(b, b, e) * path.begin.velocity;
+  for (std::size_t k = path.begin.step; k <= path.end.step; ++k) {
+    const bool first = k == path.begin.step, last = k == path.end.step;
+    const double from = first ? path.begin.share : 0.0, to = last ? path.end.share : 1.0;
+    const Eigen::Matrix3d& whole = whole_steps[k];
+    const Eigen::Matrix3d part = first || last ? exp_derivative(at.twists[k], to - from) : whole;
+    path.by_twist.push_back(twist_to_motion(b, first ? b : at.poses[k], last ? e : at.poses[k + 1], e, part));
+  }
+  return path;
+}
+
+Chunk delay_rows(const Path& path, const Interval& interval, double middle, const std::vector<Jet>& jets,
+                 const PlacedEffects& effects) {
+  const Jet begin = effects.delay<Jet>(interval.begin - middle, jets);
+  const Jet end = effects.delay<Jet>(interval.end - middle, jets);
+  return -path.by_begin * begin.v.transpose() - path.by_end * end.v.transpose();
+}
+
+std::vector<Path> paths_of(const Linearisation& at, std::span<const double> parameters,
+                           const PlacedEffects& effects, std::span<const Interval> intervals) {
+  std::vector<Eigen::Matrix3d> whole_steps;
+  whole_steps.reserve(at.twists.size());
+  for (const Pose& w : at.twists) whole_steps.push_back(exp_derivative(w, 1.0));
+  const double middle = middle_of(at.track);
+  const Pose mount = to_base(parameters).mount;
+  std::vector<Path> paths;
+  paths.reserve(intervals.size());
+  for (const Interval& i : intervals)
+    paths.push_back(path_of(at, mount, i.begin - effects.delay(i.begin - middle, parameters),
+                            i.end - effects.delay(i.end - middle, parameters), whole_steps));
+  return paths;
+}
+
+}  // namespace
+
+Eigen::MatrixXd sensitivity(const Linearisation& at, std::span<const double> parameters,
+                            const EffectList& effects, std::span<const Interval> intervals,
+                            std::size_t first) {
+  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(3 * intervals.size()),
+                           static_cast<Eigen::Index>(parameters.size() - first));
+  if (intervals.empty()) return jacobian;
+  const PlacedEffects placed(effects, kBaseCount);
+  const std::vector<Path> paths = paths_of(at, parameters, placed, intervals);
+  const double middle = middle_of(at.track);
+  for (std::size_t chunk = first; chunk < parameters.size(); chunk += kJetSize) {
+    const auto count = static_cast<Eigen::Index>(std::min<std::size_t>(kJetSize, parameters.size() - chunk));
+    const std::vector<Jet> jets = seed(parameters, chunk);
+    const std::vector<Chunk> twists = twist_derivatives(at, jets, placed);
+    for (std::size_t i = 0; i < intervals.size(); ++i) {
+      const Path& path = paths[i];
+      Chunk base = delay_rows(path, intervals[i], middle, jets, placed);
+      for (std::size_t k = 0; k < path.by_twist.size(); ++k)
+        base.noalias() += path.by_twist[k] * twists[path.begin.step + k];
+      Chunk rows = path.to_sensor.leftCols<3>() * base;
+      for (Eigen::Index m = 0; m < 3; ++m) {
+        const auto column = static_cast<Eigen::Index>(kMountX) + m - static_cast<Eigen::Index>(chunk);
+        if (column >= 0 && column < kJetSize) rows.col(column) += path.to_sensor.col(3 + m);
+      }
+      jacobian.block(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(chunk - first), 3, count) =
+          rows.leftCols(count);
+    }
+  }
+  return jacobian;
+}
+
+}  // namespace odomcalib::calib

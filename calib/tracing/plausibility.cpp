@@ -1,0 +1,62 @@
+#include "calib/tracing/plausibility.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/tracing/score.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+/// Value of each parameter of the fit's last effect.
+Eigen::VectorXd last_parameters(const Effect& effect, const FitResult& fit) {
+  return fit.parameters.tail(static_cast<Eigen::Index>(effect.parameters().size()));
+}
+
+/// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
+bool is_size(const EffectParameter& parameter) { return parameter.start == 0.0; }
+
+}  // namespace
+
+bool is_impossible(const Effect& effect, const FitResult& fit) {
+  const Eigen::VectorXd values = last_parameters(effect, fit);
+  const auto parameters = effect.parameters();
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const double value = values(static_cast<Eigen::Index>(k));
+    if (!(value >= parameters[k].lower && value <= parameters[k].upper)) return true;
+  }
+  return false;
+}
+
+bool is_negligible(const Effect& effect, const FitResult& fit) {
+  const Eigen::VectorXd values = last_parameters(effect, fit);
+  const auto parameters = effect.parameters();
+  double largest = 0.0;
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (is_size(parameters[k]))
+      largest = std::max(largest, std::abs(values(static_cast<Eigen::Index>(k))) / parameters[k].scale);
+  return largest < kNegligibleShare;
+}
+
+bool spoils_base(const Effect& effect, const FitResult& before, const FitResult& after) {
+  if (effect.storage() == Storage::nowhere) return false;
+  constexpr double kMaxInflation = 3.0;  // of a standard deviation
+  for (const auto k : {kLeftRadius, kRightRadius, kTrackWidth})
+    if (after.covariance(k, k) > kMaxInflation * kMaxInflation * before.covariance(k, k)) return true;
+  return false;
+}
+
+bool is_superfluous(const Effect& effect, std::size_t first, const FitResult& fit) {
+  constexpr double kLevel = 0.05;
+  std::vector<Eigen::Index> sizes;
+  const auto parameters = effect.parameters();
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (is_size(parameters[k])) sizes.push_back(static_cast<Eigen::Index>(first + k));
+  const Eigen::VectorXd value = fit.parameters(sizes);
+  const Eigen::MatrixXd covariance = fit.covariance(sizes, sizes);
+  const double wald = value.dot(covariance.ldlt().solve(value));
+  return chi_squared_tail(wald, sizes.size()) > kLevel;
+}
+
+}  // namespace odomcalib::calib

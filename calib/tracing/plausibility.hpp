@@ -1,0 +1,22 @@
+// Reasons not to add an effect although the data like it.
+#pragma once
+
+#include "calib/estimators/joint.hpp"
+
+namespace odomcalib::calib {
+
+/// The effect, whose parameters are the fit's last, is outside its physical bounds.
+bool is_impossible(const Effect& effect, const FitResult& fit);
+
+/// Every size is below the share of its typical size that matters to odometry.
+bool is_negligible(const Effect& effect, const FitResult& fit);
+
+/// This drive cannot tell the addition from the wheels: it would trade a known geometry for a guess. (With
+/// what changes by the day the wheels of one moment are less well known than their mean, which is no fault.)
+bool spoils_base(const Effect& effect, const FitResult& before, const FitResult& after);
+
+/// The effect, whose parameters begin at `first`, is no longer needed beside what was added after it: its
+/// Wald statistic is not significant at 5 %.
+bool is_superfluous(const Effect& effect, std::size_t first, const FitResult& fit);
+
+}  // namespace odomcalib::calib

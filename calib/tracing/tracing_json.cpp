@@ -1,0 +1,70 @@
+#include "calib/tracing/tracing_json.hpp"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace odomcalib::calib {
+namespace {
+
+template <typename Enum>
+std::optional<Enum> enum_from(const std::string& name, Enum last) {
+  for (int k = 0; k <= static_cast<int>(last); ++k)
+    if (to_string(static_cast<Enum>(k)) == name) return static_cast<Enum>(k);
+  return std::nullopt;
+}
+
+std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
+  if (!entry.is_object()) return std::nullopt;
+  const auto variable = enum_from(entry.value("variable", ""), kLastVariable);
+  const auto carrier = enum_from(entry.value("carrier", ""), kLastCarrier);
+  if (!variable || !carrier) return std::nullopt;
+  const Curve curve{{*variable, *carrier},
+                    entry.value("low", 0.0),
+                    entry.value("high", 0.0),
+                    entry.value("period", 0.0),
+                    entry.value("harmonic", 0)};
+  const auto coefficients = entry.value("coefficients", std::vector<double>{});
+  if (!(curve.high > curve.low) || coefficients.size() != basis_size(curve)) return std::nullopt;
+  return FittedCurve{curve, coefficients, entry.value("law_of", "")};
+}
+
+}  // namespace
+
+std::string considered_to_json(const std::vector<Considered>& considered) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Considered& c : considered)
+    list.push_back({{"candidate", c.name},
+                    {"statistic", c.statistic},
+                    {"p_value", c.family_p_value},
+                    {"outcome", c.outcome}});
+  return list.dump();
+}
+
+std::string curves_to_json(const std::vector<FittedCurve>& curves) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& [curve, coefficients, law_of] : curves)
+    list.push_back({{"variable", to_string(curve.law.variable)},
+                    {"carrier", to_string(curve.law.carrier)},
+                    {"low", curve.low},
+                    {"high", curve.high},
+                    {"period", curve.period},
+                    {"harmonic", curve.harmonic},
+                    {"coefficients", coefficients},
+                    {"law_of", law_of}});
+  return list.dump();
+}
+
+std::vector<FittedCurve> curves_from_json(const std::string& text) {
+  std::vector<FittedCurve> curves;
+  try {
+    const nlohmann::json list = nlohmann::json::parse(text);
+    if (!list.is_array()) return curves;
+    for (const auto& entry : list)
+      if (auto curve = curve_from(entry)) curves.push_back(std::move(*curve));
+  } catch (const nlohmann::json::exception&) {
+    return curves;  // members of the wrong type: nothing after them is trusted
+  }
+  return curves;
+}
+
+}  // namespace odomcalib::calib

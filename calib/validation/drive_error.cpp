@@ -1,0 +1,173 @@
+#include "calib/validation/drive_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <random>
+
+#include "calib/effects/reference_effect.hpp"
+#include "calib/validation/folds.hpp"
+#include "calib/validation/stretch.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr std::size_t kFewest = 4;
+constexpr int kDraws = 1000;
+constexpr unsigned kSeed = 20010823;
+
+std::span<const double> as_span(const Eigen::VectorXd& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+/// Predicted minus measured motion of each stretch, in the base's frame at its begin.
+std::vector<Pose> errors_of(std::span<const FitData> data, const std::vector<Stretch>& stretches,
+                            const std::vector<Eigen::VectorXd>& parameters, const EffectList& effects) {
+  std::vector<Pose> errors(stretches.size());
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    for (std::size_t d = 0; d < data.size(); ++d) {
+      const auto trajectory = data[d].model->trajectory(as_span(parameters[fold]), effects);
+      for (std::size_t k = 0; k < stretches.size(); ++k) {
+        const Stretch& s = stretches[k];
+        if (s.fold != fold || s.recording != d) continue;
+        const Pose told = between(trajectory.at(s.interval.begin), trajectory.at(s.interval.end));
+        errors[k] = {told.x - s.motion.x, told.y - s.motion.y, wrap_angle(told.yaw - s.motion.yaw)};
+      }
+    }
+  }
+  return errors;
+}
+
+/// Which number of a pose error counts, and its variance by the noise model.
+enum class Part { along, position, heading };
+
+double square_of(Part part, const Pose& e) {
+  if (part == Part::along) return e.x * e.x;
+  return part == Part::heading ? e.yaw * e.yaw : e.x * e.x + e.y * e.y;
+}
+
+double variance_of(Part part, const Eigen::Matrix3d& c) {
+  if (part == Part::along) return c(0, 0);
+  return part == Part::heading ? c(2, 2) : c(0, 0) + c(1, 1);
+}
+
+struct Sums {
+  double squares = 0.0;
+  double amounts = 0.0;
+  [[nodiscard]] double figure() const { return std::sqrt(squares / std::max(amounts, 1e-300)); }
+};
+
+Bounded bounded(Part part, const std::vector<Stretch>& stretches, const std::vector<Pose>& errors) {
+  std::map<std::size_t, Sums> by_block;
+  Sums total;
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    const Sums one{square_of(part, errors[k]), stretches[k].amount * stretches[k].amount};
+    Sums& block = by_block[stretches[k].block];
+    block = {block.squares + one.squares, block.amounts + one.amounts};
+    total = {total.squares + one.squares, total.amounts + one.amounts};
+  }
+  std::vector<Sums> blocks;
+  for (const auto& [block, sums] : by_block) blocks.push_back(sums);
+  std::mt19937 engine(kSeed);
+  std::vector<double> figures;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Sums sample;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const Sums& s = blocks[engine() % blocks.size()];
+      sample = {sample.squares + s.squares, sample.amounts + s.amounts};
+    }
+    figures.push_back(sample.figure());
+  }
+  std::sort(figures.begin(), figures.end());
+  return {total.figure(), figures[static_cast<std::size_t>(0.025 * kDraws)],
+          figures[static_cast<std::size_t>(0.975 * kDraws)]};
+}
+
+double noise_floor(Part part, const std::vector<Stretch>& stretches) {
+  Sums sums;
+  for (const Stretch& s : stretches) {
+    sums.squares += std::max(variance_of(part, s.covariance), 0.0);
+    sums.amounts += s.amount * s.amount;
+  }
+  return sums.figure();
+}
+
+class Judge {
+ public:
+  Judge(std::span<const FitData> data, const BaseParameters& nominal, const JudgedModel* geometry,
+        const JudgedModel& full)
+      : data_(data), full_(full), folds_(folds_of(data)) {
+    full_parameters_ = by_fold(full);
+    if (nominal.left_radius > 0.0 && nominal.right_radius > 0.0 && nominal.track_width > 0.0)
+      nominal_parameters_.assign(kFolds, with_wheels(full.fit->parameters, full.effects, nominal));
+    if (geometry != nullptr)
+      for (const Eigen::VectorXd& p : by_fold(*geometry))
+        geometry_parameters_.push_back(with_wheels(full.fit->parameters, full.effects, to_base(as_span(p))));
+  }
+
+  void add(StretchKind kind, std::vector<std::pair<std::string, Part>> names,
+           std::vector<DriveError>& out) const {
+    const auto stretches = find_stretches(kind, data_, folds_, *full_.fit);
+    if (stretches.size() < kFewest) return;
+    const auto errors = [&](const std::vector<Eigen::VectorXd>& parameters) {
+      return parameters.empty() ? std::vector<Pose>{}
+                                : errors_of(data_, stretches, parameters, full_.effects);
+    };
+    const auto before = errors(nominal_parameters_);
+    const auto geometry = errors(geometry_parameters_);
+    const auto after = errors(full_parameters_);
+    const auto figure = [&](Part part, const std::vector<Pose>& e) {
+      return e.empty() ? std::nullopt : std::optional(bounded(part, stretches, e));
+    };
+    for (const auto& [name, part] : names)
+      out.push_back({name, part == Part::heading ? "rad" : "m", stretches.size(), figure(part, before),
+                     figure(part, geometry), figure(part, after), noise_floor(part, stretches)});
+  }
+
+ private:
+  [[nodiscard]] std::vector<Eigen::VectorXd> by_fold(const JudgedModel& model) const {
+    std::vector<Eigen::VectorXd> parameters;
+    for (std::size_t fold = 0; fold < kFolds; ++fold)
+      parameters.push_back(without_fold(*model.fit, folds_, fold, model.fixed));
+    return parameters;
+  }
+
+  std::span<const FitData> data_;
+  const JudgedModel& full_;
+  std::vector<std::size_t> folds_;
+  std::vector<Eigen::VectorXd> nominal_parameters_, geometry_parameters_, full_parameters_;  ///< by fold
+};
+
+}  // namespace
+
+Eigen::VectorXd with_wheels(const Eigen::VectorXd& full, const EffectList& effects,
+                            const BaseParameters& base) {
+  Eigen::VectorXd parameters = full;
+  parameters(kLeftRadius) = base.left_radius;
+  parameters(kRightRadius) = base.right_radius;
+  parameters(kTrackWidth) = base.track_width;
+  Eigen::Index index = kBaseCount;
+  for (const auto& effect : effects) {
+    const bool kept = concerns_reference(*effect);
+    for (const EffectParameter& parameter : effect->parameters()) {
+      if (!kept) parameters(index) = parameter.start;
+      ++index;
+    }
+  }
+  return parameters;
+}
+
+std::vector<DriveError> drive_errors(std::span<const FitData> data, const BaseParameters& nominal,
+                                     const JudgedModel* geometry, const JudgedModel& full) {
+  const Judge judge(data, nominal, geometry, full);
+  std::vector<DriveError> errors;
+  judge.add(StretchKind::straight,
+            {{"straight_metre_length", Part::along}, {"straight_metre_heading", Part::heading}}, errors);
+  judge.add(StretchKind::turn, {{"full_turn_heading", Part::heading}}, errors);
+  judge.add(StretchKind::open_loop,
+            {{"open_loop_10s_position", Part::position}, {"open_loop_10s_heading", Part::heading}}, errors);
+  return errors;
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,190 @@
+#include "calib/validation/stretch.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kHorizonSeconds = 10.0;
+constexpr double kBlockSeconds = 30.0;
+constexpr double kTrustedWeight = 0.3;      ///< a pair far out on the tail may be a failed match
+constexpr double kStraight = 0.15;          ///< rad/m; more is a curve
+constexpr double kOnTheSpot = 0.08;         ///< m/rad; more is an arc
+constexpr double kStanding = 0.004;         ///< m and rad; a pair at rest belongs to any kind
+constexpr double kShortestStraight = 0.25;  ///< m; on less, noise of the reference dominates
+constexpr double kSmallestTurn = 0.6;       ///< rad
+
+/// How much of its kind a pair is: m or rad, signed; nullopt when it is of another kind.
+std::optional<double> amount_of(StretchKind kind, const Pose& base) {
+  const double turn = std::abs(base.yaw);
+  const double length = std::hypot(base.x, base.y);
+  if (turn < kStanding && length < kStanding) return 0.0;
+  if (kind == StretchKind::straight)
+    return turn < kStraight * length + kStanding ? std::optional(std::copysign(length, base.x))
+                                                 : std::nullopt;
+  return length < kOnTheSpot * turn + kStanding ? std::optional(base.yaw) : std::nullopt;
+}
+
+/// Sensor poses along the chain in the frame of its begin, each with its pair's noise.
+class Chain {
+ public:
+  explicit Chain(const NoiseModel& noise) : noise_(noise) {}
+
+  void add(const SensorPair& pair) {
+    const double duration = std::max(pair.interval.end - pair.interval.begin, 1e-3);
+    const double c = std::cos(end_.yaw);
+    const double s = std::sin(end_.yaw);
+    PairState state;
+    state.heading = end_.yaw;
+    state.begin_velocity = Eigen::Vector3d(c * pair.motion.x - s * pair.motion.y,
+                                           s * pair.motion.x + c * pair.motion.y, pair.motion.yaw) /
+                           duration;
+    state.end_velocity = state.begin_velocity;
+    end_ = compose(end_, pair.motion);
+    links_.push_back({&pair, state, end_});
+  }
+
+  [[nodiscard]] const Pose& end() const { return end_; }
+
+  /// Covariance of the base's motion over the whole chain, in the base's frame at the begin.
+  [[nodiscard]] Eigen::Matrix3d covariance(const Pose& mount) const {
+    const Pose base = compose(end_, inverse(mount));
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      const Eigen::Matrix3d a = lever(base, links_[k].after);
+      sum += a * full_covariance(*links_[k].pair, links_[k].state, noise_) * a.transpose();
+      if (k == 0) continue;
+      const Link& before = links_[k - 1];
+      const Eigen::Matrix3d cross =
+          a * neighbour_covariance(*before.pair, before.state, *links_[k].pair, links_[k].state, noise_) *
+          lever(base, before.after).transpose();
+      sum += cross + cross.transpose();
+    }
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(mount.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    return turn * sum * turn.transpose();
+  }
+
+ private:
+  struct Link {
+    const SensorPair* pair;
+    PairState state;
+    Pose after;
+  };
+  /// How an error made at `at` moves the end: a heading error swings everything that comes after it.
+  static Eigen::Matrix3d lever(const Pose& end, const Pose& at) {
+    Eigen::Matrix3d a = Eigen::Matrix3d::Identity();
+    a(0, 2) = -(end.y - at.y);
+    a(1, 2) = end.x - at.x;
+    return a;
+  }
+  const NoiseModel& noise_;
+  std::vector<Link> links_;
+  Pose end_;
+};
+
+/// One recording's stretches, found from left to right.
+class Finder {
+ public:
+  Finder(StretchKind kind, const FitData& data, std::size_t recording, std::span<const std::size_t> folds,
+         std::span<const double> weights, const NoiseModel& noise, const Pose& mount)
+      : kind_(kind),
+        pairs_(data.pairs),
+        recording_(recording),
+        folds_(folds),
+        weights_(weights),
+        noise_(noise),
+        mount_(mount) {}
+
+  std::vector<Stretch> run() {
+    for (std::size_t begin = 0; begin < pairs_.size();) {
+      const std::size_t after = kind_ == StretchKind::open_loop ? window_from(begin) : run_from(begin);
+      begin = std::max(after, begin + 1);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  [[nodiscard]] bool joined(std::size_t begin, std::size_t k) const {
+    return folds_[k] == folds_[begin] && weights_[k] >= kTrustedWeight &&
+           (k == begin || pairs_[k].follows_previous);
+  }
+
+  /// Windows overlap by half. @return where the next one begins
+  std::size_t window_from(std::size_t begin) {
+    std::size_t half = begin + 1;
+    std::size_t k = begin;
+    for (; k < pairs_.size() && joined(begin, k); ++k) {
+      const double elapsed = pairs_[k].interval.end - pairs_[begin].interval.begin;
+      if (elapsed < kHorizonSeconds / 2.0) half = k + 1;
+      if (elapsed < kHorizonSeconds) continue;
+      keep(begin, k, 1.0);
+      return half;
+    }
+    return k;
+  }
+
+  /// The longest run of one kind and direction, cut at a metre or a full turn. @return where the next one
+  /// begins
+  std::size_t run_from(std::size_t begin) {
+    const double full = kind_ == StretchKind::straight ? 1.0 : 2.0 * kPi;
+    const double least = kind_ == StretchKind::straight ? kShortestStraight : kSmallestTurn;
+    double sum = 0.0;
+    std::size_t k = begin;
+    for (; k < pairs_.size() && joined(begin, k) && std::abs(sum) < full; ++k) {
+      const auto amount = amount_of(kind_, conjugate(pairs_[k].motion, inverse(mount_)));
+      if (!amount || *amount * sum < 0.0) break;
+      sum += *amount;
+    }
+    if (std::abs(sum) >= least)
+      keep(begin, k - 1, std::abs(sum) / (kind_ == StretchKind::straight ? 1.0 : 2.0 * kPi));
+    return k;
+  }
+
+  void keep(std::size_t first, std::size_t last, double amount) {
+    Chain chain(noise_);
+    for (std::size_t k = first; k <= last; ++k) chain.add(pairs_[k]);
+    Stretch stretch;
+    stretch.recording = recording_;
+    stretch.first = first;
+    stretch.last = last;
+    stretch.fold = folds_[first];
+    const double since = pairs_[first].interval.begin - pairs_.front().interval.begin;
+    stretch.block = 1000 * recording_ + static_cast<std::size_t>(std::max(0.0, since / kBlockSeconds));
+    stretch.amount = amount;
+    stretch.interval = {pairs_[first].interval.begin, pairs_[last].interval.end};
+    stretch.motion = conjugate(chain.end(), inverse(mount_));
+    stretch.covariance = chain.covariance(mount_);
+    found_.push_back(stretch);
+  }
+
+  StretchKind kind_;
+  std::span<const SensorPair> pairs_;
+  std::size_t recording_;
+  std::span<const std::size_t> folds_;
+  std::span<const double> weights_;
+  const NoiseModel& noise_;
+  Pose mount_;
+  std::vector<Stretch> found_;
+};
+
+}  // namespace
+
+std::vector<Stretch> find_stretches(StretchKind kind, std::span<const FitData> data,
+                                    const std::vector<std::size_t>& folds, const FitResult& fit) {
+  const Pose mount = to_base({fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size())}).mount;
+  std::vector<Stretch> all;
+  std::size_t first = 0;
+  for (std::size_t d = 0; d < data.size(); ++d) {
+    const std::size_t count = data[d].pairs.size();
+    const auto found = Finder(kind, data[d], d, std::span(folds).subspan(first, count),
+                              std::span(fit.weights).subspan(first, count), fit.noise[d], mount)
+                           .run();
+    all.insert(all.end(), found.begin(), found.end());
+    first += count;
+  }
+  return all;
+}
+
+}  // namespace odomcalib::calib

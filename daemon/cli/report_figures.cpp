@@ -1,0 +1,106 @@
+#include "daemon/cli/report_figures.hpp"
+
+#include <fmt/format.h>
+
+#include "daemon/cli/display.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using Style = Curve::Style;
+using Tone = Curve::Tone;
+
+Tone tone_of_path(const std::string& name) {
+  if (name == "odometry") return Tone::before;
+  return name == "reference" ? Tone::reference : Tone::after;
+}
+
+std::string label_of_path(const std::string& name) {
+  if (name == "odometry") return "odometry, nominal values";
+  return name == "reference" ? "lidar or other reference" : "odometry, calibrated";
+}
+
+std::string labelled(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : name + " [" + unit + "]";
+}
+
+Curve histogram(const ResidualAxis& axis, Tone tone) {
+  Curve curve{axis.name, Style::steps, tone, {}};
+  double total = 0.0;
+  for (const std::size_t count : axis.histogram) total += static_cast<double>(count);
+  const double width = axis.histogram.empty() ? 1.0 : 10.0 / static_cast<double>(axis.histogram.size());
+  for (std::size_t k = 0; k < axis.histogram.size(); ++k)
+    curve.points.push_back({-5.0 + width * static_cast<double>(k),
+                            100.0 * static_cast<double>(axis.histogram[k]) / std::max(total, 1.0)});
+  if (!curve.points.empty()) curve.points.push_back({5.0, 0.0});
+  return curve;
+}
+
+}  // namespace
+
+Figure figure_of_paths(const std::vector<PathTrace>& paths) {
+  Figure figure{
+      "Where the robot was, by odometry before and after, and by the reference, whose single motions are "
+      "chained here and drift too. Start at 0, 0.",
+      "x [m]",
+      "y [m]",
+      true,
+      {}};
+  for (const PathTrace& path : paths)
+    figure.curves.push_back({label_of_path(path.name), Style::line, tone_of_path(path.name), path.points});
+  return figure;
+}
+
+Figure figure_of_trace(const ResidualTrace& trace) {
+  const Display show = display_of(trace.residual_unit);
+  Figure figure{
+      fmt::format("{}: residual against {}. Dots: single measurements (thinned); lines: means of sixteenths "
+                  "with 95 % intervals.",
+                  readable(trace.effect), trace.variable),
+      labelled(trace.variable, trace.variable_unit),
+      labelled(trace.residual + " residual", show.unit),
+      false,
+      {}};
+  Curve before{"", Style::dots, Tone::before, {}};
+  Curve after{"", Style::dots, Tone::after, {}};
+  for (const auto& p : trace.points) {
+    before.points.push_back({p.variable, p.before * show.factor});
+    after.points.push_back({p.variable, p.after * show.factor});
+  }
+  Curve mean_before{"without the effect", Style::line, Tone::before, {}};
+  Curve mean_after{"with it", Style::line, Tone::after, {}};
+  for (const auto& b : trace.bins) {
+    mean_before.points.push_back({b.variable, b.before * show.factor});
+    mean_before.errors.push_back(b.before_error * show.factor);
+    mean_after.points.push_back({b.variable, b.after * show.factor});
+    mean_after.errors.push_back(b.after_error * show.factor);
+  }
+  figure.curves = {before, after, mean_before, mean_after};
+  return figure;
+}
+
+std::vector<Figure> figures_of_residual(const ReportData& data) {
+  constexpr std::array kTones = {Tone::after, Tone::before, Tone::reference};
+  Figure time{
+      "Residual over time in units of its expected standard deviation. Two thirds within 1, no waves: the "
+      "model is complete.",
+      "time [s]",
+      "sigmas",
+      false,
+      {}};
+  Figure counts{
+      "How the residual is distributed. The bell of a complete model has 38 % within half a sigma of zero.",
+      "sigmas",
+      "share [%]",
+      false,
+      {}};
+  for (std::size_t axis = 0; axis < std::min(kTones.size(), data.axes.size()); ++axis) {
+    Curve curve{data.axes[axis].name, Style::dots, kTones.at(axis), {}};
+    for (const auto& sample : data.series) curve.points.push_back({sample.t, sample.sigmas.at(axis)});
+    time.curves.push_back(std::move(curve));
+    counts.curves.push_back(histogram(data.axes[axis], kTones.at(axis)));
+  }
+  return {time, counts};
+}
+
+}  // namespace odomcalib::cli

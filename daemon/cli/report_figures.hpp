@@ -1,0 +1,14 @@
+// The pictures of a report, from the points that the calibration file carries.
+#pragma once
+
+#include "daemon/cli/document.hpp"
+#include "proto/report_data.hpp"
+
+namespace odomcalib::cli {
+
+Figure figure_of_paths(const std::vector<PathTrace>& paths);
+Figure figure_of_trace(const ResidualTrace& trace);
+/// Normalised residual over time and as a histogram.
+std::vector<Figure> figures_of_residual(const ReportData& data);
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,201 @@
+#include "daemon/cli/report_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/display.hpp"
+#include "daemon/cli/report_figures.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+std::string title_of(const std::string& name) {
+  if (name == "straight_metre_length") return "a metre straight: length";
+  if (name == "straight_metre_heading") return "a metre straight: heading";
+  if (name == "full_turn_heading") return "a full turn: heading";
+  if (name == "open_loop_10s_position") return "10 s without reference: position";
+  if (name == "open_loop_10s_heading") return "10 s without reference: heading";
+  return readable(name);
+}
+
+std::string with_interval(const std::optional<Bounded>& figure, const Display& show) {
+  if (!figure) return "-";
+  return fmt::format("{} ({}..{})", number(figure->value * show.factor, 2),
+                     number(figure->low * show.factor, 2), number(figure->high * show.factor, 2));
+}
+
+std::vector<std::string> error_row(const DriveError& error, bool geometry) {
+  const Display show = display_of(error.unit);
+  std::vector<std::string> row{title_of(error.name), show.unit, with_interval(error.before, show)};
+  if (geometry) row.push_back(with_interval(error.geometry, show));
+  row.push_back(with_interval(error.after, show));
+  row.push_back(error.noise_floor ? number(*error.noise_floor * show.factor, 2) : "-");
+  row.push_back(std::to_string(error.stretches));
+  return row;
+}
+
+/// What is systematic in the residual: RMS over the means of sixteenths.
+double systematic(const ResidualTrace& trace, double ResidualTrace::Bin::*member) {
+  double sum = 0.0;
+  for (const auto& bin : trace.bins) sum += bin.*member * bin.*member;
+  return std::sqrt(sum / std::max(static_cast<double>(trace.bins.size()), 1.0));
+}
+
+std::optional<double> value_of(const Calibration& calibration, const std::string& name) {
+  return calibration.parameter(name);
+}
+
+}  // namespace
+
+std::vector<std::string> effect_in_words(const Calibration& calibration) {
+  const auto& robot = calibration.robot;
+  const auto left = value_of(calibration, "left_wheel_diameter");
+  const auto right = value_of(calibration, "right_wheel_diameter");
+  const auto track = value_of(calibration, "track_width");
+  if (!left || !right || !track || !(robot.left_wheel_diameter > 0.0) ||
+      !(robot.right_wheel_diameter > 0.0) || !(robot.track_width > 0.0))
+    return {};
+  const double l = robot.left_wheel_diameter / *left;
+  const double r = robot.right_wheel_diameter / *right;
+  const double metre =
+      500.0 * (l + r) - 1000.0;  // mm, what odometry reads too much when the wheels roll a metre
+  const double veer = 180.0 / M_PI * (r - l) / robot.track_width;                  // deg per metre
+  const double turn = 360.0 * (0.5 * (l + r) * *track / robot.track_width - 1.0);  // deg per full turn
+  return {fmt::format(
+      "Before, by its nominal values: a metre read {:.1f} mm too {}, a straight metre veered {:.2f} deg "
+      "to the {}, a full turn read {:.1f} deg too {}.",
+      std::abs(metre), metre < 0.0 ? "short" : "long", std::abs(veer), veer > 0.0 ? "left" : "right",
+      std::abs(turn), turn < 0.0 ? "little" : "much")};
+}
+
+Section drive_errors_section(const ReportData& data) {
+  Section section{"What odometry is off by, on data not used in the fit (RMS, 95 % interval)", {}, {}};
+  const bool geometry = std::any_of(data.drive_errors.begin(), data.drive_errors.end(),
+                                    [](const DriveError& e) { return e.geometry.has_value(); });
+  for (const DriveError& error : data.drive_errors) section.table.rows.push_back(error_row(error, geometry));
+  if (section.table.rows.empty()) return section;
+  section.table.head = {"", "", "before", "after", "noise floor", "stretches"};
+  if (geometry) section.table.head.insert(section.table.head.begin() + 3, "without effects");
+  return section;
+}
+
+Section traces_section(const ReportData& data) {
+  Section section{"What was found, and what is left of it", {}, {}};
+  for (const ResidualTrace& trace : data.traces) {
+    const Display show = display_of(trace.residual_unit);
+    section.lines.push_back(
+        fmt::format("{}: the {} residual depends on {}; RMS of its means {} {} without it, {} {} with it",
+                    readable(trace.effect), trace.residual, trace.variable,
+                    number(systematic(trace, &ResidualTrace::Bin::before) * show.factor, 2), show.unit,
+                    number(systematic(trace, &ResidualTrace::Bin::after) * show.factor, 2), show.unit));
+    section.figures.push_back(figure_of_trace(trace));
+  }
+  return section;
+}
+
+Section path_section(const ReportData& data) {
+  Section section{"The drive", {}, {}};
+  for (const PathTrace& path : data.paths) {
+    if (path.points.empty()) continue;
+    const auto& end = path.points.back();
+    section.lines.push_back(fmt::format("{}: ends at x {:.3f} m, y {:.3f} m", path.name, end[0], end[1]));
+  }
+  if (!data.paths.empty()) section.figures.push_back(figure_of_paths(data.paths));
+  return section;
+}
+
+Section determination_section(const Calibration& calibration) {
+  Section section{"How well the motion determined the parameters: correlations", {}, {}};
+  const auto& matrix = calibration.covariance;
+  std::vector<std::size_t> free;
+  for (std::size_t k = 0; k < matrix.size() && k < calibration.covariance_order.size(); ++k)
+    if (matrix[k].size() == matrix.size() && matrix[k][k] > 0.0) free.push_back(k);
+  if (free.size() < 2) return section;
+  const auto n = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd correlation(n, n);
+  section.table.head = {""};
+  for (const std::size_t k : free) section.table.head.push_back(readable(calibration.covariance_order[k]));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t a = free[static_cast<std::size_t>(i)];
+    std::vector<std::string> row{readable(calibration.covariance_order[a])};
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const std::size_t b = free[static_cast<std::size_t>(j)];
+      correlation(i, j) = matrix[a][b] / std::sqrt(matrix[a][a] * matrix[b][b]);
+      row.push_back(j <= i ? number(correlation(i, j), 2) : "");
+    }
+    section.table.rows.push_back(row);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation, Eigen::EigenvaluesOnly);
+  const double smallest = eigen.eigenvalues()(0);
+  section.lines.push_back(
+      smallest > 0.0
+          ? fmt::format("condition of the correlations {:.1f}; beyond 1000 the motion hardly tells "
+                        "two parameters apart",
+                        eigen.eigenvalues()(n - 1) / smallest)
+          : "the correlations are singular: the motion does not tell the parameters apart");
+  return section;
+}
+
+Section repeatability_section(const Calibration& calibration, const ReportData& data) {
+  Section section{"Fitted without one fifth of the data, five times", {}, {}};
+  for (const auto& [name, values] : data.left_out) {
+    const auto found = std::find_if(calibration.parameters.begin(), calibration.parameters.end(),
+                                    [&n = name](const auto& p) { return p.first == n; });
+    if (found == calibration.parameters.end() || values.empty() || found->second.std < 0.0) continue;
+    const Display show = display_of(found->second.unit);
+    std::vector<std::string> row{readable(name), show.unit};
+    for (const double value : values) row.push_back(number((value - found->second.value) * show.factor, 3));
+    row.push_back(number(2.0 * found->second.std * show.factor, 3));
+    section.table.rows.push_back(row);
+  }
+  if (!section.table.rows.empty())
+    section.table.head = {"difference from the answer", "", "1", "2", "3", "4", "5", "+-2 sigma"};
+  return section;
+}
+
+Section residual_shape_section(const ReportData& data) {
+  Section section{"Residual of the final model, in the frame of the sensor", {}, {}};
+  for (const ResidualAxis& axis : data.axes) {
+    const Display show = display_of(axis.unit);
+    section.table.rows.push_back({axis.name, show.unit, number(axis.mean * show.factor, 3),
+                                  number(axis.std * show.factor, 3), number(axis.normalised, 2),
+                                  number(axis.autocorrelation, 2), number(axis.runs, 1)});
+  }
+  if (section.table.rows.empty()) return section;
+  section.table.head = {"", "", "mean", "std", "std/expected", "autocorrelation", "runs test"};
+  section.figures = figures_of_residual(data);
+  return section;
+}
+
+Section settings_section(const Calibration& calibration) {
+  Section section{"Settings and notes", {}, {}};
+  const auto member = calibration.extensions.find("settings");
+  if (member == calibration.extensions.end()) return section;
+  const auto settings = nlohmann::ordered_json::parse(member->second, nullptr, false);
+  if (!settings.is_object()) return section;
+  for (const auto& [name, value] : settings.items())
+    section.lines.push_back(readable(name) + ": " +
+                            (value.is_string() ? value.get<std::string>() : value.dump()));
+  return section;
+}
+
+Section reading_section() {
+  return {"How to read this page",
+          {"Before: odometry with the nominal values. After: with the values of this file and its effects. "
+           "Both are "
+           "judged on parts of the recording that their values were not fitted to.",
+           "Noise floor: what the error would be if the model were perfect and only the noise of the "
+           "reference and of "
+           "the wheels remained. After cannot be much below it; well above it, something is still missing.",
+           "std/expected near 1 and a runs test within -2 to 2: the residual is noise. Larger: something is "
+           "missing "
+           "or the matches are worse than they say.",
+           "More: odomcalib-report(7)."},
+          {}};
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,43 @@
+// A calibration file as a report, for who was not there when it was solved.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "daemon/cli/calibration_document.hpp"
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/verbs.hpp"
+#include "proto/calibration.hpp"
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+struct Options {
+  std::string calibration, html;
+};
+
+int show_report(const Options& options, const Session& session) {
+  const auto calibration = read_calibration(options.calibration);
+  if (!calibration) return report_error(calibration.error(), session.json);
+  if (!options.html.empty())
+    if (auto written = replace_file(options.html, to_html(report(calibration.value()))); !written)
+      return report_error(written.error(), session.json);
+  if (session.json != JsonMode::off)
+    print_json(to_json(calibration.value()), session.json);
+  else
+    std::cout << to_text(describe(calibration.value()), session.legend);
+  return kDone;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Session& session) {
+  auto* verb = app.add_subcommand("report", "A calibration file as text, JSON or HTML");
+  auto options = std::make_shared<Options>();
+  verb->add_option("CALIBRATION", options->calibration)->required();
+  verb->add_option("--html,--out", options->html, "HTML page to write");
+  verb->callback(
+      [&session, options] { session.run = [&session, options] { return show_report(*options, session); }; });
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,70 @@
+#include <nlohmann/json.hpp>
+
+#include "tests/blind/blind_trial.hpp"
+
+namespace odomcalib::blind {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json error_json(const DriveError& error) { return {error.position, error.heading}; }
+DriveError error_from(const Json& json) { return {json.at(0), json.at(1)}; }
+
+Json effect_json(const sim::BlindEffect& effect) {
+  return {{"name", effect.name},
+          {"catalogue_name", effect.catalogue_name},
+          {"depends_on", effect.depends_on},
+          {"size", effect.size},
+          {"unit", effect.unit}};
+}
+
+sim::BlindEffect effect_from(const Json& json) {
+  return {json.at("name"), json.at("catalogue_name"), json.at("depends_on"), json.at("size"),
+          json.at("unit")};
+}
+
+}  // namespace
+
+std::string to_json_line(const Trial& trial) {
+  Json injected = Json::array();
+  for (const sim::BlindEffect& effect : trial.answer.effects) injected.push_back(effect_json(effect));
+  return Json{{"campaign", trial.answer.campaign},
+              {"number", trial.answer.number},
+              {"drive", trial.answer.drive},
+              {"injected", injected},
+              {"named", trial.named},
+              {"aliases", trial.aliases},
+              {"depends_on", trial.depends_on},
+              {"sigmas", trial.sigmas},
+              {"plain_sigmas", trial.plain_sigmas},
+              {"residual_over_floor", trial.residual_over_floor},
+              {"before", error_json(trial.before)},
+              {"after", error_json(trial.after)},
+              {"twin", error_json(trial.twin)},
+              {"solve_seconds", trial.solve_seconds},
+              {"refused", trial.refused}}
+      .dump();
+}
+
+Trial trial_from_json_line(const std::string& line) {
+  const Json json = Json::parse(line);
+  Trial trial;
+  trial.answer.campaign = json.at("campaign");
+  trial.answer.number = json.at("number");
+  trial.answer.drive = json.at("drive");
+  for (const Json& effect : json.at("injected")) trial.answer.effects.push_back(effect_from(effect));
+  trial.named = json.at("named");
+  trial.aliases = json.at("aliases");
+  trial.depends_on = json.at("depends_on");
+  trial.sigmas = json.at("sigmas");
+  trial.plain_sigmas = json.at("plain_sigmas");
+  trial.residual_over_floor = json.at("residual_over_floor");
+  trial.before = error_from(json.at("before"));
+  trial.after = error_from(json.at("after"));
+  trial.twin = error_from(json.at("twin"));
+  trial.solve_seconds = json.at("solve_seconds");
+  trial.refused = json.at("refused");
+  return trial;
+}
+
+}  // namespace odomcalib::blind

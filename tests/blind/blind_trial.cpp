@@ -1,0 +1,110 @@
+#include "tests/blind/blind_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <numbers>
+
+#include "calib/predict.hpp"
+#include "calib/solve.hpp"
+
+namespace odomcalib::blind {
+namespace {
+
+constexpr double kHorizon = 10.0;  // s
+constexpr double kStride = 2.5;    // s between the beginnings of windows
+
+struct Relative {
+  double x = 0.0, y = 0.0, yaw = 0.0;
+};
+
+template <typename A>
+Relative relative(const A& from, const A& to) {
+  const double dx = to.x - from.x, dy = to.y - from.y, c = std::cos(from.yaw), s = std::sin(from.yaw);
+  return {c * dx + s * dy, c * dy - s * dx, std::remainder(to.yaw - from.yaw, 2.0 * std::numbers::pi)};
+}
+
+/// The true pose at the time of the k-th tick sample: paths are sampled with the ticks.
+std::size_t nearest(const std::vector<sim::TruthSample>& path, double t) {
+  const auto after = std::lower_bound(path.begin(), path.end(), t,
+                                      [](const sim::TruthSample& s, double time) { return s.t < time; });
+  if (after == path.end()) return path.size() - 1;
+  if (after == path.begin()) return 0;
+  return static_cast<std::size_t>((after - path.begin()) - (t - (after - 1)->t < after->t - t ? 1 : 0));
+}
+
+DriveError error_on(const sim::SimulatedRun& run, const Calibration& calibration) {
+  const std::vector<PoseSample> predicted = calib::predict(run.recording, calibration);
+  DriveError sum;
+  double windows = 0.0;
+  std::size_t end = 0;
+  double next = 0.0;
+  for (std::size_t begin = 0; begin < predicted.size(); ++begin) {
+    if (predicted[begin].t < next) continue;
+    next = predicted[begin].t + kStride;
+    while (end < predicted.size() && predicted[end].t < predicted[begin].t + kHorizon) ++end;
+    if (end == predicted.size()) break;
+    const auto& path = run.path;
+    const Relative truth =
+        relative(path[nearest(path, predicted[begin].t)].pose, path[nearest(path, predicted[end].t)].pose);
+    const Relative odometry = relative(predicted[begin], predicted[end]);
+    sum.position += std::pow(odometry.x - truth.x, 2) + std::pow(odometry.y - truth.y, 2);
+    sum.heading += std::pow(std::remainder(odometry.yaw - truth.yaw, 2.0 * std::numbers::pi), 2);
+    windows += 1.0;
+  }
+  return {std::sqrt(sum.position / std::max(windows, 1.0)), std::sqrt(sum.heading / std::max(windows, 1.0))};
+}
+
+std::array<double, 3> sigmas_of(const Calibration& calibration, const sim::Geometry& truth) {
+  const std::array<double, 3> values = {truth.left_diameter, truth.right_diameter, truth.track_width};
+  std::array<double, 3> sigmas{};
+  for (std::size_t k = 0; k < values.size() && k < calibration.parameters.size(); ++k) {
+    const Quantity& q = calibration.parameters[k].second;
+    sigmas[k] = (q.value - values[k]) / q.std;
+  }
+  return sigmas;
+}
+
+Calibration solve_plain(const Recording& recording) {
+  calib::SolveOptions options;
+  options.effects = {"none"};
+  return calib::solve({&recording, 1}, options);
+}
+
+void copy_findings(const Calibration& calibration, Trial& trial) {
+  trial.refused = calibration.verdict == Verdict::refused;
+  for (const EffectResult& effect : calibration.effects) {
+    trial.named.push_back(effect.name);
+    trial.aliases.insert(trial.aliases.end(), effect.aliases.begin(), effect.aliases.end());
+  }
+  if (calibration.unexplained) trial.depends_on = calibration.unexplained->depends_on;
+}
+
+void copy_residual(const Calibration& plain, Trial& trial) {
+  if (!plain.residual.after || !plain.residual.noise_floor) return;
+  for (std::size_t k = 0; k < 3; ++k)
+    trial.residual_over_floor[k] = (*plain.residual.after)[k] / (*plain.residual.noise_floor)[k];
+}
+
+}  // namespace
+
+Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options) {
+  const sim::BlindCase drawn = sim::make_blind_case(campaign, number, options);
+  const sim::BlindProof proof = sim::make_blind_proof(campaign, number, options);
+  Trial trial;
+  trial.answer = drawn.answer;
+  const std::clock_t start = std::clock();
+  const Calibration found = calib::solve({&drawn.run.recording, 1}, {});
+  trial.solve_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const Calibration plain = solve_plain(drawn.run.recording);
+  copy_findings(found, trial);
+  copy_residual(plain, trial);
+  trial.sigmas = sigmas_of(found, drawn.answer.truth);
+  trial.plain_sigmas = sigmas_of(plain, drawn.answer.truth);
+  trial.before = error_on(proof.fresh, plain);
+  trial.after = error_on(proof.fresh, found);
+  trial.twin = error_on(proof.fresh_twin, solve_plain(proof.twin.recording));
+  return trial;
+}
+
+}  // namespace odomcalib::blind

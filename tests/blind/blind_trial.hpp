@@ -1,0 +1,40 @@
+// One recording of the blind test: solve it, then open the answer and measure on a fresh drive.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "proto/calibration.hpp"
+#include "tests/sim/effects/blind_case.hpp"
+
+namespace odomcalib::blind {
+
+/// Open-loop odometry error over windows of 10 s against the true path, RMS in m and rad.
+struct DriveError {
+  double position = 0.0;
+  double heading = 0.0;
+};
+
+struct Trial {
+  sim::BlindAnswer answer;
+  std::vector<std::string> named;               ///< effects in the calibration
+  std::vector<std::string> aliases;             ///< of all of them
+  std::vector<std::string> depends_on;          ///< of what stays unexplained
+  std::array<double, 3> sigmas{};               ///< left, right diameter, track: (estimate - truth) / std
+  std::array<double, 3> plain_sigmas{};         ///< the same of the plain fit
+  std::array<double, 3> residual_over_floor{};  ///< plain held-out residual over noise floor: x, y, yaw
+  DriveError before;                            ///< fresh drive, plain fit
+  DriveError after;                             ///< fresh drive, calibration found
+  DriveError twin;                              ///< robot without the effect: plain fit of its recording
+  double solve_seconds = 0.0;                   ///< CPU
+  bool refused = false;
+};
+
+Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options);
+
+/// One line of JSON, and back; rows of several processes are put together before a table is made.
+std::string to_json_line(const Trial& trial);
+Trial trial_from_json_line(const std::string& line);
+
+}  // namespace odomcalib::blind
