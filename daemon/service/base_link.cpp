@@ -64,7 +64,10 @@ void BaseLink::receive(double now) {
   if (!transport_) return;
   auto frames = transport_->receive(now);
   if (!frames) return lose(frames.error(), now);
-  for (const auto& frame : frames.value()) controller_->on_frame(frame);
+  for (const auto& frame : frames.value()) {
+    if (watcher_) watcher_(frame);
+    controller_->on_frame(frame);
+  }
 }
 
 void BaseLink::receive_bytes(double now) {
@@ -82,8 +85,10 @@ void BaseLink::flush_bytes() {
 
 void BaseLink::flush() {
   flush_bytes();
-  for (const auto& frame : controller_->take_frames()) {
+  for (auto& frame : controller_->take_frames()) {
     if (!transport_) continue;
+    frame.t = now_;
+    if (watcher_) watcher_(frame);
     // A full queue drops the frame: the controller repeats what matters, and late commands are worse than
     // none.
     if (auto sent = transport_->send(frame); !sent) problem_ = sent.error();
@@ -91,6 +96,7 @@ void BaseLink::flush() {
 }
 
 void BaseLink::step(double now) {
+  now_ = now;
   open_when_due(now);
   receive(now);
   receive_bytes(now);

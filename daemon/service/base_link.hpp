@@ -2,6 +2,7 @@
 // or bytes both ways.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,9 @@ class BaseLink {
   /// Errors: what make_controller says about the profile; usage when the device is no line for this
   /// controller. The device may be absent.
   static Result<BaseLink> create(std::string device, const std::string& profile);
+
+  /// Every CAN frame that comes in or goes out is shown to it, with its time in CanFrame::t.
+  void watch_frames(std::function<void(const drivers::CanFrame&)> watcher) { watcher_ = std::move(watcher); }
 
   /// To poll for reading; -1 while the bus is away.
   [[nodiscard]] int fd() const;
@@ -47,9 +51,10 @@ class BaseLink {
   std::string device_;
   std::unique_ptr<drivers::Controller> controller_;
   std::unique_ptr<drivers::CanTransport> transport_;  // one of the two
-  std::unique_ptr<drivers::SerialPort> port_;
+  std::unique_ptr<drivers::ByteStream> port_;
   std::optional<Error> problem_;
-  double next_try_ = 0.0;
+  std::function<void(const drivers::CanFrame&)> watcher_;
+  double next_try_ = 0.0, now_ = 0.0;
   std::uint64_t opened_ = 0;
 };
 

@@ -54,7 +54,9 @@ void AxisPair::on_time(double now) {
 void AxisPair::send_sync() {
   const bool wanted = drives_[0].wants_sync() || drives_[1].wants_sync();
   if (sync_period_s_ <= 0.0 || !wanted || now_ < sync_due_) return;
-  sync_due_ = now_ + sync_period_s_;
+  // A late call does not shift the beat, a long pause does.
+  const bool in_time = now_ - sync_due_ < sync_period_s_;
+  sync_due_ = (in_time ? sync_due_ : now_) + sync_period_s_;
   CanFrame frame;
   frame.id = 0x080;
   out_.push_back(frame);

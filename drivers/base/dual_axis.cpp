@@ -188,7 +188,8 @@ void DualAxis::on_time(double now) {
 /// For drives that sample on SYNC. One of a pair leaves it to the pair.
 void DualAxis::send_sync() {
   if (profile_.sync_period_s <= 0.0 || profile_.axes == 1 || !wants_sync() || now_ < sync_due_) return;
-  sync_due_ = now_ + profile_.sync_period_s;
+  const bool in_time = now_ - sync_due_ < profile_.sync_period_s;
+  sync_due_ = (in_time ? sync_due_ : now_) + profile_.sync_period_s;
   CanFrame frame;
   frame.id = 0x080;
   out_.push_back(frame);

@@ -14,6 +14,7 @@ constexpr double kIdle = 1.0, kClosedLoop = 8.0;
 constexpr double kAsk_s = 0.01;
 // A 32-bit float of turns resolves 1/4096 turn only below this.
 constexpr double kFineTurns = 2048.0;
+constexpr double kMostTurns = 1e9;  // more is no position
 
 }  // namespace
 
@@ -62,11 +63,8 @@ void Odrive::on_message(Side side, const DeviceMessage& message) {
     count(side, message.t, static_cast<std::int64_t>(message.number("count")));
   if (message.name != "estimates" || profile_.count_source != "estimates") return;
   const double turns = message.number("position_turns");
-  if (std::abs(turns) > 1e9) {
-    ++bad_frames_;
-    return;
-  }
   if (std::abs(turns) > kFineTurns) ++coarse_;
+  if (std::abs(turns) > kMostTurns) return;
   count(side, message.t, std::llround(turns * profile_.ticks_per_rev / profile_.motor_turns_per_rev));
 }
 

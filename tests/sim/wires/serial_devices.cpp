@@ -128,7 +128,7 @@ void PioneerBase::send_configuration() {
   data += std::string(11, '\0') + "Miss Agnes" + zero + std::string(10, '\0');
   put(data, 16570, 2);            // RevCount
   put(data, 2000, 2);             // watchdog
-  data += std::string(35, '\0');  // to the gyro byte
+  data += std::string(39, '\0');  // to the gyro byte
   put(data, -120, 2);             // DriftFactor
   data += std::string(2, '\0');
   put(data, 132, 2);  // TicksMM

@@ -150,7 +150,7 @@ class SerialBench : public Bench {
  private:
   sim::SerialDevice& device_;
   std::unique_ptr<sim::Pty> pty_;
-  std::unique_ptr<SerialPort> port_;
+  std::unique_ptr<ByteStream> port_;
 };
 
 }  // namespace odomcalib::drivers::test
