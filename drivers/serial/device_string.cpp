@@ -60,7 +60,8 @@ Result<unsigned> baud_of(const DeviceString& device) {
   unsigned baud = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), baud);
   if (error == std::errc{} && end == text.data() + text.size() && baud > 0) return baud;
-  return Error{ErrorCode::usage, text.empty() ? "the baud rate is missing" : "\"" + text + "\" is no baud rate",
+  return Error{ErrorCode::usage,
+               text.empty() ? "the baud rate is missing" : "\"" + text + "\" is no baud rate",
                device.scheme + ":" + device.path, "add it to the device, e.g. ?baud=57600"};
 }
 
