@@ -90,7 +90,7 @@ TEST_F(GraphFactor, S2_15_sparse_sums_equal_a_dense_reference) {
   const Placement moved = equations.move(at, equations.solve());
 
   // The dense one over the same unknowns: neither the fixed vertex nor the headings of points.
-  const auto dense = testing::dense_system(world.graph, at);
+  const auto dense = testing::dense_system(world.graph, at, testing::numeric_jacobian);
   std::vector<Eigen::Index> rows;
   for (std::size_t v = 1; v < at.size(); ++v)
     for (Eigen::Index k = 0; k < (world.graph.vertices[v].kind == VertexKind::pose ? 3 : 2); ++k)

@@ -111,7 +111,7 @@ class WorldMaker {
   World world_;
 };
 
-/// H and b of H dx = b over all vertices, three rows each, from derivatives by central differences.
+/// H and b of H dx = b over all vertices, three rows each.
 struct DenseSystem {
   Eigen::MatrixXd H;
   Eigen::VectorXd b;
@@ -133,18 +133,20 @@ inline Eigen::Matrix3d numeric_jacobian(const GraphEdge& edge, const Placement& 
   return jacobian;
 }
 
-inline DenseSystem dense_system(const PoseGraph& graph, const Placement& at) {
+/// @param jacobian_of (edge, placement, vertex): numeric_jacobian, or anything that was proved against it
+template <typename Jacobian>
+DenseSystem dense_system(const PoseGraph& graph, const Placement& at, Jacobian jacobian_of) {
   const auto rows = static_cast<Eigen::Index>(3 * at.size());
+  const auto row = [](std::size_t vertex) { return static_cast<Eigen::Index>(3 * vertex); };
   DenseSystem system{Eigen::MatrixXd::Zero(rows, rows), Eigen::VectorXd::Zero(rows)};
   for (const GraphEdge& edge : graph.edges) {
     const Eigen::Matrix3d information = information_of(edge);
     const Eigen::Vector3d error = edge_error(edge, at);
     for (const std::size_t a : {edge.from, edge.to}) {
-      const Eigen::Matrix3d Ja = numeric_jacobian(edge, at, a);
-      system.b.segment<3>(static_cast<Eigen::Index>(3 * a)) -= Ja.transpose() * information * error;
+      const Eigen::Matrix3d weighted = jacobian_of(edge, at, a).transpose() * information;
+      system.b.segment<3>(row(a)) -= weighted * error;
       for (const std::size_t b : {edge.from, edge.to})
-        system.H.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) +=
-            Ja.transpose() * information * numeric_jacobian(edge, at, b);
+        system.H.block<3, 3>(row(a), row(b)) += weighted * jacobian_of(edge, at, b);
     }
   }
   return system;
