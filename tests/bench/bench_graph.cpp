@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <numbers>
 
 #include "calib/graph/optimize.hpp"
 #include "proto/pose_graph.hpp"
@@ -40,7 +41,8 @@ struct Residual {
     const Eigen::Matrix<T, 2, 1> lacking(seen[0] - edge.motion[0], seen[1] - edge.motion[1]);
     const Eigen::Matrix<T, 2, 1> in_frame = Eigen::Rotation2D<T>(T(-edge.motion[2])) * lacking;
     const T turn = to[2] - from[2] - edge.motion[2];
-    const T wrapped = turn - 2.0 * EIGEN_PI * ceres::floor((turn + EIGEN_PI) / (2.0 * EIGEN_PI));
+    const T wrapped =
+        turn - 2.0 * std::numbers::pi * ceres::floor((turn + std::numbers::pi) / (2.0 * std::numbers::pi));
     Eigen::Map<Eigen::Matrix<T, 3, 1>> white(out);
     white = root.cast<T>() * Eigen::Matrix<T, 3, 1>(in_frame[0], in_frame[1], wrapped);
     return true;
