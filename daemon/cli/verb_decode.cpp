@@ -29,7 +29,8 @@ void add_decode(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("decode", "Bytes of a device, or a candump log, as JSON Lines");
   auto options = std::make_shared<Options>();
   verb->add_option("DRIVER", options->driver,
-                   "type of a lidar (ld06, rplidar, ydlidar:x4, hokuyo, sick, xv11, ...), or canopen:PROFILE")
+                   "a lidar type (ld06, rplidar, ydlidar:x4, hokuyo, sick, xv11, ...), "
+                   "or a controller: PROTOCOL:PROFILE (canopen:zlac8015d, agilex, vesc, ...)")
       ->required();
   verb->add_option("FILE", options->file)->required();
   verb->add_option("--profiles", options->profiles, "folder of the profiles")->capture_default_str();
