@@ -15,7 +15,10 @@
 namespace odomcalib::drivers {
 
 std::string decode_lidar(Lidar& lidar, std::span<const std::uint8_t> bytes);
-std::string decode_candump(const Profile& profile, std::string_view text);
+std::string decode_canopen(const Profile& profile, std::string_view text);
+/// Every other controller: a candump log, or bytes, as the protocol has it.
+Result<std::string> decode_speed(const Profile& profile, std::string_view text,
+                                 std::span<const std::uint8_t> bytes);
 
 /// The last line: byte accounting, and the rejections by name.
 inline std::string summary_line(Counters counters, const Counters& rejected) {

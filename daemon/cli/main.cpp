@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
   odomcalib::cli::add_match(app, session);
   odomcalib::cli::add_report(app, session);
   odomcalib::cli::add_export(app, session);
+  odomcalib::cli::add_graph(app, session);
   odomcalib::cli::add_questions(app, session);
   odomcalib::cli::add_record(app, session);
   odomcalib::cli::add_motions(app, session);

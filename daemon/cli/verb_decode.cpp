@@ -28,7 +28,10 @@ int decode_file(const Options& options, const Session& session) {
 void add_decode(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("decode", "Bytes of a device, or a candump log, as JSON Lines");
   auto options = std::make_shared<Options>();
-  verb->add_option("DRIVER", options->driver, "ld06, or canopen:PROFILE")->required();
+  verb->add_option("DRIVER", options->driver,
+                   "a lidar type (ld06, rplidar, ydlidar:x4, hokuyo, sick, xv11, ...), "
+                   "or a controller: PROTOCOL:PROFILE (canopen:zlac8015d, agilex, vesc, ...)")
+      ->required();
   verb->add_option("FILE", options->file)->required();
   verb->add_option("--profiles", options->profiles, "folder of the profiles")->capture_default_str();
   verb->callback(

@@ -28,6 +28,7 @@ void add_decode(CLI::App& app, Session& session);
 void add_match(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
+void add_graph(CLI::App& app, Session& session);
 
 // Ask the daemon.
 int show_status(const Session& session);

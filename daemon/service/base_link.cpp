@@ -11,36 +11,84 @@ BaseLink::BaseLink(std::string device, std::unique_ptr<drivers::Controller> cont
 Result<BaseLink> BaseLink::create(std::string device, const std::string& profile) {
   auto controller = drivers::make_controller(profile);
   if (!controller) return controller.error();
+  const bool serial = controller.value()->wire() == drivers::Wire::serial;
+  if (serial != device.starts_with("serial:"))
+    return Error{ErrorCode::usage, "\"" + device + "\" is no line to the controller of profile " + profile,
+                 "controller.device",
+                 serial ? "use serial:/dev/ttyUSB0?baud=57600"
+                        : "use socketcan:can0 or slcan:/dev/ttyACM0?bitrate=500000"};
   return BaseLink(std::move(device), std::move(controller).value());
 }
 
-int BaseLink::fd() const { return transport_ ? transport_->fd() : -1; }
+int BaseLink::fd() const {
+  if (transport_) return transport_->fd();
+  return port_ ? port_->fd() : -1;
+}
 
 void BaseLink::lose(const Error& error, double now) {
   problem_ = error;
   transport_.reset();
+  port_.reset();
   next_try_ = now + kRetry;
 }
 
 void BaseLink::open_when_due(double now) {
-  if (transport_ || now < next_try_) return;
-  auto opened = drivers::open_can(device_);
-  if (!opened) return lose(opened.error(), now);
-  transport_ = std::move(opened).value();
+  if (connected() || now < next_try_) return;
+  if (auto opened = open(); !opened) return lose(opened.error(), now);
   problem_.reset();
   ++opened_;
+}
+
+Result<void> BaseLink::open() {
+  if (controller_->wire() == drivers::Wire::serial) return open_port();
+  auto opened = drivers::open_can(device_);
+  if (!opened) return opened.error();
+  transport_ = std::move(opened).value();
+  controller_->on_connected(std::nullopt);
+  return {};
+}
+
+Result<void> BaseLink::open_port() {
+  const auto device = drivers::parse_device(device_);
+  if (!device) return device.error();
+  const auto baud = drivers::baud_of(device.value());
+  if (!baud) return baud.error();
+  auto opened = drivers::open_serial(device.value().path, baud.value());
+  if (!opened) return opened.error();
+  port_ = std::move(opened).value();
+  controller_->on_connected(baud.value());
+  return {};
 }
 
 void BaseLink::receive(double now) {
   if (!transport_) return;
   auto frames = transport_->receive(now);
   if (!frames) return lose(frames.error(), now);
-  for (const auto& frame : frames.value()) controller_->on_frame(frame);
+  for (const auto& frame : frames.value()) {
+    if (watcher_) watcher_(frame);
+    controller_->on_frame(frame);
+  }
+}
+
+void BaseLink::receive_bytes(double now) {
+  if (!port_) return;
+  const auto bytes = port_->read();
+  if (!bytes) return lose(bytes.error(), now);
+  controller_->on_bytes(bytes.value(), now);
+}
+
+void BaseLink::flush_bytes() {
+  const auto bytes = controller_->take_bytes();
+  if (!port_ || bytes.empty()) return;
+  if (auto sent = port_->write(bytes); !sent) problem_ = sent.error();
 }
 
 void BaseLink::flush() {
-  for (const auto& frame : controller_->take_frames()) {
+  flush_bytes();
+  for (auto& frame : controller_->take_frames()) {
     if (!transport_) continue;
+    frame.t = now_;
+    if (watcher_) watcher_(frame);
     // A full queue drops the frame: the controller repeats what matters, and late commands are worse than
     // none.
     if (auto sent = transport_->send(frame); !sent) problem_ = sent.error();
@@ -48,8 +96,10 @@ void BaseLink::flush() {
 }
 
 void BaseLink::step(double now) {
+  now_ = now;
   open_when_due(now);
   receive(now);
+  receive_bytes(now);
   controller_->on_time(now);
   flush();
 }

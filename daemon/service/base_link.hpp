@@ -1,6 +1,8 @@
-// The motor controller behind its bus: opens the bus, reopens it after it was lost, carries frames both ways.
+// The motor controller behind its bus or serial line: opens it, reopens it after it was lost, carries frames
+// or bytes both ways.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,13 +10,18 @@
 
 #include "drivers/base/controller.hpp"
 #include "drivers/can/transport.hpp"
+#include "drivers/serial/port.hpp"
 
 namespace odomcalib {
 
 class BaseLink {
  public:
-  /// Error: what make_controller says about the profile. The device may be absent.
+  /// Errors: what make_controller says about the profile; usage when the device is no line for this
+  /// controller. The device may be absent.
   static Result<BaseLink> create(std::string device, const std::string& profile);
+
+  /// Every CAN frame that comes in or goes out is shown to it, with its time in CanFrame::t.
+  void watch_frames(std::function<void(const drivers::CanFrame&)> watcher) { watcher_ = std::move(watcher); }
 
   /// To poll for reading; -1 while the bus is away.
   [[nodiscard]] int fd() const;
@@ -24,7 +31,7 @@ class BaseLink {
   void flush();
 
   [[nodiscard]] drivers::Controller& controller() const { return *controller_; }
-  [[nodiscard]] bool connected() const { return transport_ != nullptr; }
+  [[nodiscard]] bool connected() const { return transport_ != nullptr || port_ != nullptr; }
   /// Why the bus is away; empty while it is there.
   [[nodiscard]] const std::optional<Error>& problem() const { return problem_; }
   [[nodiscard]] drivers::Counters counters() const;
@@ -34,14 +41,20 @@ class BaseLink {
  private:
   BaseLink(std::string device, std::unique_ptr<drivers::Controller> controller);
   void open_when_due(double now);
+  Result<void> open();
+  Result<void> open_port();
   void receive(double now);
+  void receive_bytes(double now);
+  void flush_bytes();
   void lose(const Error& error, double now);
 
   std::string device_;
   std::unique_ptr<drivers::Controller> controller_;
-  std::unique_ptr<drivers::CanTransport> transport_;
+  std::unique_ptr<drivers::CanTransport> transport_;  // one of the two
+  std::unique_ptr<drivers::ByteStream> port_;
   std::optional<Error> problem_;
-  double next_try_ = 0.0;
+  std::function<void(const drivers::CanFrame&)> watcher_;
+  double next_try_ = 0.0, now_ = 0.0;
   std::uint64_t opened_ = 0;
 };
 

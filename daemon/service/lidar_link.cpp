@@ -118,13 +118,13 @@ void LidarLink::watch(double now) {
   const auto counters = lidar_->counters();
   const Watch before = std::exchange(watch_, {now, counters.at("bytes_in"), counters.at("good")});
   const bool silent = watch_.bytes == before.bytes;
-  problem_.reset();
+  data_problem_.reset();
   if (watch_.good != before.good) {
     failures_ = 0;
-  } else {
-    problem_ = nothing_valid(silent);
-    if (silent && address_.network) lose(*problem_, now);
+    return;
   }
+  data_problem_ = nothing_valid(silent);
+  if (silent && address_.network) lose(*data_problem_, now);
 }
 
 void LidarLink::step(double now) {
@@ -144,7 +144,14 @@ std::vector<Scan> LidarLink::take_scans() {
   return out;
 }
 
-std::optional<Error> LidarLink::problem() const { return problem_ ? problem_ : lidar_->problem(); }
+/// A driver that sees what is wrong with the data knows more than that none are valid; one that only misses
+/// an answer knows less.
+std::optional<Error> LidarLink::problem() const {
+  if (problem_) return problem_;
+  auto told = lidar_->problem();
+  const bool seen = told && told->code == ErrorCode::format;
+  return data_problem_ && !seen ? data_problem_ : told;
+}
 
 drivers::Counters LidarLink::counters() const {
   drivers::Counters all = lidar_->counters();

@@ -60,7 +60,8 @@ class LidarLink {
   std::unique_ptr<drivers::Lidar> lidar_;
   std::unique_ptr<drivers::ByteStream> stream_;
   bool connected_ = false;
-  std::optional<Error> problem_;
+  std::optional<Error> problem_;       // with the connection
+  std::optional<Error> data_problem_;  // with what comes over it, until something valid comes
   Watch watch_;
   double next_try_ = 0.0, opened_at_ = 0.0;
   unsigned failures_ = 0;

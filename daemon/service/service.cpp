@@ -35,6 +35,9 @@ Service::Impl::Impl(const Config& configuration, Clock& time, Calibrator functio
                 config.state_dir / "recordings"),
       obstacles({.footprint = config.footprint, .acceleration = config.limits.acceleration}) {
   operator_needed = journal.unfinished().has_value();
+  base.watch_frames([this](const drivers::CanFrame& frame) {
+    if (telemetry.recorder.active()) telemetry.recorder.write_frame(stamp(frame.t).utime, frame);
+  });
   load_active();
 }
 

@@ -20,6 +20,7 @@
 #include "daemon/service/telemetry.hpp"
 #include "daemon/writeback/history.hpp"
 #include "daemon/writeback/journal.hpp"
+#include "daemon/writeback/rounding.hpp"
 #include "daemon/writeback/transaction.hpp"
 
 namespace odomcalib {
@@ -34,6 +35,7 @@ struct PendingCall {
   std::string lease;
   std::vector<std::string> effects{"auto"};
   std::optional<std::string> calibration;  ///< JSON text, apply and rollback
+  RoundingError rounding;                  ///< of what is written
   double until = 0.0;                      ///< s, end of a recording without motion; 0: until Stop
 };
 

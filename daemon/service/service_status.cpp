@@ -44,6 +44,12 @@ ordered_json Service::Impl::status() const {
                         {"ticks", tick_count},
                         {"stale", encoders.stale(now).value_or("")},
                         {"counters", base.counters()}};
+  for (const auto& one : base.controller().capabilities())
+    body["controller"]["holds"][one.quantity] = {{"readable", one.readable},
+                                                 {"writable", one.writable},
+                                                 {"stored", one.stored},
+                                                 {"object", one.object},
+                                                 {"step", one.step}};
   if (const auto id = base.controller().identity())
     body["controller"]["identity"] = {{"vendor", id->vendor},
                                       {"product", id->product},

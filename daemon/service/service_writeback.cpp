@@ -17,6 +17,10 @@ std::string outcome_name(WriteOutcome outcome) {
   return outcome == WriteOutcome::rolled_back ? "rolled_back" : "unknown";
 }
 
+ordered_json to_json(const RoundingError& error) {
+  return {{"length", error.length}, {"heading", error.heading}, {"turn", error.turn}};
+}
+
 }  // namespace
 
 std::optional<Error> Service::Impl::write_forbidden(const std::string& name) const {
@@ -51,10 +55,16 @@ void Service::Impl::start_write(const IncomingCall& incoming, const ParameterMap
                      fmt::format("{} = {} m is more than 15 % from {} m", name, value, known->second),
                      "write-back", "check the nominal values"});
   }
+  const RoundedParameters rounded = round_together(values, in_force);
+  call.rounding = rounded.remaining;
   if (dry_run)
-    return answer(incoming.client,
-                  {{"result", {{"outcome", "dry_run"}, {"before", old}, {"after", values}}}});
-  if (auto begun = transaction.write(call.method == "Rollback" ? "rollback" : "apply", values); !begun)
+    return answer(incoming.client, {{"result",
+                                     {{"outcome", "dry_run"},
+                                      {"before", old},
+                                      {"after", rounded.values},
+                                      {"rounding_error", to_json(call.rounding)}}}});
+  const std::string label = call.method == "Rollback" ? "rollback" : "apply";
+  if (auto begun = transaction.write(label, rounded.values); !begun)
     return refuse(incoming.client, begun.error());
   pending = std::move(call);
 }
@@ -95,6 +105,7 @@ void Service::Impl::write_ended(const WriteReport& report) {
                   {"steps", report.steps},
                   {"before", report.before},
                   {"after", report.after},
+                  {"rounding_error", to_json(pending->rounding)},
                   {"parameters", parameters()}});
 }
 

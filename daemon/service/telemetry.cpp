@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "drivers/can/candump.hpp"
+
 namespace odomcalib {
 namespace {
 
@@ -77,11 +79,26 @@ void Recorder::write(std::int64_t utime, const std::string& channel, const std::
   if (auto written = log_->write(utime, prefix_ + channel, message); !written) problem_ = written.error();
 }
 
+void Recorder::write_frame(std::int64_t utime, const drivers::CanFrame& frame) {
+  if (!log_ || frame_bytes_ > kLargestRecording) return;
+  if (!frames_.is_open()) {
+    auto path = log_->path();
+    frames_.open(path.replace_extension(".candump"), std::ios::trunc);
+  }
+  drivers::CanFrame stamped = frame;
+  stamped.t = 1e-6 * static_cast<double>(utime);
+  const std::string line = drivers::candump_line(stamped, "can0") + "\n";
+  frame_bytes_ += line.size();
+  frames_ << line;
+}
+
 Result<std::filesystem::path> Recorder::finish() {
   if (!log_) return Error{ErrorCode::usage, "nothing is being recorded", "", "start a recording first"};
   const std::filesystem::path path = log_->path();
   if (auto flushed = log_->flush(true); !flushed && !problem_) problem_ = flushed.error();
   log_.reset();
+  frames_.close();
+  frame_bytes_ = 0;
   if (problem_) return *problem_;
   return path;
 }

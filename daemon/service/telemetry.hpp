@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "drivers/can/transport.hpp"
 #include "proto/messages.hpp"
 #include "proto/recording_log.hpp"
 
@@ -43,6 +45,9 @@ class Recorder {
   /// little space), usage (name).
   Result<std::filesystem::path> start(const std::string& name);
   void write(std::int64_t utime, const std::string& channel, const std::string& message);
+  /// A frame on the bus goes into a candump log of the same name beside the recording; canplayer sends it
+  /// again.
+  void write_frame(std::int64_t utime, const drivers::CanFrame& frame);
   /// Syncs and closes. @return path of the finished file. Error: io, when anything could not be written.
   Result<std::filesystem::path> finish();
   [[nodiscard]] bool active() const { return log_.has_value(); }
@@ -52,6 +57,8 @@ class Recorder {
   std::filesystem::path folder_;
   std::string prefix_;
   std::optional<RecordingLog> log_;
+  std::ofstream frames_;
+  std::uint64_t frame_bytes_ = 0;
   std::optional<Error> problem_;
 };
 

@@ -38,6 +38,13 @@ ParameterMap common(const ParameterMap& wanted, const ParameterMap& present) {
   return out;
 }
 
+/// Some controllers hold values in RAM only: there is nothing to store then.
+bool stores_any(const drivers::Controller& controller, const ParameterMap& values) {
+  const auto all = controller.capabilities();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const auto& one) { return one.stored && values.contains(one.quantity); });
+}
+
 Error mismatch(const char* when) {
   return {ErrorCode::write_failed, fmt::format("the controller holds other values than written ({})", when),
           "controller parameters", "try again; check the parameter map of the profile"};
@@ -182,8 +189,11 @@ void Transaction::on_written(const Job& job, drivers::Controller& controller, do
   if (job.error) return go_back(*job.error, controller, now);
   if (!holds(job.parameters, report_.after)) return go_back(mismatch("read back"), controller, now);
   report_.in_force = job.parameters;
-  for (const auto state : {JournalState::readback_ok, JournalState::store_begin})
-    if (auto written = announce(state); !written) return go_back(written.error(), controller, now);
+  if (auto written = announce(JournalState::readback_ok); !written)
+    return go_back(written.error(), controller, now);
+  if (!stores_any(controller, report_.after)) return finish(WriteOutcome::committed);
+  if (auto written = announce(JournalState::store_begin); !written)
+    return go_back(written.error(), controller, now);
   store_begun_ = true;
   start(Phase::store_new, controller, now);
 }

@@ -1,11 +1,12 @@
-// What every motor controller looks like to the daemon. A controller is a pure state machine: frames and time
-// in, frames and events out; it holds no file descriptor and no clock, so a test or a replay drives it
-// directly.
+// What every motor controller looks like to the daemon. A controller is a pure state machine: frames or bytes
+// and time in, frames or bytes and events out; it holds no file descriptor and no clock, so a test or a
+// replay drives it directly.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,20 @@ struct ParameterJobResult {
   std::vector<StoredParameter> parameters;  ///< read: what the controller holds; write: what was read back
 };
 
+/// What the controller can do with one quantity of the robot's geometry. What it cannot hold stays on the
+/// host.
+struct Capability {
+  std::string quantity;
+  bool readable = false, writable = false;
+  bool stored = false;  ///< survives power-off
+  std::string object;   ///< where it is held, in the controller's own terms; empty: nowhere
+  double step = 0.0;    ///< SI, of one count; 0: not held
+};
+/// Of a controller that holds no geometry.
+std::vector<Capability> host_capabilities();
+
+enum class Wire { can, serial };
+
 struct Identity {
   std::uint32_t vendor = 0, product = 0, revision = 0, serial = 0;
   std::string name;
@@ -61,13 +76,20 @@ class Controller {
  public:
   virtual ~Controller() = default;
 
+  /// On CAN, frames go in and out; on a serial line, bytes.
+  [[nodiscard]] virtual Wire wire() const { return Wire::can; }
+
   // Inputs
-  virtual void on_frame(const CanFrame& frame) = 0;
+  /// The line was opened (again). @param baud of the serial line where the configuration states it
+  virtual void on_connected(std::optional<unsigned> /*baud*/) {}
+  virtual void on_frame(const CanFrame& /*frame*/) {}
+  virtual void on_bytes(std::span<const std::uint8_t> /*bytes*/, double /*now*/) {}
   /// Call at least every 20 ms: sends heartbeats and speed commands, detects lost life signs and time-outs.
   virtual void on_time(double now) = 0;
 
   // Outputs since the last call
-  virtual std::vector<CanFrame> take_frames() = 0;
+  virtual std::vector<CanFrame> take_frames() { return {}; }
+  virtual std::vector<std::uint8_t> take_bytes() { return {}; }
   virtual std::vector<TickSample> take_ticks() = 0;
   virtual std::vector<ControllerEvent> take_events() = 0;
 
@@ -92,6 +114,7 @@ class Controller {
   /// Nominal geometry from the profile: ticks per revolution, and the diameters and track where the profile
   /// states them.
   [[nodiscard]] virtual RobotDescription description() const = 0;
+  [[nodiscard]] virtual std::vector<Capability> capabilities() const = 0;
   [[nodiscard]] virtual Counters counters() const = 0;
 };
 

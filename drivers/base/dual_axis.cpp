@@ -15,6 +15,9 @@ constexpr double kOwnHeartbeat_s = 0.05;
 constexpr int kMissedHeartbeats = 3;
 constexpr std::size_t kMostQueued = 1024;  // events or ticks that nobody takes
 constexpr std::uint8_t kOperational = 0x05;
+constexpr std::uint8_t kNmtResetNode = 0x81;
+constexpr double kBoot_s = 3.0;           // a node that sends no boot-up message is asked after this
+constexpr double kRestart_s = 10.0;       // from a reset to configured
 constexpr std::uint32_t kBusOff = 0x040;  // SocketCAN error classes
 constexpr std::uint32_t kController = 0x004;
 
@@ -50,6 +53,7 @@ void DualAxis::on_frame(const CanFrame& frame) {
     advance_setup();
     return;
   }
+  if (frame.id == 0x080) return on_sync(frame.t);
   if (frame.id == 0x080u + profile_.node) return on_emergency(frame);
   if (frame.id == 0x700u + profile_.node) return on_life_sign(frame);
   if (frame.id == 0x000 || frame.id == 0x600u + profile_.node) return on_other_master(frame);
@@ -121,19 +125,32 @@ void DualAxis::check_life() {
 /// The node is no longer what was configured: stop, forget, look again.
 void DualAxis::lose(const std::string& code, const std::string& text) {
   event(code, text, true);
-  motion_ = Motion::off;
   job_.abandon();
+  forget_node();
+  look_after_ = now_ + 0.1;
+}
+
+void DualAxis::forget_node() {
+  motion_ = Motion::off;
   setup_.cancel();
   sdo_.cancel();
   phase_ = Phase::absent;
   phase_since_ = now_;
-  look_after_ = now_ + 0.1;
   watchdog_armed_ = false;
   positions_at_.reset();
   status_at_.reset();
   left_.unwrap.forget();
   right_.unwrap.forget();
   ++segment_;
+}
+
+/// What a store is worth is seen after a reset only. Everything in RAM is set up again afterwards.
+void DualAxis::restart_to_verify() {
+  event("restarted_to_verify", "the controller is reset to see what it stored", false);
+  restarted_at_ = now_;
+  send_nmt(kNmtResetNode);
+  forget_node();
+  look_after_ = now_ + kBoot_s;  // a boot-up message makes it sooner
 }
 
 void DualAxis::send_nmt(std::uint8_t command) {
@@ -160,9 +177,23 @@ void DualAxis::on_time(double now) {
   sdo_.on_time(now_);
   advance_setup();
   if (phase_ == Phase::ready) job_.advance(sdo_, now_);
+  if (job_.take_reset_request()) restart_to_verify();
+  if (job_.resetting() && now_ - restarted_at_ > kRestart_s) job_.abandon();
   send_own_heartbeat();
+  send_sync();
   check_life();
   cycle_motion();
+}
+
+/// For drives that sample on SYNC. One of a pair leaves it to the pair.
+void DualAxis::send_sync() {
+  if (profile_.sync_period_s <= 0.0 || profile_.axes == 1 || !wants_sync() || now_ < sync_due_) return;
+  const bool in_time = now_ - sync_due_ < profile_.sync_period_s;
+  sync_due_ = (in_time ? sync_due_ : now_) + profile_.sync_period_s;
+  CanFrame frame;
+  frame.id = 0x080;
+  out_.push_back(frame);
+  on_sync(now_);
 }
 
 std::vector<CanFrame> DualAxis::take_frames() {
@@ -241,10 +272,14 @@ Result<void> DualAxis::start_store(double now) {
   return job_.start_store();
 }
 
-Result<std::unique_ptr<Controller>> make_controller(const std::string& profile_path) {
-  auto profile = read_profile(profile_path);
-  if (!profile) return profile.error();
-  return std::unique_ptr<Controller>(std::make_unique<DualAxis>(std::move(profile).value()));
+std::vector<Capability> DualAxis::capabilities() const {
+  std::vector<Capability> all = host_capabilities();
+  for (Capability& one : all)
+    for (const ProfileParameter& parameter : profile_.parameters)
+      if (parameter.quantity == one.quantity)
+        one = {one.quantity,    true, true, profile_.store.has_value(), canopen::to_text(parameter.object),
+               parameter.step()};
+  return all;
 }
 
 }  // namespace odomcalib::drivers

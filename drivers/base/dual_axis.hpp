@@ -1,5 +1,5 @@
-// Two axes in one CANopen node (docs/profiles.md, style "dual-axis"): the controller of
-// drivers/base/controller.hpp.
+// Two axes in one CANopen node (docs/profiles.md, style "dual-axis"), or one axis as a side of an AxisPair:
+// the controller of drivers/base/controller.hpp.
 #pragma once
 
 #include <array>
@@ -43,7 +43,13 @@ class DualAxis final : public Controller {
 
   [[nodiscard]] std::optional<Identity> identity() const override { return identity_; }
   [[nodiscard]] RobotDescription description() const override { return profile_.robot; }
+  [[nodiscard]] std::vector<Capability> capabilities() const override;
   [[nodiscard]] Counters counters() const override;
+
+  /// A SYNC was sent or seen: what is mapped to it was sampled then.
+  void on_sync(double t) { sync_at_ = t; }
+  /// Configured, or about to be told to start: process data are expected.
+  [[nodiscard]] bool wants_sync() const { return phase_ == Phase::starting || phase_ == Phase::ready; }
 
  private:
   enum class Phase { absent, identifying, configuring, starting, ready, foreign };
@@ -59,6 +65,9 @@ class DualAxis final : public Controller {
   void lose(const std::string& code, const std::string& text);
   void send_own_heartbeat();
   void send_nmt(std::uint8_t command);
+  void send_sync();
+  void restart_to_verify();
+  void forget_node();
 
   // dual_axis_setup.cpp: identity, configuration, start
   void advance_setup();
@@ -72,6 +81,7 @@ class DualAxis final : public Controller {
 
   // dual_axis_motion.cpp: process data
   void on_process_data(const canopen::Pdo& pdo, const CanFrame& frame);
+  [[nodiscard]] double sampled_at(const canopen::Pdo& pdo, const CanFrame& frame) const;
   void on_positions(std::int32_t left, std::int32_t right, double t);
   void on_status(std::uint32_t status);
   void cycle_motion();
@@ -109,6 +119,9 @@ class DualAxis final : public Controller {
   std::optional<double> heard_at_;  // s, last life sign
   std::uint8_t node_state_ = 0;
   double own_heartbeat_due_ = 0.0;
+  double sync_due_ = 0.0;
+  std::optional<double> sync_at_;  // s, end of the last SYNC
+  double restarted_at_ = 0.0;      // when we reset the node to see what it stored
   double last_other_master_ = -1e9;
 
   Motion motion_ = Motion::off;

@@ -23,6 +23,8 @@ constexpr unsigned kResetCycles = 4;      // half a period of the fault reset's 
 constexpr double kStuckAngle_rad = 0.15;  // commanded without any count
 constexpr double kStuckTime_s = 0.3;
 constexpr std::size_t kMostQueued = 4096;
+constexpr std::uint8_t kMostSyncs = 240;  // transmission types 1..240: every n-th SYNC
+constexpr double kSyncLives_s = 0.05;     // a frame later than that belongs to no SYNC we know of
 
 /// Bits of a standard frame without stuffing, with its inter-frame space.
 double frame_time(const CanFrame& frame, unsigned bitrate) { return (47.0 + 8.0 * frame.length) / bitrate; }
@@ -42,17 +44,24 @@ void DualAxis::on_process_data(const canopen::Pdo& pdo, const CanFrame& frame) {
   }
   ++frames_used_;
   const auto left = canopen::unpack(pdo, frame, profile_.position_left);
-  const auto right = canopen::unpack(pdo, frame, profile_.position_right);
+  const auto right = profile_.axes == 1 ? std::optional<std::uint64_t>(0)
+                                        : canopen::unpack(pdo, frame, profile_.position_right);
   if (left && right)
     on_positions(static_cast<std::int32_t>(sign_extend(*left, 32)),
-                 static_cast<std::int32_t>(sign_extend(*right, 32)),
-                 frame.t - frame_time(frame, profile_.bitrate));
+                 static_cast<std::int32_t>(sign_extend(*right, 32)), sampled_at(pdo, frame));
   if (profile_.fault) {
     if (const auto fault = canopen::unpack(pdo, frame, *profile_.fault))
       fault_code_ = static_cast<std::uint32_t>(*fault);
   }
   if (const auto status = canopen::unpack(pdo, frame, profile_.status))
     on_status(static_cast<std::uint32_t>(*status));
+}
+
+/// Data on SYNC were sampled at its end, others when the frame began.
+double DualAxis::sampled_at(const canopen::Pdo& pdo, const CanFrame& frame) const {
+  const bool on_sync = pdo.type >= 1 && pdo.type <= kMostSyncs;
+  if (on_sync && sync_at_ && frame.t - *sync_at_ < kSyncLives_s) return *sync_at_;
+  return frame.t - frame_time(frame, profile_.bitrate);
 }
 
 void DualAxis::on_positions(std::int32_t left, std::int32_t right, double t) {
@@ -90,6 +99,7 @@ void DualAxis::on_status(std::uint32_t status) {
   status_ = status;
   axes_ = {canopen::decode_status(static_cast<std::uint16_t>(status)),
            canopen::decode_status(static_cast<std::uint16_t>(status >> 16))};
+  if (profile_.axes == 1) axes_[1] = axes_[0];
   if (axes_ != before) motion_since_ = now_;
   if (motion_ != Motion::on || both_axes(DriveState::enabled)) return;
   const DriveState odd = axes_[0] == DriveState::enabled ? axes_[1] : axes_[0];
@@ -116,7 +126,7 @@ void DualAxis::send_command(std::uint16_t control_word, double left_rad_s, doubl
     frame.length = static_cast<std::uint8_t>(canopen::mapped_bytes(pdo));
     pack(pdo, frame, profile_.control, control_word);
     pack(pdo, frame, profile_.speed_left, left);
-    pack(pdo, frame, profile_.speed_right, right);
+    if (profile_.axes == 2) pack(pdo, frame, profile_.speed_right, right);
     frames.push_back(frame);
   }
   // The last target may still be in the object: targets go first, the control word last.

@@ -57,7 +57,7 @@ void add_watchdog(std::vector<SdoStep>& steps, const Profile& profile) {
 void add_rest(std::vector<SdoStep>& steps, const Profile& profile) {
   // An earlier master may have left the axes enabled with a target.
   steps.push_back(write_step(profile.speed_left, kI32, 0, true));
-  steps.push_back(write_step(profile.speed_right, kI32, 0, true));
+  if (profile.axes == 2) steps.push_back(write_step(profile.speed_right, kI32, 0, true));
   steps.push_back(write_step(profile.control, kU16, canopen::kDisableVoltage, true));
 }
 
@@ -185,7 +185,7 @@ void DualAxis::check_started() {
     phase_since_ = now_;
     motion_ = Motion::off;
     heard_at_ = now_;
-    return;
+    return job_.on_set_up_again();
   }
   if (now_ - phase_since_ < kStart_s) return;
   event("start_failed",

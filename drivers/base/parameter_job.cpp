@@ -116,6 +116,10 @@ void ParameterJob::end_stage() {
       return after_storing();
     case Stage::after:
       return after_reading_again();
+    case Stage::after_reset:
+      return after_reading_after_reset();
+    case Stage::reset:
+      return;
   }
 }
 
@@ -173,11 +177,14 @@ void ParameterJob::after_reading_again() {
                          "no answer after the store (" + sequence_.error()->text() + ")",
                          "power-cycle the controller and read the parameters"));
   read_back_ = read_values();
-  const bool same = std::equal(wanted_.begin(), wanted_.end(), read_back_.begin(), read_back_.end(),
-                               [](const Wanted& w, const StoredParameter& s) { return w.old_raw == s.raw; });
-  if (!same)
+  if (!reads_what_was_stored())
     return finish(failed(ErrorCode::write_unknown, "values changed while they were stored",
                          "read the parameters before the robot moves again"));
+  if (!first_error_ && profile_.store->verify_after_reset) {
+    stage_ = Stage::reset;
+    reset_wanted_ = true;
+    return;
+  }
   if (!first_error_) return finish(std::nullopt);
   if (first_error_->code == ErrorCode::timeout)
     return finish(failed(ErrorCode::write_unknown, "no answer to the store command",
@@ -186,8 +193,33 @@ void ParameterJob::after_reading_again() {
                 "the new values are in RAM only; disable the axes and store again"));
 }
 
+bool ParameterJob::reads_what_was_stored() const {
+  return std::equal(wanted_.begin(), wanted_.end(), read_back_.begin(), read_back_.end(),
+                    [](const Wanted& w, const StoredParameter& s) { return w.old_raw == s.raw; });
+}
+
+bool ParameterJob::take_reset_request() { return std::exchange(reset_wanted_, false); }
+
+void ParameterJob::on_set_up_again() {
+  if (resetting()) start_reading(Stage::after_reset);
+}
+
+void ParameterJob::after_reading_after_reset() {
+  if (sequence_.error())
+    return finish(
+        failed(ErrorCode::write_unknown,
+               "no answer after the reset that follows the store (" + sequence_.error()->text() + ")",
+               "power-cycle the controller and read the parameters"));
+  read_back_ = read_values();
+  if (reads_what_was_stored()) return finish(std::nullopt);
+  finish(failed(ErrorCode::write_failed,
+                "the controller took the store command but came back from a reset with other values",
+                "is its memory write-protected, or worn out? the values can be kept on the host"));
+}
+
 void ParameterJob::finish(std::optional<Error> error) {
   running_ = false;
+  reset_wanted_ = false;
   result_ = ParameterJobResult{kind_, std::move(error), read_back_};
 }
 

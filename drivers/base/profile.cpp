@@ -1,92 +1,24 @@
 #include "drivers/base/profile.hpp"
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <fstream>
-#include <numbers>
 #include <sstream>
 
-#include "drivers/base/profile_reader.hpp"
+#include "drivers/base/profile_parts.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-constexpr std::int64_t kU32Max = 0xFFFFFFFF;
-
-ProfileWrite read_write(ProfileTable& table) {
-  ProfileWrite write;
-  write.object = table.object("object", std::nullopt);
-  write.type = table.type("type", std::nullopt);
-  write.value = table.integer("value", std::nullopt, INT32_MIN, kU32Max);
-  if (!canopen::fits(write.value, write.type))
-    table.complain("value", "does not fit the type", "what the type holds");
-  table.finish();
-  return write;
-}
-
-std::vector<ProfileWrite> read_writes(ProfileTable& table, std::string_view key) {
-  std::vector<ProfileWrite> out;
-  for (ProfileTable& element : table.tables(key)) out.push_back(read_write(element));
-  return out;
-}
-
-ProfileWatchdog read_watchdog(ProfileTable table) {
-  ProfileWatchdog watchdog;
-  const std::string kind = table.text("kind", "none");
-  watchdog.time_ms = table.number("time_ms", 200.0, 20.0, 1000.0);
-  watchdog.also = read_writes(table, "also");
-  if (kind == "1016") {
-    watchdog.kind = ProfileWatchdog::Kind::heartbeat_consumer;
-    watchdog.object = table.object("object", "1016:01");
-    watchdog.type = {4, false};
-  } else if (kind == "object") {
-    watchdog.kind = ProfileWatchdog::Kind::object;
-    watchdog.object = table.object("object", std::nullopt);
-    watchdog.type = table.type("type", "u16");
-    watchdog.unit_ms = table.number("unit_ms", 1.0, 1e-3, 1000.0);
-  } else if (kind != "none") {
-    table.complain("kind", "\"" + kind + "\"", R"("1016", "object" or "none")");
-  }
-  table.finish();
-  return watchdog;
-}
-
-void read_identity(ProfileTable table, Profile& profile) {
-  profile.vendor = static_cast<std::uint32_t>(table.integer("vendor", 0, 0, kU32Max));
-  profile.product = static_cast<std::uint32_t>(table.integer("product", 0, 0, kU32Max));
-  table.finish();
-}
-
-void read_heartbeat(ProfileTable table, Profile& profile) {
-  profile.heartbeat_ms = static_cast<std::uint16_t>(table.integer("period_ms", 100, 10, 1000));
-  profile.heartbeat_unit_ms = table.number("unit_ms", 1.0, 1e-3, 1000.0);
-  profile.host_node = static_cast<std::uint8_t>(table.integer("host_node", 0x7F, 1, 127));
-  table.finish();
-}
-
-void read_objects(ProfileTable table, Profile& profile) {
-  profile.position_left = table.object("position_left", std::nullopt);
-  profile.position_right = table.object("position_right", std::nullopt);
-  profile.status = table.object("status", "6041:00");
-  profile.control = table.object("control", "6040:00");
-  profile.speed_left = table.object("speed_left", std::nullopt);
-  profile.speed_right = table.object("speed_right", std::nullopt);
-  if (table.has("fault")) profile.fault = table.object("fault", std::nullopt);
-  table.finish();
-}
-
-void read_mode(ProfileTable table, Profile& profile) {
-  if (!table.exists()) return;
-  ProfileWrite mode;
-  mode.object = table.object("object", "6060:00");
-  mode.type = {1, true};
-  mode.value = table.integer("value", 3, -128, 127);
-  profile.mode_display = table.object("display", "6061:00");
-  profile.mode = mode;
-  table.finish();
-}
+constexpr std::array kProtocols = {"canopen", "agilex", "arcos", "odrive", "ros_arduino", "segway", "vesc"};
 
 void read_ticks(ProfileTable table, Profile& profile) {
   profile.ticks_per_rev = table.number("counts_per_rev", std::nullopt, 1.0, 1e9);
+  if (profile.protocol != "canopen") {
+    profile.count_source = table.text("source", "");
+    profile.count_bits = static_cast<unsigned>(table.integer("bits", 32, 8, 32));
+    profile.counts_live_s = 1e-3 * table.number("timeout_ms", 500.0, 50.0, 2000.0);
+  }
   table.finish();
 }
 
@@ -97,63 +29,13 @@ int read_sign(ProfileTable& table, std::string_view key) {
 }
 
 void read_speed(ProfileTable table, Profile& profile) {
-  profile.rpm_per_count = table.number("rpm_per_count", 1.0, 1e-6, 1000.0);
   profile.max_rpm = table.number("max_rpm", std::nullopt, 0.1, 100'000.0);
-  table.finish();
-}
-
-canopen::Pdo read_pdo(ProfileTable& table, bool transmit, std::uint8_t node) {
-  canopen::Pdo pdo;
-  pdo.transmit = transmit;
-  pdo.number = static_cast<std::uint16_t>(table.integer("number", std::nullopt, 1, 512));
-  const std::int64_t first = transmit ? 0x180 : 0x200;
-  const std::int64_t usual = first + std::int64_t{0x100} * ((pdo.number - 1) % 4) + node;
-  pdo.cob_id = static_cast<std::uint32_t>(table.integer("cob_id", usual, 0x181, 0x57F));
-  pdo.type = static_cast<std::uint8_t>(table.integer("type", 255, 0, 255));
-  if (table.has("inhibit")) pdo.inhibit = static_cast<std::uint16_t>(table.integer("inhibit", 0, 0, 65535));
-  if (table.has("event_timer"))
-    pdo.event_timer = static_cast<std::uint16_t>(table.integer("event_timer", 0, 0, 65535));
-  pdo.entries = table.entries("map");
-  table.finish();
-  return pdo;
-}
-
-std::int64_t most_of(canopen::NumberType type) {
-  if (type.bytes >= 8) return INT64_MAX;
-  const unsigned bits = 8u * type.bytes - (type.is_signed ? 1u : 0u);
-  return (std::int64_t{1} << bits) - 1;
-}
-
-ProfileParameter read_parameter(ProfileTable& table) {
-  ProfileParameter parameter;
-  parameter.quantity = table.text("quantity", std::nullopt);
-  if (parameter.quantity != "left_wheel_diameter" && parameter.quantity != "right_wheel_diameter" &&
-      parameter.quantity != "track_width")
-    table.complain("quantity", "\"" + parameter.quantity + "\"",
-                   "left_wheel_diameter, right_wheel_diameter, track_width");
-  parameter.object = table.object("object", std::nullopt);
-  parameter.type = table.type("type", "u32");
-  parameter.scale = table.number("scale", std::nullopt, 1e-12, 1e6);
-  const std::string formula = table.text("formula", "length");
-  if (formula != "length" && formula != "feed")
-    table.complain("formula", "\"" + formula + "\"", "length, feed");
-  parameter.feed = formula == "feed";
-  parameter.turns = table.number("turns", 1.0, 1.0, 1e6);
-  const std::int64_t most = most_of(parameter.type);
-  parameter.min = table.integer("min", 1, 0, most);
-  parameter.max = table.integer("max", most, parameter.min, most);
-  table.finish();
-  return parameter;
-}
-
-void read_store(ProfileTable table, Profile& profile) {
-  if (!table.exists()) return;
-  ProfileStore store;
-  store.wait_s = table.number("wait_s", 5.0, 0.1, 60.0);
-  store.object = table.object("object", "1010:01");
-  store.type = table.type("type", "u32");
-  store.value = table.integer("value", 0x65766173, 0, kU32Max);
-  profile.store = store;
+  if (profile.protocol == "canopen") {
+    profile.rpm_per_count = table.number("rpm_per_count", 1.0, 1e-6, 1000.0);
+  } else {
+    profile.motor_turns_per_rev = table.number("motor_turns_per_rev", 1.0, 1e-3, 1e4);
+    profile.interval_s = 1e-3 * table.number("interval_ms", 0.0, 0.0, 1000.0);
+  }
   table.finish();
 }
 
@@ -166,73 +48,99 @@ void read_robot(ProfileTable table, Profile& profile) {
   table.finish();
 }
 
+void read_nodes(ProfileTable table, Profile& profile) {
+  profile.left_node = static_cast<std::uint8_t>(table.integer("left", 1, 0, 255));
+  profile.right_node = static_cast<std::uint8_t>(table.integer("right", 2, 0, 255));
+  if (profile.left_node == profile.right_node)
+    table.complain("right", "the same as left", "two different numbers");
+  table.finish();
+}
+
+/// Devices with a command time-out of their own, which this program cannot set.
+void read_builtin_watchdog(ProfileTable table, Profile& profile) {
+  const std::string kind = table.text("kind", "none");
+  if (kind != "builtin" && kind != "none")
+    table.complain("kind", "\"" + kind + "\"", R"("builtin" or "none")");
+  if (kind == "builtin") profile.watchdog.kind = ProfileWatchdog::Kind::builtin;
+  profile.watchdog.time_ms = table.number("time_ms", 500.0, 20.0, 1e3 * kLongestWatchdog_s);
+  table.finish();
+}
+
 void read_basics(ProfileTable& table, Profile& profile) {
   profile.name = table.text("name", std::nullopt);
-  const std::string protocol = table.text("protocol", std::nullopt);
-  if (protocol != "canopen") table.complain("protocol", "\"" + protocol + "\"", "canopen");
-  const std::string style = table.text("style", "dual-axis");
-  if (style != "dual-axis") table.complain("style", "\"" + style + "\"", "dual-axis");
-  profile.node = static_cast<std::uint8_t>(table.integer("node", 1, 1, 127));
-  profile.bitrate = static_cast<unsigned>(table.integer("bitrate", 500'000, 10'000, 1'000'000));
+  profile.protocol = table.text("protocol", std::nullopt);
+  if (std::find(kProtocols.begin(), kProtocols.end(), profile.protocol) == kProtocols.end())
+    table.complain("protocol", "\"" + profile.protocol + "\"",
+                   "canopen, agilex, arcos, odrive, ros_arduino, segway, vesc");
+  profile.bitrate = static_cast<unsigned>(table.integer("bitrate", 500'000, 9600, 1'000'000));
   profile.left_sign = read_sign(table, "left_sign");
   profile.right_sign = read_sign(table, "right_sign");
-}
-
-bool mapped(const Profile& profile, const canopen::ObjectAddress& object, bool transmit) {
-  for (const canopen::Pdo& pdo : profile.pdos)
-    for (const canopen::PdoEntry& entry : pdo.entries)
-      if (pdo.transmit == transmit && entry.object == object) return true;
-  return false;
-}
-
-/// What the controller cannot work without must be somewhere in the process data.
-void check_mapping(ProfileTable& table, const Profile& profile) {
-  for (const auto& object : {profile.position_left, profile.position_right, profile.status})
-    if (!mapped(profile, object, true))
-      table.complain("tpdo", canopen::to_text(object) + " is mapped nowhere",
-                     "positions and status in some tpdo");
-  for (const auto& object : {profile.control, profile.speed_left, profile.speed_right})
-    if (!mapped(profile, object, false))
-      table.complain("rpdo", canopen::to_text(object) + " is mapped nowhere",
-                     "control and speeds in some rpdo");
-}
-
-Profile read_tables(ProfileTable& table) {
-  Profile profile;
-  read_basics(table, profile);
-  read_identity(table.table("identity"), profile);
-  read_heartbeat(table.table("heartbeat"), profile);
-  profile.watchdog = read_watchdog(table.table("watchdog"));
-  profile.init = read_writes(table, "init");
-  read_objects(table.table("objects"), profile);
-  read_mode(table.table("mode"), profile);
   read_ticks(table.table("ticks"), profile);
   read_speed(table.table("speed"), profile);
-  for (ProfileTable& pdo : table.tables("tpdo")) profile.pdos.push_back(read_pdo(pdo, true, profile.node));
-  for (ProfileTable& pdo : table.tables("rpdo")) profile.pdos.push_back(read_pdo(pdo, false, profile.node));
-  for (ProfileTable& parameter : table.tables("parameter"))
-    profile.parameters.push_back(read_parameter(parameter));
-  read_store(table.table("store"), profile);
   read_robot(table.table("robot"), profile);
+}
+
+/// One drive of a pair: everything is its own but the name and the geometry.
+Profile read_side(ProfileTable table, const std::string& side) {
+  Profile profile;
+  read_basics(table, profile);
+  (void)table.text("style", "pair");
+  read_nodes(table.table("nodes"), profile);
+  const bool left = side == "left";
+  profile.side = side;
+  profile.axes = 1;
+  profile.node = left ? profile.left_node : profile.right_node;
+  if (profile.node < 1 || profile.node > 127) table.complain("nodes." + side, "no node id", "1 to 127");
+  if (!left) profile.left_sign = profile.right_sign;
+  read_canopen_tables(table, profile);
   table.finish();
-  check_mapping(table, profile);
+  return profile;
+}
+
+void read_canopen(ProfileTable& table, Profile& profile) {
+  profile.node = static_cast<std::uint8_t>(table.integer("node", 1, 1, 127));
+  read_canopen_tables(table, profile);
+  table.finish();
+}
+
+void read_others(ProfileTable& table, Profile& profile) {
+  profile.node = static_cast<std::uint8_t>(table.integer("node", 0x7F, 0, 255));
+  read_nodes(table.table("nodes"), profile);
+  read_builtin_watchdog(table.table("watchdog"), profile);
+  const RobotDescription& robot = profile.robot;
+  const bool takes_twist = profile.protocol == "agilex" || profile.protocol == "arcos";
+  if (takes_twist &&
+      (robot.left_wheel_diameter <= 0.0 || robot.right_wheel_diameter <= 0.0 || robot.track_width <= 0.0))
+    table.complain("robot", "a diameter or the track width is missing",
+                   "all three: this controller takes speeds of the robot, not of its wheels");
+  if (profile.protocol == "ros_arduino" && profile.interval_s <= 0.0)
+    table.complain("speed.interval_ms", "it is missing", "the control interval of the firmware, e.g. 33.3");
+  table.finish();
+}
+
+/// @param again makes a fresh view of the same table
+template <typename Again>
+Profile read_tables(ProfileTable& table, const Again& again) {
+  Profile profile;
+  read_basics(table, profile);
+  if (profile.protocol != "canopen") {
+    read_others(table, profile);
+    return profile;
+  }
+  const std::string style = table.text("style", "dual-axis");
+  if (style != "dual-axis" && style != "pair")
+    table.complain("style", "\"" + style + "\"", "dual-axis, pair");
+  if (style != "pair") {
+    read_canopen(table, profile);
+    return profile;
+  }
+  for (const char* side : {"left", "right"}) profile.sides.push_back(read_side(again(), side));
+  profile.sync_period_s = profile.sides[0].sync_period_s;
+  profile.watchdog = profile.sides[0].watchdog;
   return profile;
 }
 
 }  // namespace
-
-double ProfileParameter::to_si(std::int64_t raw) const {
-  const double length = static_cast<double>(raw) * scale;
-  return feed ? length / (std::numbers::pi * turns) : length;
-}
-
-std::optional<std::int64_t> ProfileParameter::to_raw(double si) const {
-  const double length = feed ? si * std::numbers::pi * turns : si;
-  const double raw = std::round(length / scale);
-  if (!std::isfinite(raw) || raw < static_cast<double>(min) || raw > static_cast<double>(max))
-    return std::nullopt;
-  return static_cast<std::int64_t>(raw);
-}
 
 Result<Profile> parse_profile(const std::string& text, const std::string& where) {
   try {
@@ -242,7 +150,7 @@ Result<Profile> parse_profile(const std::string& text, const std::string& where)
     ProfileTable table = top.table("profile");
     if (!table.exists()) top.complain("profile", "it is missing", "a table [profile]");
     top.finish();
-    Profile profile = read_tables(table);
+    Profile profile = read_tables(table, [&] { return top.table("profile"); });
     if (problem.first) return *problem.first;
     return profile;
   } catch (const toml::parse_error& error) {

@@ -1,4 +1,4 @@
-// A controller profile: everything that differs between CANopen dual-axis drives, read from TOML
+// A controller profile: everything that differs between controllers of one protocol, read from TOML
 // (docs/profiles.md).
 #pragma once
 
@@ -24,6 +24,7 @@ struct ProfileWrite {
 struct ProfileWatchdog {
   enum class Kind {
     none,                ///< the drive cannot watch this program: it will not be enabled
+    builtin,             ///< the device has a fixed command time-out of time_ms
     heartbeat_consumer,  ///< 1016h watches our heartbeat
     object               ///< a vendor object holds a command time-out
   } kind = Kind::none;
@@ -54,11 +55,13 @@ struct ProfileStore {
   canopen::NumberType type;
   std::int64_t value = 0;
   double wait_s = 5.0;
+  bool verify_after_reset = false;  ///< reset the node after the store and read again
 };
 
 struct Profile {
   std::string name;
-  std::uint8_t node = 1;
+  std::string protocol = "canopen";
+  std::uint8_t node = 1;  ///< CANopen: of the drive; VESC: our own
   unsigned bitrate = 500'000;
   std::uint32_t vendor = 0, product = 0;  ///< 0: not compared
   // Life signs
@@ -73,6 +76,11 @@ struct Profile {
   std::optional<ProfileWrite> mode;  ///< 6060h
   canopen::ObjectAddress mode_display;
   std::vector<canopen::Pdo> pdos;
+  double sync_period_s = 0.0;  ///< of the SYNC we send; 0: none
+  int axes = 2;                ///< 1: one side of a pair, whose objects are position_left, speed_left
+  std::string side;            ///< "left" or "right": the side of a pair that this is
+  /// A pair of single-axis drives: the left and the right one. Empty otherwise.
+  std::vector<Profile> sides;
   // Units
   double ticks_per_rev = 0.0;
   int left_sign = 1, right_sign = 1;  ///< -1: the motor is mounted mirrored
@@ -80,8 +88,18 @@ struct Profile {
   double max_rpm = 0.0;
   std::vector<ProfileParameter> parameters;
   std::optional<ProfileStore> store;
-  RobotDescription robot;  ///< nominal geometry, zeros where the profile states none
+  // Protocols other than CANopen
+  std::uint8_t left_node = 1, right_node = 2;  ///< ids of the two devices, or numbers of the two motors
+  std::string count_source;                    ///< which message holds the counts, where there are several
+  unsigned count_bits = 32;                    ///< width of the counter
+  double counts_live_s = 0.5;                  ///< without counts for so long, the controller is gone
+  double motor_turns_per_rev = 1.0;            ///< gear
+  double interval_s = 0.0;  ///< of the device's control loop, where speeds are counts in it
+  RobotDescription robot;   ///< nominal geometry, zeros where the profile states none
 };
+
+/// Longest command time-out of a device that is still taken for a watchdog.
+inline constexpr double kLongestWatchdog_s = 2.0;
 
 /// Errors: io, format (which key, what was found, what is allowed).
 Result<Profile> read_profile(const std::string& path);

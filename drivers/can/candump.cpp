@@ -1,7 +1,9 @@
 #include "drivers/can/candump.hpp"
 
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 namespace odomcalib::drivers {
 namespace {
@@ -65,6 +67,12 @@ std::string_view trim_end(std::string_view line) {
   return direction ? line.substr(0, line.size() - 2) : line;
 }
 
+/// "(time) interface id##flags data"
+bool is_fd(std::string_view line) {
+  const std::size_t id = line.find('#');
+  return id != std::string_view::npos && id + 1 < line.size() && line[id + 1] == '#';
+}
+
 }  // namespace
 
 std::optional<CanFrame> parse_candump_line(std::string_view line) {
@@ -84,6 +92,58 @@ std::optional<CanFrame> parse_candump_line(std::string_view line) {
   const bool remote = !line.empty() && line[0] == 'R';
   if (!(remote ? read_remote(line, frame) : read_data(line, frame))) return std::nullopt;
   return frame;
+}
+
+std::string candump_line(const CanFrame& frame, std::string_view interface) {
+  std::array<char, 64> text{};
+  const bool wide = frame.extended || frame.error;
+  const std::uint32_t id = frame.id | (frame.error ? kErrorFlag : 0U);
+  int n = std::snprintf(text.data(), text.size(), "(%.6f) ", frame.t);
+  std::string line(text.data(), static_cast<std::size_t>(n));
+  line += interface;
+  n = std::snprintf(text.data(), text.size(), wide ? " %08X#" : " %03X#", id);
+  line.append(text.data(), static_cast<std::size_t>(n));
+  if (frame.remote) return line + 'R' + (frame.length > 0 ? std::to_string(frame.length) : "");
+  for (std::size_t i = 0; i < frame.length && i < frame.data.size(); ++i) {
+    n = std::snprintf(text.data(), text.size(), "%02X", frame.data[i]);
+    line.append(text.data(), static_cast<std::size_t>(n));
+  }
+  return line;
+}
+
+std::optional<CanFrame> CandumpReader::next() {
+  while (!rest_.empty()) {
+    const std::size_t end = rest_.find('\n');
+    const bool whole = end != std::string_view::npos;
+    const std::string_view line = rest_.substr(0, end);
+    const std::size_t size = line.size() + (whole ? 1 : 0);
+    rest_.remove_prefix(size);
+    const auto frame = parse_candump_line(line);
+    if (frame) {
+      good_ += size;
+      if (frame->t < last_t_) ++time_backwards_;
+      last_t_ = frame->t;
+      return frame;
+    }
+    if (whole) {
+      skipped_ += size;
+      if (is_fd(line)) ++fd_frame_;
+      if (!line.empty() && line != "\r" && !is_fd(line)) ++bad_line_;
+    } else {
+      buffered_ = size;  // cut off in the middle of a line
+    }
+  }
+  return std::nullopt;
+}
+
+Counters CandumpReader::counters() const {
+  return {{"bytes_in", bytes_in_},
+          {"good", good_},
+          {"skipped", skipped_},
+          {"buffered", buffered_},
+          {"bad_line", bad_line_},
+          {"fd_frame", fd_frame_},
+          {"time_backwards", time_backwards_}};
 }
 
 }  // namespace odomcalib::drivers

@@ -61,6 +61,7 @@ class FrameBuffer {
 
   [[nodiscard]] const Counters& rejected() const { return rejected_; }
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  [[nodiscard]] std::size_t buffered() const { return buffer_.size(); }
 
   /// bytes_in, good, skipped, buffered, packets, and every rejection.
   [[nodiscard]] Counters counters() const {

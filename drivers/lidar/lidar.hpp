@@ -61,7 +61,8 @@ class Lidar {
   [[nodiscard]] virtual Counters rejected() const = 0;
   /// Model, firmware, serial number as the device told them; empty before.
   [[nodiscard]] virtual std::string identity() const { return {}; }
-  /// What the device itself says is wrong, or that it does not answer.
+  /// What the device itself says is wrong, or that it does not answer; with code format, what is wrong with
+  /// its data.
   [[nodiscard]] virtual std::optional<Error> problem() const { return std::nullopt; }
 
   using Listener = std::function<void(LidarMessage)>;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "drivers/serial/port.hpp"
 
@@ -52,6 +53,16 @@ Result<DeviceString> parse_device(const std::string& text) {
   if (has_options && (question + 1 == text.size() || !parse_options(text.substr(question + 1), out)))
     return bad_device(text, "options after \"?\" must be key=value, each key once, joined by &");
   return out;
+}
+
+Result<unsigned> baud_of(const DeviceString& device) {
+  const std::string text = device.option("baud", "");
+  unsigned baud = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), baud);
+  if (error == std::errc{} && end == text.data() + text.size() && baud > 0) return baud;
+  return Error{ErrorCode::usage,
+               text.empty() ? "the baud rate is missing" : "\"" + text + "\" is no baud rate",
+               device.scheme + ":" + device.path, "add it to the device, e.g. ?baud=57600"};
 }
 
 }  // namespace odomcalib::drivers

@@ -18,6 +18,9 @@ struct DeviceString {
   [[nodiscard]] std::string option(const std::string& key, const std::string& otherwise) const;
 };
 
+/// The option "baud". Error usage: missing, or no rate.
+Result<unsigned> baud_of(const DeviceString& device);
+
 /// Errors: usage, naming the part that is wrong.
 Result<DeviceString> parse_device(const std::string& text);
 

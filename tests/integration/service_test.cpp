@@ -1,4 +1,7 @@
 // Motions, stops and write-back of the service, in virtual time.
+#include <fstream>
+
+#include "drivers/can/candump.hpp"
 #include "tests/integration/service_loop.hpp"
 
 namespace odomcalib {
@@ -23,6 +26,15 @@ TEST_F(ServiceLoop, straight_goes_out_and_back_and_leaves_a_recording) {
   const json result = json::parse(reply.parameters)["result"];
   EXPECT_EQ(result["moves"].size(), 2U);
   EXPECT_GT(std::filesystem::file_size(result["recording"].get<std::string>()), 100000U);
+  const auto frames =
+      std::filesystem::path(result["recording"].get<std::string>()).replace_extension(".candump");
+  std::ifstream log(frames, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(log)), {});
+  drivers::CandumpReader reader(text);
+  std::size_t positions = 0;
+  while (const auto frame = reader.next()) positions += frame->id == 0x181 ? 1 : 0;
+  EXPECT_GT(positions, 200U);
+  EXPECT_EQ(reader.counters()["skipped"], 0U);
   run(0.5);
   EXPECT_EQ(status()["controller"]["state"], "disabled");
 }

@@ -1,5 +1,7 @@
 #include "drivers/base/canopen/pdo.hpp"
 
+#include <array>
+
 #include "drivers/bytes.hpp"
 
 namespace odomcalib::drivers::canopen {
@@ -48,6 +50,22 @@ void add_pdo_configuration(std::vector<SdoStep>& steps, const Pdo& pdo) {
   if (pdo.inhibit) add_checked_write(steps, {communication, 3}, kU16, *pdo.inhibit);
   if (pdo.event_timer) add_checked_write(steps, {communication, 5}, kU16, *pdo.event_timer);
   add_checked_write(steps, {communication, 1}, kU32, pdo.cob_id);
+}
+
+// CiA 402-3, default mappings: each begins with the status or control word.
+std::optional<Pdo> predefined_pdo(std::uint32_t cob_id) {
+  const std::uint32_t function = cob_id & 0x780;
+  if (function < 0x180 || function > 0x500 || (cob_id & 0x7F) == 0) return std::nullopt;
+  Pdo pdo;
+  pdo.cob_id = cob_id;
+  pdo.transmit = (function & 0x080) != 0;
+  pdo.number = static_cast<std::uint16_t>((function - (pdo.transmit ? 0x080u : 0x100u)) / 0x100u);
+  pdo.entries.push_back({{static_cast<std::uint16_t>(pdo.transmit ? 0x6041 : 0x6040), 0}, 16});
+  const std::array<PdoEntry, 3> second =
+      pdo.transmit ? std::array<PdoEntry, 3>{{{{0x6061, 0}, 8}, {{0x6064, 0}, 32}, {{0x606C, 0}, 32}}}
+                   : std::array<PdoEntry, 3>{{{{0x6060, 0}, 8}, {{0x607A, 0}, 32}, {{0x60FF, 0}, 32}}};
+  if (pdo.number > 1) pdo.entries.push_back(second[pdo.number - 2u]);
+  return pdo;
 }
 
 std::size_t mapped_bytes(const Pdo& pdo) {

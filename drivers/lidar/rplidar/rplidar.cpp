@@ -172,7 +172,7 @@ Counters Rplidar::counters() const {
 
 std::optional<Error> Rplidar::problem() const {
   if (stream_.frames().rejected().at("unknown_packet_type") > 0)
-    return Error{ErrorCode::device, "the lidar sends measurements in a form that this driver does not know",
+    return Error{ErrorCode::format, "the lidar sends measurements in a form that this driver does not know",
                  "rplidar", "use lidar.type = \"rplidar:standard\""};
   return startup_.problem();
 }

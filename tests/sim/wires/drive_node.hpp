@@ -53,6 +53,8 @@ struct DriveNodeOptions {
   double boot_time = 0.2;                                            ///< s from reset to the boot-up message
   double answer_time = 0.0003;                                       ///< s, SDO
   double store_time = 0.05;                                          ///< s, answer to 1010h
+  /// One axis only: 6064:00, 60FF:00, a status word of 16 bits, and 6092:01 as the feed of 100 turns in um.
+  bool single_axis = false;
 };
 
 /// Switches for tests; all off by default.
@@ -105,6 +107,7 @@ class DriveNode {
   void add_targets();
   void add_actual_values();
   void add_geometry();
+  void add_single_axis();
   void add_pdos();
   void on_nmt(const Frame& frame, double now);
   void on_heartbeat(const Frame& frame, double now);
@@ -126,6 +129,7 @@ class DriveNode {
 
   DriveNodeOptions options_;
   std::array<std::uint32_t, 3> stored_;
+  std::optional<std::uint32_t> stored_feed_;
   ObjectDictionary dictionary_;
   std::unique_ptr<SdoServer> sdo_;
   std::deque<TransmitPdo> tpdos_;

@@ -10,6 +10,7 @@ namespace odomcalib::sim {
 namespace {
 
 constexpr std::uint32_t kSave = 0x65766173U;  // "save" on the wire
+constexpr std::uint32_t kFeedTurns = 100;
 constexpr std::uint32_t kInvalid = 0x80000000U;
 constexpr std::uint32_t kShortest = 1000U, kLongest = 10'000'000U;  // 1 mm to 10 m in micrometres
 
@@ -33,6 +34,7 @@ void DriveNode::build_dictionary() {
   add_targets();
   add_actual_values();
   add_geometry();
+  if (options_.single_axis) add_single_axis();
   add_pdos();
 }
 
@@ -152,12 +154,34 @@ void DriveNode::add_geometry() {
   save.before_write = [this](std::uint32_t signature) { return store(signature); };
 }
 
+/// The left side of the pair of axes, at the objects that CiA 402 gives a single one.
+void DriveNode::add_single_axis() {
+  Object& status = dictionary_.add_value({0x6041, 0}, 2, 0);
+  status.mappable = true;
+  status.computed = [this] { return status_word() & 0xFFFFU; };
+  Object& where = dictionary_.add_value({0x6064, 0}, 4, 0);
+  where.mappable = true;
+  where.computed = [this] { return position(0); };
+  Object& target = dictionary_.add_value({0x60FF, 0}, 4, 0, Access::read_write);
+  target.mappable = true;
+  target.after_write = [this](std::uint32_t value) {
+    for (std::uint8_t sub = 1; sub <= 2; ++sub) dictionary_.set({0x60FF, sub}, value);
+  };
+  dictionary_.add_value({0x6092, 0}, 1, 2);
+  dictionary_.add_value({0x6092, 2}, 4, kFeedTurns);
+  const auto feed = static_cast<std::uint32_t>(std::llround(std::numbers::pi * kFeedTurns * stored_[0]));
+  dictionary_.add_value({0x6092, 1}, 4, stored_feed_.value_or(feed), Access::read_write).before_write =
+      [this](std::uint32_t) { return machine_.enabled() ? abort_code::kState : abort_code::kNone; };
+}
+
 AbortCode DriveNode::store(std::uint32_t signature) {
   if (signature != kSave) return abort_code::kCannotStore;
   if (machine_.enabled()) return abort_code::kState;
   if (faults.store_fails) return abort_code::kHardware;
   ++store_count_;
-  if (!faults.store_is_lost) stored_ = geometry_in_ram();
+  if (faults.store_is_lost) return abort_code::kNone;
+  stored_ = geometry_in_ram();
+  if (options_.single_axis) stored_feed_ = dictionary_.value({0x6092, 1});
   return abort_code::kNone;
 }
 

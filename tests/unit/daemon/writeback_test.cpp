@@ -58,6 +58,12 @@ class FakeController : public drivers::Controller {
   std::optional<drivers::Identity> identity() const override { return std::nullopt; }
   RobotDescription description() const override { return {}; }
   drivers::Counters counters() const override { return {}; }
+  std::vector<drivers::Capability> capabilities() const override {
+    std::vector<drivers::Capability> all = drivers::host_capabilities();
+    for (auto& one : all) one.readable = one.writable = one.stored = !ram_only;
+    return all;
+  }
+  bool ram_only = false;
 
   Result<void> start_read_parameters(double) override {
     begin(ParameterJobResult::Kind::read);
@@ -121,6 +127,23 @@ std::optional<WriteReport> run(Transaction& transaction, FakeController& control
     if (auto report = transaction.take_report()) return report;
   }
   return std::nullopt;
+}
+
+TEST(WriteBack, values_that_live_in_ram_only_are_not_stored) {
+  const Folder folder;
+  auto journal = Journal::open(folder.path / "journal");
+  ASSERT_TRUE(journal.ok());
+  Memory memory;
+  FakeController controller(memory);
+  controller.ram_only = true;
+  Transaction transaction(journal.value());
+  ASSERT_TRUE(transaction.write("apply", kNew).ok());
+  const auto report = run(transaction, controller);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->outcome, WriteOutcome::committed);
+  EXPECT_EQ(controller.stores, 0);
+  EXPECT_TRUE(is_new(memory.ram));
+  EXPECT_FALSE(journal.value().unfinished());
 }
 
 TEST(Journal, keeps_records_and_drops_a_torn_end) {

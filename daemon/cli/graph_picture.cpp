@@ -1,0 +1,95 @@
+#include "daemon/cli/graph_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "calib/graph/info.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+constexpr double kSize = 1000.0;  // of the longer side, in units of the picture
+constexpr double kMargin = 20.0;
+constexpr double kLegend = 30.0;  // height of the line of text below
+
+/// From metres, y up, to the picture, y down.
+class Frame {
+ public:
+  explicit Frame(const GraphVertex& first)
+      : left_(first.x), right_(first.x), bottom_(first.y), top_(first.y) {}
+  void include(const PoseGraph& graph) {
+    for (const GraphVertex& vertex : graph.vertices) {
+      left_ = std::min(left_, vertex.x);
+      right_ = std::max(right_, vertex.x);
+      bottom_ = std::min(bottom_, vertex.y);
+      top_ = std::max(top_, vertex.y);
+    }
+  }
+  [[nodiscard]] double scale() const {
+    const double side = std::max(right_ - left_, top_ - bottom_);
+    return side > 0.0 ? kSize / side : 1.0;
+  }
+  [[nodiscard]] double width() const { return (right_ - left_) * scale() + 2.0 * kMargin; }
+  [[nodiscard]] double height() const { return (top_ - bottom_) * scale() + 2.0 * kMargin; }
+  [[nodiscard]] double x(const GraphVertex& vertex) const { return kMargin + (vertex.x - left_) * scale(); }
+  [[nodiscard]] double y(const GraphVertex& vertex) const { return kMargin + (top_ - vertex.y) * scale(); }
+
+ private:
+  double left_, right_, bottom_, top_;
+};
+
+std::string trajectory(const PoseGraph& graph, const Frame& frame, const char* id, const char* style) {
+  std::string out = fmt::format("<polyline id=\"{}\" fill=\"none\" {} points=\"", id, style);
+  for (const GraphVertex& vertex : graph.vertices)
+    if (vertex.kind == VertexKind::pose)
+      fmt::format_to(std::back_inserter(out), "{:.1f},{:.1f} ", frame.x(vertex), frame.y(vertex));
+  return out + "\"/>\n";
+}
+
+std::string loop_edges(const PoseGraph& graph, const Frame& frame) {
+  const auto odometry = calib::odometry_edges(graph);
+  std::string out = "<path id=\"loops\" fill=\"none\" stroke=\"#e08214\" stroke-width=\"0.8\" d=\"";
+  for (std::size_t k = 0; k < graph.edges.size(); ++k) {
+    const GraphVertex& from = graph.vertices[graph.edges[k].from];
+    const GraphVertex& to = graph.vertices[graph.edges[k].to];
+    if (odometry[k] || to.kind == VertexKind::point) continue;
+    fmt::format_to(std::back_inserter(out), "M{:.1f} {:.1f}L{:.1f} {:.1f}", frame.x(from), frame.y(from),
+                   frame.x(to), frame.y(to));
+  }
+  return out + "\"/>\n";
+}
+
+std::string points(const PoseGraph& graph, const Frame& frame) {
+  std::string out = "<g id=\"points\" fill=\"#222\">";
+  for (const GraphVertex& vertex : graph.vertices)
+    if (vertex.kind == VertexKind::point)
+      fmt::format_to(std::back_inserter(out), "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>",
+                     frame.x(vertex), frame.y(vertex));
+  return out + "</g>\n";
+}
+
+std::string legend(const Frame& frame) {
+  return fmt::format(
+      "<text x=\"{:.0f}\" y=\"{:.0f}\" font-family=\"sans-serif\" font-size=\"14\">"
+      "<tspan fill=\"#888\">before</tspan> <tspan fill=\"#2166ac\">after</tspan> "
+      "<tspan fill=\"#e08214\">loops</tspan> 1 m = {:.3g} px</text>\n",
+      kMargin, frame.height() + 0.5 * kLegend, frame.scale());
+}
+
+}  // namespace
+
+std::string graph_picture(const PoseGraph& before, const PoseGraph& after) {
+  Frame frame(after.vertices.front());
+  frame.include(before);
+  frame.include(after);
+  return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\">\n",
+                     frame.width(), frame.height() + kLegend) +
+         trajectory(before, frame, "before", "stroke=\"#888\" stroke-dasharray=\"3 2\"") +
+         loop_edges(after, frame) +
+         trajectory(after, frame, "after", "stroke=\"#2166ac\" stroke-width=\"1.5\"") + points(after, frame) +
+         legend(frame) + "</svg>\n";
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,84 @@
+#include "daemon/cli/graph_run.hpp"
+
+#include <chrono>
+
+namespace odomcalib::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::int64_t microseconds_since(Clock::time_point begin) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - begin).count();
+}
+
+}  // namespace
+
+const std::map<std::string, calib::GraphStart>& graph_starts() {
+  using calib::GraphStart;
+  static const std::map<std::string, GraphStart> kStarts{{"auto", GraphStart::automatic},
+                                                         {"file", GraphStart::file},
+                                                         {"odometry", GraphStart::odometry},
+                                                         {"tree", GraphStart::tree},
+                                                         {"rotations", GraphStart::rotations}};
+  return kStarts;
+}
+
+const std::map<std::string, calib::GraphMethod>& graph_methods() {
+  using calib::GraphMethod;
+  static const std::map<std::string, GraphMethod> kMethods{
+      {"auto", GraphMethod::automatic},
+      {"gauss-newton", GraphMethod::gauss_newton},
+      {"levenberg-marquardt", GraphMethod::levenberg_marquardt}};
+  return kMethods;
+}
+
+std::string state_name(calib::GraphState state) {
+  using calib::GraphState;
+  switch (state) {
+    case GraphState::not_run:
+      return "not_run";
+    case GraphState::converged:
+      return "converged";
+    case GraphState::stalled:
+      return "stalled";
+    case GraphState::iteration_limit:
+      return "iteration_limit";
+    case GraphState::no_gauge:
+      return "no_gauge";
+    case GraphState::not_connected:
+      return "not_connected";
+    case GraphState::singular:
+      return "singular";
+    case GraphState::not_finite:
+      return "not_finite";
+  }
+  return "";
+}
+
+GraphRun run_graph(PoseGraph graph, const calib::GraphOptions& options) {
+  GraphRun run;
+  std::vector<std::string> notes = graph.notes;
+  const std::size_t anchor = calib::fix_first_pose(graph);
+  const bool anchored = anchor < graph.vertices.size();
+  if (anchored)
+    notes.push_back("nothing is fixed in the file: pose " + std::to_string(graph.vertices[anchor].id) +
+                    " is kept where it is");
+  if (!graph.has_positions) {
+    calib::place_along_odometry(graph);
+    notes.emplace_back("the file holds edges only: \"before\" is dead reckoning along them");
+  }
+  for (const GraphVertex& vertex : graph.vertices)
+    if (vertex.fixed) run.fixed.push_back(vertex.id);
+  run.before = graph;
+  const auto begin = Clock::now();
+  run.summary = calib::optimize_graph(graph, options, [&run, begin](const calib::GraphIteration& iteration) {
+    run.iterations.push_back({iteration, microseconds_since(begin)});
+  });
+  run.time_us = microseconds_since(begin);
+  run.summary.notes.insert(run.summary.notes.begin(), notes.begin(), notes.end());
+  if (anchored) graph.vertices[anchor].fixed = false;
+  run.after = std::move(graph);
+  return run;
+}
+
+}  // namespace odomcalib::cli

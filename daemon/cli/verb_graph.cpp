@@ -1,0 +1,106 @@
+// Pose graphs: optimise one, or tell what it holds.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/graph_picture.hpp"
+#include "daemon/cli/graph_run.hpp"
+#include "daemon/cli/verbs.hpp"
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string out, picture;
+  calib::GraphOptions solver;
+};
+
+Result<PoseGraph> read_files(const std::vector<std::string>& files) {
+  const std::vector<std::filesystem::path> paths(files.begin(), files.end());
+  return read_pose_graph(paths);
+}
+
+template <typename... Described>
+void print(const Session& session, const Described&... described) {
+  if (session.json == JsonMode::off)
+    std::cout << to_text(describe(described...), session.legend);
+  else
+    print_json(to_json(described...).dump(), session.json);
+}
+
+Result<void> write_results(const Options& options, const GraphRun& run) {
+  if (!options.out.empty())
+    if (auto written = replace_file(options.out, to_g2o(run.after)); !written) return written;
+  if (!options.picture.empty()) return replace_file(options.picture, graph_picture(run.before, run.after));
+  return {};
+}
+
+int optimize(const Options& options, const Session& session) {
+  auto graph = read_files(options.files);
+  if (!graph) return report_error(graph.error(), session.json);
+  const GraphRun run = run_graph(std::move(graph).value(), options.solver);
+  if (!run.summary.is_usable())
+    return report_error({ErrorCode::refused, state_name(run.summary.state) + ": " + run.summary.reason,
+                         options.files.front(), "nothing was written"},
+                        session.json);
+  if (auto written = write_results(options, run); !written)
+    return report_error(written.error(), session.json);
+  print(session, run);
+  return kDone;
+}
+
+int tell(const Options& options, const Session& session) {
+  auto graph = read_files(options.files);
+  if (!graph) return report_error(graph.error(), session.json);
+  if (!graph.value().has_positions) {
+    PoseGraph anchored = graph.value();
+    calib::fix_first_pose(anchored);
+    calib::place_along_odometry(anchored);
+    for (std::size_t v = 0; v < anchored.vertices.size(); ++v)
+      anchored.vertices[v].fixed = graph.value().vertices[v].fixed;
+    graph = std::move(anchored);
+  }
+  print(session, graph.value(), calib::inspect_graph(graph.value()));
+  return kDone;
+}
+
+void add_optimize(CLI::App& parent, Session& session) {
+  auto* verb = parent.add_subcommand("optimize", "Move the vertices to where they agree best with the edges");
+  auto options = std::make_shared<Options>();
+  verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
+  verb->add_option("--out", options->out, "g2o file to write");
+  verb->add_option("--svg", options->picture, "picture to write: trajectory before and after, loops");
+  verb->add_option("--start", options->solver.start, "first guess: auto, file, odometry, tree, rotations")
+      ->transform(CLI::CheckedTransformer(graph_starts()));
+  verb->add_option("--method", options->solver.method, "auto, gauss-newton, levenberg-marquardt")
+      ->transform(CLI::CheckedTransformer(graph_methods()));
+  verb->add_option("--iterations", options->solver.max_iterations, "at most so many from one first guess")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  verb->callback(
+      [&session, options] { session.run = [&session, options] { return optimize(*options, session); }; });
+}
+
+void add_info(CLI::App& parent, Session& session) {
+  auto* verb = parent.add_subcommand("info", "What a pose graph holds, and how well it fits its edges");
+  auto options = std::make_shared<Options>();
+  verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
+  verb->callback(
+      [&session, options] { session.run = [&session, options] { return tell(*options, session); }; });
+}
+
+}  // namespace
+
+void add_graph(CLI::App& app, Session& session) {
+  auto* verb = app.add_subcommand("graph", "Pose graphs in g2o text");
+  verb->require_subcommand(1);
+  verb->fallthrough();
+  add_optimize(*verb, session);
+  add_info(*verb, session);
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,137 @@
+#include "drivers/base/ros_arduino/ros_arduino.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace odomcalib::drivers {
+namespace {
+
+constexpr double kAsk_s = 0.02;
+constexpr double kAnswer_s = 0.25;  // the firmware answers within its 33 ms control interval
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+/// One whole number at the beginning of text, which is cut off it together with one blank.
+std::optional<std::int64_t> cut_number(std::string_view& text) {
+  std::int32_t value = 0;  // `long` on the board
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{}) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  if (!text.empty() && text[0] == ' ') text.remove_prefix(1);
+  return value;
+}
+
+}  // namespace
+
+void RosArduino::on_connected(std::optional<unsigned> baud) {
+  baud_ = baud;
+  skipped_ += used_;
+  used_ = 0;
+  overlong_ = false;
+  waiting_.clear();
+}
+
+double RosArduino::transfer_s(std::size_t bytes) const {
+  return baud_ ? 10.0 * static_cast<double>(bytes) / *baud_ : 0.0;
+}
+
+void RosArduino::send_line(const std::string& line, char kind, double now) {
+  send(bytes_of(line + "\r"));
+  waiting_.push_back({kind, now});
+  asked_ = true;
+}
+
+/// One question at a time: then an answer cannot be taken for another one's.
+void RosArduino::ask(double now) {
+  now_ = now;
+  if (!waiting_.empty()) {
+    if (now - waiting_.front().sent_at < kAnswer_s) return;
+    ++no_answer_;
+    waiting_.clear();
+  }
+  if (wanted_) {
+    send_line("m " + std::to_string((*wanted_)[0]) + " " + std::to_string((*wanted_)[1]), 'm', now);
+    wanted_.reset();
+  } else if (now >= ask_due_) {
+    send_line("e", 'e', now);
+    ask_due_ = now + kAsk_s;
+  }
+}
+
+void RosArduino::command(double left_rad_s, double right_rad_s) {
+  const double counts = profile_.ticks_per_rev * profile_.interval_s / (2.0 * std::numbers::pi);
+  wanted_ = {std::lround(left_rad_s * counts), std::lround(right_rad_s * counts)};
+}
+
+void RosArduino::on_bytes(std::span<const std::uint8_t> bytes, double now) {
+  now_ = now;
+  bytes_in_ += bytes.size();
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const char c = static_cast<char>(bytes[i]);
+    if (c == '\n') {
+      on_line(now - transfer_s(bytes.size() - 1 - i));
+    } else if (overlong_) {
+      ++skipped_;
+    } else if (used_ == kLongestLine) {
+      ++long_line_;
+      skipped_ += used_ + 1;
+      used_ = 0;
+      overlong_ = true;
+    } else {
+      line_[used_++] = c;
+    }
+  }
+}
+
+void RosArduino::refuse(std::uint64_t& counter) {
+  ++counter;
+  skipped_ += used_ + 1;
+  used_ = 0;
+}
+
+/// The board prints "\r\n" at the end of a line.
+void RosArduino::on_line(double t) {
+  if (overlong_) {
+    overlong_ = false;
+    ++skipped_;
+    return;
+  }
+  std::string_view line(line_.data(), used_);
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+  if (waiting_.empty() && asked_) return refuse(unasked_);
+  const Question question = asked_ ? waiting_.front() : Question{line == "OK" ? 'm' : 'e', t};
+  if (asked_) waiting_.pop_front();
+  if (line == "Invalid Command") return refuse(invalid_);
+  if (question.kind == 'm' && line != "OK") return refuse(bad_line_);
+  if (question.kind == 'e') {
+    const auto before = bad_line_;
+    // The board counts between the end of the question and the beginning of the answer.
+    const double earliest = question.sent_at + transfer_s(2);
+    const double latest = t - transfer_s(used_ + 1);
+    on_counts(line, 0.5 * (earliest + std::max(earliest, latest)));
+    if (bad_line_ != before) return;
+  }
+  good_ += used_ + 1;
+  used_ = 0;
+}
+
+void RosArduino::on_counts(std::string_view line, double t) {
+  const auto left = cut_number(line);
+  const auto right = left ? cut_number(line) : std::nullopt;
+  if (!right || !line.empty()) return refuse(bad_line_);
+  count(Side::left, t, *left);
+  count(Side::right, t, *right);
+}
+
+Counters RosArduino::counters() const {
+  return {{"bytes_in", bytes_in_},    {"good", good_},
+          {"skipped", skipped_},      {"buffered", used_},
+          {"bad_line", bad_line_},    {"line_too_long", long_line_},
+          {"unasked_line", unasked_}, {"invalid_command", invalid_},
+          {"no_answer", no_answer_}};
+}
+
+}  // namespace odomcalib::drivers

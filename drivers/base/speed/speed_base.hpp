@@ -1,0 +1,91 @@
+// The controller (drivers/base/controller.hpp) around a SpeedProtocol: presence, commands that grow old,
+// stops, rest, counts that stand still.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/base/controller.hpp"
+#include "drivers/base/profile.hpp"
+#include "drivers/base/speed/speed_protocol.hpp"
+#include "drivers/base/tick_unwrap.hpp"
+
+namespace odomcalib::drivers {
+
+class SpeedBase final : public Controller {
+ public:
+  SpeedBase(Profile profile, std::unique_ptr<SpeedProtocol> protocol);
+
+  [[nodiscard]] Wire wire() const override { return protocol_->wire(); }
+  void on_connected(std::optional<unsigned> baud) override { protocol_->on_connected(baud); }
+  void on_frame(const CanFrame& frame) override;
+  void on_bytes(std::span<const std::uint8_t> bytes, double now) override;
+  void on_time(double now) override;
+  std::vector<CanFrame> take_frames() override { return protocol_->take_frames(); }
+  std::vector<std::uint8_t> take_bytes() override { return protocol_->take_bytes(); }
+  std::vector<TickSample> take_ticks() override { return std::exchange(ticks_, {}); }
+  std::vector<ControllerEvent> take_events() override { return std::exchange(events_, {}); }
+
+  [[nodiscard]] ControllerState state() const override;
+  void enable(double now) override;
+  void disable(double now) override;
+  Result<void> command(double left_rad_s, double right_rad_s, double now) override;
+  void quick_stop(double now) override;
+  [[nodiscard]] bool watchdog_armed() const override;
+
+  /// These devices hold no geometry that this program could write: reading gives none, the rest is refused.
+  Result<void> start_read_parameters(double now) override;
+  Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) override;
+  Result<void> start_store(double now) override;
+  std::optional<ParameterJobResult> take_job_result() override { return std::exchange(job_result_, {}); }
+
+  [[nodiscard]] std::optional<Identity> identity() const override { return protocol_->identity(); }
+  [[nodiscard]] RobotDescription description() const override { return profile_.robot; }
+  [[nodiscard]] std::vector<Capability> capabilities() const override;
+  [[nodiscard]] Counters counters() const override;
+
+ private:
+  enum class Motion { off, enabling, on, disabling, stopping };
+  struct Wheel {
+    TickUnwrap unwrap;
+    std::int64_t total = 0;
+    double changed_at = -1.0;     ///< s
+    double expected_since = 0.0;  ///< rad commanded since then
+  };
+
+  void event(const std::string& code, const std::string& text, bool stop);
+  void take_news();
+  void on_count(const SideCount& count);
+  void on_jump(Side side);
+  void check_presence();
+  void check_device();
+  void check_encoders();
+  void cycle();
+  void step_enabling();
+  void step_ending();
+  void end_motion(Motion how);
+  [[nodiscard]] bool at_rest() const;
+  [[nodiscard]] Error refused(const std::string& what, const std::string& remedy) const;
+
+  const Profile profile_;
+  std::unique_ptr<SpeedProtocol> protocol_;
+  std::array<Wheel, 2> wheels_;
+  TickPairing pairing_;
+  double now_ = 0.0, greet_due_ = 0.0, cycle_due_ = 0.0, motion_since_ = 0.0, moved_at_ = 0.0;
+  std::array<double, 2> counted_at_{-1e9, -1e9};  ///< s
+  bool present_ = false;
+  Motion motion_ = Motion::off;
+  std::array<double, 2> command_{};
+  double command_at_ = -1e9;
+  std::int32_t segment_ = 0;
+  std::string last_fault_;
+  std::vector<TickSample> ticks_;
+  std::vector<ControllerEvent> events_;
+  std::optional<ParameterJobResult> job_result_;
+  std::uint64_t jumps_ = 0, stale_commands_ = 0, limited_commands_ = 0, dropped_ = 0;
+};
+
+}  // namespace odomcalib::drivers

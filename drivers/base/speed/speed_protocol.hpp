@@ -1,0 +1,90 @@
+// The bytes of a controller that takes wheel speeds and gives counts. Every such device is one class of this
+// shape in a folder of its own; what the devices have in common (time-outs, life signs, stopping) is
+// SpeedBase.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "drivers/base/controller.hpp"
+#include "drivers/base/profile.hpp"
+#include "drivers/base/speed/tick_pairing.hpp"
+#include "drivers/wire_table.hpp"
+
+namespace odomcalib::drivers {
+
+struct SideCount {
+  double t = 0.0;
+  Side side = Side::left;
+  std::int64_t raw = 0;  ///< as the device counts: unsigned, wrapping, mirrored
+};
+
+/// What a device says of itself; what it does not say stays empty.
+struct DeviceState {
+  std::optional<bool> enabled;  ///< follows speed commands
+  std::string fault;            ///< empty: none
+};
+
+class SpeedProtocol {
+ public:
+  virtual ~SpeedProtocol() = default;
+  [[nodiscard]] virtual Wire wire() const = 0;
+
+  // From the device.
+  virtual void on_frame(const CanFrame& /*frame*/) {}
+  virtual void on_bytes(std::span<const std::uint8_t> /*bytes*/, double /*now*/) {}
+  /// The line is new: nothing received before belongs to what comes now.
+  virtual void on_connected(std::optional<unsigned> /*baud*/) {}
+
+  // To the device.
+  /// Who are you, and start talking; called every 0.3 s until counts arrive.
+  virtual void greet(double now) = 0;
+  /// Called every few ms: questions to devices that speak only when asked, keep-alives.
+  virtual void ask(double /*now*/) {}
+  virtual void engage() {}
+  virtual void command(double left_rad_s, double right_rad_s) = 0;
+  /// The fastest stop the device offers; repeated until the wheels stand.
+  virtual void stop() { command(0.0, 0.0); }
+  virtual void release() {}
+
+  [[nodiscard]] virtual std::optional<Identity> identity() const { return std::nullopt; }
+  [[nodiscard]] virtual DeviceState device_state() const { return {}; }
+  /// The device was asked for its command time-out: what it answered, in s.
+  [[nodiscard]] virtual std::optional<double> reported_timeout_s() const { return std::nullopt; }
+  [[nodiscard]] virtual Counters counters() const = 0;
+
+  std::vector<CanFrame> take_frames() { return std::exchange(frames_, {}); }
+  std::vector<std::uint8_t> take_bytes() { return std::exchange(bytes_, {}); }
+  std::vector<SideCount> take_counts() { return std::exchange(counts_, {}); }
+  std::vector<DeviceMessage> take_messages() { return std::exchange(messages_, {}); }
+
+ protected:
+  static constexpr std::size_t kMostQueued = 4096;  // of each kind, when nobody takes them
+
+  void send(const CanFrame& frame) {
+    if (frames_.size() < kMostQueued) frames_.push_back(frame);
+  }
+  void send(std::span<const std::uint8_t> bytes) {
+    if (bytes_.size() < kMostQueued) bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  }
+  void count(Side side, double t, std::int64_t raw) {
+    if (counts_.size() < kMostQueued) counts_.push_back({t, side, raw});
+  }
+  void tell(DeviceMessage message) {
+    if (messages_.size() < kMostQueued) messages_.push_back(std::move(message));
+  }
+
+ private:
+  std::vector<CanFrame> frames_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<SideCount> counts_;
+  std::vector<DeviceMessage> messages_;
+};
+
+/// The protocol that the profile names. Error usage: no such protocol.
+Result<std::unique_ptr<SpeedProtocol>> make_speed_protocol(const Profile& profile);
+
+}  // namespace odomcalib::drivers

@@ -1,0 +1,125 @@
+#include "drivers/lidar/cola/cola.hpp"
+
+#include <cmath>
+
+#include "drivers/lidar/hex_text.hpp"
+#include "drivers/lidar/units.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+using cola::Channel;
+using cola::ScanData;
+
+constexpr std::uint64_t kClockModulus_us = std::uint64_t{1} << 32U;
+constexpr unsigned kFirstDistance = 16;  // raw values below are codes: no echo, dazzled, implausible, ...
+constexpr double kRangeMin_m = 0.01;  // below what any model measures; the codes mark what is not a reading
+constexpr double kRangeMax_m = 80.0;  // LMS5xx
+constexpr unsigned kError = 1, kPollution = 4;  // bits of the status
+// "Time since start" of a model that sends before a sweep's length has passed since cannot be the beginning
+// of that sweep: it is its end, and 0 to 3 ms of processing lie between (measured on LMS111 and TiM).
+constexpr double kUntilEnd_s = 1.5e-3;
+
+}  // namespace
+
+Cola::Cola(const LidarOptions& options)
+    : options_(options), clock_(kClockModulus_us, 1e-6, options.device_time) {}
+
+void Cola::reset() {
+  finder_.reset();
+  startup_.reset();
+  clock_.reset();
+  line_.reset();
+  last_counters_.reset();
+}
+
+void Cola::on_bytes(std::span<const std::uint8_t> bytes, double now) {
+  if (finder_.frames().buffered() == 0) began_ = now;
+  for (const cola::Telegram& telegram : finder_.on_bytes(bytes)) {
+    on_telegram(telegram, began_);
+    began_ = now;
+    if (!options_.device_time) startup_.on_telegram(telegram, now);
+  }
+  if (!options_.device_time) startup_.step(now);
+}
+
+void Cola::on_telegram(const cola::Telegram& telegram, double arrival) {
+  if (!telegram.scan) return tell_telegram(telegram);
+  if (is_repeated(*telegram.scan)) return finder_.frames().reject("repeated_scans");
+  // Of a sensor with several layers only the horizontal one can be matched in the plane.
+  if (telegram.scan->layer != 0) return finder_.frames().reject("other_layers");
+  on_scan(*telegram.scan, arrival);
+}
+
+/// The same scan can arrive twice; a gap in the counter means lost ones.
+bool Cola::is_repeated(const ScanData& data) {
+  const std::pair counters(data.telegram_counter, data.scan_counter);
+  if (last_counters_ == counters) return true;
+  last_counters_ = counters;
+  return false;
+}
+
+/// Time of the first beam. The device's clock is mapped by its moment of transmission.
+/// @param sweep_turns part of a turn from the first to the last beam
+double Cola::date(const ScanData& data, double arrival, double sweep_turns) {
+  const double nominal = 100.0 / data.turns_chz;
+  const double since_start = 1e-6 * (data.sent_us - data.started_us);  // modulo 2^32 us
+  const double started = clock_.to_host(data.sent_us, arrival) - since_start;
+  finder_.frames().reject("lost_scans", line_.add(started, nominal).lost);
+  const double sweep = sweep_turns * line_.period();
+  return since_start < sweep ? started - sweep + kUntilEnd_s : started;
+}
+
+void Cola::on_scan(const ScanData& data, double arrival) {
+  status_ = data.status & 0xFFU;
+  const Channel& distances = *data.find("DIST1");
+  const double step = cola::true_step(distances.step);
+  const double beams = static_cast<double>(distances.values.size());
+  LidarScan out;
+  out.device_time = 1e-6 * data.started_us;
+  out.counter = data.telegram_counter;
+  Scan& scan = out.scan;
+  scan.t = date(data, arrival, step * (beams - 1.0) / 360.0);
+  scan.angle_min = radians(1e-4 * distances.start);
+  scan.angle_increment = radians(step);
+  scan.time_increment = line_.period() * step / 360.0;
+  scan.range_min = kRangeMin_m;
+  scan.range_max = kRangeMax_m;
+  for (const std::uint16_t raw : distances.values) {
+    const double range = 1e-3 * (double{distances.factor} * raw + double{distances.offset});
+    const bool valid = raw >= kFirstDistance && range >= kRangeMin_m && range <= kRangeMax_m;
+    scan.ranges.push_back(valid ? static_cast<float>(range) : 0.0F);
+  }
+  const Channel* strengths = data.find("RSSI1");
+  if (strengths != nullptr && strengths->values.size() == distances.values.size())
+    for (const std::uint16_t raw : strengths->values)
+      scan.intensities.push_back(strengths->factor * static_cast<float>(raw) + strengths->offset);
+  scans_.push_back(std::move(out));
+  ++published_;
+}
+
+void Cola::tell_telegram(const cola::Telegram& telegram) const {
+  if (!has_listener()) return;
+  const auto& arguments = telegram.arguments;
+  const bool text = telegram.dialect == cola::Dialect::ascii;
+  tell({"cola_telegram",
+        {{"kind", telegram.kind},
+         {"command", telegram.name},
+         {"data", text ? std::string(arguments.begin(), arguments.end()) : hex_text(arguments)}}});
+}
+
+Counters Cola::counters() const {
+  Counters all = finder_.frames().counters();
+  all["scans"] = published_;
+  return all;
+}
+
+std::optional<Error> Cola::problem() const {
+  if (startup_.problem()) return startup_.problem();
+  if ((status_ & (kError | kPollution)) == 0) return std::nullopt;
+  return Error{ErrorCode::device,
+               (status_ & kError) != 0 ? "the sensor reports a device error" : "the sensor's window is dirty",
+               "sick", "clean the window; see the sensor's display or SOPAS"};
+}
+
+}  // namespace odomcalib::drivers

@@ -1,0 +1,148 @@
+#include "drivers/lidar/ydlidar/packet.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace odomcalib::drivers::ydlidar {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 10;
+constexpr std::size_t kDescriptorBytes = 7;
+constexpr std::size_t kMostAnswerBytes = 64;
+constexpr unsigned kMostSamples = 128;  // manuals: 40, newer models 80
+constexpr std::uint8_t kScanType = 0x81;
+constexpr double kFullTurn = 360.0 * 64.0;
+
+/// Emitter and receiver stand 21.8 mm apart; near points are seen at another angle. Degrees.
+double parallax(double range_mm) {
+  if (range_mm <= 0.0) return 0.0;
+  return std::atan(21.8 * (155.3 - range_mm) / (155.3 * range_mm)) * 180.0 / std::numbers::pi;
+}
+
+double wrapped(double degrees) {
+  const double rest = std::fmod(degrees, 360.0);
+  return rest < 0.0 ? rest + 360.0 : rest;
+}
+
+struct Header {
+  unsigned type_and_speed = 0, count = 0, start = 0, end = 0, checksum = 0;
+};
+
+Header read_header(Bytes bytes) {
+  ByteReader reader(bytes);
+  reader.take(2);
+  Header header;
+  header.type_and_speed = reader.u8();
+  header.count = reader.u8();
+  header.start = reader.u16();
+  header.end = reader.u16();
+  header.checksum = reader.u16();
+  return header;
+}
+
+unsigned checksum_of(const Header& header, ByteReader samples, std::size_t sample_bytes) {
+  unsigned sum = 0x55AAU ^ header.start ^ header.end ^ (header.count << 8U | header.type_and_speed);
+  while (samples.left() > 0) {
+    if (sample_bytes == 3) sum ^= samples.u8();
+    sum ^= samples.u16();
+  }
+  return sum;
+}
+
+Sample read_sample(ByteReader& reader, const Model& model) {
+  Sample sample;
+  const unsigned first = model.intensity_bits == 0 ? 0 : reader.u8();
+  const unsigned word = reader.u16();
+  sample.range_mm = model.triangulates ? word / 4.0 : word;
+  if (model.intensity_bits == 0) return sample;
+  // Two bits of the distance word belong to the intensity; the distance keeps quarter millimetres out.
+  sample.range_mm = model.triangulates ? word >> 2U : word;
+  sample.intensity = model.intensity_bits == 10 ? (word & 3U) << 8U | first : first;
+  return sample;
+}
+
+}  // namespace
+
+const std::vector<Model>& models() {
+  // Baud and samples a second: the manufacturer's table of models.
+  static const std::vector<Model> kModels = {
+      {"x2", 115'200, 3000, 0, true, false},       {"x3", 115'200, 3000, 0, true, false},
+      {"s2", 115'200, 3000, 0, true, false},       {"x4", 128'000, 5000, 0, true, true},
+      {"x4pro", 128'000, 5000, 0, true, false},    {"r2", 230'400, 5000, 0, true, true},
+      {"f4pro", 230'400, 6000, 0, true, true},     {"g1", 230'400, 9000, 0, true, true},
+      {"g2a", 230'400, 5000, 0, true, true},       {"g2", 230'400, 5000, 8, true, true},
+      {"g4", 230'400, 9000, 0, true, true},        {"g4b", 512'000, 9000, 10, true, true},
+      {"g6", 512'000, 18'000, 0, true, true},      {"g7", 512'000, 18'000, 0, true, true},
+      {"s4", 115'200, 4000, 0, true, true},        {"tminipro", 230'400, 4000, 8, true, true},
+      {"tminiplus", 230'400, 4000, 8, true, true}, {"tg15", 512'000, 20'000, 0, false, true},
+      {"tg30", 512'000, 20'000, 0, false, true},   {"tg50", 512'000, 20'000, 0, false, true},
+  };
+  return kModels;
+}
+
+const Model* find_model(const std::string& name) {
+  for (const Model& model : models())
+    if (name == model.name) return &model;
+  return nullptr;
+}
+
+Verdict PacketFinder::take_answer(Bytes rest, std::vector<Item>& out) const {
+  if (rest.size() < kDescriptorBytes) return Verdict::wait();
+  ByteReader reader(rest.subspan(2));
+  const std::uint32_t word = reader.u32();
+  const std::uint8_t type = reader.u8();
+  const std::size_t length = word & 0x3FFFFFFFU;
+  const bool endless = word >> 30U != 0;
+  if (endless != (type == kScanType) || (!endless && (length == 0 || length > kMostAnswerBytes)))
+    return Verdict::reject("bad_answer");
+  const std::size_t payload = endless ? 0 : length;
+  if (rest.size() < kDescriptorBytes + payload) return Verdict::wait();
+  const Bytes bytes = rest.subspan(kDescriptorBytes, payload);
+  out.push_back({std::nullopt, {type, {bytes.begin(), bytes.end()}}});
+  return Verdict::good(kDescriptorBytes + payload);
+}
+
+Verdict PacketFinder::take_packet(Bytes rest, std::vector<Item>& out) const {
+  if (rest.size() < kHeaderBytes) return Verdict::wait();
+  const Header header = read_header(rest);
+  if (header.count == 0 || header.count > kMostSamples) return Verdict::reject("bad_count");
+  if ((header.start & header.end & 1U) == 0) return Verdict::reject("bad_check_bit");
+  if (header.start >> 1U > kFullTurn || header.end >> 1U > kFullTurn) return Verdict::reject("bad_angle");
+  const std::size_t size = kHeaderBytes + header.count * sample_bytes();
+  if (rest.size() < size) return Verdict::wait();
+  ByteReader samples(rest.subspan(kHeaderBytes, size - kHeaderBytes));
+  if (checksum_of(header, samples, sample_bytes()) != header.checksum) return Verdict::reject("bad_checksum");
+
+  Packet packet;
+  packet.zero = (header.type_and_speed & 1U) != 0;
+  packet.turn_hz = packet.zero ? 0.1 * (header.type_and_speed >> 1U) : 0.0;
+  packet.start = (header.start >> 1U) / 64.0;
+  packet.end = (header.end >> 1U) / 64.0;
+  packet.bytes_after = rest.size() - size;
+  packet.size = size;
+  const double span = wrapped(packet.end - packet.start);
+  const double step = header.count > 1 ? span / (header.count - 1) : 0.0;
+  for (unsigned i = 0; i < header.count; ++i) {
+    Sample sample = read_sample(samples, model_);
+    sample.clockwise =
+        wrapped(packet.start + step * i + (model_.triangulates ? parallax(sample.range_mm) : 0.0));
+    packet.samples.push_back(sample);
+  }
+  out.push_back({std::move(packet), {}});
+  return Verdict::good(size);
+}
+
+Verdict PacketFinder::look(Bytes rest, std::vector<Item>& out) const {
+  const bool two = rest.size() > 1;
+  if (rest[0] == 0xA5 && (!two || rest[1] == 0x5A)) return take_answer(rest, out);
+  if (rest[0] == 0xAA && (!two || rest[1] == 0x55)) return take_packet(rest, out);
+  return Verdict::noise();
+}
+
+std::vector<Item> PacketFinder::on_bytes(Bytes bytes) {
+  std::vector<Item> out;
+  frames_.feed(bytes, [&](Bytes rest) { return look(rest, out); });
+  return out;
+}
+
+}  // namespace odomcalib::drivers::ydlidar

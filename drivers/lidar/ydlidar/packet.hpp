@@ -1,0 +1,73 @@
+// The packet of YDLIDAR's triangle protocol: AA 55, then counts, angles, checksum and samples.
+// Source: YDLIDAR, development manuals of the X4, G4 and Tmini Pro.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/lidar/frame_buffer.hpp"
+
+namespace odomcalib::drivers::ydlidar {
+
+/// What a stream does not tell about itself.
+struct Model {
+  const char* name = "";
+  unsigned baud = 0;
+  double samples_per_s = 0.0;
+  unsigned intensity_bits = 0;  ///< 0: samples of two bytes; 8 or 10: of three
+  bool triangulates = true;     ///< quarter millimetres and a parallax; otherwise time of flight, millimetres
+  bool answers = true;          ///< takes commands; single-channel types only talk
+};
+
+/// nullptr when there is no such model.
+const Model* find_model(const std::string& name);
+const std::vector<Model>& models();
+
+struct Sample {
+  double range_mm = 0.0;   ///< 0: no echo
+  double clockwise = 0.0;  ///< degrees, parallax removed
+  unsigned intensity = 0;
+};
+
+struct Packet {
+  bool zero = false;   ///< a new turn begins
+  double turn_hz = 0;  ///< as told by the device; 0: not told
+  double start = 0.0, end = 0.0;
+  std::vector<Sample> samples;
+  std::size_t bytes_after = 0;  ///< of the same read, behind this packet
+  std::size_t size = 0;         ///< bytes of the packet
+};
+
+/// An answer to a command.
+struct Answer {
+  std::uint8_t type = 0;
+  std::vector<std::uint8_t> payload;  ///< empty for the announcement of the scan
+};
+
+struct Item {
+  std::optional<Packet> packet;
+  Answer answer;
+};
+
+class PacketFinder {
+ public:
+  explicit PacketFinder(const Model& model) : model_(model) {}
+
+  std::vector<Item> on_bytes(Bytes bytes);
+  void reset() { frames_.reset(); }
+  [[nodiscard]] const FrameBuffer& frames() const { return frames_; }
+
+ private:
+  Verdict look(Bytes rest, std::vector<Item>& out) const;
+  Verdict take_answer(Bytes rest, std::vector<Item>& out) const;
+  Verdict take_packet(Bytes rest, std::vector<Item>& out) const;
+  [[nodiscard]] std::size_t sample_bytes() const { return model_.intensity_bits == 0 ? 2 : 3; }
+
+  const Model& model_;
+  FrameBuffer frames_{"bad_checksum", "bad_count", "bad_check_bit", "bad_angle", "bad_answer"};
+};
+
+}  // namespace odomcalib::drivers::ydlidar

@@ -1,0 +1,119 @@
+#include "drivers/lidar/ydlidar/ydlidar.hpp"
+
+#include <cmath>
+
+#include "drivers/lidar/hex_text.hpp"
+#include "drivers/lidar/units.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+constexpr double kRangeMin_m = 0.05;  // data sheets: 0.05 (TG), 0.1 and more (others)
+constexpr double kRangeMax_m = 64.0;  // the longest of the family (TG50 and T30 stay below)
+// So many wrong checksums and not one right packet: the model is not the one configured.
+constexpr std::uint64_t kAllWrong = 50;
+
+}  // namespace
+
+Ydlidar::Ydlidar(const LidarOptions& options, const ydlidar::Model& model)
+    : options_(options),
+      model_(model),
+      finder_(model),
+      clock_(options.device_time),
+      sweep_({kRangeMin_m, kRangeMax_m, model.intensity_bits != 0}) {}
+
+void Ydlidar::reset() {
+  finder_.reset();
+  startup_.reset();
+  clock_.reset();
+  sweep_.reset();
+}
+
+std::vector<std::uint8_t> Ydlidar::stop_bytes() const {
+  return model_.answers ? ydlidar::Startup::stop_bytes() : std::vector<std::uint8_t>{};
+}
+
+/// Moment of the last sample, s: the packet is sent when it is complete, and then takes its time on the line.
+double Ydlidar::date(const ydlidar::Packet& packet, double now) {
+  const double arrival = now - wire_time(packet.bytes_after, options_.baud);
+  const auto stamp =
+      clock_.on_packet(static_cast<double>(packet.samples.size()) / model_.samples_per_s, arrival);
+  if (!stamp.continuous) sweep_.interrupt();
+  return stamp.t - wire_time(packet.size, options_.baud);
+}
+
+/// Degrees that a sample stands for. A packet of one sample does not tell.
+double Ydlidar::step_of(const ydlidar::Packet& packet) const {
+  if (packet.samples.size() < 2) return usual_step_;
+  const double span = std::fmod(packet.end - packet.start + 360.0, 360.0);
+  return span / static_cast<double>(packet.samples.size() - 1);
+}
+
+void Ydlidar::tell_packet(const ydlidar::Packet& packet) const {
+  if (!has_listener()) return;
+  std::vector<double> angles, ranges;
+  std::vector<std::int64_t> intensities;
+  for (const ydlidar::Sample& sample : packet.samples) {
+    angles.push_back(-radians(sample.clockwise));
+    ranges.push_back(sample.range_mm > 0.0 ? 1e-3 * sample.range_mm : kNoReading);
+    intensities.push_back(sample.intensity);
+  }
+  LidarMessage message{"ydlidar_packet",
+                       {{"zero", std::int64_t{packet.zero}},
+                        {"start_deg", packet.start},
+                        {"end_deg", packet.end},
+                        {"angles", std::move(angles)},
+                        {"ranges", std::move(ranges)}},
+                       true};
+  if (packet.turn_hz > 0.0) message.fields.emplace_back("turn_hz", packet.turn_hz);
+  if (model_.intensity_bits != 0) message.fields.emplace_back("intensities", std::move(intensities));
+  tell(std::move(message));
+}
+
+void Ydlidar::on_packet(const ydlidar::Packet& packet, double now) {
+  const double t_last = date(packet, now);
+  const double sample_s = clock_.rate() / model_.samples_per_s;
+  usual_step_ = step_of(packet);
+  if (packet.zero) sweep_.begin_turn();
+  const double n = static_cast<double>(packet.samples.size());
+  for (std::size_t i = 0; i < packet.samples.size(); ++i) {
+    const ydlidar::Sample& sample = packet.samples[i];
+    const double t = t_last - sample_s * (n - 1.0 - static_cast<double>(i));
+    sweep_.add({t, -radians(sample.clockwise), 1e-3 * sample.range_mm, static_cast<double>(sample.intensity)},
+               radians(usual_step_));
+  }
+  tell_packet(packet);
+}
+
+void Ydlidar::on_bytes(std::span<const std::uint8_t> bytes, double now) {
+  const bool talks = model_.answers && !options_.device_time;
+  for (const ydlidar::Item& item : finder_.on_bytes(bytes)) {
+    if (item.packet) {
+      on_packet(*item.packet, now);
+      if (talks) startup_.on_measurements(now);
+      continue;
+    }
+    if (has_listener())
+      tell({"ydlidar_answer",
+            {{"answer_type", std::int64_t{item.answer.type}}, {"data", hex_text(item.answer.payload)}}});
+    if (talks) startup_.on_answer(item.answer, now);
+  }
+  if (talks) startup_.step(now);
+}
+
+Counters Ydlidar::counters() const {
+  Counters all = finder_.frames().counters();
+  sweep_.count_into(all);
+  return all;
+}
+
+std::optional<Error> Ydlidar::problem() const {
+  const FrameBuffer& frames = finder_.frames();
+  if (frames.frames() == 0 && frames.rejected().at("bad_checksum") > kAllWrong)
+    return Error{ErrorCode::format, "every checksum is wrong", "ydlidar",
+                 std::string("lidar.type says model ") + model_.name +
+                     "; a model with another sample format does this: correct lidar.type"};
+  return startup_.problem();
+}
+
+}  // namespace odomcalib::drivers

@@ -1,0 +1,7 @@
+// Bytes of a lidar of type scip.
+#include "tests/fuzz/lidar_harness.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  odomcalib::fuzz::feed_lidar("scip", data, size);
+  return 0;
+}

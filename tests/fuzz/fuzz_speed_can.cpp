@@ -1,0 +1,64 @@
+// A sequence of frames at every CAN protocol of wheel speeds: 16 bytes each (kind, length, identifier, 8 data
+// bytes, padding). All protocols see the same frames; each finds its own among them.
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "drivers/base/speed/speed_protocol.hpp"
+
+namespace {
+
+using namespace odomcalib::drivers;
+
+Profile profile_of(const char* protocol) {
+  Profile profile;
+  profile.protocol = protocol;
+  profile.node = 0x7F;
+  profile.ticks_per_rev = 4096;
+  profile.max_rpm = 200;
+  profile.count_source = protocol[0] == 'a' ? "pulses" : "estimates";
+  profile.count_bits = 24;
+  return profile;
+}
+
+CanFrame frame_of(std::span<const std::uint8_t> bytes, double t) {
+  CanFrame frame;
+  frame.t = t;
+  frame.extended = (bytes[0] & 1) != 0;
+  frame.remote = (bytes[0] & 2) != 0;
+  frame.length = static_cast<std::uint8_t>(bytes[1] % 9);
+  for (std::size_t i = 0; i < 4; ++i) frame.id = frame.id << 8 | bytes[2 + i];
+  frame.id &= frame.extended ? 0x1FFFFFFF : 0x7FF;
+  for (std::size_t i = 0; i < 8; ++i) frame.data[i] = bytes[6 + i];
+  return frame;
+}
+
+void check(SpeedProtocol& protocol) {
+  (void)protocol.take_counts();
+  (void)protocol.take_frames();
+  for (const DeviceMessage& message : protocol.take_messages())
+    for (const MessageField& field : message.fields)
+      if (!std::isfinite(field.number)) std::abort();
+  const Counters counters = protocol.counters();
+  if (counters.at("frames_in") !=
+      counters.at("frames_used") + counters.at("bad_frames") + counters.at("other_frames"))
+    std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  constexpr std::size_t kRecord = 16;
+  for (const char* name : {"agilex", "odrive", "segway", "vesc"}) {
+    auto protocol = make_speed_protocol(profile_of(name));
+    if (!protocol.ok()) std::abort();
+    double t = 0.0;
+    for (std::span<const std::uint8_t> rest(data, size); rest.size() >= kRecord; rest = rest.subspan(kRecord))
+      protocol.value()->on_frame(frame_of(rest, t += 0.001));
+    check(*protocol.value());
+  }
+  return 0;
+}
