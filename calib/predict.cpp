@@ -25,8 +25,22 @@ double value_or(const Calibration& calibration, const std::string& name, double 
 
 /// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the
 /// lidar is none of odometry.
-bool corrects_odometry(const Effect& effect) {
-  return effect.storage() != Storage::nowhere && !concerns_reference(effect);
+Place place_of(const Effect& effect) {
+  if (concerns_reference(effect)) return Place::reference;
+  return effect.storage() == Storage::nowhere ? Place::nowhere : Place::odometry;
+}
+
+/// The effect that the values were fitted for; null when this program does not know it.
+std::shared_ptr<const Effect> effect_of(const EffectResult& result) {
+  if (result.parameters.empty()) return nullptr;
+  const auto effect = find_effect(result.name, result.parameters.front().first);
+  return effect && result.parameters.size() == effect->parameters().size() ? effect : nullptr;
+}
+
+std::vector<FittedCurve> curves_of(const Calibration& calibration) {
+  const auto member = calibration.extensions.find(kCurvesMember);
+  return member == calibration.extensions.end() ? std::vector<FittedCurve>{}
+                                                : curves_from_json(member->second);
 }
 
 Correction correction_of(const Calibration& calibration) {
@@ -39,19 +53,16 @@ Correction correction_of(const Calibration& calibration) {
   Correction correction{to_vector(base), {}};
   std::vector<double> values(correction.parameters.data(), correction.parameters.data() + kBaseCount);
   for (const EffectResult& result : calibration.effects) {
-    if (result.parameters.empty()) continue;
-    const auto effect = find_effect(result.name, result.parameters.front().first);
-    if (!effect || !corrects_odometry(*effect) || result.parameters.size() != effect->parameters().size())
-      continue;
+    const auto effect = effect_of(result);
+    if (!effect || place_of(*effect) != Place::odometry) continue;
     correction.effects.push_back(effect);
     for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
   }
-  if (const auto member = calibration.extensions.find(kCurvesMember); member != calibration.extensions.end())
-    for (const auto& [curve, coefficients, law_of] : curves_from_json(member->second)) {
-      if (belongs_to_the_place(curve.law.variable)) continue;
-      correction.effects.push_back(make_curve_effect(curve));
-      values.insert(values.end(), coefficients.begin(), coefficients.end());
-    }
+  for (const auto& [curve, coefficients, law_of] : curves_of(calibration)) {
+    if (belongs_to_the_place(curve.law.variable)) continue;
+    correction.effects.push_back(make_curve_effect(curve));
+    values.insert(values.end(), coefficients.begin(), coefficients.end());
+  }
   correction.parameters =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   return correction;
@@ -66,6 +77,23 @@ BaseParameters nominal_of(const RobotDescription& robot) {
 }
 
 }  // namespace
+
+std::vector<Placement> effect_placements(const Calibration& calibration) {
+  std::vector<Placement> placements;
+  for (const EffectResult& result : calibration.effects) {
+    const auto effect = effect_of(result);
+    for (const auto& [name, quantity] : result.parameters)
+      placements.push_back({result.name, name, quantity, effect ? place_of(*effect) : Place::nowhere});
+  }
+  for (const auto& [curve, coefficients, law_of] : curves_of(calibration)) {
+    Placement placement;
+    placement.effect = make_curve_effect(curve)->name();
+    placement.quantity = {static_cast<double>(coefficients.size()), -1.0, "coefficients"};
+    placement.place = belongs_to_the_place(curve.law.variable) ? Place::nowhere : Place::odometry;
+    placements.push_back(std::move(placement));
+  }
+  return placements;
+}
 
 Calibration nominal_calibration(const RobotDescription& robot) {
   Calibration calibration;

@@ -12,6 +12,19 @@ namespace odomcalib::calib {
 /// Base pose at each tick sample, starting at the origin. Frame: base at the first sample.
 std::vector<PoseSample> predict(const Recording& recording, const Calibration& calibration);
 
+/// Where a value of an effect takes effect: in odometry; in what the reference is compared with, and not in
+/// odometry; or nowhere, because it belongs to the place or the day.
+enum class Place { odometry, reference, nowhere };
+
+struct Placement {
+  std::string effect;     ///< as in the calibration file, or "curve of ... on ..."
+  std::string parameter;  ///< empty for a curve
+  Quantity quantity;
+  Place place = Place::odometry;
+};
+/// Every value of every effect and curve of the calibration, in the order of the file.
+std::vector<Placement> effect_placements(const Calibration& calibration);
+
 /// A calibration that holds the nominal values and no effects: dead reckoning as the robot does it now.
 Calibration nominal_calibration(const RobotDescription& robot);
 

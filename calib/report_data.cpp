@@ -160,7 +160,7 @@ std::vector<std::pair<std::string, std::vector<double>>> left_out_of(const Sessi
 ReportData make_report_data(const Session& session, const EffectList& effects, const FitResult& fit,
                             const std::optional<FitResult>& plain) {
   ReportData data;
-  const auto fixed = session.fixed(count_parameters(effects));
+  const auto fixed = fixed_with(session.fixed(0), effects);
   const JudgedModel full{&fit, fixed, effects};
   const JudgedModel geometry{plain ? &*plain : nullptr, session.fixed(0), {}};
   data.drive_errors =

@@ -272,14 +272,14 @@ ResidualTrace drawn(const Samples& samples, const View& view) {
   return trace;
 }
 
-/// Parameters refitted with the effect's own kept at zero; nullopt when that does not work.
+/// Parameters refitted with the effect's own kept where they do nothing; nullopt when that does not work.
 std::optional<Eigen::VectorXd> fitted_without(std::span<const FitData> data, const EffectList& effects,
                                               const FitResult& fit, std::vector<bool> fixed,
-                                              std::size_t first, std::size_t count) {
+                                              std::size_t first, const Effect& without) {
   Eigen::VectorXd start = fit.parameters;
-  for (std::size_t k = first; k < first + count; ++k) {
-    start(static_cast<Eigen::Index>(k)) = 0.0;
-    fixed[k] = true;
+  for (const EffectParameter& parameter : without.parameters()) {
+    start(static_cast<Eigen::Index>(first)) = parameter.start;
+    fixed[first++] = true;
   }
   const auto refitted = fit_joint(data, effects, start, {fixed, 20, fit.noise});
   if (!refitted) return std::nullopt;
@@ -293,9 +293,8 @@ std::vector<ResidualTrace> residual_traces(std::span<const FitData> data, const 
   std::vector<ResidualTrace> traces;
   std::size_t first = kBaseCount;
   for (const auto& effect : effects) {
-    const std::size_t count = effect->parameters().size();
-    const auto without = fitted_without(data, effects, fit, fixed, first, count);
-    first += count;
+    const auto without = fitted_without(data, effects, fit, fixed, first, *effect);
+    first += effect->parameters().size();
     if (!without) continue;
     const Samples samples = samples_of(data, effects, fit, *without);
     const View view = best_view(samples);

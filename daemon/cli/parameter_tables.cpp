@@ -20,11 +20,20 @@ std::string millimetres(const ordered_json& object, const char* name) {
   return fmt::format("{:.3f}", 1000.0 * found->get<double>());
 }
 
+std::string value_in(const ordered_json& object, const char* name, const std::string& unit) {
+  const auto found = object.find(name);
+  if (found == object.end() || !found->is_number()) return "-";
+  return shown(found->get<double>(), unit);
+}
+
 Section parameter_section(const ordered_json& parameters) {
-  Section section{"", {}, {{"", "in force mm", "calibrated mm", "stored in"}, {}}};
-  for (const auto& p : parameters)
-    section.table.rows.push_back({readable(p.value("name", "")), millimetres(p, "value"),
-                                  millimetres(p, "calibrated"), p.value("stored_in", "")});
+  Section section{"", {}, {{"", "in force", "calibrated", "unit", "stored in", "applied in"}, {}}};
+  for (const auto& p : parameters) {
+    const std::string unit = p.value("unit", "");
+    section.table.rows.push_back({readable(p.value("name", "")), value_in(p, "value", unit),
+                                  value_in(p, "calibrated", unit), display_of(unit).unit,
+                                  p.value("stored_in", ""), p.value("applied_in", "")});
+  }
   return section;
 }
 

@@ -28,7 +28,7 @@ struct Options {
   ordered_json parameters = ordered_json::object();
   double distance = 1.0, turns = 1.0;
   std::string direction = "both", file, id;
-  bool dry_run = false, quick = false;
+  bool dry_run = false, quick = false, one_drive = false;
   std::vector<std::string> assignments;
 };
 
@@ -81,7 +81,7 @@ int print_result(const Session& session, const Result<ordered_json>& result) {
   } else if (body.contains("moves") && body["moves"].is_array()) {
     for (const auto& move : body["moves"]) std::cout << describe_move(move) << '\n';
     std::cout << "recording " << body.value("recording", "") << '\n';
-  } else if (body.contains("steps")) {
+  } else if (body.contains("steps") || body.contains("parameters")) {
     std::cout << to_text(describe_write_back(body), session.legend);
   } else {
     std::cout << body.dump(2) << '\n';
@@ -89,20 +89,52 @@ int print_result(const Session& session, const Result<ordered_json>& result) {
   return kDone;
 }
 
-int calibrate(const Session& session, const Options& options) {
-  const auto result = run_method(session, options, "Calibrate", {{"options", {{"quick", options.quick}}}});
-  if (!result || options.dry_run) return print_result(session, result);
+struct Solved {
+  Calibration calibration;
+  ordered_json body;  ///< result of the daemon
+};
+
+// Drives, records and solves.
+Result<Solved> drive_and_solve(const Session& session, const Options& options, const ordered_json& wanted) {
+  const auto result = run_method(session, options, "Calibrate", {{"options", wanted}});
+  if (!result) return result.error();
   const std::string text = result.value().value("calibration", ordered_json::object()).dump();
-  const auto calibration = calibration_from_json(text, "odomcalibd");
-  if (!calibration) return report_error(calibration.error(), session.json);
+  auto calibration = calibration_from_json(text, "odomcalibd");
+  if (!calibration) return calibration.error();
+  return Solved{std::move(calibration).value(), result.value()};
+}
+
+// One more motion where the first drive leaves a question open. What it does not improve does not replace
+// anything.
+Solved second_drive(const Session& session, const Options& options, Solved first) {
+  const auto next = first.body.value("next", ordered_json());
+  if (options.one_drive || !next.is_object()) return first;
+  const std::string manoeuvre = next.value("manoeuvre", "");
+  std::cerr << "One more motion, \"" << manoeuvre << "\": " << next.value("why", "") << ".\n";
+  ordered_json wanted = {{"manoeuvre", manoeuvre}, {"with", {first.body.value("recording", "")}}};
+  auto second = drive_and_solve(session, options, wanted);
+  if (second && second.value().calibration.verdict != Verdict::refused) return std::move(second).value();
+  std::cerr << "It did not help: "
+            << (second ? "the two recordings together were refused" : second.error().text())
+            << ". The first drive counts.\n";
+  return first;
+}
+
+int calibrate(const Session& session, const Options& options) {
+  const ordered_json wanted = {{"quick", options.quick}};
+  if (options.dry_run)
+    return print_result(session, run_method(session, options, "Calibrate", {{"options", wanted}}));
+  auto solved = drive_and_solve(session, options, wanted);
+  if (!solved) return report_error(solved.error(), session.json);
+  const Calibration calibration = second_drive(session, options, std::move(solved).value()).calibration;
   if (!options.file.empty())
-    if (auto written = write_calibration(calibration.value(), options.file); !written)
+    if (auto written = write_calibration(calibration, options.file); !written)
       return report_error(written.error(), session.json);
   if (session.json != JsonMode::off)
-    print_json(text, session.json);
+    print_json(to_json(calibration), session.json);
   else
-    std::cout << to_text(describe(calibration.value()), session.legend);
-  return calibration.value().verdict == Verdict::refused ? kRefused : kDone;
+    std::cout << to_text(describe(calibration), session.legend);
+  return calibration.verdict == Verdict::refused ? kRefused : kDone;
 }
 
 int apply(const Session& session, const Options& options) {
@@ -174,6 +206,7 @@ void add_motions(CLI::App& app, Session& session) {
   auto* all =
       add_action(app, session, options, "calibrate", "Straight, spin and pattern, then solve", calibrate);
   all->add_flag("--quick", options->quick, "a shorter pattern");
+  all->add_flag("--one-drive", options->one_drive, "no second motion, whatever the first leaves open");
   all->add_option("--out", options->file, "calibration file to write");
   add_action(app, session, options, "apply", "Write a calibration to the controller", apply)
       ->add_option("CALIBRATION", options->file)

@@ -1,53 +1,15 @@
 #include "daemon/routines/pattern.hpp"
 
 #include <algorithm>
-#include <array>
 #include <numbers>
-#include <vector>
+
+#include "daemon/routines/builder.hpp"
+#include "daemon/routines/manoeuvres.hpp"
 
 namespace odomcalib::routines {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// Short rests: a rest costs time, but each one is a chance to match scans of a standing robot.
-constexpr double kRest = 0.5;
-
-struct Builder {
-  std::vector<Move> moves;
-  double half;   // m, of the shorter side of the area
-  double scale;  // of all lengths; 1 for an area of 2 m
-
-  void out_and_back(double distance, double speed, double late = 0.0) {
-    moves.push_back(straight(distance, speed, kRest));
-    moves.back().late_pace = late;
-    moves.push_back(straight(-distance, speed, kRest));
-  }
-  void both_spins(double angle, double rate) {
-    moves.push_back(spin(angle, rate, kRest));
-    moves.push_back(spin(-angle, rate, kRest));
-  }
-  /// All four combinations of signs of speed and turn rate, back at the start after each pair.
-  void four_arcs(double radius, double angle, double rate) {
-    for (const double side : {1.0, -1.0}) {
-      moves.push_back(arc(radius, side * angle, rate, true, kRest));
-      moves.push_back(arc(radius, -side * angle, rate, false, kRest));
-    }
-  }
-  void face(double heading) { moves.push_back(turn_to(heading, 0.5)); }
-};
-
-void straights_on_four_headings(Builder& build) {
-  const double d = 0.8 * build.half;
-  build.face(0.5 * kPi);
-  build.out_and_back(d, 0.3);
-  build.out_and_back(-0.5 * d, 0.1);
-  build.face(kPi);
-  build.out_and_back(d, 0.2);
-  build.out_and_back(-d, 0.3);
-  build.face(-0.5 * kPi);
-  build.out_and_back(d, 0.1, 0.3);
-  build.face(0.0);
-}
 
 void slow_and_fast_straights(Builder& build) {
   build.out_and_back(0.5 * build.half, 0.1);
@@ -100,9 +62,8 @@ void quick_pattern(Builder& build, double track_width) {
 }  // namespace
 
 Plan pattern_plan(const PatternOptions& options) {
-  const double side = std::min(options.area_length, options.area_width);
-  const double half = std::clamp(0.5 * side, 0.3, 1.25);
-  Builder build{.moves = {}, .half = half, .scale = std::min(1.0, half)};
+  Builder build = builder_for(options);
+  const double half = build.half;
   build.out_and_back(0.8 * half, 0.2);
   if (options.quick)
     quick_pattern(build, options.track_width);

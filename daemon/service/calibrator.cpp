@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "calib/match.hpp"
+#include "calib/next_test.hpp"
 #include "calib/predict.hpp"
 #include "calib/solve.hpp"
 
@@ -43,6 +44,26 @@ std::optional<Pose> match(const Scan& from, const Scan& to, const Pose& guess,
   return composed(composed(lidar, {best.pose[0], best.pose[1], best.pose[2]}), inverse(lidar));
 }
 
+std::string applied_in(calib::Place place) {
+  if (place == calib::Place::odometry) return "corrected odometry on the host";
+  if (place == calib::Place::reference)
+    return "comparison with the lidar on the host; odometry does not need it";
+  return "nowhere: it belongs to the place or the day";
+}
+
+std::vector<HostValue> host_values(const Calibration& calibration) {
+  std::vector<HostValue> values;
+  for (const auto& placement : calib::effect_placements(calibration))
+    values.push_back({placement.effect + (placement.parameter.empty() ? "" : "." + placement.parameter),
+                      placement.quantity, applied_in(placement.place)});
+  return values;
+}
+
+std::optional<NextManoeuvre> next_manoeuvre(const Calibration& calibration) {
+  const auto next = calib::next_test(calibration);
+  return next ? std::optional(NextManoeuvre{next->manoeuvre, next->why}) : std::nullopt;
+}
+
 }  // namespace
 
 Calibrator make_calibrator() {
@@ -55,6 +76,8 @@ Calibrator make_calibrator() {
     auto state = std::make_shared<calib::Odometry>(calibration);
     return [state](const TickSample& sample) { return state->update(sample); };
   };
+  calibrator.host_values = host_values;
+  calibrator.next_manoeuvre = next_manoeuvre;
   calibrator.match = match;
   return calibrator;
 }

@@ -13,6 +13,19 @@
 
 namespace odomcalib {
 
+/// A value of a calibration that is no wheel dimension, and where it takes effect.
+struct HostValue {
+  std::string name;  ///< backlash.left_play
+  Quantity quantity;
+  std::string applied_in;  ///< for people
+};
+
+/// A motion worth driving after a calibration, and why.
+struct NextManoeuvre {
+  std::string name;
+  std::string why;
+};
+
 struct Calibrator {
   using Progress = std::function<void(const std::string& phase, double fraction)>;
   using Odometry = std::function<PoseSample(const TickSample&)>;
@@ -22,6 +35,9 @@ struct Calibrator {
                             const Progress&)>
       solve;
   std::function<Odometry(const Calibration&)> odometry;
+  /// May be empty: nothing is told then.
+  std::function<std::vector<HostValue>(const Calibration&)> host_values;
+  std::function<std::optional<NextManoeuvre>(const Calibration&)> next_manoeuvre;
   /// Motion of the base between two scans taken at rest; nullopt when the match is no good. May be empty.
   std::function<std::optional<routines::Pose>(const Scan& from, const Scan& to, const routines::Pose& guess,
                                               const std::array<double, 3>& lidar_pose)>

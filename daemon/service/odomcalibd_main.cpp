@@ -43,6 +43,9 @@ class Watchdog {
   double next_ = 0.0;
 };
 
+constexpr double kShortestEnd = 0.25;  // s; at rest the axes are off after 0.1
+constexpr double kLongestEnd = 1.5;    // s; below the watchdog's 2
+
 void run(Service& service, const odomcalib::Clock& clock) {
   Watchdog watchdog;
   sd_notify(0, "READY=1");
@@ -52,8 +55,11 @@ void run(Service& service, const odomcalib::Clock& clock) {
   }
   service.stop_all("the daemon was told to end");
   sd_notify(0, "STOPPING=1");
-  // The controller sends the stop again and takes the torque off before the bus is closed.
-  for (const double end = clock.now() + 0.1; clock.now() < end;) service.poll_once(5);
+  // The controller sends the stop again and takes the torque off before the bus is closed, from motion after
+  // the ramp.
+  const double begin = clock.now();
+  while (clock.now() < begin + kShortestEnd || (clock.now() < begin + kLongestEnd && !service.drive_off()))
+    service.poll_once(5);
 }
 
 int serve(const std::string& path) {

@@ -130,7 +130,12 @@ void Service::Impl::serve_solver() {
   telemetry.publisher.send("RESULT", messages::encode_json(clock.wall_us(), "odomcalib-calibration/1", text));
   (void)write_calibration(result->value(),
                           config.state_dir / "calibrations" / (recording_path.stem().string() + ".json"));
-  finish_pending({{"recording", recording_path.string()}, {"calibration", ordered_json::parse(text)}});
+  ordered_json answer_body = {{"recording", recording_path.string()},
+                              {"calibration", ordered_json::parse(text)}};
+  if (calibrator.next_manoeuvre)
+    if (const auto next = calibrator.next_manoeuvre(result->value()))
+      answer_body["next"] = {{"manoeuvre", next->name}, {"why", next->why}};
+  finish_pending(answer_body);
 }
 
 void Service::Impl::serve_recording() {
@@ -232,6 +237,12 @@ void Service::stop_all(const std::string& why) {
     impl_->base.controller().quick_stop(impl_->now);
     impl_->base.flush();
   }
+}
+
+bool Service::drive_off() const {
+  const auto state = impl_->base.controller().state();
+  return !impl_->base.connected() ||
+         (state != drivers::ControllerState::enabled && state != drivers::ControllerState::enabling);
 }
 
 std::string Service::status_line() const { return impl_->activity(); }

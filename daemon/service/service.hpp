@@ -26,6 +26,8 @@ class Service {
 
   /// Zero command, quick stop, end of whatever runs (SIGTERM, ExecStop).
   void stop_all(const std::string& why);
+  /// The axes have no torque, as far as the controller says: the program may end.
+  [[nodiscard]] bool drive_off() const;
   /// One line for systemd's STATUS and for people.
   [[nodiscard]] std::string status_line() const;
   /// What `odomcalibctl status --json` prints.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "daemon/routines/manoeuvres.hpp"
 #include "daemon/routines/pattern.hpp"
 #include "daemon/routines/plans.hpp"
 #include "daemon/service/service_impl.hpp"
@@ -60,6 +61,25 @@ std::optional<Error> wrong_spin(const routines::SpinOptions& options) {
 
 int whole(double value) { return within(value, 0.0, 1000.0) ? static_cast<int>(std::lround(value)) : 0; }
 
+constexpr std::size_t kMostRecordings = 8;
+
+// "with": file names of this daemon's own recordings; nothing outside its folder is read for a client.
+Result<std::vector<std::filesystem::path>> earlier_recordings(const ordered_json& options,
+                                                              const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> paths;
+  const auto given = options.value("with", ordered_json::array());
+  if (!given.is_array() || given.size() > kMostRecordings)
+    return out_of_range("\"with\" is no list of recordings");
+  for (const auto& name : given) {
+    const auto file = std::filesystem::path(name.is_string() ? name.get<std::string>() : "").filename();
+    std::error_code error;
+    if (file.empty() || !std::filesystem::is_regular_file(folder / file, error))
+      return out_of_range("no recording \"" + file.string() + "\"");
+    paths.push_back(folder / file);
+  }
+  return paths;
+}
+
 }  // namespace
 
 void Service::Impl::answer(ClientId client, const ordered_json& parameters) {
@@ -106,7 +126,7 @@ void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& p
   if (method == "GetStatus") return answer(client, {{"status", status()}});
   if (method == "Describe") return answer(client, {{"description", describe()}});
   if (method == "Check") return answer(client, {{"checks", checks()}});
-  if (method == "GetParameters") return answer(client, {{"parameters", this->parameters()}});
+  if (method == "GetParameters") return answer(client, {{"parameters", this->parameters(active)}});
   if (method == "History") return call_history(incoming, parameters);
   if (method == "Monitor") {
     monitors.insert(client);
@@ -169,10 +189,36 @@ void Service::Impl::call_spin(const IncomingCall& incoming, const ordered_json& 
   start_motion(incoming, routines::spin_plan(options), parameters, pending_of(incoming, parameters));
 }
 
-// Straight, spin and pattern as one motion in one recording.
+// Straight, spin and pattern as one motion in one recording, or a single manoeuvre that goes with earlier
+// recordings.
 void Service::Impl::call_calibrate(const IncomingCall& incoming, const ordered_json& parameters) {
   const auto options = parameters.value("options", ordered_json::object());
   if (!options.is_object()) return refuse(incoming.client, out_of_range("options are no object"));
+  auto plan = calibration_plan(options);
+  if (!plan) return refuse(incoming.client, plan.error());
+  auto earlier = earlier_recordings(options, config.state_dir / "recordings");
+  if (!earlier) return refuse(incoming.client, earlier.error());
+  PendingCall call = pending_of(incoming, parameters);
+  call.earlier = std::move(earlier).value();
+  if (const auto effects = options.find("effects"); effects != options.end() && effects->is_array()) {
+    call.effects.clear();
+    for (const auto& effect : *effects)
+      if (effect.is_string()) call.effects.push_back(effect.get<std::string>());
+  }
+  start_motion(incoming, plan.value(), parameters, std::move(call));
+}
+
+Result<routines::Plan> Service::Impl::calibration_plan(const ordered_json& options) const {
+  const routines::PatternOptions pattern{.area_length = config.area_length,
+                                         .area_width = config.area_width,
+                                         .track_width = robot().track_width,
+                                         .quick = flag(options, "quick"),
+                                         .limits = config.limits};
+  if (const std::string name = text(options, "manoeuvre", ""); !name.empty()) {
+    auto plan = routines::manoeuvre_plan(name, pattern);
+    if (!plan) return out_of_range("there is no manoeuvre \"" + name + "\"");
+    return std::move(*plan);
+  }
   routines::StraightOptions straight;
   straight.distance = number(options, "distance", std::min(1.0, 0.45 * config.area_length));
   straight.speed = number(options, "speed", straight.speed);
@@ -181,25 +227,14 @@ void Service::Impl::call_calibrate(const IncomingCall& incoming, const ordered_j
   spin.turns = number(options, "turns", 1.0);
   spin.rate = number(options, "rate", spin.rate);
   spin.repeat = straight.repeat;
-  if (const auto wrong = wrong_straight(straight)) return refuse(incoming.client, *wrong);
-  if (const auto wrong = wrong_spin(spin)) return refuse(incoming.client, *wrong);
+  if (const auto wrong = wrong_straight(straight)) return *wrong;
+  if (const auto wrong = wrong_spin(spin)) return *wrong;
   routines::Plan plan = routines::straight_plan(straight);
-  const routines::PatternOptions pattern{.area_length = config.area_length,
-                                         .area_width = config.area_width,
-                                         .track_width = robot().track_width,
-                                         .quick = flag(options, "quick"),
-                                         .limits = config.limits};
   for (const auto& part : {routines::spin_plan(spin), routines::pattern_plan(pattern)})
     plan.moves.insert(plan.moves.end(), part.moves.begin(), part.moves.end());
   plan.name = "calibrate";
   plan.limits = config.limits;
-  PendingCall call = pending_of(incoming, parameters);
-  if (const auto effects = options.find("effects"); effects != options.end() && effects->is_array()) {
-    call.effects.clear();
-    for (const auto& effect : *effects)
-      if (effect.is_string()) call.effects.push_back(effect.get<std::string>());
-  }
-  start_motion(incoming, plan, parameters, std::move(call));
+  return plan;
 }
 
 void Service::Impl::call_record(const IncomingCall& incoming, const ordered_json& parameters) {

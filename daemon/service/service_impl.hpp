@@ -34,9 +34,10 @@ struct PendingCall {
   bool more = false;
   std::string lease;
   std::vector<std::string> effects{"auto"};
-  std::optional<std::string> calibration;  ///< JSON text, apply and rollback
-  RoundingError rounding;                  ///< of what is written
-  double until = 0.0;                      ///< s, end of a recording without motion; 0: until Stop
+  std::vector<std::filesystem::path> earlier;  ///< recordings to be solved together with the new one
+  std::optional<std::string> calibration;      ///< JSON text, apply and rollback
+  RoundingError rounding;                      ///< of what is written
+  double until = 0.0;                          ///< s, end of a recording without motion; 0: until Stop
 };
 
 struct Service::Impl {
@@ -61,6 +62,7 @@ struct Service::Impl {
   void call_straight(const IncomingCall& incoming, const ordered_json& parameters);
   void call_spin(const IncomingCall& incoming, const ordered_json& parameters);
   void call_calibrate(const IncomingCall& incoming, const ordered_json& parameters);
+  Result<routines::Plan> calibration_plan(const ordered_json& options) const;
   void call_record(const IncomingCall& incoming, const ordered_json& parameters);
   void call_apply(const IncomingCall& incoming, const ordered_json& parameters);
   void call_set(const IncomingCall& incoming, const ordered_json& parameters);
@@ -90,7 +92,8 @@ struct Service::Impl {
   ordered_json status() const;
   ordered_json describe() const;
   ordered_json checks() const;
-  ordered_json parameters() const;
+  /// @param calibration whose values are shown beside those in force
+  ordered_json parameters(const std::optional<Calibration>& calibration) const;
   std::string activity() const;
 
   void finish_pending(const ordered_json& result);

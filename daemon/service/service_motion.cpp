@@ -137,7 +137,9 @@ void Service::Impl::motion_ended() {
   event(messages::Severity::info, "motion", "motion finished");
   if (!path) return fail_pending(path.error());
   if (pending && pending->method == "Calibrate") {
-    solver.emplace(calibrator, path.value(), pending->effects);
+    auto recordings = pending->earlier;
+    recordings.push_back(path.value());
+    solver.emplace(calibrator, std::move(recordings), pending->effects);
     return;
   }
   finish_pending({{"recording", path.value().string()}, {"moves", legs}});

@@ -15,6 +15,17 @@ ordered_json check(const std::string& name, bool good, const std::string& found,
 
 std::string text_of(const std::optional<Error>& problem) { return problem ? problem->text() : ""; }
 
+// What a controller cannot hold stays on the host, value by value.
+void add_host_values(const std::vector<HostValue>& values, ordered_json& list) {
+  for (const HostValue& value : values)
+    list.push_back({{"name", value.name},
+                    {"unit", value.quantity.unit},
+                    {"value", nullptr},
+                    {"calibrated", value.quantity.value},
+                    {"stored_in", "host"},
+                    {"applied_in", value.applied_in}});
+}
+
 }  // namespace
 
 std::string name_of(drivers::ControllerState state) {
@@ -128,7 +139,7 @@ ordered_json Service::Impl::checks() const {
   return list;
 }
 
-ordered_json Service::Impl::parameters() const {
+ordered_json Service::Impl::parameters(const std::optional<Calibration>& calibration) const {
   const RobotDescription all = robot();
   const std::array<std::pair<const char*, double>, 3> values = {
       {{"left_wheel_diameter", all.left_wheel_diameter},
@@ -140,13 +151,16 @@ ordered_json Service::Impl::parameters() const {
                                     [n = std::string(name)](const auto& p) { return p.quantity == n; });
     ordered_json entry = {{"name", name}, {"unit", "m"}, {"value", nullptr}, {"calibrated", nullptr}};
     if (value > 0.0) entry["value"] = value;
-    const auto calibrated = active ? active->parameter(name) : std::nullopt;
+    const auto calibrated = calibration ? calibration->parameter(name) : std::nullopt;
     if (calibrated) entry["calibrated"] = *calibrated;
     // What rounding in the controller leaves over is applied in the corrected odometry.
     if (calibrated) entry["remainder"] = *calibrated - value;
     entry["stored_in"] = stored ? "controller" : "host";
+    entry["applied_in"] =
+        stored ? "controller, rounding remainder in corrected odometry" : "corrected odometry on the host";
     list.push_back(entry);
   }
+  if (calibration && calibrator.host_values) add_host_values(calibrator.host_values(*calibration), list);
   return list;
 }
 

@@ -57,12 +57,18 @@ void Service::Impl::start_write(const IncomingCall& incoming, const ParameterMap
   }
   const RoundedParameters rounded = round_together(values, in_force);
   call.rounding = rounded.remaining;
-  if (dry_run)
+  if (dry_run) {
+    std::optional<Calibration> wanted;
+    if (call.calibration)
+      if (auto read = calibration_from_json(*call.calibration, "calibration"))
+        wanted = std::move(read).value();
     return answer(incoming.client, {{"result",
                                      {{"outcome", "dry_run"},
                                       {"before", old},
                                       {"after", rounded.values},
-                                      {"rounding_error", to_json(call.rounding)}}}});
+                                      {"rounding_error", to_json(call.rounding)},
+                                      {"parameters", parameters(wanted)}}}});
+  }
   const std::string label = call.method == "Rollback" ? "rollback" : "apply";
   if (auto begun = transaction.write(label, rounded.values); !begun)
     return refuse(incoming.client, begun.error());
@@ -106,7 +112,7 @@ void Service::Impl::write_ended(const WriteReport& report) {
                   {"before", report.before},
                   {"after", report.after},
                   {"rounding_error", to_json(pending->rounding)},
-                  {"parameters", parameters()}});
+                  {"parameters", parameters(active)}});
 }
 
 void Service::Impl::set_active(const std::optional<std::string>& calibration_json) {

@@ -26,27 +26,29 @@ struct SolverJob::State {
 
 namespace {
 
-Result<Calibration> solve(const Calibrator& calibrator, const std::filesystem::path& path,
+Result<Calibration> solve(const Calibrator& calibrator, const std::vector<std::filesystem::path>& paths,
                           const std::vector<std::string>& effects, const Calibrator::Progress& progress) {
-  auto recording = read_recording(path);
-  if (!recording) return recording.error();
   std::vector<Recording> recordings;
-  recordings.push_back(std::move(recording).value());
+  for (const auto& path : paths) {
+    auto recording = read_recording(path);
+    if (!recording) return recording.error();
+    recordings.push_back(std::move(recording).value());
+  }
   try {
     return calibrator.solve(recordings, effects, progress);
   } catch (const std::exception& error) {
-    return Error{ErrorCode::format, error.what(), path.string(), "report this recording"};
+    return Error{ErrorCode::format, error.what(), paths.front().string(), "report this recording"};
   }
 }
 
 }  // namespace
 
-SolverJob::SolverJob(const Calibrator& calibrator, std::filesystem::path recording,
+SolverJob::SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::path> recordings,
                      std::vector<std::string> effects)
     : state_(std::make_shared<State>()) {
-  std::thread([calibrator, path = std::move(recording), effects = std::move(effects), state = state_] {
+  std::thread([calibrator, paths = std::move(recordings), effects = std::move(effects), state = state_] {
     const auto progress = [&state](const std::string& phase, double share) { state->report(phase, share); };
-    state->finish(solve(calibrator, path, effects, progress));
+    state->finish(solve(calibrator, paths, effects, progress));
   }).detach();
 }
 

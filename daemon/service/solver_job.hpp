@@ -1,4 +1,4 @@
-// Solving a recording in a thread of its own, so that the loop never waits for it.
+// Solving recordings in a thread of its own, so that the loop never waits for it.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,9 @@ namespace odomcalib {
 class SolverJob {
  public:
   struct State;
-  SolverJob(const Calibrator& calibrator, std::filesystem::path recording, std::vector<std::string> effects);
+  /// @param recordings of one robot, solved jointly
+  SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::path> recordings,
+            std::vector<std::string> effects);
   ~SolverJob();
   SolverJob(const SolverJob&) = delete;
   SolverJob& operator=(const SolverJob&) = delete;

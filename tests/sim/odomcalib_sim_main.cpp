@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -35,6 +36,12 @@ struct Arguments {
   bool exact = false, commands = false;
 };
 
+std::set<std::string> effect_names() {
+  std::set<std::string> names{"random"};
+  for (const auto& kind : odomcalib::sim::effect_kinds()) names.insert(kind.name);
+  return names;
+}
+
 void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", arguments.seed, "robot, noise and random room are drawn from this number");
   app.add_option("--speed", arguments.speed, "times real time")->check(CLI::PositiveNumber);
@@ -48,7 +55,9 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--wheel-log", arguments.wheel_log,
                  "file to append a line to every 2 ms: monotonic clock in s, simulated s, faster rim in m/s");
   app.add_option("--can", arguments.can, "SocketCAN interface to use instead of an slcan port");
-  app.add_option("--effect", arguments.effect, "something that the plain model lacks, e.g. gear_play");
+  app.add_option("--effect", arguments.effect,
+                 "something that the plain model lacks, e.g. gear_play; random: any")
+      ->check(CLI::IsMember(effect_names()));
   app.add_option("--effect-size", arguments.effect_size, "in its unit; default: its largest usual size");
   app.add_flag("--commands", arguments.commands,
                "read faults from standard input, one a line (tests/sim/README.md)");
@@ -62,7 +71,17 @@ odomcalib::sim::Room choose_room(const Arguments& arguments) {
   return odomcalib::sim::furnished_room();
 }
 
-SimRobotOptions robot_options(const Arguments& arguments) {
+/// What was asked for by name, or drawn; made from the robot's seed.
+odomcalib::sim::DrawnEffect choose_effect(const Arguments& arguments) {
+  odomcalib::sim::Random random(arguments.seed);
+  if (arguments.effect == "random") return odomcalib::sim::draw_effect(random);
+  const auto* kind = odomcalib::sim::find_effect(arguments.effect);
+  if (kind == nullptr) return {};
+  const double size = arguments.effect_size >= 0.0 ? arguments.effect_size : kind->largest;
+  return {kind, size, kind->make(size, random)};
+}
+
+SimRobotOptions robot_options(const Arguments& arguments, const odomcalib::sim::DrawnEffect& effect) {
   SimRobotOptions options;
   options.seed = arguments.seed;
   options.truth = arguments.exact ? options.nominal : draw_truth(options.nominal, arguments.seed);
@@ -70,11 +89,7 @@ SimRobotOptions robot_options(const Arguments& arguments) {
   options.body.slip_noise = 0.0003;
   options.link_dir = arguments.link_dir;
   if (!arguments.can.empty()) options.socketcan = arguments.can;
-  if (const auto* kind = odomcalib::sim::find_effect(arguments.effect)) {
-    odomcalib::sim::Random random(arguments.seed);
-    options.disturbances = {
-        kind->make(arguments.effect_size >= 0.0 ? arguments.effect_size : kind->largest, random)};
-  }
+  if (effect.made) options.disturbances = {effect.made};
   return options;
 }
 
@@ -124,7 +139,7 @@ class WheelLog {
 };
 
 /// @return exit status
-int run(SimRobot& robot, const Arguments& arguments) {
+int run(SimRobot& robot, const Arguments& arguments, const odomcalib::sim::DrawnEffect& effect) {
   using Clock = std::chrono::steady_clock;
   constexpr double kChunk = 0.002;  // s of real time between exchanges
   const auto start = Clock::now();
@@ -134,7 +149,7 @@ int run(SimRobot& robot, const Arguments& arguments) {
   if (arguments.commands) commands.emplace();
   for (int i = 1; stop_requested == 0; ++i) {
     if (!arguments.truth_file.empty() && robot.now() >= truth_due) {
-      const auto written = write_truth(robot, arguments.truth_file);
+      const auto written = write_truth(robot, arguments.truth_file, effect);
       if (!written) return std::fprintf(stderr, "odomcalib-sim: %s\n", written.error().text().c_str()), 1;
       truth_due = robot.now() + 1.0;
     }
@@ -160,13 +175,14 @@ int main(int argc, char** argv) {
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  const auto robot = SimRobot::create(robot_options(arguments));
+  const auto effect = choose_effect(arguments);
+  const auto robot = SimRobot::create(robot_options(arguments, effect));
   if (!robot) {
     std::fprintf(stderr, "odomcalib-sim: %s\n", robot.error().text().c_str());
     return 1;
   }
   announce(*robot.value());
-  const int status = run(*robot.value(), arguments);
-  if (!arguments.truth_file.empty() && !write_truth(*robot.value(), arguments.truth_file)) return 1;
+  const int status = run(*robot.value(), arguments, effect);
+  if (!arguments.truth_file.empty() && !write_truth(*robot.value(), arguments.truth_file, effect)) return 1;
   return status;
 }

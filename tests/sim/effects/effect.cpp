@@ -1,5 +1,6 @@
 #include "tests/sim/effects/effect.hpp"
 
+#include <cmath>
 #include <numbers>
 
 namespace odomcalib::sim {
@@ -25,6 +26,15 @@ const EffectKind* find_effect(const std::string& name) {
   for (const EffectKind& kind : effect_kinds())
     if (kind.name == name) return &kind;
   return nullptr;
+}
+
+DrawnEffect draw_effect(Random& random, double size_factor) {
+  DrawnEffect drawn;
+  drawn.kind = &effect_kinds()[random() % effect_kinds().size()];
+  drawn.size =
+      size_factor * std::exp(uniform(random, std::log(drawn.kind->smallest), std::log(drawn.kind->largest)));
+  drawn.made = drawn.kind->make(drawn.size, random);
+  return drawn;
 }
 
 double uniform(Random& random, double low, double high) {

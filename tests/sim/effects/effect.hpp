@@ -32,6 +32,15 @@ const std::vector<EffectKind>& effect_kinds();
 /// Null when there is no such kind.
 const EffectKind* find_effect(const std::string& name);
 
+/// An effect drawn at random.
+struct DrawnEffect {
+  const EffectKind* kind = nullptr;  ///< null: none
+  double size = 0.0;
+  std::shared_ptr<Disturbance> made;
+};
+/// Any kind, its size anywhere in its range on a logarithmic scale, times `size_factor`.
+DrawnEffect draw_effect(Random& random, double size_factor = 1.0);
+
 // The kinds by their place in the robot.
 std::vector<EffectKind> wheel_effects();
 std::vector<EffectKind> drive_train_effects();

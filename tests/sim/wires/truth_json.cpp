@@ -16,13 +16,23 @@ nlohmann::ordered_json parameters(const Geometry& geometry) {
           {"lidar_yaw", geometry.lidar.yaw}};
 }
 
+nlohmann::ordered_json described(const DrawnEffect& effect) {
+  if (effect.kind == nullptr) return nullptr;
+  return {{"name", effect.kind->name},
+          {"catalogue_name", effect.kind->catalogue_name},
+          {"depends_on", effect.kind->depends_on},
+          {"size", effect.size},
+          {"unit", effect.kind->unit}};
+}
+
 }  // namespace
 
-std::string truth_json(const SimRobot& robot) {
+std::string truth_json(const SimRobot& robot, const DrawnEffect& effect) {
   const Pose& pose = robot.pose();
   const nlohmann::ordered_json json{{"seed", robot.seed()},
                                     {"true", parameters(robot.truth())},
                                     {"nominal", parameters(robot.nominal())},
+                                    {"effect", described(effect)},
                                     {"ticks_per_rev", robot.nominal().ticks_per_rev},
                                     {"can", robot.can_device()},
                                     {"lidar", robot.lidar_device()},
@@ -31,10 +41,11 @@ std::string truth_json(const SimRobot& robot) {
   return json.dump(2) + "\n";
 }
 
-Result<void> write_truth(const SimRobot& robot, const std::filesystem::path& path) {
+Result<void> write_truth(const SimRobot& robot, const std::filesystem::path& path,
+                         const DrawnEffect& effect) {
   const std::filesystem::path fresh = path.string() + ".new";
   std::ofstream file(fresh);
-  file << truth_json(robot);
+  file << truth_json(robot, effect);
   file.close();
   std::error_code error;
   if (file) std::filesystem::rename(fresh, path, error);

@@ -1,0 +1,112 @@
+// What happens in the daemon while it happens: events, and its state when it changes.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/client.hpp"
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/verbs.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+volatile sig_atomic_t finish = 0;
+
+void on_signal(int /*number*/) { finish = 1; }
+
+struct Options {
+  double duration = 0.0;
+};
+
+const char* word_of(int severity) {
+  constexpr std::array kWords = {"info", "warning", "stop", "fault"};
+  return severity >= 0 && severity < static_cast<int>(kWords.size())
+             ? kWords.at(static_cast<std::size_t>(severity))
+             : "?";
+}
+
+void print_event(const ordered_json& event, const Session& session) {
+  if (session.json != JsonMode::off) {
+    std::cout << event.dump(-1, ' ', false, ordered_json::error_handler_t::replace)
+              << std::endl;  // a line each
+    return;
+  }
+  const auto seconds = static_cast<std::time_t>(event.value("time", std::int64_t{0}) / 1'000'000);
+  std::cout << fmt::format("{:%H:%M:%S}  {:<8}{:<18}{}", fmt::localtime(seconds),
+                           word_of(event.value("severity", -1)), event.value("code", ""),
+                           event.value("text", ""))
+            << std::endl;
+}
+
+/// State of the daemon as an event, when it is another than before.
+Result<void> watch_state(Client& client, std::string& last, const Session& session) {
+  const auto answer = client.call("GetStatus");
+  if (!answer) return answer.error();
+  const auto body = ordered_json::parse(answer.value(), nullptr, false);
+  const std::string state = body.value("status", ordered_json::object()).value("state", "");
+  if (state == last) return {};
+  last = state;
+  const auto now = std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::system_clock::now().time_since_epoch());
+  print_event({{"time", now.count()}, {"severity", 0}, {"code", "state"}, {"text", state}}, session);
+  return {};
+}
+
+int watch(Client& events, Client& questions, const Options& options, const Session& session) {
+  using Clock = std::chrono::steady_clock;
+  if (auto sent = events.send("Monitor", "{}", true); !sent) return report_error(sent.error(), session.json);
+  const auto begin = Clock::now();
+  auto next = begin;
+  std::string state;
+  while (finish == 0) {
+    const auto now = Clock::now();
+    if (options.duration > 0.0 && std::chrono::duration<double>(now - begin).count() >= options.duration)
+      break;
+    if (now >= next) {
+      next = now + std::chrono::milliseconds(500);
+      if (auto seen = watch_state(questions, state, session); !seen)
+        return report_error(seen.error(), session.json);
+    }
+    const auto reply = events.receive(100);
+    if (!reply) return report_error(reply.error(), session.json);
+    if (!reply.value()) continue;
+    if (!reply.value()->error.empty()) return report_error(control::error_of(*reply.value()), session.json);
+    const auto body = ordered_json::parse(reply.value()->parameters, nullptr, false);
+    if (body.is_object() && body.contains("event")) print_event(body["event"], session);
+  }
+  return kDone;
+}
+
+int monitor(const Options& options, const Session& session) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    sigaction(number, &action, nullptr);
+  }
+  auto events = Client::connect(session.socket);
+  if (!events) return report_error(events.error(), session.json);
+  auto questions = Client::connect(session.socket);
+  if (!questions) return report_error(questions.error(), session.json);
+  return watch(events.value(), questions.value(), options, session);
+}
+
+}  // namespace
+
+void add_monitor(CLI::App& app, Session& session) {
+  auto* verb = app.add_subcommand("monitor", "Events of the daemon as they happen, until Ctrl-C");
+  auto options = std::make_shared<Options>();
+  verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C")->check(CLI::Range(0.0, 86400.0));
+  verb->callback(
+      [&session, options] { session.run = [&session, options] { return monitor(*options, session); }; });
+}
+
+}  // namespace odomcalib::cli

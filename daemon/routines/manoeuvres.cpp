@@ -1,0 +1,99 @@
+#include "daemon/routines/manoeuvres.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace odomcalib::routines {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Three speeds over 1:3, forward and backward.
+void straights(Builder& build) {
+  for (const double speed : {0.3, 0.1, 0.2}) {
+    build.out_and_back(0.8 * build.half, speed);
+    build.out_and_back(-0.6 * build.half, speed);
+  }
+}
+
+/// Many wheel turns at a pace at which matches lie close together.
+void slow_straights(Builder& build) {
+  for (int i = 0; i < 2; ++i) {
+    build.out_and_back(0.8 * build.half, 0.08);
+    build.out_and_back(-0.8 * build.half, 0.08);
+  }
+}
+
+void turns(Builder& build, double track_width) {
+  build.both_spins(2.0 * kPi, 0.6);
+  build.both_spins(kPi, 0.3);
+  build.both_spins(0.5 * kPi, 0.15);
+  build.four_arcs(0.5 * track_width, 0.5 * kPi, 0.5);
+}
+
+/// Equal wheel speeds in turns of different radius, and one radius at two speeds.
+void arcs(Builder& build) {
+  const double tight = 0.3 * build.scale;
+  const double wide = 0.6 * build.scale;
+  build.four_arcs(tight, 0.4 * kPi, 0.12 / tight);
+  build.four_arcs(tight, 0.4 * kPi, 0.6);
+  build.four_arcs(wide, 0.35 * kPi, 0.3 / wide);
+}
+
+/// Starts and stops at low and at high speed, forward and backward, and in turns.
+void accelerations(Builder& build) {
+  for (const double speed : {0.3, 0.1, 0.3}) {
+    build.out_and_back(0.4 * build.half, speed);
+    build.out_and_back(-0.4 * build.half, speed);
+  }
+  build.both_spins(0.5 * kPi, 0.6);
+  build.both_spins(0.3 * kPi, 0.2);
+}
+
+/// Every wheel reverses often, slowly and fast, with and without the robot's direction of travel.
+void reversals(Builder& build) {
+  for (const double speed : {0.1, 0.3}) {
+    build.out_and_back(0.25 * build.half, speed);
+    build.out_and_back(-0.25 * build.half, speed);
+    build.both_spins(0.25 * kPi, 2.0 * speed);
+    build.out_and_back(0.25 * build.half, speed);
+    build.both_spins(0.25 * kPi, 2.0 * speed);
+  }
+  build.four_arcs(0.3 * build.scale, 0.3 * kPi, 0.5);
+}
+
+}  // namespace
+
+Builder builder_for(const PatternOptions& options) {
+  const double side = std::min(options.area_length, options.area_width);
+  const double half = std::clamp(0.5 * side, 0.3, 1.25);
+  return {.moves = {}, .half = half, .scale = std::min(1.0, half)};
+}
+
+void straights_on_four_headings(Builder& build) {
+  const double d = 0.8 * build.half;
+  build.face(0.5 * kPi);
+  build.out_and_back(d, 0.3);
+  build.out_and_back(-0.5 * d, 0.1);
+  build.face(kPi);
+  build.out_and_back(d, 0.2);
+  build.out_and_back(-d, 0.3);
+  build.face(-0.5 * kPi);
+  build.out_and_back(d, 0.1, 0.3);
+  build.face(0.0);
+}
+
+std::optional<Plan> manoeuvre_plan(const std::string& name, const PatternOptions& options) {
+  Builder build = builder_for(options);
+  if (name == "straights") straights(build);
+  if (name == "slow_straights") slow_straights(build);
+  if (name == "turns") turns(build, options.track_width);
+  if (name == "arcs") arcs(build);
+  if (name == "accelerations") accelerations(build);
+  if (name == "reversals") reversals(build);
+  if (name == "headings") straights_on_four_headings(build);
+  if (build.moves.empty()) return std::nullopt;
+  return Plan{.name = name, .moves = build.moves, .limits = options.limits};
+}
+
+}  // namespace odomcalib::routines
