@@ -125,7 +125,7 @@ struct Odometry::State {
   BaseParameters nominal;
   double ticks_per_rev = 0.0;
   std::deque<TickSample> history;
-  TickSample first;
+  double begin = 0.0;  ///< s, time of the first sample
   Pose pose;
   DriveHistory drive{{}};
 };
@@ -142,7 +142,7 @@ Odometry& Odometry::operator=(Odometry&&) noexcept = default;
 
 PoseSample Odometry::update(const TickSample& sample) {
   State& s = *state_;
-  if (s.history.empty()) s.first = sample;
+  if (s.history.empty()) s.begin = sample.t;
   const bool advances = !s.history.empty() && sample.t > s.history.back().t;
   if (s.history.empty() || advances) s.history.push_back(sample);
   if (s.history.size() > kHistory) s.history.pop_front();
@@ -155,11 +155,7 @@ PoseSample Odometry::update(const TickSample& sample) {
   recent.ticks.assign(s.history.begin(), s.history.end());
   WheelTrack track = wheel_track_from_ticks(recent);
   StepContext context = make_context(track, s.nominal).back();
-  const double rad_per_tick = 2.0 * kPi / s.ticks_per_rev;
-  const TickSample& oldest = s.history.front();
-  context.t += oldest.t - s.first.t;
-  context.left_angle += rad_per_tick * static_cast<double>(oldest.left - s.first.left);
-  context.right_angle += rad_per_tick * static_cast<double>(oldest.right - s.first.right);
+  context.t += s.history.front().t - s.begin;
   s.drive.advance(context);
 
   const std::size_t n = track.t.size();

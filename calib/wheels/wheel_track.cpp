@@ -1,6 +1,7 @@
 #include "calib/wheels/wheel_track.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "calib/geometry/se2.hpp"
 
@@ -22,11 +23,15 @@ WheelTrack wheel_track_from_ticks(const Recording& recording) {
   if (recording.ticks.empty()) return track;
   const double rad_per_tick = 2.0 * kPi / recording.robot.ticks_per_rev;
   const TickSample& first = recording.ticks.front();
+  // Angles begin within the first turn of the counter: a wheel's phase is the same in every recording until
+  // the counter restarts.
+  const double left = std::fmod(static_cast<double>(first.left), recording.robot.ticks_per_rev);
+  const double right = std::fmod(static_cast<double>(first.right), recording.robot.ticks_per_rev);
   for (const TickSample& sample : recording.ticks) {
     if (!track.t.empty() && !(sample.t > track.t.back())) continue;
     track.t.push_back(sample.t);
-    track.left.push_back(rad_per_tick * static_cast<double>(sample.left - first.left));
-    track.right.push_back(rad_per_tick * static_cast<double>(sample.right - first.right));
+    track.left.push_back(rad_per_tick * (left + static_cast<double>(sample.left - first.left)));
+    track.right.push_back(rad_per_tick * (right + static_cast<double>(sample.right - first.right)));
     track.segment.push_back(sample.segment);
   }
   return track;

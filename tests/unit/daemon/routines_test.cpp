@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "daemon/routines/manoeuvres.hpp"
 #include "daemon/routines/pattern.hpp"
 #include "daemon/routines/plans.hpp"
 #include "daemon/routines/runner.hpp"
@@ -179,6 +180,32 @@ TEST_P(PatternInArea, stays_inside_and_ends_where_it_began) {
 INSTANTIATE_TEST_SUITE_P(Areas, PatternInArea,
                          testing::Combine(testing::Values(1.2, 2.0, 4.0), testing::Values(1.2, 2.0),
                                           testing::Bool()));
+
+class Manoeuvre : public testing::TestWithParam<const char*> {};
+
+TEST_P(Manoeuvre, stays_in_the_area_comes_back_and_takes_no_longer_than_a_pattern) {
+  for (const double side : {1.2, 2.0}) {
+    PatternOptions options;
+    options.area_length = options.area_width = side;
+    const auto plan = manoeuvre_plan(GetParam(), options);
+    ASSERT_TRUE(plan.has_value());
+    const Trace trace = drive(*plan);
+    EXPECT_TRUE(trace.finished);
+    EXPECT_LE(trace.reach, 0.5 * side + 0.03);
+    EXPECT_NEAR(trace.end.x, 0.0, 0.06);
+    EXPECT_NEAR(trace.end.y, 0.0, 0.06);
+    EXPECT_LE(trace.fastest, kCaps.speed + 1e-9);
+    EXPECT_LE(trace.fastest_turn, kCaps.turn_rate + 1e-9);
+    EXPECT_LT(preview(*plan).duration, 200.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Names, Manoeuvre,
+                         testing::Values("straights", "slow_straights", "turns", "arcs", "accelerations",
+                                         "reversals", "headings"),
+                         [](const auto& name) { return std::string(name.param); });
+
+TEST(ManoeuvreNames, others_are_refused) { EXPECT_FALSE(manoeuvre_plan("pirouette", {}).has_value()); }
 
 TEST(Pattern, takes_about_four_minutes_and_the_quick_one_less_than_half) {
   const double full = preview(pattern_plan({})).duration;
