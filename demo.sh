@@ -234,6 +234,7 @@ run history
 step "after: the same drives, fresh"
 fresh_drive straight straight
 fresh_drive spin spin
+fresh_drive turns spin --turns 2 --direction ccw  # errors of turns both ways would cancel
 
 step "the report, from the calibration file"
 run report build/demo/calibration.json --html build/demo/report.html > build/demo/report.txt

@@ -97,7 +97,7 @@ def print_errors(folder):
         before_all, after_all = before_all + before, after_all + after
         print(f"{label:<34}{before:10.2f}{after:10.2f}  {unit}")
     print(f"\n{'end of a fresh drive, truth':<34}{'papers':>10}{'no effects':>12}{'corrected':>11}")
-    for drive, label in (("straight", "a metre out and back"), ("spin", "a turn left, a turn right")):
+    for drive, label in (("straight", "a metre out and back"), ("turns", "two turns left")):
         errors = fresh_errors(folder, drive)
         for index, factor, unit, what in ((0, 1e3, "mm", "position"), (1, DEGREES, "deg", "heading")):
             values = [factor * errors[kind][index] for kind in ("nominal", "geometry", "calibration")]
