@@ -1,8 +1,57 @@
 #include "calib/match.hpp"
 
 #include "calib/matching/point_to_line.hpp"
+#include "calib/matching/pose_search.hpp"
 
 namespace odomcalib::calib {
+namespace {
+
+constexpr double kConvincing = 0.8;         ///< overlap above which no better pose is looked for
+constexpr std::size_t kSearchPoints = 150;  ///< of the scan; more tell little on cells of 10 cm
+
+/// Every few, in order.
+std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points, std::size_t most) {
+  const std::size_t stride = points.size() / most + 1;
+  std::vector<Eigen::Vector2d> kept;
+  for (std::size_t i = 0; i < points.size(); i += stride) kept.push_back(points[i]);
+  return kept;
+}
+
+MatchResult match_after_search(const MatchReference& reference, const Surface& scan, const Pose& guess,
+                               const MatchOptions& options) {
+  LikelihoodField field(positions(reference.surface()), FieldOptions{});
+  const auto points = thinned(positions(scan), kSearchPoints);
+  const SearchResult start = search_branch_and_bound(field, points, {.centre = guess});
+  return match_point_to_line(reference, scan, start.pose, options);
+}
+
+/// The match from the guess, or from a search around it when the guess did not
+/// lead to a convincing one.
+MatchResult match_best(const MatchReference& reference, const Surface& scan, const Pose& guess,
+                       const MatchOptions& options) {
+  MatchResult first = match_point_to_line(reference, scan, guess, options);
+  if (first.status == MatchStatus::too_few_points) return first;
+  if (first.is_usable() && first.overlap >= kConvincing) return first;
+  MatchResult second = match_after_search(reference, scan, guess, options);
+  // Refused or not, the pose with more agreement tells more about the pair.
+  return second.inliers > first.inliers ? second : first;
+}
+
+ScanMatch describe(const MatchResult& result) {
+  ScanMatch match;
+  match.status = to_string(result.status);
+  match.inliers = result.inliers;
+  if (result.status == MatchStatus::degenerate)
+    match.weak_direction = {result.weak_direction.x(), result.weak_direction.y()};
+  if (!match.ok()) return match;
+  match.pose = {result.motion.x, result.motion.y, result.motion.yaw};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      match.covariance[i][j] = result.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  return match;
+}
+
+}  // namespace
 
 ScanMatch match_scans(const Scan& reference, const Scan& scan, const std::array<double, 3>& guess,
                       std::optional<double> range_noise) {
@@ -12,16 +61,7 @@ ScanMatch match_scans(const Scan& reference, const Scan& scan, const std::array<
   const BeamMotion at_rest = [](double) { return Pose{}; };
   const MatchReference prepared(make_surface(reference, at_rest, options.range_noise), options.range_noise);
   const Surface surface = make_surface(scan, at_rest, options.range_noise);
-  const MatchResult result = match_point_to_line(prepared, surface, {guess[0], guess[1], guess[2]}, options);
-  ScanMatch match;
-  match.status = to_string(result.status);
-  match.inliers = result.inliers;
-  if (!match.ok()) return match;
-  match.pose = {result.motion.x, result.motion.y, result.motion.yaw};
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j)
-      match.covariance[i][j] = result.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-  return match;
+  return describe(match_best(prepared, surface, {guess[0], guess[1], guess[2]}, options));
 }
 
 }  // namespace odomcalib::calib

@@ -14,11 +14,14 @@ struct ScanMatch {
                                          ///< degenerate, not_converged
   std::array<double, 3> pose{};          ///< of the second scan in the frame of the first: m, m, rad
   std::array<std::array<double, 3>, 3> covariance{};  ///< x, y, yaw: m^2, m rad, rad^2
+  std::array<double, 2> weak_direction{};  ///< of a degenerate match: unit vector in the frame of the first
+                                           ///< scan, along which the motion cannot be told
   std::size_t inliers = 0;
   [[nodiscard]] bool ok() const { return status == "ok"; }
 };
 
-/// Point-to-line match of two scans taken at rest (no de-skewing).
+/// Point-to-line match of two scans taken at rest (no de-skewing). When that fails from the guess, or
+/// explains the scans poorly, it starts again from the best pose within 1 m and 45 degrees of the guess.
 /// @param guess start of the search, m, m, rad
 /// @param range_noise standard deviation of a range, m; estimated from the scans when absent
 ScanMatch match_scans(const Scan& reference, const Scan& scan, const std::array<double, 3>& guess,

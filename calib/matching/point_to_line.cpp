@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <nanoflann.hpp>
 
 #include "calib/matching/joint_lines.hpp"
 #include "calib/statistics/median.hpp"
@@ -62,7 +61,7 @@ std::vector<Correspondence> correspond(const MatchReference& reference, const Su
   for (std::size_t k = 0; k < scan.points.size(); k += stride) {
     const SurfacePoint& point = scan.points[k];
     const Eigen::Vector2d moved = transform(pose, point.position);
-    const auto [index, squared] = reference.nearest(moved);
+    const auto [index, squared] = reference.tree().nearest(moved);
     const SurfacePoint& partner = reference.surface().points[index];
     if (squared > gate * gate || !partner.has_line) continue;
     if (point.has_line && rotate(pose.yaw, point.normal).dot(partner.normal) < kMinNormalAgreement) continue;
@@ -136,7 +135,7 @@ std::vector<WallPoint> points_on_walls(const MatchReference& reference, const Su
   const Walls& walls = reference.walls();
   for (const SurfacePoint& point : scan.points) {
     const Eigen::Vector2d moved = transform(pose, point.position);
-    const auto [index, squared] = reference.nearest(moved);
+    const auto [index, squared] = reference.tree().nearest(moved);
     const std::size_t w = walls.of_point[index];
     if (squared > gate * gate || w == Walls::kNone) continue;
     const Wall& wall = walls.walls[w];
@@ -195,41 +194,15 @@ std::string to_string(MatchStatus status) {
   return "unknown";
 }
 
-struct MatchReference::Tree {
-  Surface surface;
-  Walls walls;
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return surface.points.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t point, std::size_t axis) const {
-    return surface.points[point].position(static_cast<Eigen::Index>(axis));
-  }
-  template <typename Box>
-  bool kdtree_get_bbox(Box& /*box*/) const {
-    return false;
-  }
-  using Index =
-      nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Tree>, Tree, 2, std::size_t>;
-  std::unique_ptr<Index> kd_tree;
-};
-
-MatchReference::MatchReference(Surface surface, double range_noise) : tree_(std::make_unique<Tree>()) {
-  tree_->surface = std::move(surface);
-  tree_->walls = find_walls(tree_->surface, range_noise);
-  tree_->kd_tree = std::make_unique<Tree::Index>(2, *tree_, nanoflann::KDTreeSingleIndexAdaptorParams(8));
-  if (!tree_->surface.points.empty()) tree_->kd_tree->buildIndex();
+std::vector<Eigen::Vector2d> positions(const Surface& surface) {
+  std::vector<Eigen::Vector2d> found;
+  found.reserve(surface.points.size());
+  for (const SurfacePoint& point : surface.points) found.push_back(point.position);
+  return found;
 }
-MatchReference::~MatchReference() = default;
-MatchReference::MatchReference(MatchReference&&) noexcept = default;
-MatchReference& MatchReference::operator=(MatchReference&&) noexcept = default;
 
-const Surface& MatchReference::surface() const { return tree_->surface; }
-const Walls& MatchReference::walls() const { return tree_->walls; }
-
-std::pair<std::size_t, double> MatchReference::nearest(const Eigen::Vector2d& position) const {
-  std::size_t index = 0;
-  double squared = 0.0;
-  tree_->kd_tree->knnSearch(position.data(), 1, &index, &squared);
-  return {index, squared};
-}
+MatchReference::MatchReference(Surface surface, double range_noise)
+    : surface_(std::move(surface)), walls_(find_walls(surface_, range_noise)), tree_(positions(surface_)) {}
 
 namespace {
 

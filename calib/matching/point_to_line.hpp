@@ -4,9 +4,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <string>
 
+#include "calib/matching/nearest.hpp"
 #include "calib/matching/surface.hpp"
 #include "calib/matching/walls.hpp"
 
@@ -42,21 +42,22 @@ struct MatchResult {
   [[nodiscard]] bool is_usable() const { return status == MatchStatus::ok; }
 };
 
+/// Where a surface's beams end, in its frame.
+std::vector<Eigen::Vector2d> positions(const Surface& surface);
+
 /// A reference scan prepared once for several matches.
 class MatchReference {
  public:
   MatchReference(Surface surface, double range_noise);
-  ~MatchReference();
-  MatchReference(MatchReference&&) noexcept;
-  MatchReference& operator=(MatchReference&&) noexcept;
-  [[nodiscard]] const Surface& surface() const;
-  [[nodiscard]] const Walls& walls() const;
-  /// Index of the point next to `position`, and its squared distance.
-  [[nodiscard]] std::pair<std::size_t, double> nearest(const Eigen::Vector2d& position) const;
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  [[nodiscard]] const Walls& walls() const { return walls_; }
+  /// Of the surface's points.
+  [[nodiscard]] const NearestTree& tree() const { return tree_; }
 
  private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
+  Surface surface_;
+  Walls walls_;
+  NearestTree tree_;
 };
 
 /// Motion from `reference` to `scan`, starting at `guess`. The guess is a start, not a prior: the result does

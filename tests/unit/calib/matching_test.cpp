@@ -3,54 +3,20 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <functional>
-#include <random>
 
 #include "calib/geometry/se2.hpp"
 #include "calib/match.hpp"
 #include "calib/matching/point_to_line.hpp"
+#include "tests/unit/calib/room_scans.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
-struct Wall {
-  double x1, y1, x2, y2;
-};
-
-double ray_distance(const std::vector<Wall>& walls, double x, double y, double angle) {
-  double nearest = 1e9;
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  for (const Wall& w : walls) {
-    const double ex = w.x2 - w.x1;
-    const double ey = w.y2 - w.y1;
-    const double determinant = c * ey - s * ex;
-    if (std::abs(determinant) < 1e-12) continue;
-    const double along_ray = ((w.x1 - x) * ey - (w.y1 - y) * ex) / determinant;
-    const double along_wall = ((w.x1 - x) * s - (w.y1 - y) * c) / determinant;
-    if (along_ray > 0.0 && along_wall >= 0.0 && along_wall <= 1.0) nearest = std::min(nearest, along_ray);
-  }
-  return nearest;
-}
-
-const std::vector<Wall> kRoom = {{-3, -2, 4, -2}, {4, -2, 4, 3}, {4, 3, -3, 3},
-                                 {-3, 3, -3, -2}, {1, 3, 1, 2},  {1, 2, 2, 2}};
-const std::vector<Wall> kCorridor = {{-50, -1, 50, -1}, {-50, 1, 50, 1}};
-
-Scan scan_from(const std::vector<Wall>& walls, const Pose& pose, double noise, unsigned seed) {
-  std::mt19937 engine(seed);
-  std::normal_distribution<double> gauss(0.0, noise);
-  Scan scan;
-  scan.angle_min = -kPi;
-  scan.angle_increment = 2.0 * kPi / 720.0;
-  scan.range_max = 12.0;
-  for (int i = 0; i < 720; ++i) {
-    const double range =
-        ray_distance(walls, pose.x, pose.y, pose.yaw + scan.angle_min + scan.angle_increment * i);
-    scan.ranges.push_back(range < 12.0 ? static_cast<float>(range + (noise > 0.0 ? gauss(engine) : 0.0))
-                                       : 0.0F);
-  }
-  return scan;
-}
+using testing::kCorridor;
+using testing::kRoom;
+using testing::ray_distance;
+using testing::RoomWall;
+using testing::scan_from;
 
 TEST(Matching, recovers_a_known_motion_from_noise_free_scans) {
   const Pose a{0.2, -0.1, 0.1};
@@ -95,17 +61,60 @@ TEST(Matching, the_result_does_not_depend_on_the_guess) {
 }
 
 TEST(Matching, a_corridor_yields_no_pose_along_it) {
-  const ScanMatch match = match_scans(scan_from(kCorridor, {}, 0.005, 1),
-                                      scan_from(kCorridor, {0.1, 0.0, 0.02}, 0.005, 2), {0, 0, 0});
-  EXPECT_EQ(match.status, "degenerate");
+  for (const double noise : {0.0, 0.005, 0.02}) {
+    const Pose motion{0.1, 0.0, 0.3};
+    const Pose turned{0.0, 0.0, 0.7};  // the corridor runs 0.7 rad to the right of the sensor
+    const ScanMatch match = match_scans(scan_from(kCorridor, turned, noise, 1),
+                                        scan_from(kCorridor, compose(turned, motion), noise, 2), {0, 0, 0});
+    EXPECT_EQ(match.status, "degenerate") << noise;
+    EXPECT_NEAR(std::abs(match.weak_direction[0]), std::cos(0.7), 0.05) << noise;
+    EXPECT_LT(match.weak_direction[0] * match.weak_direction[1], 0.0) << noise;
+  }
+}
+
+TEST(Matching, a_corridor_with_a_door_frame_is_not_refused) {
+  std::vector<RoomWall> walls = kCorridor;
+  for (const double x : {-2.0, 1.5, 3.0}) {
+    walls.push_back({x, -1.0, x, -0.6});
+    walls.push_back({x, 1.0, x, 0.6});
+  }
+  const ScanMatch match =
+      match_scans(scan_from(walls, {}, 0.005, 1), scan_from(walls, {0.1, 0.0, 0.02}, 0.005, 2), {0, 0, 0});
+  ASSERT_TRUE(match.ok()) << match.status;
+  EXPECT_NEAR(match.pose[0], 0.1, 0.01);
 }
 
 TEST(Matching, scans_of_different_rooms_are_refused) {
-  const std::vector<Wall> other = {
+  const std::vector<RoomWall> other = {
       {-0.5, -5, 0.9, -5}, {0.9, -5, 0.9, 7}, {0.9, 7, -0.5, 7}, {-0.5, 7, -0.5, -5}};
   const ScanMatch match =
       match_scans(scan_from(kRoom, {}, 0.005, 1), scan_from(other, {}, 0.005, 2), {0, 0, 0});
   EXPECT_FALSE(match.ok());
+}
+
+// Points that a moved scan sees beyond the ends of what the reference saw used to be pulled back there.
+TEST(Matching, missing_beams_do_not_pull_the_motion_towards_zero) {
+  constexpr unsigned kRuns = 150;
+  constexpr double kStep = 0.15;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (unsigned run = 0; run < kRuns; ++run) {
+    const Pose a{0.1 * (run % 5), 0.05 * (run % 7), 0.3 * run};
+    Scan scans[] = {scan_from(kRoom, a, 0.015, 2 * run),
+                    scan_from(kRoom, compose(a, Pose{kStep, 0.0, 0.0}), 0.015, 2 * run + 1)};
+    for (Scan& scan : scans) {
+      scan.range_max = 3.2;
+      for (float& range : scan.ranges)
+        if (range > 3.2F) range = 0.0F;
+    }
+    const ScanMatch match = match_scans(scans[0], scans[1], {kStep, 0, 0});
+    if (!match.ok()) continue;
+    const double weight = 1.0 / match.covariance[0][0];
+    sum += weight * (match.pose[0] - kStep);
+    squares += weight;
+  }
+  const double bias = sum / squares;
+  EXPECT_LT(std::abs(bias), 3.5 / std::sqrt(squares)) << "relative " << bias / kStep;
 }
 
 TEST(Matching, an_empty_scan_or_a_single_point_is_refused) {

@@ -1,0 +1,51 @@
+// Search for the pose at which a scan fits best over a reference, when the first guess is too poor for
+// point-to-line matching. Three ways to search the same score:
+//  - brute force: every pose of a lattice, the yardstick for the others;
+//  - branch and bound: the same optimum from a fraction of the work. W. Hess et al.: Real-time loop closure
+//  in
+//    2D lidar SLAM, ICRA 2016;
+//  - hill climb: from one start, to the nearest summit only.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+
+#include "calib/geometry/se2.hpp"
+#include "calib/matching/likelihood_field.hpp"
+
+namespace odomcalib::calib {
+
+/// Poses about `centre`, both ends of each range included.
+struct SearchWindow {
+  Pose centre{};
+  double half_width = 1.0;          ///< m, in x and in y
+  double half_angle = kPi / 4.0;    ///< rad
+  double angle_step = kPi / 120.0;  ///< rad; the step in x and y is the field's cell
+};
+
+struct SearchResult {
+  Pose pose;
+  double score = 0.0;         ///< mean over the points, 0 to 1
+  std::size_t evaluated = 0;  ///< poses and sets of poses that were scored
+};
+
+SearchResult search_brute_force(const LikelihoodField& field, std::span<const Eigen::Vector2d> points,
+                                const SearchWindow& window);
+
+/// The score of brute force, always; the same pose unless several share that score. Makes the field's coarser
+/// levels.
+SearchResult search_branch_and_bound(LikelihoodField& field, std::span<const Eigen::Vector2d> points,
+                                     const SearchWindow& window);
+
+struct ClimbOptions {
+  double step = 0.05;               ///< m, first step in x and y
+  double angle_step = kPi / 360.0;  ///< rad, first step in yaw
+  int halvings = 4;                 ///< finer steps after no neighbour is better
+};
+
+/// To the better neighbour of six, again and again; never below the score of the start.
+SearchResult search_hill_climb(const LikelihoodField& field, std::span<const Eigen::Vector2d> points,
+                               const Pose& start, const ClimbOptions& options);
+
+}  // namespace odomcalib::calib
