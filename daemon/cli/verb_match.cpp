@@ -58,6 +58,7 @@ ordered_json describe(const calib::ScanMatch& match, std::chrono::microseconds t
                     {"covariance", nullptr},
                     {"inliers", match.inliers},
                     {"time_us", time.count()}};
+  if (match.status == "degenerate") body["weak_direction"] = match.weak_direction;
   if (!match.ok()) return body;
   body["pose"] = match.pose;
   body["covariance"] = match.covariance;
