@@ -1,7 +1,10 @@
 #include "tests/sim/wires/tcp_port.hpp"
 
 #include <arpa/inet.h>
+#include <linux/sockios.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -44,6 +47,8 @@ bool TcpPort::accept() {
   if (fd < 0) return false;
   drop_client();
   client_ = fd;
+  const int on = 1;
+  setsockopt(client_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   return true;
 }
 
@@ -56,7 +61,11 @@ std::string TcpPort::read() {
 }
 
 void TcpPort::write(const std::string& bytes) {
-  if (client_ >= 0 && !bytes.empty()) (void)!::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  if (client_ < 0 || bytes.empty()) return;
+  (void)!::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  // Simulated time runs faster than the kernel delivers: what was sent now must be there now.
+  int waiting = 1;
+  for (int i = 0; i < 2000 && ::ioctl(client_, SIOCOUTQNSD, &waiting) == 0 && waiting > 0; ++i) ::usleep(10);
 }
 
 }  // namespace odomcalib::sim

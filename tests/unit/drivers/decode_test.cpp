@@ -135,7 +135,7 @@ TEST(Decode, no_damaged_log_breaks_accounting_or_json) {
 }
 
 TEST(Decode, unknown_drivers_and_profiles_are_refused) {
-  EXPECT_EQ(decode("cola", "", kProfiles, "f").error().code, ErrorCode::usage);
+  EXPECT_EQ(decode("colander", "", kProfiles, "f").error().code, ErrorCode::usage);
   EXPECT_EQ(decode("canopen:", "", kProfiles, "f").error().code, ErrorCode::usage);
   EXPECT_EQ(decode("canopen:nothing", "", kProfiles, "f").error().code, ErrorCode::io);
 }
