@@ -174,8 +174,9 @@ void ScoreTable::add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projecte
 
 double ScoreTable::family_p_value(double statistic, std::size_t degrees) const {
   const double own = significance(statistic, static_cast<Eigen::Index>(degrees));
-  // Random signs keep the size of block scores, so that beside a large effect every draw is large and the effect itself
-  // hardly stands out. Bonferroni's bound on the model's tail probability, far beyond any doubt, needs no draws.
+  // Random signs keep the size of block scores, so that beside a large effect every draw is large and the
+  // effect itself hardly stands out. Bonferroni's bound on the model's tail probability, far beyond any
+  // doubt, needs no draws.
   const double bound = chi_squared_tail(statistic, degrees) * static_cast<double>(block_scores_.size());
   if (bound < kBeyondDoubt) return 1.0 / (1.0 + kDraws);
   const auto above = largest_.end() - std::lower_bound(largest_.begin(), largest_.end(), own);
