@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "calib/effects/catalogue.hpp"
@@ -255,6 +256,14 @@ class Search {
     });
   }
 
+  /// Of the errors after and before. A curve that odometry will use must be seen to help odometry.
+  static double largest_ratio(const Candidate& candidate) {
+    constexpr double kCurve = 0.97;
+    if (must_be_worthwhile(candidate)) return kWorthwhile;
+    const bool will_be_used = candidate.effect->storage() != Storage::nowhere;
+    return candidate.curve && will_be_used ? kCurve : std::numeric_limits<double>::infinity();
+  }
+
   /// Held-out proof on one noise model: error at the horizon, or whitened residual per block. The choice
   /// itself is held out: a fold counts only if the others point to the candidate too.
   /// @return empty if it holds, otherwise what is missing
@@ -271,7 +280,7 @@ class Search {
       proof.before = before->rms_position();
       proof.after = mixed.rms_position();
       proof.improvement = compare(*before, mixed);
-      if (must_be_worthwhile(candidate) && proof.improvement.ratio > kWorthwhile) return "too small a gain";
+      if (proof.improvement.ratio > largest_ratio(candidate)) return "too small a gain";
       if (proof.improvement.upper < 1.0) return {};
       if (proof.improvement.lower > 1.0) return "held-out error rises";
     }
