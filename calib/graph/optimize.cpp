@@ -127,12 +127,18 @@ struct Attempt {
   Descent descent;
 };
 
-/// Rotations first, and where there is reason for doubt the other first guesses too: the lowest chi2 counts.
+/// The start that was asked for, else rotations first; and where there is reason for doubt the other first
+/// guesses too: the lowest chi2 counts.
 Attempt best_attempt(const Problem& problem, const GraphOptions& options, const GraphObserver& observer) {
-  Attempt best{GraphStart::rotations, problem.descend_from(GraphStart::rotations, options, observer)};
+  const bool any_start = options.start == GraphStart::automatic;
+  const GraphStart first = any_start ? GraphStart::rotations : options.start;
+  Attempt best{first, problem.descend_from(first, options, observer)};
   std::vector<GraphStart> others;
-  if (problem.looks_wrong(best.descent)) others = {GraphStart::tree, GraphStart::odometry};
-  const bool file_is_lower = problem.graph().has_positions &&
+  if (problem.looks_wrong(best.descent)) {
+    others = {GraphStart::rotations, GraphStart::tree, GraphStart::odometry};
+    std::erase(others, first);
+  }
+  const bool file_is_lower = any_start && problem.graph().has_positions &&
                              chi2(problem.graph(), placement_of(problem.graph())) < best.descent.chi2;
   if (file_is_lower) others.push_back(GraphStart::file);
   for (const GraphStart start : others) {
@@ -207,9 +213,12 @@ GraphSummary optimize_graph(PoseGraph& graph, const GraphOptions& options, const
     summary.reason = obstacle->reason;
     return summary;
   }
-  Attempt attempt = options.start == GraphStart::automatic
-                        ? best_attempt(problem, options, observer)
-                        : Attempt{options.start, problem.descend_from(options.start, options, observer)};
+  // Who names both a start and a method wants to see what that leads to.
+  const bool to_the_letter =
+      options.start != GraphStart::automatic && options.method != GraphMethod::automatic;
+  Attempt attempt = to_the_letter
+                        ? Attempt{options.start, problem.descend_from(options.start, options, observer)}
+                        : best_attempt(problem, options, observer);
   summary.start = attempt.start;
   summary.chi2_start = attempt.descent.chi2_start;
   summary.chi2_after = attempt.descent.chi2;

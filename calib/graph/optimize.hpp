@@ -38,6 +38,7 @@ enum class GraphState {
 };
 
 struct GraphOptions {
+  /// Tried first. Others follow where the result looks like a false minimum, unless a method is named too.
   GraphStart start = GraphStart::automatic;
   GraphMethod method = GraphMethod::automatic;
   int max_iterations = 100;

@@ -146,9 +146,12 @@ TEST(GraphOptimize, S2_18_the_default_start_escapes_a_false_minimum) {
   PoseGraph graph = ring_with_a_turn_too_much();
   fix_first_pose(graph);
   PoseGraph trapped = graph;
-  const auto plain = optimize_graph(trapped, {.start = GraphStart::file});
+  const auto plain =
+      optimize_graph(trapped, {.start = GraphStart::file, .method = GraphMethod::gauss_newton});
   EXPECT_GT(plain.chi2_after, 100.0);
   EXPECT_EQ(loops_with_a_turn_too_much(trapped, Neighbours(trapped), placement_of(trapped)), 1U);
+  PoseGraph warned = graph;
+  EXPECT_LT(optimize_graph(warned, {.start = GraphStart::file}).chi2_after, 1e-4) << "others are tried, too";
   const auto summary = optimize_graph(graph);
   EXPECT_EQ(summary.state, GraphState::converged);
   EXPECT_LT(summary.chi2_after, 1e-4);
@@ -294,7 +297,8 @@ TEST(GraphOptimize, a_graph_that_is_fixed_altogether_is_its_own_answer) {
 TEST(GraphOptimize, numbers_beyond_reckoning_are_refused) {
   PoseGraph graph =
       graph_of("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1e200 0 0\nFIX 0\nEDGE_SE2 0 1 1 0 0 1e200 0 0 1 0 1\n");
-  EXPECT_EQ(optimize_graph(graph, {.start = GraphStart::file}).state, GraphState::not_finite);
+  EXPECT_EQ(optimize_graph(graph, {.start = GraphStart::file, .method = GraphMethod::gauss_newton}).state,
+            GraphState::not_finite);
   EXPECT_EQ(graph.vertices[1].x, 1e200);
 }
 
