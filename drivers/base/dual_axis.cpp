@@ -222,7 +222,7 @@ ControllerState DualAxis::state() const {
   if (motion_ == Motion::enabling) return ControllerState::enabling;
   if (any_axis(fault) || any_axis(fault_reaction)) return ControllerState::fault;
   // While the axes are brought to rest they still have torque: not disabled before the drive says so.
-  return motion_ == Motion::off || !any_axis(enabled) ? ControllerState::disabled : ControllerState::enabled;
+  return any_axis(enabled) ? ControllerState::enabled : ControllerState::disabled;
 }
 
 Counters DualAxis::counters() const {

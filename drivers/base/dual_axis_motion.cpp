@@ -190,7 +190,9 @@ void DualAxis::cycle_motion() {
   if (now_ < cycle_due_) return;
   switch (motion_) {
     case Motion::off:
-      if (profile_.watchdog.kind == ProfileWatchdog::Kind::object) {
+      // A late word may have enabled an axis after the motion had ended. With another master it may be his.
+      if (profile_.watchdog.kind == ProfileWatchdog::Kind::object ||
+          (other_master_ == 0 && any_axis(DriveState::enabled))) {
         send_command(canopen::kDisableVoltage, 0.0, 0.0);
         cycle_due_ = now_ + kIdleCycle_s;
       }
