@@ -43,7 +43,7 @@ std::optional<Parameters> read_parameters(const std::vector<std::string>& lines)
 }
 
 std::optional<Parameters> known_parameters(const std::string& model) {
-  // Specifications of the two families; what a sensor tells itself goes before.
+  // As commonly stated for the two families, not checked on devices; what a sensor tells itself goes before.
   if (model == "utm30lx") return Parameters{1440, 0, 1080, 540, 23, 60'000, 2400};
   if (model == "urg04lx") return Parameters{1024, 44, 725, 384, 20, 5600, 600};
   return std::nullopt;

@@ -64,7 +64,7 @@ Sample read_sample(ByteReader& reader, const Model& model) {
 }  // namespace
 
 const std::vector<Model>& models() {
-  // Baud and samples a second: the manufacturer's table of models.
+  // Baud and samples a second as commonly stated for these models; not checked on devices.
   static const std::vector<Model> kModels = {
       {"x2", 115'200, 3000, 0, true, false},       {"x3", 115'200, 3000, 0, true, false},
       {"s2", 115'200, 3000, 0, true, false},       {"x4", 128'000, 5000, 0, true, true},

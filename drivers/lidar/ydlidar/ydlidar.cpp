@@ -8,7 +8,7 @@
 namespace odomcalib::drivers {
 namespace {
 
-constexpr double kRangeMin_m = 0.05;  // data sheets: 0.05 (TG), 0.1 and more (others)
+constexpr double kRangeMin_m = 0.05;  // the least of the family; not checked on devices
 constexpr double kRangeMax_m = 64.0;  // the longest of the family (TG50 and T30 stay below)
 // So many wrong checksums and not one right packet: the model is not the one configured.
 constexpr std::uint64_t kAllWrong = 50;
