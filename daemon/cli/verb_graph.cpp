@@ -74,7 +74,8 @@ void add_optimize(CLI::App& parent, Session& session) {
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
   verb->add_option("--out", options->out, "g2o file to write");
   verb->add_option("--svg", options->picture, "picture to write: trajectory before and after, loops");
-  verb->add_option("--start", options->solver.start, "first guess to try first: auto, file, odometry, tree, rotations")
+  verb->add_option("--start", options->solver.start,
+                   "first guess to try first: auto, file, odometry, tree, rotations")
       ->transform(CLI::CheckedTransformer(graph_starts()));
   verb->add_option("--method", options->solver.method, "auto, gauss-newton, levenberg-marquardt")
       ->transform(CLI::CheckedTransformer(graph_methods()));
