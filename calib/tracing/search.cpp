@@ -174,7 +174,8 @@ class Search {
   }
 
   [[nodiscard]] double level(const Candidate& candidate) const {
-    if (candidate.curve) return completes(candidate) ? kNamedLevel : kUnnamedLevel;
+    if (candidate.curve)
+      return completes(candidate) || must_be_worthwhile(candidate) ? kNamedLevel : kUnnamedLevel;
     return candidate.effect->storage() == Storage::driver ? kClockLevel : kNamedLevel;
   }
 
