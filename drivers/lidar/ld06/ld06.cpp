@@ -34,24 +34,30 @@ void Ld06::reset() {
   sweep_.reset();
 }
 
-/// End of the packet's measurement, s. The device sends as soon as it has measured, so the packet's own
-/// transmission lies between that end and the arrival. Stamps have steps of 1 ms while packets are
-/// equidistant: a slow filter on the packet period takes the steps out.
-double Ld06::date(const ld06::Packet& packet, double now) {
-  const double arrival = now - wire_time(packet.bytes_after + ld06::kPacketBytes, options_.baud);
-  const double stamped = clock_.to_host(packet.stamp_ms, arrival) + kHalfStamp_s;
-  const double steps = last_end_ ? std::round((stamped - *last_end_) / period_) : 0.0;
+/// End of the packet's measurement on the device's clock, s. Stamps have steps of 1 ms while packets are
+/// equidistant: a slow filter on the packet period takes the steps out. Arrivals have no say here, so a busy
+/// host that reads late or in bursts tears no turn apart.
+double Ld06::date() {
+  const double stamped = clock_.device() + kHalfStamp_s;
+  const double steps = last_end_ ? std::max(1.0, std::round((stamped - *last_end_) / period_)) : 0.0;
   const double predicted = last_end_ ? *last_end_ + steps * period_ : stamped;
   const double error = stamped - predicted;
-  if (!last_end_ || steps < 1.0 || steps * period_ > kResync_s) {
-    if (last_end_) sweep_.interrupt();  // a hole
+  const bool hole = steps * period_ > kResync_s || std::abs(error) > kResync_s;
+  if (!last_end_ || hole) {
+    sweep_.interrupt();
     last_end_ = stamped;
-  } else {
-    if (steps > 1.0) lost_packets_ += static_cast<std::uint64_t>(steps) - 1;
-    last_end_ = predicted + kPhaseGain * error;
-    period_ = std::clamp(period_ + kPeriodGain * error, 0.5 * nominal_period_, 2.0 * nominal_period_);
+    return stamped;
   }
+  if (steps > 1.0) lost_packets_ += static_cast<std::uint64_t>(steps) - 1;
+  last_end_ = predicted + kPhaseGain * error;
+  period_ = std::clamp(period_ + kPeriodGain * error, 0.5 * nominal_period_, 2.0 * nominal_period_);
   return *last_end_;
+}
+
+/// One offset for all beams of a turn, so that an offset that is learnt does not bend the turn.
+void Ld06::begin_turn() {
+  sweep_.begin_turn();
+  host_offset_ = clock_.offset();
 }
 
 void Ld06::add(const ld06::Packet& packet, double t_end) {
@@ -60,9 +66,9 @@ void Ld06::add(const ld06::Packet& packet, double t_end) {
   for (std::size_t i = 0; i < ld06::kPoints; ++i) {
     const ld06::Point& point = packet.points[i];
     const double angle = std::fmod(0.01 * packet.start_cdeg + step * static_cast<double>(i), 360.0);
-    if (angle < last_angle_ - 180.0) sweep_.begin_turn();
+    if (angle < last_angle_ - 180.0) begin_turn();
     last_angle_ = angle;
-    const double t = t_end - sample * static_cast<double>(ld06::kPoints - 1 - i);
+    const double t = host_offset_ + t_end - sample * static_cast<double>(ld06::kPoints - 1 - i);
     sweep_.add({t, -radians(angle), 1e-3 * point.range_mm, static_cast<double>(point.intensity)},
                radians(step));
   }
@@ -88,8 +94,10 @@ void Ld06::tell_packet(const ld06::Packet& packet) const {
 
 void Ld06::on_bytes(std::span<const std::uint8_t> bytes, double now) {
   for (const ld06::Packet& packet : finder_.on_bytes(bytes)) {
-    const double t_end = date(packet, now);
-    add(packet, t_end);
+    // The device sends as soon as it has measured: the packet's own transmission lies between.
+    clock_.to_host(packet.stamp_ms, now - wire_time(packet.bytes_after + ld06::kPacketBytes, options_.baud));
+    if (!last_end_) host_offset_ = clock_.offset();
+    add(packet, date());
     tell_packet(packet);
   }
 }

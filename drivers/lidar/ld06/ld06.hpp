@@ -25,7 +25,8 @@ class Ld06 final : public Lidar {
   [[nodiscard]] Counters rejected() const override;
 
  private:
-  double date(const ld06::Packet& packet, double now);
+  double date();
+  void begin_turn();
   void add(const ld06::Packet& packet, double t_end);
   void tell_packet(const ld06::Packet& packet) const;
 
@@ -33,7 +34,8 @@ class Ld06 final : public Lidar {
   double nominal_period_;  // s between packets
   ld06::PacketFinder finder_;
   DeviceClock clock_;
-  std::optional<double> last_end_;  // s, filtered end of the last packet
+  std::optional<double> last_end_;  // s, filtered end of the last packet on the device's clock
+  double host_offset_ = 0.0;        // s, of the turn in progress
   double period_;                   // s between packets, measured
   double last_angle_ = 0.0;         // degrees, clockwise
   Sweep sweep_;

@@ -196,6 +196,29 @@ TEST(Ld06, follows_the_least_delayed_bytes) {
   }
 }
 
+// A busy host reads late, in pieces of what the port holds: that says nothing about when the beams were
+// taken.
+TEST(Ld06, late_reads_in_pieces_tear_no_turn_apart) {
+  Ld06 lidar({230400});
+  ByteString waiting;
+  std::size_t published = 0;
+  for (unsigned k = 0; k < 400; ++k) {
+    const ByteString bytes = packet_number(k);
+    waiting.insert(waiting.end(), bytes.begin(), bytes.end());
+    const bool busy = k < 60 || (k > 120 && k < 160);
+    const double now = 100.0 + kPeriod * (k + 1) + kTransmission;
+    for (std::size_t at = 0; !busy && at < waiting.size(); at += 1024) {
+      const auto rest = std::span<const std::uint8_t>(waiting).subspan(at);
+      lidar.on_bytes(rest.first(std::min<std::size_t>(1024, rest.size())), now);
+    }
+    if (!busy) waiting.clear();
+    published += test::whole_scans(lidar).size();
+  }
+  EXPECT_EQ(published, 9U);
+  EXPECT_EQ(lidar.counters()["partial_scans"], 1U);
+  EXPECT_EQ(lidar.counters()["lost_packets"], 0U);
+}
+
 TEST(Ld06, counts_a_turn_with_a_hole_instead_of_publishing_it) {
   Ld06 lidar({230400});
   unsigned published = 0;
