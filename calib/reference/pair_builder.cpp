@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "calib/matching/point_to_line.hpp"
+#include "calib/reference/scan_surfaces.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -13,15 +14,6 @@ constexpr double kPoseNoise = 5e-4;      ///< m, motion capture or localiser; sc
 constexpr double kPoseYawNoise = 1e-3;   ///< rad
 constexpr double kTupleNoise = 1e-3;     ///< m, a scan match whose covariance is not recorded
 constexpr double kTupleYawNoise = 2e-3;  ///< rad
-constexpr double kMaxGap =
-    2.0;  ///< s between neighbouring scans or poses; beyond, the reference was interrupted
-
-std::vector<Pose> poses_at(const Trajectory& odometry, const std::vector<double>& times) {
-  std::vector<Pose> poses;
-  poses.reserve(times.size());
-  for (const double t : times) poses.push_back(odometry.at(t));
-  return poses;
-}
 
 bool is_keyframe(const Pose& step, double elapsed, const PairOptions& options) {
   const double travel = std::hypot(step.x, step.y);
@@ -44,12 +36,6 @@ std::vector<std::size_t> choose_keyframes(const std::vector<double>& times, cons
       chosen.push_back(k);
   if (!chosen.empty() && chosen.back() + 1 < times.size()) chosen.push_back(times.size() - 1);
   return chosen;
-}
-
-bool has_gap(const std::vector<double>& times, std::size_t from, std::size_t to) {
-  for (std::size_t k = from; k < to; ++k)
-    if (times[k + 1] - times[k] > kMaxGap) return true;
-  return false;
 }
 
 PairSet pairs_from_increments(const Recording& recording) {
@@ -100,62 +86,31 @@ PairSet pairs_from_poses(const Recording& recording, const DriveModel& model,
 /// Matches keyframe scans one after the other; every scan's surface is made once.
 class ScanChain {
  public:
-  ScanChain(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
-            const EffectList& effects, const PairOptions& options, PairSet& set)
-      : recording_(recording),
-        model_(model),
-        options_(options),
-        mount_(to_base(parameters).mount),
-        set_(set),
-        trajectory_(model.trajectory(parameters, effects)) {}
+  ScanChain(const ScanSurfaces& scans, const PairOptions& options, PairSet& set)
+      : scans_(scans), options_(options), set_(set) {}
 
   void run() {
-    for (const Scan& scan : recording_.scans) times_.push_back(scan.t + reference_time(scan));
-    odometry_ = poses_at(trajectory_, times_);
-    const auto keyframes = choose_keyframes(times_, odometry_, options_);
+    const auto keyframes = choose_keyframes(scans_.times(), scans_.odometry(), options_);
     if (keyframes.empty()) return;
-    auto reference = std::make_unique<MatchReference>(surface(keyframes[0]), set_.range_noise);
+    auto reference = std::make_unique<MatchReference>(scans_.surface(keyframes[0]), set_.range_noise);
     bool linked = false;
     for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) {
-      Surface next = surface(keyframes[k + 1]);
+      Surface next = scans_.surface(keyframes[k + 1]);
       linked = add_pair(*reference, next, keyframes[k], keyframes[k + 1], linked);
       reference = std::make_unique<MatchReference>(std::move(next), set_.range_noise);
     }
   }
 
  private:
-  [[nodiscard]] Surface surface(std::size_t index) const {
-    const Scan& scan = recording_.scans[index];
-    const BeamMotion motion = beam_motion(scan);
-    return make_surface(scan, motion, set_.range_noise);
-  }
-
-  /// Sensor motion inside the sweep from its middle, interpolated between three odometry poses.
-  [[nodiscard]] BeamMotion beam_motion(const Scan& scan) const {
-    const double middle = reference_time(scan);
-    if (!(middle > 0.0)) return [](double) { return Pose{}; };
-    const Pose base = trajectory_.at(scan.t + middle);
-    const Pose before = log_se2(conjugate(between(base, trajectory_.at(scan.t)), mount_));
-    const Pose after = log_se2(conjugate(between(base, trajectory_.at(scan.t + 2.0 * middle)), mount_));
-    return [=](double seconds) {
-      const double share = (seconds - middle) / middle;
-      const Pose& w = share < 0.0 ? before : after;
-      const double f = std::abs(share);
-      return exp_se2(f * w.x, f * w.y, f * w.yaw);
-    };
-  }
-
   bool add_pair(const MatchReference& reference, const Surface& scan, std::size_t from, std::size_t to,
                 bool linked) {
-    const Interval interval{times_[from], times_[to]};
-    if (has_gap(times_, from, to)) return reject("reference interrupted");
-    if (!model_.track().covers(interval.begin, interval.end)) return reject("no ticks");
+    if (const char* reason = scans_.gap_between(from, to)) return reject(reason);
     MatchOptions match;
     match.range_noise = set_.range_noise;
     match.min_overlap = options_.min_overlap;
-    const Pose base = between(odometry_[from], odometry_[to]);
-    const MatchResult result = match_point_to_line(reference, scan, conjugate(base, mount_), match);
+    const MatchResult result = match_point_to_line(reference, scan, scans_.guess(from, to), match);
     if (!result.is_usable()) return reject("match: " + to_string(result.status));
+    const Interval interval{scans_.times()[from], scans_.times()[to]};
     set_.pairs.push_back({interval, result.motion, result.covariance, linked});
     return true;
   }
@@ -165,14 +120,9 @@ class ScanChain {
     return false;
   }
 
-  const Recording& recording_;
-  const DriveModel& model_;
+  const ScanSurfaces& scans_;
   const PairOptions& options_;
-  Pose mount_;
   PairSet& set_;
-  Trajectory trajectory_;
-  std::vector<double> times_;   ///< reference time of each scan
-  std::vector<Pose> odometry_;  ///< base pose by odometry at those times
 };
 
 }  // namespace
@@ -184,7 +134,8 @@ PairSet build_pairs(const Recording& recording, const DriveModel& model, std::sp
     return pairs_from_poses(recording, model, parameters, effects, pose_pair_options());
   PairSet set;
   set.range_noise = estimate_range_noise(recording.scans);
-  ScanChain(recording, model, parameters, effects, options, set).run();
+  const ScanSurfaces scans(recording, model, parameters, effects, set.range_noise);
+  ScanChain(scans, options, set).run();
   return set;
 }
 

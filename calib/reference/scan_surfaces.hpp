@@ -1,0 +1,49 @@
+// The scans of a recording as de-skewed surfaces, with odometry's opinion on how they lie to each other.
+#pragma once
+
+#include <vector>
+
+#include "calib/matching/surface.hpp"
+#include "calib/model/drive_model.hpp"
+#include "proto/recording.hpp"
+
+namespace odomcalib::calib {
+
+class ScanSurfaces {
+ public:
+  /// All arguments but the parameters must outlive this.
+  /// @param range_noise standard deviation of a range, m
+  ScanSurfaces(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
+               const EffectList& effects, double range_noise);
+
+  /// Reference time of each scan, s.
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }
+  /// Pose of the base by odometry at those times.
+  [[nodiscard]] const std::vector<Pose>& odometry() const { return odometry_; }
+  [[nodiscard]] double range_noise() const { return range_noise_; }
+
+  [[nodiscard]] Surface surface(std::size_t scan) const;
+  /// Motion of the sensor from one scan to another by odometry.
+  [[nodiscard]] Pose guess(std::size_t from, std::size_t to) const;
+  /// Why the motion between two scans cannot be compared with the wheels; null when it can.
+  [[nodiscard]] const char* gap_between(std::size_t from, std::size_t to) const;
+
+ private:
+  [[nodiscard]] BeamMotion beam_motion(const Scan& scan) const;
+
+  const Recording& recording_;
+  const DriveModel& model_;
+  Pose mount_;
+  double range_noise_;
+  Trajectory trajectory_;
+  std::vector<double> times_;
+  std::vector<Pose> odometry_;
+};
+
+/// Beyond this time between neighbouring scans or poses, s, the reference was interrupted.
+inline constexpr double kMaxGap = 2.0;
+bool has_gap(const std::vector<double>& times, std::size_t from, std::size_t to);
+
+std::vector<Pose> poses_at(const Trajectory& odometry, const std::vector<double>& times);
+
+}  // namespace odomcalib::calib
