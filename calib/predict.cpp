@@ -5,6 +5,7 @@
 
 #include "calib/effects/catalogue.hpp"
 #include "calib/effects/reference_effect.hpp"
+#include "calib/lidar/lidar_effect.hpp"
 #include "calib/model/drive_model.hpp"
 #include "calib/tracing/tracing_json.hpp"
 
@@ -82,8 +83,9 @@ std::vector<Placement> effect_placements(const Calibration& calibration) {
   std::vector<Placement> placements;
   for (const EffectResult& result : calibration.effects) {
     const auto effect = effect_of(result);
+    const Place otherwise = find_lidar_effect(result.name) ? Place::reference : Place::nowhere;
     for (const auto& [name, quantity] : result.parameters)
-      placements.push_back({result.name, name, quantity, effect ? place_of(*effect) : Place::nowhere});
+      placements.push_back({result.name, name, quantity, effect ? place_of(*effect) : otherwise});
   }
   for (const auto& [curve, coefficients, law_of] : curves_of(calibration)) {
     Placement placement;

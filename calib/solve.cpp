@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "calib/effects/catalogue.hpp"
 #include "calib/gate.hpp"
+#include "calib/lidar/lidar_report.hpp"
 #include "calib/report.hpp"
 #include "calib/report_data.hpp"
+#include "calib/session/lidar_evidence.hpp"
 #include "calib/session/start_values.hpp"
 #include "calib/tracing/search.hpp"
 #include "calib/tracing/tracing_json.hpp"
@@ -20,6 +23,28 @@ constexpr double kOffsetSignificance = 4.0;
 /// ... and longer than what a careful driver leaves, s.
 constexpr double kNegligibleOffset = 3e-3;
 
+/// What stays without a name, put together from its parts.
+class UnnamedSummary {
+ public:
+  void add(const std::string& variable, double p_value, double before, double after) {
+    auto& names = all_.depends_on;
+    if (names.empty()) all_.p_value = p_value;
+    if (std::find(names.begin(), names.end(), variable) == names.end()) names.push_back(variable);
+    const double ratio = before > 0.0 ? after / before : 1.0;
+    left_ *= std::min(ratio * ratio, 1.0);
+  }
+  [[nodiscard]] std::optional<Unexplained> result() const {
+    if (all_.depends_on.empty()) return std::nullopt;
+    Unexplained out = all_;
+    out.share = 1.0 - left_;
+    return out;
+  }
+
+ private:
+  Unexplained all_;
+  double left_ = 1.0;  // of the squared error
+};
+
 class Solver {
  public:
   Solver(std::span<const Recording> recordings, const SolveOptions& options, Progress progress)
@@ -32,7 +57,8 @@ class Solver {
     session_ = std::make_unique<Session>(std::move(session).value());
     if (auto error = choose_effects()) return refuse(*error);
     start();
-    const auto fit = settle();
+    auto fit = settle();
+    if (fit) fit = correct_lidar(std::move(fit));
     calibration_.data = data_use(*session_);
     calibration_.methods = classical_methods(*session_, delay(), calibration_);
     if (!fit) {
@@ -67,6 +93,10 @@ class Solver {
     automatic_ = options_.effects == std::vector<std::string>{"auto"};
     if (automatic_ || options_.effects == std::vector<std::string>{"none"}) return std::nullopt;
     for (const std::string& name : options_.effects) {
+      if (const auto of_lidar = find_lidar_effect(name)) {
+        asked_of_lidar_.push_back(of_lidar);
+        continue;
+      }
       const EffectList found = find_effects(name);
       if (found.empty())
         return Error{ErrorCode::usage, "there is no effect named \"" + name + "\"", "--effects",
@@ -136,6 +166,65 @@ class Solver {
     if (std::abs(fit.parameters(k)) > std::max(kOffsetSignificance * deviation, kNegligibleOffset)) return;
     effects_.clear();
     parameters_ = parameters_.head(kBaseCount).eval();
+  }
+
+  [[nodiscard]] bool may_trace_lidar() const {
+    const Recording& first = recordings_.front();
+    return (automatic_ || !asked_of_lidar_.empty()) && first.increments.empty() && !first.scans.empty() &&
+           !session_->reference_is_base();
+  }
+
+  [[nodiscard]] std::vector<HeadingPair> lidar_pairs() const {
+    return heading_pairs(*session_, parameters_, effects_);
+  }
+
+  /// Errors of the lidar show between scans, before any wheel is asked. They are taken out of the scans, and
+  /// everything is measured and fitted anew; a second look settles their values.
+  Result<FitResult> correct_lidar(Result<FitResult> fit) {
+    if (!may_trace_lidar()) return fit;
+    report("tracing the lidar", 0.0);
+    lidar_ = asked_of_lidar_.empty() ? trace_lidar(lidar_pairs(), sees_all_round(*session_))
+                                     : fit_lidar(lidar_pairs(), asked_of_lidar_);
+    if (lidar_.empty()) return fit;
+    const auto before = held_out_now(fit.value());
+    const auto uncorrected = std::pair(parameters_, effects_);
+    auto better = fit_corrected();
+    if (better) refine(lidar_, lidar_pairs());
+    if (better) better = fit_corrected();
+    if (better && !(asked_of_lidar_.empty() && is_worse(before, held_out_now(better.value())))) return better;
+    return without_correction(uncorrected);
+  }
+
+  [[nodiscard]] std::optional<HeldOut> held_out_now(const FitResult& fit) const {
+    return held_out_residual(session_->data(), effects_, fit, fixed_with(session_->fixed(0), effects_));
+  }
+
+  /// A correction of the lidar that the wheels contradict is none.
+  static bool is_worse(const std::optional<HeldOut>& before, const std::optional<HeldOut>& after) {
+    constexpr double kTolerated = 1.05;
+    if (!before || !after) return !after && before;
+    for (std::size_t k = 0; k < before->rms.size(); ++k)
+      if (after->rms[k] > kTolerated * before->rms[k]) return true;
+    return false;
+  }
+
+  Result<FitResult> without_correction(const std::pair<Eigen::VectorXd, EffectList>& uncorrected) {
+    lidar_.clear();
+    std::tie(parameters_, effects_) = uncorrected;
+    return fit_on(recordings_);
+  }
+
+  Result<FitResult> fit_corrected() {
+    corrected_ = corrected(recordings_, lidar_, session_->pair_sets());
+    return fit_on(corrected_);
+  }
+
+  Result<FitResult> fit_on(std::span<const Recording> recordings) {
+    auto session = Session::open(recordings);
+    if (!session) return session.error();
+    session_ = std::make_unique<Session>(std::move(session).value());
+    session_->measure(parameters_, effects_, PairOptions{});
+    return settle();
   }
 
   /// What is missing beyond the delay: stepwise, each step proved on held-out data.
@@ -217,6 +306,7 @@ class Solver {
   }
 
   void fill_effects() {
+    calibration_.effects = effect_results(lidar_);
     Eigen::Index index = kBaseCount;
     for (const auto& effect : effects_) {
       const auto curve = std::find_if(outcome_.curves.begin(), outcome_.curves.end(),
@@ -260,20 +350,18 @@ class Solver {
 
   /// Curves without a name: variables they depend on, in the order found.
   void fill_unnamed() {
-    if (!outcome_.has_unnamed()) return;
-    Unexplained unexplained;
-    double left = 1.0;  // of the squared error
-    for (const AddedCurve& added : outcome_.curves) {
-      if (added.law_of) continue;
-      auto& names = unexplained.depends_on;
-      const std::string name = to_string(added.curve.law.variable);
-      if (names.empty()) unexplained.p_value = added.proof.family_p_value;
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-      const double ratio = added.proof.before > 0.0 ? added.proof.after / added.proof.before : 1.0;
-      left *= std::min(ratio * ratio, 1.0);
-    }
-    unexplained.share = 1.0 - left;
-    calibration_.unexplained = unexplained;
+    UnnamedSummary summary;
+    for (const LidarFinding& finding : lidar_)
+      if (!finding.effect->is_named() && !completes(finding, lidar_))
+        summary.add(finding.effect->name(), finding.family_p_value, finding.before, finding.after);
+    for (const AddedCurve& added : outcome_.curves)
+      if (!added.law_of)
+        summary.add(to_string(added.curve.law.variable), added.proof.family_p_value, added.proof.before,
+                    added.proof.after);
+    calibration_.unexplained = summary.result();
+    const auto has_no_name = [](const LidarFinding& finding) { return !finding.effect->is_named(); };
+    if (std::any_of(lidar_.begin(), lidar_.end(), has_no_name))
+      calibration_.extensions[kLidarCurvesMember] = lidar_curves_to_json(lidar_);
   }
 
   std::span<const Recording> recordings_;
@@ -287,6 +375,9 @@ class Solver {
   std::optional<FitResult> plain_;
   std::vector<FittedCurve> fitted_curves_;
   Eigen::VectorXd parameters_;
+  std::vector<LidarEffectPtr> asked_of_lidar_;
+  std::vector<LidarFinding> lidar_;
+  std::vector<Recording> corrected_;  ///< without the lidar's errors; what the session measures then
 };
 
 }  // namespace

@@ -115,7 +115,9 @@ SurfacePoint beam_end(const Scan& scan, std::size_t beam, const BeamMotion& moti
   SurfacePoint point;
   point.range = static_cast<double>(scan.ranges[beam]);
   const Pose pose = motion(beam_time(scan, beam));
-  const double angle = pose.yaw + scan.angle(beam);
+  point.reading = beam;
+  point.bearing = scan.angle(beam);
+  const double angle = pose.yaw + point.bearing;
   point.beam = {std::cos(angle), std::sin(angle)};
   point.position = Eigen::Vector2d(pose.x, pose.y) + point.range * point.beam;
   return point;
@@ -151,6 +153,12 @@ void collect_line_noise(const Scan& scan, std::vector<double>& out) {
 }
 
 }  // namespace
+
+double incidence(const SurfacePoint& point) {
+  if (!point.has_line) return 0.0;
+  const Eigen::Vector2d back = -point.beam;
+  return std::atan2(point.normal.x() * back.y() - point.normal.y() * back.x(), point.normal.dot(back));
+}
 
 double beam_time(const Scan& scan, std::size_t beam) {
   if (!scan.times.empty()) return static_cast<double>(scan.times[beam]);

@@ -68,7 +68,7 @@ TEST(Accuracy, twenty_robots_within_a_tenth_of_a_percent_and_honest_deviations) 
 struct Injected {
   const char* simulated;  ///< the simulator's own law
   double size;
-  const char* name;  ///< what the report must call it, or list among what it cannot tell from it
+  const char* name;  ///< what the report must call it, list among what it cannot tell from it, or depend on
 };
 
 class NamesTheEffect : public ::testing::TestWithParam<Injected> {};
@@ -91,13 +91,20 @@ TEST_P(NamesTheEffect, and_keeps_the_wheels_right) {
     named = named || effect.name == GetParam().name;
     for (const std::string& alias : effect.aliases) named = named || alias == GetParam().name;
   }
+  if (result.unexplained)
+    for (const std::string& variable : result.unexplained->depends_on)
+      named = named || variable == GetParam().name;
   EXPECT_TRUE(named) << "found: " << found << (result.unexplained ? "and a curve" : "");
+  for (const double sigma : compare(result, run.truth).sigmas) EXPECT_LT(std::abs(sigma), 4.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Simulated, NamesTheEffect,
                          ::testing::Values(Injected{"rim_growth", 0.012, "speed_dependent_radius"},
                                            Injected{"turn_drag", 0.006, "turn_direction_asymmetry"},
-                                           Injected{"gear_play", 0.05, "backlash"}),
+                                           Injected{"gear_play", 0.05, "backlash"},
+                                           Injected{"cover_glass", 0.03, "range_bias"},
+                                           Injected{"leaning_head", 0.07, "lidar_tilt"},
+                                           Injected{"head_disc_off_centre", 0.02, "bearing"}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

@@ -51,6 +51,33 @@ class SlantedEcho : public Effect {
   }
 };
 
+/// The echo passes a cover of glass that the device does not know of; near walls are spared a little of it.
+class CoverGlass : public Effect {
+ public:
+  CoverGlass(double optical_path, Random& random)
+      : Effect("cover_glass", optical_path), way_(any_sign(random)) {}
+  void on_beam(BeamReading& beam) override {
+    if (beam.range <= 0.0) return;
+    beam.range = std::max(0.0, beam.range + way_ * size_ * (1.0 - 0.3 * std::exp(-beam.true_range / 0.3)));
+  }
+
+ private:
+  double way_;
+};
+
+/// The head leans to one side: vertical walls are met higher or lower, and later.
+class LeaningHead : public Effect {
+ public:
+  LeaningHead(double lean, Random& random) : Effect("leaning_head", lean), towards_(any_angle(random)) {}
+  void on_beam(BeamReading& beam) override {
+    const double rise = std::tan(size_) * std::cos(beam.angle - towards_);
+    beam.range *= std::sqrt(1.0 + rise * rise);
+  }
+
+ private:
+  double towards_;
+};
+
 template <typename Kind>
 auto maker() {
   return [](double size, Random& random) -> std::shared_ptr<Disturbance> {
@@ -64,6 +91,8 @@ std::vector<EffectKind> lidar_effects() {
   return {
       {"mast_flex", "", {"yaw_acceleration"}, "rad at 1 rad/s^2", 0.004, 0.02, maker<MastFlex>()},
       {"head_disc_off_centre", "", {"bearing"}, "1", 0.01, 0.05, maker<HeadDiscOffCentre>()},
+      {"cover_glass", "range_bias", {"range"}, "m", 0.01, 0.04, maker<CoverGlass>()},
+      {"leaning_head", "lidar_tilt", {"bearing"}, "rad", 0.05, 0.12, maker<LeaningHead>()},
       {"slanted_echo", "", {"incidence"}, "m at 45 deg and 4 m", 0.005, 0.03, maker<SlantedEcho>()},
   };
 }

@@ -1,0 +1,97 @@
+#include "calib/lidar/lidar_curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kSmallShift = 3e-3;   // m
+constexpr double kSmallAngle = 2e-3;   // rad
+constexpr double kLargestShift = 0.2;  // m
+constexpr double kLargestAngle = 0.1;  // rad
+
+class UnnamedError : public LidarEffect {
+ public:
+  UnnamedError(std::string variable, bool radial, std::size_t size)
+      : variable_(std::move(variable)), radial_(radial), size_(size) {}
+  [[nodiscard]] std::string name() const override { return variable_; }
+  [[nodiscard]] bool is_named() const override { return false; }
+  [[nodiscard]] std::string variable() const override { return variable_; }
+  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
+    const LidarParameter one = radial_ ? LidarParameter{"radial", "m", kSmallShift, kLargestShift}
+                                       : LidarParameter{"angular", "rad", kSmallAngle, kLargestAngle};
+    std::vector<LidarParameter> all(size_, one);
+    for (std::size_t k = 0; k < size_; ++k) all[k].name += std::to_string(k + 1);
+    return all;
+  }
+  [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& sighting) const override {
+    std::vector<BeamShift> all;
+    for (const double f : functions(sighting)) all.push_back(radial_ ? BeamShift{f, 0.0} : BeamShift{0.0, f});
+    return all;
+  }
+
+ protected:
+  [[nodiscard]] virtual std::vector<double> functions(const Sighting& sighting) const = 0;
+
+ private:
+  std::string variable_;
+  bool radial_;
+  std::size_t size_;
+};
+
+/// Three harmonics.
+class OfBearing final : public UnnamedError {
+ public:
+  explicit OfBearing(bool radial) : UnnamedError("bearing", radial, 6) {}
+
+ private:
+  [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
+    std::vector<double> all;
+    for (int k = 1; k <= 3; ++k) {
+      all.push_back(std::cos(k * s.bearing));
+      all.push_back(std::sin(k * s.bearing));
+    }
+    return all;
+  }
+};
+
+/// Hats over the logarithm of the range, of equal height from the nearest knot inwards and the farthest
+/// outwards. What they have in common with a scale no scan shows.
+class OfRange final : public UnnamedError {
+ public:
+  OfRange() : UnnamedError("range", true, kKnots) {}
+
+ private:
+  static constexpr std::size_t kKnots = 4;
+  static constexpr double kNearest = 0.5;  // m; the next ones at 1, 2, 4 m
+  [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
+    const double place =
+        std::clamp(std::log2(std::max(s.range, 1e-3) / kNearest), 0.0, static_cast<double>(kKnots - 1));
+    std::vector<double> all;
+    for (std::size_t k = 0; k < kKnots; ++k)
+      all.push_back(std::max(0.0, 1.0 - std::abs(place - static_cast<double>(k))));
+    return all;
+  }
+};
+
+/// The spot on a slanted surface is drawn out, more the farther: an even and an odd part.
+class OfIncidence final : public UnnamedError {
+ public:
+  OfIncidence() : UnnamedError("incidence", true, 4) {}
+
+ private:
+  [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
+    const double slant = std::clamp(std::tan(s.incidence), -3.0, 3.0);
+    return {std::abs(slant), slant, std::abs(slant) * s.range, slant * s.range};
+  }
+};
+
+}  // namespace
+
+std::vector<LidarEffectPtr> lidar_curves() {
+  return {std::make_shared<OfBearing>(true), std::make_shared<OfBearing>(false), std::make_shared<OfRange>(),
+          std::make_shared<OfIncidence>()};
+}
+
+}  // namespace odomcalib::calib

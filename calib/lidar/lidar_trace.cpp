@@ -1,0 +1,189 @@
+#include "calib/lidar/lidar_trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/lidar/lidar_curve.hpp"
+#include "calib/lidar/lidar_score.hpp"
+#include "calib/matching/surface.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr std::size_t kFewestPairs = 25;  // sign flips of fewer cannot tell
+constexpr std::size_t kMostFindings = 2;
+constexpr double kLevel = 0.001;        // family-wise
+constexpr double kWorthwhile = 0.9965;  // of the squared disagreement that may be left at most
+constexpr double kHeldOutZ = 2.5;       // of the mean gain on held-out pairs
+constexpr double kSameLaw = 0.5;        // share of the curve's statistic that a name on its ground must reach
+constexpr double kAllRound = 6.1;       // rad (350 degrees)
+
+std::vector<double> slice(const Eigen::VectorXd& all, Eigen::Index first, Eigen::Index count) {
+  return {all.data() + first, all.data() + first + count};
+}
+
+/// Large enough to matter, and no larger than devices can be wrong.
+bool is_plausible(const LidarEffect& effect, const std::vector<double>& values) {
+  const auto parameters = effect.parameters();
+  double size = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    size = std::max(size, std::abs(values[k]) / parameters[k].negligible);
+    if (std::abs(values[k]) > parameters[k].largest) return false;
+  }
+  return size > 1.0;
+}
+
+class Trace {
+ public:
+  Trace(const std::vector<HeadingPair>& pairs, const std::vector<LidarEffectPtr>& candidates)
+      : scores_(pairs, candidates), refused_(candidates.size(), false) {}
+
+  std::vector<LidarFinding> run() {
+    while (accepted_.size() < kMostFindings && add_best()) {
+    }
+    return findings();
+  }
+
+  std::vector<LidarFinding> fit_all() {
+    for (std::size_t c = 0; c < refused_.size(); ++c) add(c, 1.0, scores_.held_out(accepted_, c));
+    return findings();
+  }
+
+ private:
+  [[nodiscard]] double penalised(const LidarScores::Score& score) const {
+    return score.statistic -
+           static_cast<double>(score.degrees) * std::log(static_cast<double>(scores_.pair_count()));
+  }
+
+  /// The best candidate that holds; false when there is none.
+  bool add_best() {
+    const auto scores = scores_.score(accepted_);
+    for (const std::size_t c : in_order(scores)) {
+      const auto proof = scores_.held_out(accepted_, c);
+      if (proof.z < kHeldOutZ || !is_worthwhile(proof) || !matters(c)) {
+        refused_[c] = true;
+        continue;
+      }
+      add(c, scores[c].family_p_value, proof);
+      return true;
+    }
+    return false;
+  }
+
+  /// Significant candidates, the best first; a name before the free curve on its own ground unless that
+  /// explains about twice as much.
+  [[nodiscard]] std::vector<std::size_t> in_order(const std::vector<LidarScores::Score>& scores) const {
+    std::vector<std::size_t> order;
+    for (std::size_t c = 0; c < scores.size(); ++c)
+      if (scores[c].degrees > 0 && scores[c].family_p_value <= kLevel && !refused_[c]) order.push_back(c);
+    const auto rank = [&](std::size_t c) { return penalised(scores[c]); };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
+    const auto is_name_of_best = [&](std::size_t c) {
+      const LidarEffect &own = effect(c), &best = effect(order.front());
+      return own.is_named() && !best.is_named() && own.variable() == best.variable() &&
+             scores[c].statistic > kSameLaw * scores[order.front()].statistic;
+    };
+    const auto name = std::find_if(order.begin(), order.end(), is_name_of_best);
+    if (name != order.end()) std::rotate(order.begin(), name, name + 1);
+    return order;
+  }
+
+  [[nodiscard]] const LidarEffect& effect(std::size_t candidate) const {
+    return *scores_.candidates()[candidate].effect;
+  }
+
+  static bool is_worthwhile(const LidarScores::HeldOut& proof) {
+    return proof.after * proof.after < kWorthwhile * proof.before * proof.before;
+  }
+
+  [[nodiscard]] bool matters(std::size_t candidate) const {
+    std::vector<std::size_t> more = accepted_;
+    more.push_back(candidate);
+    const LidarFit fit = scores_.fit(more);
+    const auto count = scores_.candidates()[candidate].count;
+    return is_plausible(*scores_.candidates()[candidate].effect,
+                        slice(fit.values, fit.values.size() - count, count));
+  }
+
+  void add(std::size_t candidate, double p_value, const LidarScores::HeldOut& proof) {
+    accepted_.push_back(candidate);
+    evidence_.push_back({scores_.candidates()[candidate].effect, {}, {}, p_value, proof.before, proof.after});
+    refused_[candidate] = true;
+  }
+
+  [[nodiscard]] std::vector<LidarFinding> findings() const {
+    std::vector<LidarFinding> all = evidence_;
+    const LidarFit fit = scores_.fit(accepted_);
+    Eigen::Index first = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const auto count = scores_.candidates()[accepted_[k]].count;
+      all[k].values = slice(fit.values, first, count);
+      all[k].deviations = slice(fit.deviations, first, count);
+      first += count;
+    }
+    return all;
+  }
+
+  LidarScores scores_;
+  std::vector<std::size_t> accepted_;
+  std::vector<bool> refused_;
+  std::vector<LidarFinding> evidence_;
+};
+
+/// Incidence of each beam in the scan as it stands; 0 where no surface was recognised.
+std::vector<double> incidences(const Scan& scan, double range_noise) {
+  std::vector<double> all(scan.ranges.size(), 0.0);
+  const Surface surface = make_surface(
+      scan, [](double) { return Pose{}; }, range_noise);
+  for (const SurfacePoint& point : surface.points) all[point.reading] = incidence(point);
+  return all;
+}
+
+}  // namespace
+
+bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all) {
+  return !finding.effect->is_named() && std::any_of(all.begin(), all.end(), [&](const LidarFinding& other) {
+    return other.effect->is_named() && other.effect->variable() == finding.effect->variable();
+  });
+}
+
+bool sees_all_round(const Scan& scan) {
+  if (scan.ranges.size() < 2) return false;
+  const auto n = static_cast<double>(scan.ranges.size());
+  const double first = scan.angle(0), last = scan.angle(scan.ranges.size() - 1);
+  return std::abs(last - first) * n / (n - 1.0) > kAllRound;
+}
+
+std::vector<LidarFinding> trace_lidar(const std::vector<HeadingPair>& pairs, bool all_round) {
+  if (pairs.size() < kFewestPairs) return {};
+  std::vector<LidarEffectPtr> candidates = lidar_catalogue(all_round);
+  for (const auto& curve : lidar_curves()) candidates.push_back(curve);
+  return Trace(pairs, candidates).run();
+}
+
+std::vector<LidarFinding> fit_lidar(const std::vector<HeadingPair>& pairs,
+                                    const std::vector<LidarEffectPtr>& effects) {
+  if (pairs.empty()) return {};
+  return Trace(pairs, effects).fit_all();
+}
+
+Scan corrected(const Scan& scan, const std::vector<LidarFinding>& findings, double range_noise) {
+  Scan out = scan;
+  const std::vector<double> tilts = incidences(scan, range_noise);
+  out.angles.resize(scan.ranges.size());
+  for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
+    const auto range = static_cast<double>(scan.ranges[k]);
+    double angle = scan.angle(k);
+    double true_range = range;
+    for (const LidarFinding& finding : findings) {
+      const BeamShift shift = finding.effect->total({scan.angle(k), range, tilts[k]}, finding.values);
+      true_range -= shift.radial;
+      angle -= shift.angular;
+    }
+    out.angles[k] = static_cast<float>(angle);
+    if (range > 0.0) out.ranges[k] = static_cast<float>(std::max(true_range, 0.0));
+  }
+  return out;
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,49 @@
+#include "calib/session/lidar_evidence.hpp"
+
+#include <algorithm>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr std::size_t kMostPairs = 120;  // of all recordings together
+
+}  // namespace
+
+std::vector<HeadingPair> heading_pairs(const Session& session, const Eigen::VectorXd& parameters,
+                                       const EffectList& effects) {
+  std::vector<HeadingPair> all;
+  const std::span<const double> p(parameters.data(), static_cast<std::size_t>(parameters.size()));
+  for (std::size_t i = 0; i < session.recordings().size(); ++i) {
+    const ScanSurfaces scans(session.recordings()[i], *session.data()[i].model, p, effects,
+                             session.pair_sets()[i].range_noise);
+    auto pairs = heading_pairs(scans, kMostPairs / session.recordings().size());
+    std::move(pairs.begin(), pairs.end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+bool sees_all_round(const Session& session) {
+  return std::all_of(
+      session.recordings().begin(), session.recordings().end(), [](const Recording& recording) {
+        return !recording.scans.empty() && sees_all_round(recording.scans[recording.scans.size() / 2]);
+      });
+}
+
+std::vector<Recording> corrected(std::span<const Recording> recordings,
+                                 const std::vector<LidarFinding>& findings,
+                                 const std::vector<PairSet>& sets) {
+  std::vector<Recording> out(recordings.begin(), recordings.end());
+  for (std::size_t i = 0; i < out.size(); ++i)
+    for (Scan& scan : out[i].scans) scan = corrected(scan, findings, sets[i].range_noise);
+  return out;
+}
+
+void refine(std::vector<LidarFinding>& findings, const std::vector<HeadingPair>& pairs) {
+  std::vector<LidarEffectPtr> effects;
+  for (const LidarFinding& finding : findings) effects.push_back(finding.effect);
+  const std::vector<LidarFinding> rest = fit_lidar(pairs, effects);
+  for (std::size_t k = 0; k < rest.size(); ++k)
+    for (std::size_t j = 0; j < findings[k].values.size(); ++j) findings[k].values[j] += rest[k].values[j];
+}
+
+}  // namespace odomcalib::calib

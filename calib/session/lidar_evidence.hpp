@@ -1,0 +1,27 @@
+// What the recordings of one robot say about their lidar, and the recordings without its errors.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "calib/lidar/lidar_trace.hpp"
+#include "calib/session/session.hpp"
+
+namespace odomcalib::calib {
+
+/// Pairs of scans with different headings, of all recordings. Parameters and effects guess and de-skew.
+std::vector<HeadingPair> heading_pairs(const Session& session, const Eigen::VectorXd& parameters,
+                                       const EffectList& effects);
+
+/// Whether the scans of all recordings cover whole turns.
+bool sees_all_round(const Session& session);
+
+/// @param sets of the same recordings: their range noise
+std::vector<Recording> corrected(std::span<const Recording> recordings,
+                                 const std::vector<LidarFinding>& findings, const std::vector<PairSet>& sets);
+
+/// Adds what scans still show after a first correction.
+void refine(std::vector<LidarFinding>& findings, const std::vector<HeadingPair>& pairs);
+
+}  // namespace odomcalib::calib

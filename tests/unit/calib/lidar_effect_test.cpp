@@ -1,0 +1,95 @@
+// Errors of the lidar: displacement laws, and scans with the error taken out again.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "calib/lidar/lidar_curve.hpp"
+#include "calib/lidar/lidar_trace.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+std::vector<LidarEffectPtr> all_effects() {
+  std::vector<LidarEffectPtr> all = lidar_catalogue(false);
+  for (const auto& curve : lidar_curves()) all.push_back(curve);
+  return all;
+}
+
+std::vector<Sighting> sightings() {
+  std::vector<Sighting> all;
+  for (double bearing = -3.0; bearing < 3.1; bearing += 0.5)
+    for (const double range : {0.3, 1.0, 2.7, 6.0})
+      for (const double incidence : {-0.9, 0.0, 0.4}) all.push_back({bearing, range, incidence});
+  return all;
+}
+
+/// Scan of a round room that the effect distorts.
+Scan distorted(const LidarEffect& effect, const std::vector<double>& values) {
+  Scan scan;
+  scan.range_max = 12.0;
+  for (int k = 0; k < 360; ++k) {
+    const double bearing = (k - 180) * std::numbers::pi / 180.0, range = 3.0 + std::cos(3.0 * bearing);
+    const BeamShift shift = effect.total({bearing, range, 0.0}, values);
+    scan.angles.push_back(static_cast<float>(bearing + shift.angular));
+    scan.ranges.push_back(static_cast<float>(range + shift.radial));
+  }
+  return scan;
+}
+
+TEST(LidarEffect, has_a_shift_for_each_parameter) {
+  for (const auto& effect : all_effects())
+    for (const Sighting& sighting : sightings())
+      EXPECT_EQ(effect->shifts(sighting).size(), effect->parameters().size()) << effect->name();
+}
+
+TEST(LidarEffect, total_grows_from_the_shifts) {
+  constexpr double kSmall = 1e-7;
+  for (const auto& effect : all_effects()) {
+    if (effect->name() == "lidar_tilt") continue;  // has a common stretch besides, see below
+    const std::size_t count = effect->parameters().size();
+    for (std::size_t k = 0; k < count; ++k) {
+      std::vector<double> values(count, 0.0);
+      values[k] = kSmall;
+      for (const Sighting& sighting : sightings()) {
+        const BeamShift total = effect->total(sighting, values), unit = effect->shifts(sighting)[k];
+        EXPECT_NEAR(total.radial / kSmall, unit.radial, 1e-6) << effect->name();
+        EXPECT_NEAR(total.angular / kSmall, unit.angular, 1e-6) << effect->name();
+      }
+    }
+  }
+}
+
+TEST(LidarEffect, a_tilted_plane_meets_walls_late_along_the_slope_and_not_across) {
+  const auto tilt = make_lidar_tilt();
+  const double angle = 0.1, direction = 0.4, stretch = angle * angle / 4.0;
+  const std::vector<double> values = {stretch * std::cos(2.0 * direction),
+                                      stretch * std::sin(2.0 * direction)};
+  const auto told = tilt->quantities(values, std::vector<double>(2, 0.0));
+  EXPECT_NEAR(told[0].second.value, angle, 1e-12);
+  EXPECT_NEAR(told[1].second.value, direction, 1e-12);
+  EXPECT_NEAR(tilt->total({direction, 5.0, 0.0}, values).radial, 5.0 * (1.0 - std::cos(angle)), 1e-12);
+  EXPECT_NEAR(tilt->total({direction + std::numbers::pi / 2.0, 5.0, 0.0}, values).radial, 0.0, 1e-12);
+}
+
+TEST(LidarEffect, correction_undoes_the_error) {
+  const std::vector<std::pair<LidarEffectPtr, std::vector<double>>> cases = {
+      {make_range_bias(), {0.03}}, {make_angle_scale(), {0.002}}, {make_lidar_tilt(), {0.002, -0.001}}};
+  for (const auto& [effect, values] : cases) {
+    const Scan good = distorted(*effect, std::vector<double>(values.size(), 0.0));
+    const Scan mended =
+        corrected(distorted(*effect, values), {{effect, values, values, 0.0, 0.0, 0.0}}, 0.005);
+    for (std::size_t k = 0; k < good.ranges.size(); ++k) {
+      EXPECT_NEAR(mended.ranges[k], good.ranges[k], 1e-4) << effect->name();  // second order is left
+      EXPECT_NEAR(mended.angles[k], good.angles[k], 2e-5) << effect->name();
+    }
+  }
+}
+
+TEST(LidarEffect, too_few_pairs_tell_nothing) {
+  EXPECT_TRUE(trace_lidar({}, true).empty());
+  EXPECT_TRUE(trace_lidar(std::vector<HeadingPair>(3), true).empty());
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
