@@ -159,11 +159,14 @@ class Solver {
     return fit_joint(session_->data(), effects_, parameters_, options);
   }
 
+  static bool is_idle(const FitResult& fit, Eigen::Index k) {
+    const double deviation = std::sqrt(fit.covariance(k, k));
+    return std::abs(fit.parameters(k)) <= std::max(kOffsetSignificance * deviation, kNegligibleOffset);
+  }
+
   void drop_idle_offset(const FitResult& fit) {
     if (!automatic_ || !has_offset()) return;
-    const Eigen::Index k = offset_index();
-    const double deviation = std::sqrt(fit.covariance(k, k));
-    if (std::abs(fit.parameters(k)) > std::max(kOffsetSignificance * deviation, kNegligibleOffset)) return;
+    if (!is_idle(fit, offset_index())) return;
     effects_.clear();
     parameters_ = parameters_.head(kBaseCount).eval();
   }
@@ -233,6 +236,24 @@ class Solver {
                               [&](double fraction) { report("tracing the residual", fraction); });
     effects_ = outcome_.effects;
     parameters_ = outcome_.fit.parameters;
+    retire_idle_offset();
+  }
+
+  /// The delay was fitted before anything else was known; what it stood for may have got its own name.
+  void retire_idle_offset() {
+    if (outcome_.findings.empty() && outcome_.curves.empty()) return;
+    if (!has_offset() || !is_idle(outcome_.fit, offset_index())) return;
+    const auto offset = std::find_if(effects_.begin(), effects_.end(),
+                                     [](const auto& e) { return e->name() == "time_offset"; });
+    const Eigen::Index k = offset_index(), after = parameters_.size() - k - 1;
+    Eigen::VectorXd fewer(parameters_.size() - 1);
+    fewer << parameters_.head(k), parameters_.tail(after);
+    effects_.erase(offset);
+    parameters_ = fewer;
+    auto fit = fit_now();
+    if (fit) outcome_.fit = std::move(fit).value();
+    if (fit) outcome_.effects = effects_, parameters_ = outcome_.fit.parameters;
+    if (!fit) effects_ = outcome_.effects, parameters_ = outcome_.fit.parameters;
   }
 
   void fill() {

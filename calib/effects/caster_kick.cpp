@@ -6,13 +6,19 @@ namespace {
 
 // Trailing casters swing through half a turn after a reversal and push the chassis aside: the yaw added after
 // the distance s since the reversal falls off as exp(-s / length), with a length of two to four caster
-// trails.
+// trails. The side it swings to follows the direction of travel, the turn before (kappa_turn), or is always
+// the same (kappa_side). One that stands nearly straight has to fall over first: the push then grows with s
+// before it fades (order 2).
 class CasterKick final : public StepEffect<CasterKick> {
  public:
-  explicit CasterKick(double length) : length_(length) {}
+  CasterKick(double length, double order) : length_(length), order_(order) {}
   [[nodiscard]] std::string name() const override { return "caster_kick"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"kappa", "rad", 0.01, -0.2, 0.2}, {"length", "m", 1e9, 0.005, 1.0, length_, 0.0, true}};
+    return {{"kappa", "rad", 0.01, -0.2, 0.2},
+            {"kappa_turn", "rad", 0.01, -0.2, 0.2},
+            {"kappa_side", "rad", 0.01, -0.2, 0.2},
+            {"length", "m", 1e9, 0.005, 1.0, length_, 0.0, true},
+            {"order", "1", 1e9, 1.0, 2.0, order_, 0.0, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
   [[nodiscard]] std::string separating_motion() const override {
@@ -20,7 +26,8 @@ class CasterKick final : public StepEffect<CasterKick> {
   }
   [[nodiscard]] std::vector<std::shared_ptr<const Effect>> variants() const override {
     std::vector<std::shared_ptr<const Effect>> all;
-    for (const double length : {0.04, 0.08, 0.15}) all.push_back(std::make_shared<CasterKick>(length));
+    for (const double length : {0.04, 0.08, 0.15}) all.push_back(std::make_shared<CasterKick>(length, 1.0));
+    for (const double length : {0.04, 0.08}) all.push_back(std::make_shared<CasterKick>(length, 2.0));
     return all;
   }
   [[nodiscard]] std::vector<Law> laws() const override {
@@ -30,15 +37,19 @@ class CasterKick final : public StepEffect<CasterKick> {
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
     using std::exp;
-    step.yaw += p[0] * c.direction * (std::abs(c.speed) * c.dt / p[1]) * exp(-c.since_reversal / p[1]);
+    const T side = p[0] * c.direction + p[1] * c.previous_turn + p[2];
+    const T distance = c.since_reversal / p[3];
+    const T rise = p[4] > 1.5 ? distance : T(1.0);
+    step.yaw += side * (std::abs(c.speed) * c.dt / p[3]) * rise * exp(-distance);
   }
 
  private:
   double length_;
+  double order_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Effect> make_caster_kick() { return std::make_shared<CasterKick>(0.08); }
+std::shared_ptr<const Effect> make_caster_kick() { return std::make_shared<CasterKick>(0.08, 1.0); }
 
 }  // namespace odomcalib::calib

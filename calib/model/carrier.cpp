@@ -21,7 +21,8 @@ std::string to_string(Variable variable) {
                                            "left_since_reversal",
                                            "right_since_reversal",
                                            "since_stop",
-                                           "previous_turn"};
+                                           "previous_turn",
+                                           "previous_push"};
   return kNames[static_cast<std::size_t>(variable)];
 }
 
@@ -44,6 +45,10 @@ bool begins_with_the_recording(Variable variable) {
 bool is_angle(Variable variable) {
   return variable == Variable::left_phase || variable == Variable::right_phase ||
          variable == Variable::heading;
+}
+
+bool is_memory(Variable variable) {
+  return variable == Variable::previous_turn || variable == Variable::previous_push;
 }
 
 bool is_distance_since(Variable variable) {
@@ -87,6 +92,8 @@ double value_of(Variable variable, const StepContext& c) {
       return c.since_stop;
     case Variable::previous_turn:
       return c.previous_turn;
+    case Variable::previous_push:
+      return c.previous_push;
   }
   return 0.0;
 }

@@ -26,8 +26,9 @@ enum class Variable {
   right_since_reversal,
   since_stop,
   previous_turn,
+  previous_push,
 };
-inline constexpr Variable kLastVariable = Variable::previous_turn;
+inline constexpr Variable kLastVariable = Variable::previous_push;
 std::string to_string(Variable variable);
 
 /// Dependence on time, heading or position is a property of the day or of the place, not of the robot.
@@ -35,6 +36,8 @@ bool belongs_to_the_place(Variable variable);
 /// Counted from where each recording begins: recordings of one robot share no zero of it.
 bool begins_with_the_recording(Variable variable);
 bool is_angle(Variable variable);
+/// What the robot did last, however long ago.
+bool is_memory(Variable variable);
 /// A distance or angle since an event: the defect fades with it.
 bool is_distance_since(Variable variable);
 

@@ -82,7 +82,8 @@ class DriveHistory {
     double since = 1e3;  ///< rad; the drive begins as if the last reversal lay far back
     double advance(double delta);
   };
-  void remember_stop(StepContext& context, double path);
+  void remember_stop(StepContext& context);
+  void remember_push(StepContext& context);
   void remember_turn(StepContext& context, double yaw);
 
   BaseParameters nominal_;
@@ -93,6 +94,7 @@ class DriveHistory {
   double stood_ = 0.0;  ///< s
   double since_stop_ = 1e3;
   double previous_turn_ = 0.0;
+  double previous_push_ = 0.0;
 };
 
 /// Observable variables of each tick interval, from smoothed wheel angles and nominal geometry.

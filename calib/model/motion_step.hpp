@@ -29,9 +29,11 @@ struct StepContext {
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;
-  double since_stop = 0.0;  ///< distance driven since the robot last stood still, m
+  double since_stop = 0.0;  ///< mean way of the two rims since the robot last stood still, m
   double previous_turn =
       0.0;  ///< which way it turned lately: mean of the turn's sign over the last radian, -1 to 1
+  double previous_push =
+      0.0;  ///< whether it was sped up or slowed down lately: mean sign over the last 0.1 m/s, -1 to 1
   double direction = 0.0;  ///< sign of the forward speed, kept while standing
 };
 

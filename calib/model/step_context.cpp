@@ -93,7 +93,8 @@ void DriveHistory::advance(StepContext& c) {
   since_reversal_ += std::hypot(step.x, step.y);
   c.left_since_reversal = left_.advance(c.left_delta);
   c.right_since_reversal = right_.advance(c.right_delta);
-  remember_stop(c, std::hypot(step.x, step.y));
+  remember_stop(c);
+  remember_push(c);
   remember_turn(c, step.yaw);
   c.heading = pose_.yaw + step.yaw / 2.0;
   c.x = pose_.x;
@@ -101,13 +102,25 @@ void DriveHistory::advance(StepContext& c) {
   pose_ = compose(pose_, step);
 }
 
-void DriveHistory::remember_stop(StepContext& c, double path) {
+void DriveHistory::remember_stop(StepContext& c) {
   constexpr double kStop = 0.1;  // s without a tick
   const bool standing = c.left_delta == 0.0 && c.right_delta == 0.0;
   stood_ = standing ? stood_ + c.dt : 0.0;
   if (stood_ > kStop) since_stop_ = 0.0;
   c.since_stop = since_stop_;
-  since_stop_ += path;
+  since_stop_ +=
+      0.5 * (nominal_.left_radius * std::abs(c.left_delta) + nominal_.right_radius * std::abs(c.right_delta));
+}
+
+/// Noise of the acceleration at steady speed must not wash the memory out.
+void DriveHistory::remember_push(StepContext& c) {
+  constexpr double kMemory = 0.1;  // m/s
+  constexpr double kLeast = 0.1;   // m/s^2
+  c.previous_push = previous_push_;
+  const double acceleration = 0.5 * (c.left_acceleration + c.right_acceleration);
+  if (std::abs(acceleration) < kLeast) return;
+  const double forgetting = -std::expm1(-std::abs(acceleration) * c.dt / kMemory);
+  previous_push_ += forgetting * (std::copysign(1.0, acceleration) - previous_push_);
 }
 
 void DriveHistory::remember_turn(StepContext& c, double yaw) {

@@ -1,7 +1,6 @@
 #include "calib/tracing/curve.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "calib/effects/step_effect.hpp"
@@ -11,10 +10,11 @@ namespace {
 
 constexpr std::size_t kDegrees = 4;
 constexpr int kHarmonics = 3;
-constexpr int kHighestHarmonic = 8;                     ///< poles of encoder magnets, lugs, spokes
-constexpr double kMoving = 0.01;                        ///< m/s of either wheel; standing still shows nothing
-constexpr std::array kFadeLengths = {0.02, 0.07, 0.2};  ///< m of the base
-constexpr std::array kFadeAngles = {0.1, 0.5, 2.0};     ///< rad of a wheel
+constexpr int kHighestHarmonic = 8;      ///< poles of encoder magnets, lugs, spokes
+constexpr double kMoving = 0.01;         ///< m/s of either wheel; standing still shows nothing
+constexpr int kFadeKnots = 4;            ///< each at twice the distance of the one before
+constexpr double kNearestLength = 0.03;  ///< m of the base
+constexpr double kNearestAngle = 0.2;    ///< rad of a wheel
 
 using Carriers = std::vector<Carrier>;
 
@@ -49,6 +49,8 @@ Carriers carriers_of(Variable variable) {
     case Variable::since_stop:
     case Variable::previous_turn:
       return {both_travel, left_travel, right_travel, track, sideways_path, yaw_path};
+    case Variable::previous_push:
+      return {both_travel, left_travel, right_travel, track};
   }
   return {};
 }
@@ -84,6 +86,8 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   /// Relative; rad per m; m per rad.
   [[nodiscard]] double typical_size() const {
     if (curve_.law.carrier == Carrier::yaw_path) return 0.02;
+    // An error of the encoder's angle shows in its rate, n times as large for the n-th harmonic.
+    if (curve_.harmonic > 0) return 5e-3 * curve_.harmonic;
     return curve_.law.carrier == Carrier::turn_path ? 1e-3 : 5e-3;
   }
   /// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
@@ -153,11 +157,15 @@ std::vector<double> speed_functions(const Curve& curve, double z) {
   return functions;
 }
 
+/// Hats over the logarithm of the distance, the first flat towards zero; nothing beyond the last knot's
+/// double.
 std::vector<double> fading(Variable variable, double distance) {
-  const bool of_wheel = variable != Variable::since_reversal && variable != Variable::since_stop;
+  const bool of_wheel =
+      variable == Variable::left_since_reversal || variable == Variable::right_since_reversal;
+  const double nearest = of_wheel ? kNearestAngle : kNearestLength;
+  const double place = std::log2(std::max(distance, nearest) / nearest);
   std::vector<double> functions;
-  for (const double length : of_wheel ? kFadeAngles : kFadeLengths)
-    functions.push_back(std::exp(-distance / length));
+  for (int k = 0; k < kFadeKnots; ++k) functions.push_back(std::max(0.0, 1.0 - std::abs(place - k)));
   return functions;
 }
 
@@ -200,9 +208,24 @@ void add_harmonics(const Curve& curve, std::vector<Curve>& curves) {
   }
 }
 
-}  // namespace
+/// How much motion of the carrier an interval holds.
+double amount(Carrier carrier, const StepContext& c) {
+  switch (carrier) {
+    case Carrier::left_travel:
+    case Carrier::left_path:
+      return std::abs(c.left_delta);
+    case Carrier::right_travel:
+    case Carrier::right_path:
+      return std::abs(c.right_delta);
+    case Carrier::track:
+    case Carrier::turn_path:
+      return std::abs(c.turn_rate) * c.dt;
+    default:
+      return std::abs(c.speed) * c.dt;
+  }
+}
 
-std::vector<double> basis(const Curve& curve, const StepContext& c) {
+std::vector<double> raw_basis(const Curve& curve, const StepContext& c) {
   const Variable variable = curve.law.variable;
   const double z = value_of(variable, c);
   if (is_angle(variable))
@@ -217,10 +240,34 @@ std::vector<double> basis(const Curve& curve, const StepContext& c) {
   return is_signed_speed(variable) ? speed_functions(curve, z) : zero_at_rest(curve, z);
 }
 
+}  // namespace
+
+std::vector<double> basis(const Curve& curve, const StepContext& c) {
+  std::vector<double> functions = raw_basis(curve, c);
+  for (std::size_t k = 0; k < curve.mean.size(); ++k) functions[k] -= curve.mean[k];
+  return functions;
+}
+
 std::size_t basis_size(const Curve& curve) { return basis(curve, StepContext{}).size(); }
 
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve) {
   return std::make_shared<CurveEffect>(curve);
+}
+
+Curve centred(Curve curve, std::span<const DriveModel* const> models) {
+  std::vector<double> sum(basis_size(curve), 0.0);
+  curve.mean.clear();
+  double total = 0.0;
+  for (const DriveModel* model : models)
+    for (const StepContext& c : model->context()) {
+      const double weight = amount(curve.law.carrier, c);
+      const std::vector<double> functions = basis(curve, c);
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * functions[k];
+      total += weight;
+    }
+  for (double& value : sum) value /= std::max(total, 1e-12);
+  curve.mean = std::move(sum);
+  return curve;
 }
 
 std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {

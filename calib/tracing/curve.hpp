@@ -12,7 +12,7 @@ namespace odomcalib::calib {
 
 /// f(z) = sum of coefficients times basis functions of the variable z:
 /// - angles: harmonics 1 to 3, or one higher harmonic;
-/// - distances since an event: exponentials that fade over three lengths;
+/// - distances since an event: piecewise linear in its logarithm, zero far away;
 /// - time with a period: one cosine and one sine;
 /// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both;
 /// - speeds and turn rate: piecewise linear in the magnitude (four knots), a step with the direction, and the
@@ -25,12 +25,18 @@ struct Curve {
   double high = 1.0;
   double period = 0.0;  ///< s, of time only; 0: none
   int harmonic = 0;     ///< of angles only: this one alone; 0: the first three
+  /// Subtracted from the functions; none: 0. Functions that are zero at rest leave the base parameters the
+  /// meaning of slow motion; functions without a mean leave them that of the drive they were fitted to.
+  std::vector<double> mean = {};
 };
 
 std::vector<double> basis(const Curve& curve, const StepContext& context);
 std::size_t basis_size(const Curve& curve);
 
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve);
+
+/// The same curve about its mean over these drives.
+Curve centred(Curve curve, std::span<const DriveModel* const> models);
 
 /// Curves worth trying on this data: every sensible (variable, carrier) whose variable varies, on its 0.5 to
 /// 99.5 % range, higher harmonics of the wheels, and

@@ -15,7 +15,7 @@ Eigen::VectorXd last_parameters(const Effect& effect, const FitResult& fit) {
 }
 
 /// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
-bool is_size(const EffectParameter& parameter) { return parameter.start == 0.0; }
+bool is_size(const EffectParameter& parameter) { return parameter.start == 0.0 && !parameter.fixed; }
 
 }  // namespace
 

@@ -121,9 +121,7 @@ class Search {
       if (shapes.empty()) shapes.push_back(effect);
       for (const auto& shape : shapes) candidates_.push_back({shape, std::nullopt, key_of(*shape)});
     }
-    std::vector<const DriveModel*> models;
-    for (const FitData& d : data_) models.push_back(d.model);
-    for (const Curve& curve : candidate_curves(models)) {
+    for (const Curve& curve : candidate_curves(models())) {
       const auto effect = make_curve_effect(curve);
       candidates_.push_back(
           {effect, curve,
@@ -158,7 +156,25 @@ class Search {
     const auto name = may_name() ? best_name(table) : std::nullopt;
     const auto curve = best_curve(table);
     if (name && !(curve && curve_beats(table, *name, *curve)) && accept_name(table, *name)) return true;
+    const auto clock = curve && depends_on_history(candidates_[*curve]) ? best_clock() : std::nullopt;
+    if (clock) return accept_name(table, *clock);
     return curve && accept_curve(table, *curve);
+  }
+
+  /// Where motions begin, clocks that disagree look like anything that goes with beginnings. A clock cannot
+  /// spoil odometry, so it is asked first.
+  [[nodiscard]] std::optional<Trial> best_clock() const {
+    std::optional<Trial> best;
+    for (const Trial& trial : trials_)
+      if (candidates_[trial.candidate].effect->storage() == Storage::driver && trial.gain > 0.0 &&
+          (!best || trial.gain > best->gain))
+        best = trial;
+    return best;
+  }
+
+  static bool depends_on_history(const Candidate& candidate) {
+    const Variable variable = candidate.curve->law.variable;
+    return is_memory(variable) || is_distance_since(variable);
   }
 
   [[nodiscard]] bool may_name() const {
@@ -252,7 +268,7 @@ class Search {
     const auto laws = candidate.curve ? std::vector<Law>{candidate.curve->law} : candidate.effect->laws();
     return std::any_of(laws.begin(), laws.end(), [&](const Law& law) {
       const bool of_room = law.variable == Variable::heading || law.variable == Variable::position;
-      const bool of_history = law.variable == Variable::previous_turn || is_distance_since(law.variable);
+      const bool of_history = is_memory(law.variable) || is_distance_since(law.variable);
       return of_room || (of_history && candidate.curve);
     });
   }
@@ -339,15 +355,30 @@ class Search {
 
   bool accept_curve(const ScoreTable& table, std::size_t index) {
     if (result_.curves.size() >= kMaxCurves) return false;
+    auto trial = refit(index, true);
+    if (trial && spoils_base(*candidates_[index].effect, basis_, trial->fit)) trial = refit_centred(index);
     const Candidate candidate = candidates_[index];
     const auto law_of = completed_by(candidate);
-    const auto trial = refit(index, true);
     const auto proof = trial ? accept(table, *trial) : std::nullopt;
     if (!trial) strike(candidate.key);
     if (!proof) return true;
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of});
     strike(candidate.key);
     return true;
+  }
+
+  /// Where the drive cannot tell slow motion from the curve's mean, the curve is taken about its mean.
+  std::optional<Trial> refit_centred(std::size_t index) {
+    Candidate& candidate = candidates_[index];
+    candidate.curve = centred(*candidate.curve, models());
+    candidate.effect = make_curve_effect(*candidate.curve);
+    return refit(index, true);
+  }
+
+  [[nodiscard]] std::vector<const DriveModel*> models() const {
+    std::vector<const DriveModel*> all;
+    for (const FitData& d : data_) all.push_back(d.model);
+    return all;
   }
 
   /// The finding whose law this curve would replace, if any.

@@ -34,7 +34,7 @@ const std::map<std::string, std::set<std::string>>& same_variables() {
       {"time", {"time"}},
       {"previous_turn", {"previous_turn"}},
       {"distance_since_stop", {"since_stop"}},
-      {"history", {"previous_turn", "since_reversal", "since_stop"}},
+      {"history", {"previous_turn", "previous_push", "since_reversal", "since_stop"}},
       {"bearing", {"bearing"}},
       {"incidence", {"incidence"}}};
   return kSame;

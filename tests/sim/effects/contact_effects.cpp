@@ -107,8 +107,8 @@ class TurnMemory : public Effect {
   double twist_ = 0.0;
 };
 
-/// A trailing caster behind the axle: it swings round by its own kinematics and pushes the tail sideways
-/// meanwhile.
+/// A trailing caster behind the axle: it swings round by its own kinematics, and pushes the tail sideways as
+/// long as it does not roll the way its pivot moves.
 class CasterSwing : public Effect {
  public:
   CasterSwing(double push, Random& random) : Effect("caster_swing", push), bias_(0.002 * any_sign(random)) {}
@@ -117,7 +117,9 @@ class CasterSwing : public Effect {
     // No sideways slip of the caster wheel, which trails from the pivot in direction `angle_`.
     const double swing = (along * std::sin(angle_) - across * std::cos(angle_)) / kTrail - view.yaw_rate;
     angle_ += (swing + bias_ * std::abs(along) / kTrail) * view.dt;
-    motion.yaw += size_ * std::sin(angle_) * std::abs(forward(motion)) / kTrail;
+    if (std::abs(along) < 1e-9) return;
+    const double rolls_along = std::atan2(-across, -along);
+    motion.yaw += size_ * std::sin(angle_ - rolls_along) * std::abs(forward(motion)) / kTrail;
   }
 
  private:

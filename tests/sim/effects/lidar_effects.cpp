@@ -92,7 +92,7 @@ std::vector<EffectKind> lidar_effects() {
       {"mast_flex", "", {"yaw_acceleration"}, "rad at 1 rad/s^2", 0.004, 0.02, maker<MastFlex>()},
       {"head_disc_off_centre", "", {"bearing"}, "1", 0.01, 0.05, maker<HeadDiscOffCentre>()},
       {"cover_glass", "range_bias", {"range"}, "m", 0.01, 0.04, maker<CoverGlass>()},
-      {"leaning_head", "lidar_tilt", {"bearing"}, "rad", 0.05, 0.12, maker<LeaningHead>()},
+      {"leaning_head", "lidar_tilt", {"bearing"}, "rad", 0.06, 0.12, maker<LeaningHead>()},
       {"slanted_echo", "", {"incidence"}, "m at 45 deg and 4 m", 0.005, 0.03, maker<SlantedEcho>()},
   };
 }

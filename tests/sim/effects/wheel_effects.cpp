@@ -149,11 +149,11 @@ class StickyStart : public Effect {
  public:
   StickyStart(double loss, Random& /*random*/) : Effect("sticky_start", loss) {}
   void on_step(const StepView& view, StepMotion& motion) override {
-    const double forward = 0.5 * std::abs(motion.travel[kLeft] + motion.travel[kRight]);
+    const double rolled = 0.5 * (std::abs(motion.travel[kLeft]) + std::abs(motion.travel[kRight]));
     const bool standing = std::abs(view.rate[kLeft]) + std::abs(view.rate[kRight]) < 0.02;
     stood_ = standing ? stood_ + view.dt : 0.0;
     if (stood_ > 0.15) since_ = 0.0;
-    since_ += forward;
+    since_ += rolled;
     for (double& travel : motion.travel) travel *= 1.0 - size_ * std::exp(-since_ / kReach);
   }
 
