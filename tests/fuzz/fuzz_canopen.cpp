@@ -71,7 +71,7 @@ void answer_well(odomcalib::drivers::Controller& controller, const CanFrame& req
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto profile = odomcalib::drivers::parse_profile(kProfile, "fuzz");
+  static const auto profile = odomcalib::drivers::parse_profile(kProfile, "fuzz");
   if (!profile.ok()) std::abort();
   odomcalib::drivers::DualAxis controller(profile.value());
   std::span<const std::uint8_t> rest(data, size);

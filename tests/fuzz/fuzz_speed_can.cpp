@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <span>
 
 #include "drivers/base/speed/speed_protocol.hpp"
@@ -13,14 +14,15 @@ namespace {
 
 using namespace odomcalib::drivers;
 
-Profile profile_of(const char* protocol) {
+Profile profile_of(const char* protocol, bool pulses) {
   Profile profile;
   profile.protocol = protocol;
   profile.node = 0x7F;
   profile.ticks_per_rev = 4096;
   profile.max_rpm = 200;
-  profile.count_source = protocol[0] == 'a' ? "pulses" : "estimates";
+  profile.count_source = pulses ? (profile.protocol == "odrive" ? "count" : "pulses") : "estimates";
   profile.count_bits = 24;
+  profile.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
   return profile;
 }
 
@@ -36,9 +38,21 @@ CanFrame frame_of(std::span<const std::uint8_t> bytes, double t) {
   return frame;
 }
 
+void use(SpeedProtocol& protocol, std::uint8_t wish, double now) {
+  if ((wish & 1) != 0) protocol.greet(now);
+  if ((wish & 2) != 0) protocol.ask(now);
+  if ((wish & 4) != 0) protocol.engage();
+  if ((wish & 8) != 0) protocol.command(1.5, -0.5);
+  if ((wish & 16) != 0) protocol.stop();
+  if ((wish & 32) != 0) protocol.release();
+  (void)protocol.device_state();
+  (void)protocol.identity();
+}
+
 void check(SpeedProtocol& protocol) {
+  for (const CanFrame& frame : protocol.take_frames())
+    if (frame.length > 8) std::abort();
   (void)protocol.take_counts();
-  (void)protocol.take_frames();
   for (const DeviceMessage& message : protocol.take_messages())
     for (const MessageField& field : message.fields)
       if (!std::isfinite(field.number)) std::abort();
@@ -52,13 +66,17 @@ void check(SpeedProtocol& protocol) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kRecord = 16;
-  for (const char* name : {"agilex", "odrive", "segway", "vesc"}) {
-    auto protocol = make_speed_protocol(profile_of(name));
-    if (!protocol.ok()) std::abort();
-    double t = 0.0;
-    for (std::span<const std::uint8_t> rest(data, size); rest.size() >= kRecord; rest = rest.subspan(kRecord))
-      protocol.value()->on_frame(frame_of(rest, t += 0.001));
-    check(*protocol.value());
-  }
+  for (const char* name : {"agilex", "odrive", "segway", "vesc"})
+    for (const bool pulses : {true, false}) {
+      auto protocol = make_speed_protocol(profile_of(name, pulses));
+      if (!protocol.ok()) std::abort();
+      double t = 0.0;
+      std::span<const std::uint8_t> rest(data, size);
+      for (; rest.size() >= kRecord; rest = rest.subspan(kRecord)) {
+        protocol.value()->on_frame(frame_of(rest, t += 0.001));
+        use(*protocol.value(), rest[14], t);
+      }
+      check(*protocol.value());
+    }
   return 0;
 }

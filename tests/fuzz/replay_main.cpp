@@ -1,6 +1,6 @@
 // Replays a corpus through a fuzz harness without libFuzzer: each file as it is, cut off at many places, and
 // with single bytes changed. Fails when the corpus is missing or empty, so that a lost corpus cannot pass
-// unnoticed.
+// unnoticed. With --plain only each file as it is: what the corpus itself reaches.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -49,13 +49,14 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: %s CORPUS_FOLDER\n", argv[0]);
+  const bool plain = argc == 3 && std::string(argv[1]) == "--plain";
+  if (argc != 2 && !plain) {
+    std::fprintf(stderr, "usage: %s [--plain] CORPUS_FOLDER\n", argv[0]);
     return 2;
   }
-  feed("");
-  const auto files = files_in(argv[1]);
-  for (const auto& path : files) feed_variants(read(path));
-  std::printf("replayed %zu files from %s\n", files.size(), argv[1]);
+  if (!plain) feed("");
+  const auto files = files_in(argv[argc - 1]);
+  for (const auto& path : files) plain ? feed(read(path)) : feed_variants(read(path));
+  std::printf("replayed %zu files from %s\n", files.size(), argv[argc - 1]);
   return files.empty() ? 1 : 0;
 }

@@ -1,0 +1,439 @@
+#!/usr/bin/env python3
+"""Writes the seeds of the corpora that are made by rule: one for each branch that mutation alone finds late, because
+a checksum or a length guards it. Usage: tests/fuzz/seeds.py (from anywhere); the files seed_* are replaced."""
+
+import gzip
+import json
+import pathlib
+import struct
+import zlib
+
+CORPUS = pathlib.Path(__file__).resolve().parent / "corpus"
+PIECE = b"\x3f"  # reads of 64 bytes
+
+
+def seed(harness, name, data):
+    folder = CORPUS / harness
+    folder.mkdir(exist_ok=True)
+    (folder / ("seed_" + name)).write_bytes(data if isinstance(data, bytes) else data.encode())
+
+
+def xor(data):
+    out = 0
+    for byte in data:
+        out ^= byte
+    return out
+
+
+# CAN ------------------------------------------------------------------------------------------------------------------
+
+
+def candump():
+    seed("candump", "kinds", "(1.0) can0 123#AA\n(1.1) can0 12345678#AABB R\n(1.2) can0 123#R5\n(1.3) can0 123#R\n"
+         "(1.25) can0 20000004#0004000000000000\n(1.5) can0 123##1AABB\n(1.6) can0 080#\nrubbish\n\n"
+         "(1.7) can0 123#AA.BB\n(1.8) can0 123#1122334455667788_9\n(1.9) can0 123#112233445566")
+    seed("candump", "cut", "(1.0) can0 123#AA\n(1.1) can0 12")
+
+
+def slcan():
+    seed("slcan", "answers", PIECE + b"\r\a z\rZ\rV1013\rN4242\rF00\rsb255000\rsp\rz\r")
+    seed("slcan", "frames", PIECE + b"t1232AABB\rT123456782AABB\rr1232\rR123456788\rt1231AAEA5F\rt12G0\rT2FFFFFFF0\rt1239\r")
+    seed("slcan", "long", PIECE + b"t" * 400 + b"\rt1230\r" + b"x" * 300 + b"\a" + b"t1230\r")
+
+
+def sdo():
+    def frame(*data, wait=1, length=8):
+        return bytes([wait, length]) + bytes(data) + bytes(8 - len(data))
+
+    name = (0x00, 0x21, 0x01)
+    segments = frame(0x41, *name, 9, 0, 0, 0) + frame(0x00, 1, 2, 3, 4, 5, 6, 7) + frame(0x1B, 1, 2)
+    read, write_short, write_long = b"\x00", b"\x03", b"\x3f"
+    seed("sdo", "read", read + frame(0x43, *name, 1, 2, 3, 4))
+    seed("sdo", "read_segments", read + segments)
+    seed("sdo", "read_unsized", read + frame(0x40, *name) + frame(0x00, 1, 2, 3, 4, 5, 6, 7) + frame(0x11, 1, 2, 3))
+    seed("sdo", "read_too_many", read + frame(0x41, *name, 3, 0, 0, 0) + frame(0x00, 1, 2, 3, 4, 5, 6, 7))
+    seed("sdo", "read_too_few", read + frame(0x41, *name, 9, 0, 0, 0) + frame(0x01, 1, 2, 3, 4, 5, 6, 7))
+    seed("sdo", "read_huge", read + frame(0x41, *name, 0, 0, 1, 0))
+    seed("sdo", "read_toggle", read + frame(0x41, *name, 9, 0, 0, 0) + frame(0x10, 1, 2, 3))
+    seed("sdo", "read_segment_command", read + frame(0x41, *name, 9, 0, 0, 0) + frame(0x60, 1, 2, 3))
+    seed("sdo", "read_command", read + frame(0x60, *name))
+    seed("sdo", "abort", read + frame(0x80, *name, 0, 0, 2, 6))
+    seed("sdo", "other_object", read + frame(0x43, 1, 0x21, 1, 0) + frame(0x43, *name, 1))
+    seed("sdo", "short", read + frame(0x43, 0, length=2))
+    seed("sdo", "timeouts", b"\x02" + b"".join(frame(0x43, 9, 9, 9, wait=255) for _ in range(8)))
+    seed("sdo", "write", write_short + frame(0x60, *name))
+    seed("sdo", "write_command", write_short + frame(0x43, *name))
+    seed("sdo", "write_segments", write_long + frame(0x60, *name) +
+         b"".join(frame(0x20 | 0x10 * (i % 2)) for i in range(5)))
+    seed("sdo", "write_toggle", write_long + frame(0x60, *name) + frame(0x30))
+    seed("sdo", "write_segment_command", write_long + frame(0x60, *name) + frame(0x00))
+
+
+def speed_can():
+    def record(frame_id, data, extended=False, wish=0, length=None, remote=False):
+        kind = (1 if extended else 0) | (2 if remote else 0)
+        data = bytes(data)
+        size = len(data) if length is None else length
+        return bytes([kind, size]) + struct.pack(">I", frame_id) + data.ljust(8, b"\0")[:8] + bytes([wish, 0])
+
+    everything = 63
+    agilex = b"".join(record(i, bytes(range(8)), wish=everything) for i in (0x211, 0x221, 0x251, 0x252, 0x311, 0x41A))
+    agilex += record(0x211, [0, 2, 1, 0, 0, 4, 0, 0], wish=everything) + record(0x311, bytes(8)) + record(0x311, [1, 2], length=2)
+    seed("speed_can", "agilex", agilex)
+    odrive = b"".join(record(n << 5 | c, bytes(range(1, 9)), wish=everything) for n in (0, 1, 2) for c in (1, 9, 10, 3, 23))
+    odrive += record(1 << 5 | 1, [0, 0, 0, 0, 8, 0, 0, 0]) + record(1 << 5 | 9, struct.pack("<ff", float("nan"), 1e30))
+    odrive += record(1 << 5 | 10, struct.pack("<ii", 5, 6)) + record(1 << 5 | 10, [1, 2, 3])
+    seed("speed_can", "odrive", odrive)
+    segway = b"".join(record(0x400 + i, bytes(range(8)), wish=everything) for i in range(8))
+    seed("speed_can", "segway", segway)
+    vesc = b"".join(record(c << 8 | n, bytes(range(8)), extended=True, wish=everything)
+                    for n in (1, 2) for c in (9, 14, 15, 16, 27, 28))
+    packet = bytes([93]) + bytes(range(1, 60))
+
+    def crc16(data):
+        crc = 0
+        for byte in data:
+            crc ^= byte << 8
+            for _ in range(8):
+                crc = (crc << 1 ^ (0x1021 if crc & 0x8000 else 0)) & 0xFFFF
+        return crc
+
+    for body in (packet, bytes([91]) + bytes(range(200)) + bytes(150), bytes([4, 1])):
+        at = 0
+        while at < len(body):
+            if at <= 255:
+                piece = body[at:at + 7]
+                vesc += record(5 << 8 | 0x7F, bytes([at]) + piece, extended=True)
+            else:
+                piece = body[at:at + 6]
+                vesc += record(6 << 8 | 0x7F, struct.pack(">H", at) + piece, extended=True)
+            at += len(piece)
+        vesc += record(7 << 8 | 0x7F, bytes([1, 0]) + struct.pack(">HH", len(body), crc16(body)), extended=True)
+    vesc += record(8 << 8 | 0x7F, bytes([1, 0, 4, 1, 2, 3]), extended=True)
+    vesc += record(6 << 8 | 0x7F, [0xFF, 0xFF, 1], extended=True) + record(5 << 8 | 0x7F, [], extended=True)
+    vesc += record(7 << 8 | 0x7F, [1, 0, 0xFF, 0xFF, 0, 0], extended=True) + record(7 << 8 | 0x7F, [1], extended=True)
+    vesc += record(9 << 8 | 1, [1], extended=True) + record(27 << 8 | 1, [1, 2], extended=True)
+    seed("speed_can", "vesc", vesc)
+
+
+# serial bases ---------------------------------------------------------------------------------------------------------
+
+
+def arcos(*data):
+    body = bytes(data)
+    total = 0
+    for i in range(0, len(body) - 1, 2):
+        total += body[i] << 8 | body[i + 1]
+    if len(body) % 2:
+        total ^= body[-1]
+    return b"\xfa\xfb" + bytes([len(body) + 2]) + body + struct.pack(">H", total & 0xFFFF)
+
+
+def speed_serial():
+    out = b"\x3f" + arcos(0) + arcos(1) + arcos(2, *b"Pioneer\0P3DX\0serial\0")
+    out += arcos(0x90, *range(9)) + arcos(0x90, 1, 2) + arcos(0x33, *range(20)) + arcos(0x32, *range(20, 60))
+    out += arcos(0x32, 1, 2) + arcos(0x20, *b"Pioneer\0P3\0x\x01\0", *range(120)) + arcos(0x20, 1) + arcos(0x77, 1)
+    out += arcos(2, *b"no end") + b"\xfa\xfb\xfa\xfb\x02\xfa\xfb\xff" + bytes(40)
+    seed("speed_serial", "arcos", out)
+    lines = b"10 20\rOK\r-5 7\r0 0\rError\r1\r1 2 3\r99999999999999999999 1\r" + b"x" * 200 + b"\r" + bytes(3)
+    seed("speed_serial", "arduino", b"\x00" + lines + lines)
+    seed("speed_serial", "arduino_silent", b"\x01" + b"\n" * 600)
+
+
+# lidars ---------------------------------------------------------------------------------------------------------------
+
+
+def ld06_packet(start, end, stamp, speed=3600, mm=1000):
+    body = struct.pack("<BBHH", 0x54, 0x2C, speed, start)
+    body += b"".join(struct.pack("<HB", mm + i, 200) for i in range(12)) + struct.pack("<HH", end, stamp)
+    crc = 0
+    for byte in body:
+        crc ^= byte
+        for _ in range(8):
+            crc = (crc << 1 ^ (0x4D if crc & 0x80 else 0)) & 0xFF
+    return body + bytes([crc])
+
+
+def ld06():
+    turn = b"".join(ld06_packet(k * 960 % 36000, (k * 960 + 880) % 36000, int((k + 1) * 8 / 3) % 30000) for k in range(80))
+    seed("ld06", "turns", PIECE + turn)
+    odd = ld06_packet(0, 880, 1, speed=0) + ld06_packet(40000, 880, 1) + ld06_packet(0, 880, 31000) + ld06_packet(0, 5000, 1)
+    lost = ld06_packet(0, 880, 10) + ld06_packet(960, 1840, 13) + ld06_packet(2 * 9600, 2 * 9600 + 880, 66)
+    seed("ld06", "odd", PIECE + odd + lost + lost[:-1] + b"\0" + ld06_packet(0, 880, 5))
+
+
+def rplidar():
+    def descriptor(kind, length, multiple=True):
+        return b"\xa5\x5a" + struct.pack("<I", length | (0x40000000 if multiple else 0)) + bytes([kind])
+
+    def capsule(body):
+        total = xor(body)
+        return bytes([0xA0 | total & 15, 0x50 | total >> 4]) + body
+
+    def capsules(kind, size, count):
+        out = b""
+        for k in range(count):
+            angle = int(64 * (k * 23.0 % 360)) | (0x8000 if k == 0 else 0)
+            head = bytes(6) if kind == 0x86 else b""
+            body = head + struct.pack("<H", angle)
+            filler = bytes((k * 37 + i * 11) % 256 for i in range(size - 2 - len(body)))
+            out += capsule(body + filler)
+        return out
+
+    kinds = {"express": (0x82, 84), "ultra": (0x84, 132), "dense": (0x85, 84), "ultra_dense": (0x86, 170)}
+    for name, (kind, size) in kinds.items():
+        seed("rplidar", name, PIECE + descriptor(kind, size) + capsules(kind, size, 20))
+        seed("rplidar", name + "_unannounced", PIECE + b"\x01\x02" + capsules(kind, size, 6))
+    hq = b"\xa5" + bytes(8) + b"".join(struct.pack("<HIBB", i * 170, 4000 + i, 40, 1 if i == 0 else 0) for i in range(96))
+    hq += struct.pack("<I", zlib.crc32(hq + bytes(-len(hq) % 4)))
+    seed("rplidar", "hq", PIECE + descriptor(0x83, 781) + hq + hq)
+    seed("rplidar", "hq_unannounced", PIECE + hq + hq)
+
+    def point(k):
+        start = k % 36 == 0
+        return bytes([40 << 2 | (1 if start else 2)]) + struct.pack("<HH", int(640 * (k % 36)) << 1 | 1, 4000 + k)
+
+    points = b"".join(point(k) for k in range(120))
+    seed("rplidar", "standard", PIECE + descriptor(0x81, 5) + points + b"\0\0" + points[:300] + b"\x01\x00" + points)
+    seed("rplidar", "standard_unannounced", PIECE + b"\x07" + points)
+    info = descriptor(4, 20, False) + bytes(range(20)) + descriptor(6, 3, False) + b"\0\1\2"
+    info += descriptor(0x15, 4, False) + struct.pack("<HH", 500, 250)
+    for key, value in ((0x70, b"\1\0"), (0x71, struct.pack("<I", 64000)), (0x74, struct.pack("<I", 4096 * 25)),
+                       (0x75, b"\x82"), (0x7C, b"\1\0"), (0x7F, b"Boost\0"), (0x99, b"what")):
+        body = struct.pack("<I", key) + value
+        info += descriptor(0x20, len(body), False) + body
+    info += descriptor(0xFF, 2, False) + b"ab" + descriptor(4, 3, False) + b"abc" + descriptor(6, 1, False) + b"x"
+    info += descriptor(0x15, 1, False) + b"x" + descriptor(0x20, 1, False) + b"x" + descriptor(5, 0, False)
+    info += descriptor(0x99, 10) + descriptor(4, 5000, False) + descriptor(0x82, 84)
+    seed("rplidar", "answers", PIECE + info + capsules(0x82, 84, 3))
+    stopped = capsule(struct.pack("<H", 640) + bytes(80))
+    jump = capsule(struct.pack("<H", 64 * 200) + bytes(80))
+    seed("rplidar", "spans", PIECE + descriptor(0x82, 84) + stopped + stopped + capsules(0x82, 84, 6) + jump + stopped)
+
+
+def cola_binary(body):
+    return b"\2\2\2\2" + struct.pack(">I", len(body)) + body + bytes([xor(body)])
+
+
+def cola_scan(counter, status=0, layer=0, strengths=True, encoders=0, beams=9, name=b"DIST1"):
+    body = struct.pack(">HHIBBHHII", 1, 1, 4711, 0, status, counter, counter, 40000 * counter, 40000 * counter + 21000)
+    body += bytes(4) + struct.pack(">hII", layer, 2500, 5400) + struct.pack(">H", encoders) + bytes(6 * encoders)
+
+    def channel(label, values):
+        return label + struct.pack(">ffiHH", 1.0, 0.0, -450000, 5000, len(values)) + b"".join(
+            struct.pack(">H", v) for v in values)
+
+    all_channels = [channel(name, [1000 + i for i in range(beams)])]
+    if strengths:
+        all_channels.append(channel(b"RSSI1", [100 + i for i in range(beams)]))
+    body += struct.pack(">H", len(all_channels)) + b"".join(all_channels)
+    return body + struct.pack(">H", 0) + bytes(10)
+
+
+def cola():
+    scans = [cola_scan(1), cola_scan(2, encoders=1), cola_scan(2), cola_scan(3, layer=250), cola_scan(7, status=1),
+             cola_scan(8, status=2, strengths=False), cola_scan(9, name=b"DIST2"), cola_scan(10, encoders=9),
+             cola_scan(11, beams=1), cola_scan(12, status=2)]
+    out = b"".join(cola_binary(b"sSN LMDscandata " + scan) for scan in scans)
+    seed("cola", "scans", PIECE + out)
+    seed("cola", "one_bad", PIECE + cola_binary(b"sSN LMDscandata " + cola_scan(1))[:-1] + b"\0" +
+         cola_binary(b"sAN mLMPsetscancfg \0") + b"\2\2\2\2\xff\xff\xff\xff" + cola_binary(b"x") + cola_binary(b"sRA"))
+    text = ("\x02sSN LMDscandata 1 1 1267 0 0 1 1 9C40 EA60 0 0 0 0 0 9C4 1518 0 2 DIST1 3F800000 00000000 FFF92230 1388 "
+            "3 3E8 3E9 3EA RSSI1 3F800000 00000000 FFF92230 1388 3 64 65 66 0 0 0 0 0 0\x03")
+    seed("cola", "text", PIECE + text.encode() + text.replace("1267 0 0 1 1", "1267 0 2 2 2").encode() +
+         b"\x02sFA 9\x03\x02sRA DeviceIdent 7 SIM 111 3 1.0\x03\x02no end")
+    ident = cola_binary(b"sRA DeviceIdent \x00\x03SIM\x00\x031.0")
+    state = cola_binary(b"sRA SCdevicestate \x01")
+    # The driver asks at the end of its first read: answers before that are nobody's.
+    seed("cola", "dialogue", PIECE + bytes(64) + ident + bytes(64) + state + bytes(64) + out[:400])
+    seed("cola", "dialogue_refused", PIECE + bytes(64) + ident + bytes(64) + cola_binary(b"sFA \x00\x04") * 2)
+    seed("cola", "dirty", PIECE + cola_binary(b"sSN LMDscandata " + cola_scan(1, status=2)))
+    seed("cola", "broken", PIECE + cola_binary(b"sSN LMDscandata " + cola_scan(1, status=1)))
+
+
+def scip_sum(line):
+    return bytes([sum(line) % 64 + 0x30])
+
+
+def scip_reply(echo, status, lines, parameter=False):
+    out = echo + b"\n" + status + scip_sum(status) + b"\n"
+    for line in lines:
+        out += line + scip_sum(line[:-1] if parameter else line) + b"\n"
+    return out + b"\n"
+
+
+def scip_scan(stamp, values=6, strengths=False):
+    def chars(value, count):
+        return bytes(value >> 6 * i & 63 for i in reversed(range(count))).translate(bytes((i + 48) % 256 for i in range(256)))
+
+    data = b"".join(chars(1000 + i, 3) + (chars(500, 3) if strengths else b"") for i in range(values))
+    echo = b"%s0000%04d0100" % (b"ME" if strengths else b"MD", values - 1) + b"0"
+    return scip_reply(echo[:15], b"99", [chars(stamp, 4)] + [data[i:i + 64] for i in range(0, len(data), 64)])
+
+
+def scip():
+    def parameters(**change):
+        values = {"DMIN": 23, "DMAX": 60000, "ARES": 1440, "AMIN": 0, "AMAX": 1080, "AFRT": 540, "SCAN": 2400, **change}
+        return scip_reply(b"PP", b"00", [b"MODL:SIM;"] + [b"%s:%d;" % (k.encode(), v) for k, v in values.items()], True)
+
+    seed("scip", "scans", PIECE + parameters() + b"".join(scip_scan(s) for s in (100, 125, 125, 150, 300, 325)) +
+         scip_scan(350, strengths=True) + scip_scan(16777200) + scip_scan(10))
+    seed("scip", "no_parameters", PIECE + scip_scan(100) + scip_scan(125, strengths=True) + parameters(ARES=0))
+    seed("scip", "replies", PIECE + scip_reply(b"II", b"00", [b"MODL:SIM;", b"LASR:ON;"], True) +
+         scip_reply(b"TM1", b"00", [b"0001"]) + scip_reply(b"BM", b"02", []) + scip_reply(b"XX", b"0E", [b"plain text"]) +
+         scip_reply(b"MD0000108001000", b"10", []) + b"MD0000\n99b\n00\n\n" + b"noise\n\n" + b"x" * 3000 + b"\n")
+
+
+def xv11():
+    def packet(index, rpm=300):
+        body = struct.pack("<BBH", 0xFA, 0xA0 + index, rpm * 64)
+        body += b"".join(struct.pack("<HH", (1000 + index) | (0x8000 if i == 2 else 0x4000 if i == 3 else 0), 50)
+                         for i in range(4))
+        total = 0
+        for i in range(0, 20, 2):
+            total = (total << 1) + (body[i] | body[i + 1] << 8)
+        total = ((total & 0x7FFF) + (total >> 15)) & 0x7FFF
+        return body + struct.pack("<H", total)
+
+    turn = b"".join(packet(i) for i in range(90))
+    seed("xv11", "turns", PIECE + turn + turn[:22 * 40] + turn[22 * 45:] + packet(3, 0) + packet(3, 600) + packet(3)[:-1] + b"\0")
+
+
+def ydlidar():
+    def packet(start, count, ring=False, wrong=False):
+        angle = [int(64 * (start + i) % 23040) << 1 | 1 for i in (0, count - 1)]
+        samples = b"".join(struct.pack("<H", (1000 + i) * 4) for i in range(count))
+        head = struct.pack("<HBBHH", 0x55AA, 1 if ring else 0, count, angle[0], angle[1])
+        words = struct.unpack("<%dH" % (len(head) // 2), head) + struct.unpack("<%dH" % count, samples)
+        total = 0
+        for word in words:
+            total ^= word
+        return head + struct.pack("<H", total ^ (1 if wrong else 0)) + samples
+
+    turns = b"".join(packet(0, 1, True) + b"".join(packet(a, 30) for a in range(0, 360, 30)) for _ in range(3))
+    seed("ydlidar", "turns", PIECE + turns)
+    seed("ydlidar", "all_wrong", PIECE + b"".join(packet(a % 360, 8, wrong=True) for a in range(0, 800, 8)))
+    answers = b"\xa5\x5a\x14\0\0\0\x04" + bytes(range(20)) + b"\xa5\x5a\x03\0\0\0\x06\0\0\0" + b"\xa5\x5a\x05\0\0\x40\x81"
+    seed("ydlidar", "answers", PIECE + answers + turns[:400] + b"\xa5\x5a\xff\xff\xff\xff\x99")
+
+
+# files and sockets ----------------------------------------------------------------------------------------------------
+
+
+def control():
+    calls = [{"method": "org.varlink.service.GetInfo"},
+             {"method": "org.varlink.service.GetInterfaceDescription", "parameters": {"interface": "org.varlink.service"}},
+             {"method": "org.varlink.service.GetInterfaceDescription",
+              "parameters": {"interface": "org.odomcalib.Calibration"}},
+             {"method": "org.varlink.service.GetInterfaceDescription", "parameters": {"interface": "org.no"}},
+             {"method": "org.varlink.service.GetInterfaceDescription"},
+             {"method": "org.varlink.service.No"}, {"method": "org.no.No"},
+             {"method": "org.odomcalib.Calibration.No"}, {"method": "org.odomcalib.Calibration.GetStatus", "more": True},
+             {"method": "a.B", "more": 1}, {"method": "a"}, {"method": "a.b"}, {"method": 5}, []]
+    replies = [{"parameters": {"a": 1}, "continues": True}, {"error": "org.varlink.service.MethodNotFound"},
+               {"error": "not qualified"}, {"error": 5}, {"continues": 1}, {"parameters": 5}]
+    for code in ("Io", "Usage", "Device", "Timeout", "NotPermitted", "Format", "Unknown"):
+        replies.append({"error": "org.odomcalib.Calibration." + code,
+                        "parameters": {"what": "w", "where": "x", "remedy": "y"}})
+    replies.append({"error": "org.odomcalib.Calibration.Io", "parameters": {"what": 5}})
+    frames = [json.dumps(x).encode() for x in calls + replies]
+    seed("control", "all", b"\xff" + b"\0".join(frames) + b"\0\0{\0" + b'{"method":"a.\xff"}\0')
+    seed("control", "deep", b"\xff" + b'{"method":"a.B","parameters":{"x":' + b"[" * 40 + b"]" * 40 + b"}}\0")
+
+
+def event(number, channel, data, length=None):
+    size = len(data) if length is None else length
+    return b"\xed\xa1\xda\x01" + struct.pack(">QQII", number, 1700000000000000 + 10000 * number, len(channel), size) + channel + data
+
+
+def lcm_log():
+    whole = event(1, b"A", b"123") + event(2, b"B", b"x" * 50)
+    # The harness puts the first four bytes itself.
+    seed("lcm_log", "damaged", (whole + event(3, b"C", b"y" * 30, 0x7FFFFFFF) + whole + b"garbage" + whole)[4:])
+    seed("lcm_log", "damaged_then_cut", (whole + event(3, b"", b"y") + whole + event(4, b"D", b"z" * 99)[:60])[4:])
+    seed("lcm_log", "cut_in_header", (whole + b"noise" + event(4, b"D", b"z")[:14])[4:])
+    seed("lcm_log", "cut", (whole + event(4, b"D", b"z" * 99)[:60])[4:])
+    seed("lcm_log", "noise_then_cut", (whole + b"noise" + event(4, b"D", b"z" * 99)[:60])[4:])
+
+
+def pose_graph():
+    two = "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\n"
+    edge = "1 0 0 1 0 0 1 0 1\n"
+    cases = {
+        "twice": two + "VERTEX_SE2 1 0 0 0\n", "unknown": two + "EDGE_SE2 0 2 " + edge, "self": two + "EDGE_SE2 1 1 " + edge,
+        "nan": two + "EDGE_SE2 0 1 nan 0 0 1 0 0 1 0 1\n", "half": two + "EDGE_SE2 0 1.5 " + edge,
+        "short": two + "EDGE_SE2 0 1 1 0", "long": two + "EDGE_SE2 0 1 " + edge[:-1] + " 7\n",
+        "kind": two + "EDGE_SE2_XY 0 1 1 0 1 0 1\n", "fix": two + "FIX 0 1\nFIX\n", "fix_unknown": two + "FIX 5\n",
+        "spatial": "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n", "nothing": "", "remarks": "# a\n\nPARAMS 1\nPARAMS 2\n" + two,
+        "edges_only": "EDGE_SE2 5 9 1 0 0 10 1 2 20 3 30\nEDGE_SE2_XY 5 20 1 0 1 0 1\n",
+        "information": two + "EDGE_SE2 0 1 1 0 0 20 0 20 100000 0 0\n",
+        "negative": two + "EDGE_SE2 0 1 1 0 0 -1 0 0 1 0 1\n",
+        "good": two + "VERTEX_XY 9 1 1\nFIX 0\nEDGE_SE2 0 1 1 0 0 10 1 2 20 3 30\nEDGE2 1 0 1 0 0 10 1 20 30 2 3\n"
+                "EDGE_SE2_XY 1 9 1 0 1 0 1\nEDGE 0 1 1 0 0 10 1 20 30 2 3\nVERTEX2 12 0 0 0\nVERTEX 13 0 0 0\n",
+    }
+    for name, text in cases.items():
+        seed("pose_graph", name, text)
+
+
+def recordings():
+    robot = {"type": "robot", "wheel_diameter": 0.1, "track_width": 0.3, "ticks_per_rev": 1000}
+    ticks = "".join(json.dumps({"type": "ticks", "t": t, "left": 10 * i, "right": 9 * i}) + "\n"
+                    for i, t in enumerate((0, 0.1, 0.2, 50, 0.3, 0.4, 1.5, 0.1, 1.6, 1e300)))
+    odd = "".join(line + "\n" for line in (
+        '{"type":"ticks","t":2,"left":9223372036854775807,"right":1}', '{"type":"ticks","left":1,"right":1}',
+        '{"type":"ticks","t":2.1,"left":1.5,"right":1}', '{"type":"pose","t":2,"x":1,"y":null,"yaw":0}',
+        '{"type":"pose","t":2,"x":1,"y":2,"yaw":0.5}', '{"type":"gyro","t":2,"yaw_rate":null}',
+        '{"type":"gyro","t":2,"yaw_rate":0.5}', '{"type":"scan","t":2,"angle_min":0,"angle_increment":0.1,"ranges":[1,2]}',
+        '{"type":"scan","t":2.1,"angles":[0.1],"ranges":[1,2]}', '{"type":"scan","t":2.2,"angles":[0.1,0.2],"ranges":[1,-2]}',
+        '{"type":"noise"}', '{}', '[1]', '{"type":"robot","wheel_diameter":0.2,"track_width":0.3,"ticks_per_rev":1000}',
+        '{"type":"robot","left_wheel_diameter":0.1,"right_wheel_diameter":0.11,"track_width":0.3,"ticks_per_rev":1000,'
+        '"lidar_pose":[1,2,3]}'))
+    seed("jsonl", "odd", ticks + odd)
+    seed("recording", "gzip", gzip.compress((json.dumps(robot) + "\n" + ticks + odd).encode(), mtime=0))
+    seed("recording", "nothing", b"")
+    seed("recording", "unknown", b"what is this?\n")
+    seed("recording", "unknown_bytes", bytes(range(256)))
+    seed("recording", "late_json", ("rubbish\n" + json.dumps(robot) + "\n" + ticks))
+    seed("recording", "cut_gzip", gzip.compress((json.dumps(robot) + "\n" + ticks).encode(), mtime=0)[:-20])
+    for name, change in {"no_track": {"track_width": 0}, "negative": {"track_width": -1}, "huge": {"ticks_per_rev": 1e30},
+                         "wide": {"wheel_diameter": 1e9}, "zero_ticks": {"ticks_per_rev": -5}}.items():
+        seed("recording", "robot_" + name, json.dumps({**robot, **change}) + "\n" + ticks)
+
+
+def profiles():
+    good = (CORPUS / "profile" / "sim-dual.toml").read_text()
+    pair = (CORPUS / "profile" / "cia402-pair.toml").read_text()
+    arcos_text = (CORPUS / "profile" / "arcos.toml").read_text()
+
+    def changed(text, old, new):
+        assert old in text, old
+        return text.replace(old, new, 1)
+
+    cases = {
+        "node": changed(good, "node = 1", "node = 999"), "node_text": changed(good, "node = 1", 'node = "x"'),
+        "no_node": changed(good, "node = 1\n", ""), "syntax": changed(good, "node = 1", "node = = 1"),
+        "style": changed(good, '"dual-axis"', '"odd"'), "protocol": changed(good, '"canopen"', '"odd"'),
+        "object": changed(good, '"6064:01"', '"606G:01"'), "type": changed(good, '"u32"', '"u33"'),
+        "quantity": changed(good, '"track_width"', '"trackwidth"'), "unmapped": changed(good, '"6064:01/32"', '"6063:01/32"'),
+        "entry": changed(good, '"6064:01/32"', '"6064:01/33"'), "unmapped_rpdo": changed(good, '"60FF:01/32"', '"60FE:01/32"'),
+        "watchdog": changed(good, 'kind = "1016"', 'kind = "odd"'),
+        "watchdog_none": changed(good, 'kind = "1016"', 'kind = "none"'),
+        "watchdog_object": changed(good, 'kind = "1016"', 'kind = "object"\nobject = "2000:00"\ntype = "u16"'),
+        "name": changed(good, 'name = "sim-dual"', "name = 5"), "array": changed(good, "node = 1", "node = [1, 2]"),
+        "value": changed(good, "value = 3 ", "value = 300000 "),
+        "pair_quantity": pair + '\n[[profile.parameter]]\nquantity = "track_width"\nobject = "6092:01"\n',
+        "pair_formula": pair + '\n[[profile.parameter]]\nquantity = "wheel_diameter"\nobject = "6092:01"\nformula = "odd"\n',
+        "pair_verify": pair + '\n[profile.store]\nverify = "odd"\n',
+        "arcos_no_width": arcos_text.replace("track_width", "track_widht"),
+        "arcos_watchdog": arcos_text.replace('kind = "builtin"', 'kind = "odd"'),
+        "arduino": '[profile]\nname = "a"\nprotocol = "ros_arduino"\n[profile.ticks]\ncounts_per_rev = 100\n',
+        "same_node": '[profile]\nname = "v"\nprotocol = "vesc"\nnode = 3\nleft = 1\nright = 1\n',
+    }
+    for name, text in cases.items():
+        seed("profile", name, text)
+
+
+if __name__ == "__main__":
+    for make in (candump, slcan, sdo, speed_can, speed_serial, ld06, rplidar, cola, scip, xv11, ydlidar, control, lcm_log,
+                 pose_graph, recordings, profiles):
+        make()
