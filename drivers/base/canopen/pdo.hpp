@@ -34,8 +34,7 @@ std::optional<Pdo> predefined_pdo(std::uint32_t cob_id);
 /// Sum of the mapped bits in whole bytes.
 std::size_t mapped_bytes(const Pdo& pdo);
 
-/// The mapped object's raw number (unsigned); nullopt when it is not mapped or the frame is shorter than
-/// mapped.
+/// The mapped object's raw number (unsigned); nullopt when it is not mapped or the frame ends before it does.
 std::optional<std::uint64_t> unpack(const Pdo& pdo, const CanFrame& frame, const ObjectAddress& object);
 
 /// Puts a number into the payload of a receive PDO; nothing happens when the object is not mapped in it.

@@ -9,7 +9,7 @@ constexpr std::uint8_t kHeader = 0x54;
 constexpr std::uint8_t kTypeAndCount = 0x2C;  // type 1, 12 points
 constexpr unsigned kFullTurn_cdeg = 36'000;
 
-constexpr std::array<std::uint8_t, 256> make_table() {
+consteval std::array<std::uint8_t, 256> make_table() {
   std::array<std::uint8_t, 256> table{};
   for (unsigned i = 0; i < 256; ++i) {
     unsigned value = i;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <linux/can.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "drivers/can/candump.hpp"
@@ -58,6 +59,51 @@ TEST(Candump, refuses_cut_and_damaged_lines) {
        {"(x) can0 044#", "(1.0)can0 044#", "(1.0) can0 44#", "(1.0) can0 FFF#", "(1.0) can0 044#A",
         "(1.0) can0 044#0102030405060708FF", "(nan) can0 044#", "(1.0) can0 123##1AABB", "(1.0) can0 123#R9"})
     EXPECT_FALSE(parse_candump_line(bad)) << bad;
+}
+
+void expect_same(const CanFrame& a, const CanFrame& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.extended, b.extended);
+  EXPECT_EQ(a.remote, b.remote);
+  EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.length, b.length);
+  EXPECT_EQ(a.data, b.data);
+}
+
+TEST(Candump, no_damaged_line_gives_a_frame_that_cannot_be_written_again) {
+  auto random = test::seeded(12);
+  const std::vector<std::string> good = {"(1436509052.249713) vcan0 044#2A366C2BBA",
+                                         "(1.0) can0 12345678#AA",
+                                         "(2.5) can1 123#R5",
+                                         "(3.0) can0 20000004#0004000000000000",
+                                         "(4.0) can0 080#",
+                                         "(5.0) can0 7FF#11.22.33.44.55.66.77.88 R"};
+  int accepted = 0;
+  for (int i = 0; i < 6000; ++i) {
+    std::string line = good[random() % good.size()];
+    for (unsigned n = 1 + random() % 3; n > 0; --n) {
+      const std::size_t at = random() % line.size();
+      if (random() % 4 == 0)
+        line.insert(at, 1, static_cast<char>(random() & 0x7F));
+      else if (random() % 4 == 0)
+        line.erase(at, 1);
+      else
+        line[at] =
+            static_cast<char>(random() % 2 == 0 ? random() & 0xFF : "0123456789AF#.R()"[random() % 17]);
+      if (line.empty()) break;
+    }
+    SCOPED_TRACE(line);
+    const auto frame = parse_candump_line(line);
+    if (!frame) continue;
+    ++accepted;
+    ASSERT_TRUE(std::isfinite(frame->t));
+    ASSERT_LE(frame->length, 8);
+    ASSERT_LE(frame->id, frame->extended || frame->error ? 0x1FFFFFFFU : 0x7FFU);
+    const auto again = parse_candump_line(candump_line(*frame, "can0"));
+    ASSERT_TRUE(again);
+    expect_same(*again, *frame);
+  }
+  EXPECT_GT(accepted, 500);
 }
 
 TEST(Decode, the_commissioning_of_a_real_drive_is_read_completely) {

@@ -8,6 +8,7 @@
 #include "drivers/decode.hpp"
 #include "drivers/lidar/lidar.hpp"
 #include "tests/sim/wires/cola_device.hpp"
+#include "tests/sim/wires/ld06_stream.hpp"
 #include "tests/sim/wires/rplidar_device.hpp"
 #include "tests/sim/wires/scip_device.hpp"
 #include "tests/sim/wires/xv11_device.hpp"
@@ -41,6 +42,25 @@ Stream recorded(const std::string& type, sim::LidarDevice& device, double second
   return out;
 }
 
+/// An LD06 speaks unasked.
+Stream ld06_stream(double seconds) {
+  Stream out{"ld06", ""};
+  const double packet_s = 12.0 / 4500.0;
+  for (int k = 0; k * packet_s < seconds; ++k) {
+    sim::Ld06Packet packet;
+    packet.speed = 3600.0;
+    packet.start_angle = std::fmod(9.6 * k, 360.0);
+    packet.end_angle = std::fmod(9.6 * k + 8.8, 360.0);
+    packet.time = packet_s * (k + 1);
+    packet.points.resize(12);
+    for (std::size_t i = 0; i < packet.points.size(); ++i)
+      packet.points[i].range = 1.0 + 0.01 * static_cast<double>(i);
+    const auto bytes = sim::encode_ld06(packet);
+    out.bytes.append(bytes.begin(), bytes.end());
+  }
+  return out;
+}
+
 std::vector<Stream> make_streams() {
   using Rp = sim::RplidarDevice;
   std::vector<Stream> out;
@@ -61,6 +81,7 @@ std::vector<Stream> make_streams() {
   out.push_back(recorded("sick", ascii, 1.3));
   sim::Xv11Device neato(sim::Xv11Device::Options{});
   out.push_back(recorded("xv11", neato, 0.5));
+  out.push_back(ld06_stream(0.5));
   return out;
 }
 
@@ -174,8 +195,9 @@ TEST(EveryLidar, rejects_a_frame_with_any_bit_flipped) {
   std::string sick = from_hex("0202020200000013735241205343646576696365737461746520001f00");
   sick.pop_back();
   const std::string hokuyo = "PP\n00P\nDMIN:23;7\n\n";
+  const std::string ld06 = streams().back().bytes.substr(0, 47);
   for (const auto& [type, frame] : std::vector<std::pair<std::string, std::string>>{
-           {"xv11", xv11}, {"ydlidar", ydlidar}, {"sick", sick}, {"hokuyo", hokuyo}}) {
+           {"xv11", xv11}, {"ydlidar", ydlidar}, {"sick", sick}, {"hokuyo", hokuyo}, {"ld06", ld06}}) {
     EXPECT_EQ(good_bytes(type, frame), frame.size()) << type;
     for (std::size_t at = 0; at < frame.size(); ++at)
       for (int bit = 0; bit < 8; ++bit) {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "drivers/base/canopen/cia402.hpp"
+#include "drivers/base/canopen/pdo.hpp"
 #include "drivers/base/canopen/sdo_client.hpp"
 #include "drivers/base/canopen/words.hpp"
 #include "tests/unit/drivers/test_support.hpp"
@@ -221,6 +222,38 @@ TEST(Sdo, any_sequence_of_answers_ends_in_one_result_or_none) {
     EXPECT_LE(results, 1);
     EXPECT_EQ(client.busy(), results == 0);
   }
+}
+
+TEST(Pdo, no_frame_is_read_beyond_what_it_carries) {
+  auto random = test::seeded(9);
+  constexpr std::array<std::uint8_t, 5> kBits = {8, 16, 24, 32, 64};
+  int cut = 0;
+  for (int run = 0; run < 5000; ++run) {
+    Pdo pdo;
+    std::size_t bytes = 0;
+    while (bytes < 8 && pdo.entries.size() < 8) {
+      const std::uint8_t bits = kBits[random() % kBits.size()];
+      if (bytes + bits / 8 > 8) break;
+      pdo.entries.push_back({{0x6000, static_cast<std::uint8_t>(pdo.entries.size())}, bits});
+      bytes += bits / 8;
+    }
+    CanFrame frame;
+    frame.length = static_cast<std::uint8_t>(random() % 9);
+    for (auto& byte : frame.data) byte = test::random_byte(random);
+    EXPECT_EQ(mapped_bytes(pdo), bytes);
+    std::size_t end = 0;
+    for (const PdoEntry& entry : pdo.entries) {
+      end += entry.bits / 8U;
+      const auto number = unpack(pdo, frame, entry.object);
+      EXPECT_EQ(number.has_value(), frame.length >= end);
+      if (number && entry.bits < 64) {
+        EXPECT_EQ(*number >> entry.bits, 0U);
+      }
+      cut += number ? 0 : 1;
+    }
+    EXPECT_FALSE(unpack(pdo, frame, {0x7000, 0}));
+  }
+  EXPECT_GT(cut, 1000);
 }
 
 TEST(Sdo, other_nodes_and_services_are_not_touched) {

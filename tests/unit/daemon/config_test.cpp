@@ -1,0 +1,107 @@
+// The configuration files (TOML): whatever they hold, a configuration within its bounds or an error with a
+// place.
+#include "daemon/config/config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+
+namespace odomcalib {
+namespace {
+
+const std::string kGood = R"([controller]
+device = "slcan:/dev/ttyACM0?bitrate=500000"
+profile = "/usr/share/odomcalib/profiles/sim-dual.toml"
+[lidar]
+device = "serial:/dev/ttyUSB0?baud=230400"
+type = "ld06"
+pose = [0.10, 0.0, 0.0]
+[robot]
+id = "r1"
+wheel_diameter = 0.150
+track_width = 0.400
+front = 0.3
+width = 0.5
+[limits]
+speed = 0.2
+turn_rate = 0.5
+countdown = 3.0
+[lcm]
+enabled = true
+url = "udpm://239.255.76.67:7667?ttl=0"
+channel_prefix = "ODOMCALIB_"
+[daemon]
+state_dir = "/var/lib/odomcalib"
+socket = "/run/odomcalib/control"
+)";
+
+unsigned seed() {
+  const char* given = std::getenv("ODOMCALIB_TEST_SEED");
+  const unsigned seed = given != nullptr ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : 41;
+  std::printf("seed %u\n", seed);
+  return seed;
+}
+
+void expect_within_bounds(const Config& config) {
+  for (const double number : config.lidar_pose) ASSERT_TRUE(std::isfinite(number));
+  const RobotDescription& robot = config.robot;
+  for (const double length : {robot.left_wheel_diameter, robot.right_wheel_diameter, robot.track_width})
+    ASSERT_TRUE(length == 0.0 || (length >= 1e-3 && length <= 10.0)) << length;
+  ASSERT_GT(config.limits.speed, 0.0);
+  ASSERT_LE(config.limits.speed, routines::kCaps.speed);
+  ASSERT_LE(config.limits.turn_rate, routines::kCaps.turn_rate);
+  ASSERT_LE(config.limits.acceleration, routines::kCaps.acceleration);
+  ASSERT_GE(config.countdown, 0.0);
+  ASSERT_GT(config.footprint.half_width, 0.0);
+}
+
+void expect_sound(const std::string& text) {
+  const auto config = parse_config(text, "test.toml");
+  if (config.ok()) return expect_within_bounds(config.value());
+  ASSERT_NE(config.error().text().find("test.toml"), std::string::npos) << config.error().text();
+}
+
+TEST(ConfigFile, that_is_good_is_read) {
+  const auto config = parse_config(kGood, "test.toml");
+  ASSERT_TRUE(config.ok()) << config.error().text();
+  EXPECT_EQ(config.value().robot.track_width, 0.4);
+  EXPECT_EQ(config.value().limits.speed, 0.2);
+}
+
+TEST(ConfigFile, cut_off_at_any_byte_is_sound_or_refused) {
+  for (std::size_t size = 0; size < kGood.size(); ++size) expect_sound(kGood.substr(0, size));
+}
+
+TEST(ConfigFile, with_any_number_out_of_place_is_sound_or_refused) {
+  constexpr std::array kWords = {
+      "nan",   "-inf",  "inf", "1e999", "-1e308",     "1e-320", "0",  "-0.0",  "-1",
+      "true",  "\"x\"", "[1]", "{}",    "1979-05-27", "0x10",   "_1", "1e1_0", "99999999999999999999",
+      "0.1.2", ""};
+  for (std::size_t at = kGood.find_first_of("0123456789"); at != std::string::npos;
+       at = kGood.find_first_of("0123456789", kGood.find_first_not_of("0123456789.", at))) {
+    const std::size_t end = kGood.find_first_not_of("0123456789.", at);
+    for (const char* word : kWords) {
+      SCOPED_TRACE(word);
+      expect_sound(kGood.substr(0, at) + word + kGood.substr(end));
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(ConfigFile, with_damaged_bytes_is_sound_or_refused) {
+  std::mt19937 random(seed());
+  for (int i = 0; i < 1500; ++i) {
+    std::string text = kGood;
+    for (unsigned n = 1 + random() % 4; n > 0; --n)
+      text[random() % text.size()] = static_cast<char>(random());
+    SCOPED_TRACE(text);
+    expect_sound(text);
+    if (HasFatalFailure()) return;
+  }
+}
+
+}  // namespace
+}  // namespace odomcalib
