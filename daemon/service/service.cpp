@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "daemon/service/service_impl.hpp"
@@ -13,6 +14,7 @@ namespace {
 constexpr std::size_t kKeptEvents = 100;
 constexpr int kMovingTimeout = 5;       // ms: control steps every 10 ms need a loop that turns faster
 constexpr double kControlStep = 0.010;  // s
+constexpr double kIdleStep = 0.005;     // s, between looks at a device or client that says nothing
 
 PoseSample pose_sample(double t, const routines::Pose& pose) {
   return {t, pose.x, pose.y, routines::wrapped(pose.yaw)};
@@ -42,13 +44,23 @@ Service::Impl::Impl(const Config& configuration, Clock& time, Calibrator functio
 }
 
 void Service::Impl::wait(int timeout_ms) {
-  std::vector<pollfd> polled;
+  polled.clear();
   for (const int fd : {base.fd(), lidar.fd()})
     if (fd >= 0) polled.push_back({fd, POLLIN, 0});
   for (const auto& watch : server.watches())
     polled.push_back({watch.fd, static_cast<short>(watch.writing ? POLLIN | POLLOUT : POLLIN), 0});
   const int limit = run ? std::min(timeout_ms, kMovingTimeout) : timeout_ms;
-  poll(polled.data(), polled.size(), limit);
+  if (poll(polled.data(), polled.size(), limit) <= 0) polled.clear();
+}
+
+// A counter that reports every millisecond must not make everything else turn as often.
+bool Service::Impl::due(std::span<const int> files, double& next) const {
+  const bool woke = std::any_of(polled.begin(), polled.end(), [&](const pollfd& file) {
+    return file.revents != 0 && std::find(files.begin(), files.end(), file.fd) != files.end();
+  });
+  if (!woke && now < next) return false;
+  next = now + kIdleStep;
+  return true;
 }
 
 void Service::Impl::turn() {
@@ -66,8 +78,9 @@ void Service::Impl::turn() {
 
 void Service::Impl::serve_base() {
   base.step(now);
-  const RobotDescription description = robot();
-  for (const TickSample& sample : base.controller().take_ticks()) {
+  const auto samples = base.controller().take_ticks();
+  const RobotDescription description = samples.empty() ? RobotDescription{} : robot();
+  for (const TickSample& sample : samples) {
     ++tick_count;
     encoders.seen(sample, now);
     odometry.add(sample, description);
@@ -87,6 +100,7 @@ void Service::Impl::serve_base() {
 }
 
 void Service::Impl::serve_lidar() {
+  if (!due(std::array{lidar.fd()}, next_lidar)) return;
   lidar.step(now);
   for (Scan& scan : lidar.take_scans()) {
     ++scan_count;

@@ -103,7 +103,9 @@ void Service::Impl::fail_pending(const Error& error) {
 }
 
 void Service::Impl::serve_clients() {
-  server.step();
+  std::vector<int> files;
+  for (const auto& watch : server.watches()) files.push_back(watch.fd);
+  if (due(files, next_clients)) server.step();
   for (const ClientId gone : server.take_gone()) {
     lease.lost(gone);
     monitors.erase(gone);

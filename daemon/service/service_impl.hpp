@@ -1,11 +1,15 @@
 // The state of the service, shared by the files service*.cpp and by nobody else.
 #pragma once
 
+#include <poll.h>
+
 #include <deque>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "daemon/safety/freshness.hpp"
 #include "daemon/safety/lease.hpp"
@@ -46,6 +50,8 @@ struct Service::Impl {
 
   // service.cpp: the loop
   void wait(int timeout_ms);
+  /// Whether one of these files woke the loop, or nothing was looked at for a while; then `next` is set anew.
+  bool due(std::span<const int> files, double& next) const;
   void turn();
   void serve_base();
   void serve_lidar();
@@ -115,6 +121,7 @@ struct Service::Impl {
   Telemetry telemetry;
 
   double now = 0.0;
+  std::vector<pollfd> polled;  ///< answers of the last wait
   safety::Lease lease;
   safety::EncoderFreshness encoders;
   safety::ScanFreshness scans;
@@ -142,6 +149,7 @@ struct Service::Impl {
   drivers::ControllerState controller_state = drivers::ControllerState::absent;
   std::uint64_t tick_count = 0, scan_count = 0;
   double next_robot = 0.0, next_status = 0.0, next_progress = 0.0, next_command = 0.0, next_read = 0.0;
+  double next_lidar = 0.0, next_clients = 0.0;
 };
 
 std::string name_of(drivers::ControllerState state);

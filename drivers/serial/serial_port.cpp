@@ -62,6 +62,7 @@ class TtyPort final : public ByteStream {
       if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) break;
       if (n <= 0) return out.empty() ? end_of_input(n) : Result<std::vector<std::uint8_t>>(out);
       out.insert(out.end(), chunk.begin(), chunk.begin() + n);
+      if (static_cast<std::size_t>(n) < chunk.size()) break;  // that was all
     }
     return out;
   }

@@ -52,6 +52,7 @@ class TcpStream final : public ByteStream {
       if (n == 0) return net_error(address_, "the device closed the connection");
       if (n < 0) return net_error(address_, std::string("connection lost: ") + std::strerror(errno));
       out.insert(out.end(), chunk.begin(), chunk.begin() + n);
+      if (static_cast<std::size_t>(n) < chunk.size()) break;  // that was all
     }
     return out;
   }

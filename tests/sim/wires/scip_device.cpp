@@ -1,5 +1,6 @@
 #include "tests/sim/wires/scip_device.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -79,7 +80,8 @@ void ScipDevice::send_scan(double rear) {
   for (int step = 0; step <= 1080; ++step) {
     const double t = rear + options_.period * (step + 180) / 1440.0;
     const double direction = (step - 540) * std::numbers::pi / 720.0;
-    data += characters(static_cast<unsigned>(std::lround(1000.0 * moving_wall(direction, t))), 3);
+    const double range = moving_wall(direction, std::min(t, options_.still_after));
+    data += characters(static_cast<unsigned>(std::lround(1000.0 * range)), 3);
     if (stream_.starts_with("ME")) data += characters(1000 + static_cast<unsigned>(step), 3);
   }
   const double device_ms = std::floor(1000.0 * (options_.clock_zero + rear));

@@ -11,6 +11,7 @@ class ScipDevice final : public LidarDevice {
     double period = 0.0251;        ///< s; the sensor says 2400 turns a minute
     double clock_zero = 16'776.0;  ///< s on the device's clock at time 0: it wraps at 16777.216 s
     double ready_at = 0.0;         ///< s; before, the laser cannot be switched on
+    double still_after = 1e9;      ///< s; from then on the walls stand still
   };
   explicit ScipDevice(const Options& options) : LidarDevice(0.0), options_(options) {}
 
