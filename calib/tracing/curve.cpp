@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "calib/effects/step_effect.hpp"
 
@@ -76,7 +77,7 @@ class CurveEffect final : public StepEffect<CurveEffect> {
 
   template <typename T>
   void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) const {
-    const std::vector<double> functions = basis(curve_, c);
+    const BasisValues functions = basis(curve_, c);
     T f(0.0);
     for (std::size_t k = 0; k < functions.size(); ++k) f += p[k] * functions[k];
     carry(curve_.law.carrier, c, f, step);
@@ -126,11 +127,14 @@ double scaled(const Curve& curve, double z) {
   return std::clamp(2.0 * (z - curve.low) / (curve.high - curve.low) - 1.0, -1.0, 1.0);
 }
 
-std::vector<double> harmonics(double angle, int first, int last) {
-  std::vector<double> functions;
-  for (int k = first; k <= last; ++k) {
-    functions.push_back(std::cos(k * angle));
-    functions.push_back(std::sin(k * angle));
+/// Cosines and sines of multiples, by rotating on from one to the next.
+BasisValues harmonics(double angle, int first, int last) {
+  BasisValues functions;
+  const std::complex<double> turn = std::polar(1.0, angle);
+  std::complex<double> here = first == 1 ? turn : std::polar(1.0, first * angle);
+  for (int k = first; k <= last; ++k, here *= turn) {
+    functions.push_back(here.real());
+    functions.push_back(here.imag());
   }
   return functions;
 }
@@ -144,12 +148,12 @@ bool is_signed_speed(Variable variable) {
 double direction_of(double relative) { return std::tanh(relative / 0.03); }
 
 /// Zero at rest; hats about four magnitudes, the direction, and the direction times the magnitude.
-std::vector<double> speed_functions(const Curve& curve, double z) {
+BasisValues speed_functions(const Curve& curve, double z) {
   constexpr int kKnots = 4;
   const double relative = std::clamp(z / std::max(std::abs(curve.low), std::abs(curve.high)), -1.0, 1.0);
   const double direction = direction_of(relative), magnitude = std::abs(relative);
   if (curve.law.carrier == Carrier::turn_path) return {1.0, magnitude, direction, relative};
-  std::vector<double> functions;
+  BasisValues functions;
   for (int k = 1; k <= kKnots; ++k)
     functions.push_back(std::max(0.0, 1.0 - std::abs(kKnots * magnitude - k)));
   functions.push_back(direction);
@@ -159,19 +163,19 @@ std::vector<double> speed_functions(const Curve& curve, double z) {
 
 /// Hats over the logarithm of the distance, the first flat towards zero; nothing beyond the last knot's
 /// double.
-std::vector<double> fading(Variable variable, double distance) {
+BasisValues fading(Variable variable, double distance) {
   const bool of_wheel =
       variable == Variable::left_since_reversal || variable == Variable::right_since_reversal;
   const double nearest = of_wheel ? kNearestAngle : kNearestLength;
   const double place = std::log2(std::max(distance, nearest) / nearest);
-  std::vector<double> functions;
+  BasisValues functions;
   for (int k = 0; k < kFadeKnots; ++k) functions.push_back(std::max(0.0, 1.0 - std::abs(place - k)));
   return functions;
 }
 
 /// Legendre polynomials of degree 1 to kDegrees by Bonnet's recursion.
-std::vector<double> legendre(double x) {
-  std::vector<double> functions;
+BasisValues legendre(double x) {
+  BasisValues functions;
   double before = 1.0;
   double here = x;
   for (std::size_t n = 1; n <= kDegrees; ++n) {
@@ -185,9 +189,9 @@ std::vector<double> legendre(double x) {
 }
 
 /// Zero at rest, so that the base parameters keep their meaning of slow, steady motion.
-std::vector<double> zero_at_rest(const Curve& curve, double z) {
-  std::vector<double> functions = legendre(scaled(curve, z));
-  const std::vector<double> at_rest = legendre(scaled(curve, 0.0));
+BasisValues zero_at_rest(const Curve& curve, double z) {
+  BasisValues functions = legendre(scaled(curve, z));
+  const BasisValues at_rest = legendre(scaled(curve, 0.0));
   for (std::size_t k = 0; k < functions.size(); ++k) functions[k] -= at_rest[k];
   return functions;
 }
@@ -225,7 +229,7 @@ double amount(Carrier carrier, const StepContext& c) {
   }
 }
 
-std::vector<double> raw_basis(const Curve& curve, const StepContext& c) {
+BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   const Variable variable = curve.law.variable;
   const double z = value_of(variable, c);
   if (is_angle(variable))
@@ -242,8 +246,8 @@ std::vector<double> raw_basis(const Curve& curve, const StepContext& c) {
 
 }  // namespace
 
-std::vector<double> basis(const Curve& curve, const StepContext& c) {
-  std::vector<double> functions = raw_basis(curve, c);
+BasisValues basis(const Curve& curve, const StepContext& c) {
+  BasisValues functions = raw_basis(curve, c);
   for (std::size_t k = 0; k < curve.mean.size(); ++k) functions[k] -= curve.mean[k];
   return functions;
 }
@@ -261,7 +265,7 @@ Curve centred(Curve curve, std::span<const DriveModel* const> models) {
   for (const DriveModel* model : models)
     for (const StepContext& c : model->context()) {
       const double weight = amount(curve.law.carrier, c);
-      const std::vector<double> functions = basis(curve, c);
+      const BasisValues functions = basis(curve, c);
       for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * functions[k];
       total += weight;
     }

@@ -1,6 +1,8 @@
 // The non-parametric fallback: a defect that depends on one observed variable, whatever the law.
 #pragma once
 
+#include <array>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,7 +32,27 @@ struct Curve {
   std::vector<double> mean = {};
 };
 
-std::vector<double> basis(const Curve& curve, const StepContext& context);
+/// At most eight functions' values. They are asked for each tick interval of each fit, so they stay off the
+/// heap.
+class BasisValues {
+ public:
+  BasisValues() = default;
+  BasisValues(std::initializer_list<double> values) {
+    for (const double value : values) push_back(value);
+  }
+  void push_back(double value) { values_[count_++] = value; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  double& operator[](std::size_t k) { return values_[k]; }
+  double operator[](std::size_t k) const { return values_[k]; }
+  [[nodiscard]] const double* begin() const { return values_.data(); }
+  [[nodiscard]] const double* end() const { return values_.data() + count_; }
+
+ private:
+  std::array<double, 8> values_{};
+  std::size_t count_ = 0;
+};
+
+BasisValues basis(const Curve& curve, const StepContext& context);
 std::size_t basis_size(const Curve& curve);
 
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve);
