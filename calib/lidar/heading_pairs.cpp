@@ -69,43 +69,79 @@ struct Plane {
   }
 };
 
-/// The wall that a point of the first scan lies on, if the position is away from its ends: there
-/// neighbourhoods are cut off.
-std::optional<Plane> plane_at(const Walls& walls, std::size_t point, const SurfacePoint& seen,
-                              const Eigen::Vector2d& position) {
-  const std::size_t w = walls.of_point[point];
-  if (w == Walls::kNone) return std::nullopt;
-  const Wall& wall = walls.walls[w];
-  const double s = wall.line.direction().dot(position - wall.line.centre);
-  if (s < wall.low + kMargin || s > wall.high - kMargin) return std::nullopt;
-  const bool turned = wall.line.normal.dot(seen.beam) > 0.0;
-  return Plane{wall.line.centre, turned ? Eigen::Vector2d(-wall.line.normal) : wall.line.normal};
-}
+/// A beam of the second scan on a wall of the first. Everything but the distance is told from where beams
+/// meet the wall: single readings' noise would choose the partner, and the product of both would look like an
+/// error of the lidar.
+class Meeting {
+ public:
+  Meeting(const MatchReference& reference, const Eigen::Vector2d& end, const Eigen::Vector2d& beam)
+      : surface_(reference.surface()), walls_(reference.walls()) {
+    const Neighbour nearest = reference.tree().nearest(end);
+    wall_ = walls_.of_point[nearest.index];
+    if (wall_ == Walls::kNone || nearest.squared_distance > kGate * kGate) return;
+    const Wall& wall = walls_.walls[wall_];
+    const double place = place_of_beam(wall.line, end, beam);
+    if (place < wall.low + kMargin || place > wall.high - kMargin) return;
+    partner_ = nearest_beam(nearest.index, place);
+    place_ = wall.line.centre + place * wall.line.direction();
+  }
+
+  /// Null when the beam does not meet a wall away from its ends: there neighbourhoods are cut off.
+  [[nodiscard]] const SurfacePoint* partner() const { return partner_; }
+  [[nodiscard]] const Eigen::Vector2d& place() const { return place_; }
+  [[nodiscard]] Plane plane() const {
+    const FittedLine& line = walls_.walls[wall_].line;
+    const bool turned = line.normal.dot(partner_->beam) > 0.0;
+    return {line.centre, turned ? Eigen::Vector2d(-line.normal) : line.normal};
+  }
+
+ private:
+  /// Of the readings near an index, the one on this wall whose beam meets it nearest to a place.
+  [[nodiscard]] const SurfacePoint* nearest_beam(std::size_t index, double place) const {
+    constexpr std::size_t kReach = 4;
+    const SurfacePoint* best = nullptr;
+    double least = kGate;
+    const std::size_t end = std::min(index + kReach + 1, surface_.points.size());
+    for (std::size_t k = index > kReach ? index - kReach : 0; k < end; ++k) {
+      const SurfacePoint& point = surface_.points[k];
+      if (walls_.of_point[k] != wall_ || !point.has_line) continue;
+      const double off =
+          std::abs(place_of_beam(walls_.walls[wall_].line, point.position, point.beam) - place);
+      if (off < least) least = off, best = &point;
+    }
+    return best;
+  }
+
+  const Surface& surface_;
+  const Walls& walls_;
+  std::size_t wall_ = Walls::kNone;
+  const SurfacePoint* partner_ = nullptr;
+  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();
+};
 
 std::optional<DoubleSighting> compare(const MatchReference& reference, const SurfacePoint& point,
                                       const Pose& motion, double range_noise) {
   if (!point.has_line) return std::nullopt;
   const Eigen::Vector2d sensor(motion.x, motion.y);
-  const Eigen::Vector2d arm = rotated(motion.yaw, point.position), beam = rotated(motion.yaw, point.beam);
-  const Eigen::Vector2d moved = sensor + arm;
-  const Neighbour nearest = reference.tree().nearest(moved);
-  const SurfacePoint& partner = reference.surface().points[nearest.index];
-  if (nearest.squared_distance > kGate * kGate || !partner.has_line) return std::nullopt;
-  const auto plane = plane_at(reference.walls(), nearest.index, partner, moved);
-  if (!plane || -plane->normal.dot(beam) < kMinIncidence || -plane->normal.dot(partner.beam) < kMinIncidence)
+  const Eigen::Vector2d beam = rotated(motion.yaw, point.beam);
+  const Eigen::Vector2d end = sensor + rotated(motion.yaw, point.position);
+  const Meeting meeting(reference, end, beam);
+  if (meeting.partner() == nullptr) return std::nullopt;
+  const SurfacePoint& partner = *meeting.partner();
+  const Plane plane = meeting.plane();
+  if (-plane.normal.dot(beam) < kMinIncidence || -plane.normal.dot(partner.beam) < kMinIncidence)
     return std::nullopt;
-  if (rotated(motion.yaw, point.normal).dot(plane->normal) < kMinAgreement) return std::nullopt;
-  const double distance = plane->normal.dot(moved - partner.anchor);
+  if (rotated(motion.yaw, point.normal).dot(plane.normal) < kMinAgreement) return std::nullopt;
+  const double distance = plane.normal.dot(end - partner.anchor);
   if (std::abs(distance) > kGate) return std::nullopt;
-  const double variance = 2.0 * distance_variance(beam.dot(plane->normal), range_noise);
-  return DoubleSighting{plane->seen(Eigen::Vector2d::Zero(), partner.beam, partner.bearing),
-                        plane->seen(sensor, beam, point.bearing),
+  return DoubleSighting{plane.seen(Eigen::Vector2d::Zero(), partner.beam, partner.bearing),
+                        plane.seen(sensor, beam, point.bearing),
                         partner.beam,
                         beam,
-                        plane->normal,
-                        arm,
+                        plane.normal,
+                        meeting.place() - sensor,
                         distance,
-                        std::sqrt(variance)};
+                        std::sqrt(2.0 * distance_variance(beam.dot(plane.normal), range_noise))};
 }
 
 /// Matches the pair and collects its points; none when the match does not hold.

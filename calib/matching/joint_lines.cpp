@@ -89,7 +89,9 @@ class Refinement {
   std::vector<WallTerms> fit_lines() {
     std::vector<WallTerms> terms(reference_.walls.size());
     for (std::size_t i = 0; i < points_.size(); ++i)
-      if (weights_[i] > 0.0) terms[points_[i].wall].sums.add(moved(points_[i]), weights_[i]);
+      if (weights_[i] > 0.0)
+        terms[points_[i].wall].sums.add(moved(points_[i]), weights_[i],
+                                        turned(estimate_.motion, points_[i].spread));
     for (std::size_t w = 0; w < terms.size(); ++w) {
       if (terms[w].sums.count == 0) continue;
       LineSums both = reference_.walls[w].sums;
@@ -111,6 +113,9 @@ class Refinement {
     terms.mixed += weight * jacobian * line_jacobian.transpose();
     terms.line += weight * line_jacobian * line_jacobian.transpose();
     terms.gradient += weight * line.normal.dot(offset) * jacobian;
+    // The arm carries the noise of the distance: their mean product would turn the scan.
+    const Eigen::Vector2d spread = turned(estimate_.motion, point.spread);
+    terms.gradient(2) -= weight * line.normal.dot(spread) * -line.direction().dot(spread);
   }
 
   /// At the fitted line the gradient of its own parameters is zero: only the matrix changes.

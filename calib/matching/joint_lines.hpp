@@ -20,7 +20,8 @@ namespace odomcalib::calib {
 struct WallPoint {
   Eigen::Vector2d position;  ///< in the second scan's frame
   std::size_t wall = 0;
-  double variance = 0.0;  ///< of its distance from the wall, m^2
+  double variance = 0.0;                             ///< of its distance from the wall, m^2
+  Eigen::Vector2d spread = Eigen::Vector2d::Zero();  ///< its beam times the deviation of the range, m
 };
 
 struct JointEstimate {

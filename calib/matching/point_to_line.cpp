@@ -116,10 +116,9 @@ void judge_observability(const Eigen::Matrix3d& information, MatchResult& result
 
 /// Whether the reference saw the part of the wall that a moved point is next to. Points beyond the ends of
 /// what one scan saw would be pulled back there, and the motion towards zero.
-bool lies_on(const Wall& wall, const Eigen::Vector2d& moved, double gate) {
-  const Eigen::Vector2d offset = moved - wall.line.centre;
-  const double s = wall.line.direction().dot(offset);
-  return s >= wall.low && s <= wall.high && std::abs(wall.line.normal.dot(offset)) <= gate;
+bool lies_on(const Wall& wall, const Eigen::Vector2d& moved, const Eigen::Vector2d& beam, double gate) {
+  const double s = place_of_beam(wall.line, moved, beam);
+  return s >= wall.low && s <= wall.high && std::abs(wall.line.normal.dot(moved - wall.line.centre)) <= gate;
 }
 
 /// Both beams come from the same side of the wall, neither too flat, and the scan sees a line that is alike.
@@ -139,10 +138,11 @@ std::vector<WallPoint> points_on_walls(const MatchReference& reference, const Su
     const std::size_t w = walls.of_point[index];
     if (squared > gate * gate || w == Walls::kNone) continue;
     const Wall& wall = walls.walls[w];
-    if (!lies_on(wall, moved, gate) || !faces(wall, reference.surface().points[index], point, pose.yaw))
+    if (!lies_on(wall, moved, rotate(pose.yaw, point.beam), gate) ||
+        !faces(wall, reference.surface().points[index], point, pose.yaw))
       continue;
     const double cosine = rotate(pose.yaw, point.beam).dot(wall.line.normal);
-    found.push_back({point.position, w, distance_variance(cosine, range_noise)});
+    found.push_back({point.position, w, distance_variance(cosine, range_noise), range_noise * point.beam});
   }
   return found;
 }

@@ -59,7 +59,8 @@ LineSums sums_of(const Surface& surface, const Piece& piece, const Eigen::Vector
   LineSums sums;
   for (std::size_t i = piece.first; i <= piece.last; ++i) {
     const SurfacePoint& point = surface.points[i];
-    sums.add(point.position, 1.0 / distance_variance(point.beam.dot(normal), range_noise));
+    sums.add(point.position, 1.0 / distance_variance(point.beam.dot(normal), range_noise),
+             range_noise * point.beam);
   }
   return sums;
 }
@@ -156,7 +157,7 @@ std::vector<std::pair<std::size_t, double>> places_along(const JoinedPieces& pie
   std::vector<std::pair<std::size_t, double>> places;
   for (const Piece& member : pieces.members)
     for (std::size_t i = member.first; i <= member.last; ++i)
-      places.emplace_back(i, line.direction().dot(surface.points[i].position - line.centre));
+      places.emplace_back(i, place_of_beam(line, surface.points[i].position, surface.points[i].beam));
   return places;
 }
 
@@ -171,7 +172,8 @@ void take(const JoinedPieces& pieces, const Surface& surface, double range_noise
   for (const auto& [i, s] : places) {
     if (s < wall.low || s > wall.high) continue;
     const SurfacePoint& point = surface.points[i];
-    wall.sums.add(point.position, 1.0 / distance_variance(point.beam.dot(line.normal), range_noise));
+    wall.sums.add(point.position, 1.0 / distance_variance(point.beam.dot(line.normal), range_noise),
+                  range_noise * point.beam);
   }
   if (wall.sums.count < kMinWallPoints) return;
   wall.line = fit_line(wall.sums);
@@ -187,10 +189,11 @@ void take(const JoinedPieces& pieces, const Surface& surface, double range_noise
 
 }  // namespace
 
-void LineSums::add(const Eigen::Vector2d& point, double point_weight) {
+void LineSums::add(const Eigen::Vector2d& point, double point_weight, const Eigen::Vector2d& spread) {
   weight += point_weight;
   first += point_weight * point;
   second += point_weight * point * point.transpose();
+  noise += point_weight * spread * spread.transpose();
   ++count;
 }
 
@@ -198,6 +201,7 @@ LineSums& LineSums::operator+=(const LineSums& other) {
   weight += other.weight;
   first += other.first;
   second += other.second;
+  noise += other.noise;
   count += other.count;
   return *this;
 }
@@ -206,12 +210,20 @@ FittedLine fit_line(const LineSums& sums) {
   FittedLine line;
   line.centre = sums.centre();
   const Eigen::Matrix2d scatter = sums.second - sums.weight * line.centre * line.centre.transpose();
-  const double angle = 0.5 * std::atan2(2.0 * scatter(0, 1), scatter(0, 0) - scatter(1, 1));
+  const Eigen::Matrix2d true_scatter = scatter - sums.noise;
+  const double angle = 0.5 * std::atan2(2.0 * true_scatter(0, 1), true_scatter(0, 0) - true_scatter(1, 1));
   line.normal = {-std::sin(angle), std::cos(angle)};
   const double half_spread = 0.5 * std::hypot(scatter(0, 0) - scatter(1, 1), 2.0 * scatter(0, 1));
-  line.squares = std::max(0.5 * scatter.trace() - half_spread, 0.0);
+  line.squares = std::max(line.normal.dot(scatter * line.normal), 0.0);
   line.angle_variance = 1.0 / std::max(0.5 * scatter.trace() + half_spread, 1e-30);
   return line;
+}
+
+double place_of_beam(const FittedLine& line, const Eigen::Vector2d& end, const Eigen::Vector2d& beam) {
+  const Eigen::Vector2d offset = end - line.centre;
+  const double place = line.direction().dot(offset), cosine = line.normal.dot(beam);
+  if (std::abs(cosine) < kMinWallIncidence) return place;
+  return place - line.normal.dot(offset) / cosine * line.direction().dot(beam);
 }
 
 double distance_variance(double cosine_of_incidence, double range_noise) {

@@ -15,14 +15,20 @@ struct LineSums {
   double weight = 0.0;  ///< sum of 1/variance, 1/m^2
   Eigen::Vector2d first = Eigen::Vector2d::Zero();
   Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+  /// What range noise adds to `second` on the average. It lies along the beams, so that on a wall seen at a
+  /// slant it would turn the line towards them.
+  Eigen::Matrix2d noise = Eigen::Matrix2d::Zero();
   std::size_t count = 0;
 
-  void add(const Eigen::Vector2d& point, double point_weight);
+  /// @param spread the beam's unit vector times the deviation of its range, m
+  void add(const Eigen::Vector2d& point, double point_weight,
+           const Eigen::Vector2d& spread = Eigen::Vector2d::Zero());
   LineSums& operator+=(const LineSums& other);
   [[nodiscard]] Eigen::Vector2d centre() const { return first / weight; }
 };
 
-/// The line that fits weighted points best in the sense of total least squares.
+/// The line that fits weighted points best in the sense of total least squares, with the mean effect of the
+/// range noise taken out of their moments (Fuller, Measurement Error Models, 1987, section 1.3).
 struct FittedLine {
   Eigen::Vector2d centre;
   Eigen::Vector2d normal;        ///< of length 1; its side is arbitrary
@@ -34,6 +40,11 @@ FittedLine fit_line(const LineSums& sums);
 
 /// Cosine of the incidence (80 degrees): flatter beams say little and err much.
 inline constexpr double kMinWallIncidence = 0.17;
+
+/// Where a beam meets the line, along `line.direction()` from its centre, m. The reading's own noise moves
+/// its end along a slanted wall; what is chosen by where beams meet the wall is not chosen by its noise.
+/// @param end anywhere on the beam
+double place_of_beam(const FittedLine& line, const Eigen::Vector2d& end, const Eigen::Vector2d& beam);
 
 /// Variance of a reading's distance from a line, m^2: range noise acts along the beam, unevenness of surfaces
 /// and the angular error of beams in every direction.
