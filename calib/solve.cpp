@@ -26,10 +26,13 @@ constexpr double kNegligibleOffset = 3e-3;
 /// What stays without a name, put together from its parts.
 class UnnamedSummary {
  public:
-  void add(const std::string& variable, double p_value, double before, double after) {
+  void mention(const std::string& variable) {
     auto& names = all_.depends_on;
-    if (names.empty()) all_.p_value = p_value;
     if (std::find(names.begin(), names.end(), variable) == names.end()) names.push_back(variable);
+  }
+  void add(const std::string& variable, double p_value, double before, double after) {
+    if (all_.depends_on.empty()) all_.p_value = p_value;
+    mention(variable);
     const double ratio = before > 0.0 ? after / before : 1.0;
     left_ *= std::min(ratio * ratio, 1.0);
   }
@@ -379,6 +382,9 @@ class Solver {
       if (!added.law_of)
         summary.add(to_string(added.curve.law.variable), added.proof.family_p_value, added.proof.before,
                     added.proof.after);
+    for (const AddedCurve& added : outcome_.curves)
+      for (const Variable variable : added.law_of ? std::vector<Variable>{} : added.alike)
+        summary.mention(to_string(variable));
     calibration_.unexplained = summary.result();
     const auto has_no_name = [](const LidarFinding& finding) { return !finding.effect->is_named(); };
     if (std::any_of(lidar_.begin(), lidar_.end(), has_no_name))

@@ -297,7 +297,8 @@ class Search {
       proof.before = before->rms_position();
       proof.after = mixed.rms_position();
       proof.improvement = compare(*before, mixed);
-      if (proof.improvement.ratio > largest_ratio(candidate)) return "too small a gain";
+      if (proof.improvement.ratio > largest_ratio(candidate))
+        return "too small a gain: error times " + std::to_string(proof.improvement.ratio).substr(0, 5);
       if (proof.improvement.upper < 1.0) return {};
       if (proof.improvement.lower > 1.0) return "held-out error rises";
     }
@@ -359,12 +360,29 @@ class Search {
     if (trial && spoils_base(*candidates_[index].effect, basis_, trial->fit)) trial = refit_centred(index);
     const Candidate candidate = candidates_[index];
     const auto law_of = completed_by(candidate);
+    const std::vector<Variable> alike = alike_of(table, index);
     const auto proof = trial ? accept(table, *trial) : std::nullopt;
     if (!trial) strike(candidate.key);
     if (!proof) return true;
-    result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of});
+    result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
     strike(candidate.key);
     return true;
+  }
+
+  /// Variables whose curves would have explained most of it too.
+  [[nodiscard]] std::vector<Variable> alike_of(const ScoreTable& table, std::size_t index) const {
+    constexpr double kMost = 0.6;  // of the statistic
+    const Variable own = candidates_[index].curve->law.variable;
+    std::vector<Variable> alike;
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      if (!candidates_[k].curve || table.scores()[k].statistic < kMost * table.scores()[index].statistic)
+        continue;
+      const Variable other = candidates_[k].curve->law.variable;
+      if (other != own && std::find(alike.begin(), alike.end(), other) == alike.end() &&
+          table.correlation(index, k) > kAlias)
+        alike.push_back(other);
+    }
+    return alike;
   }
 
   /// Where the drive cannot tell slow motion from the curve's mean, the curve is taken about its mean.

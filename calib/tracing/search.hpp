@@ -34,6 +34,8 @@ struct AddedCurve {
   /// The named effect whose law the curve completes: the data want another law than the textbook's. Null:
   /// nothing in the catalogue explains it.
   std::shared_ptr<const Effect> law_of;
+  /// Variables that moved together with the curve's own in this drive, so that either may be meant.
+  std::vector<Variable> alike = {};
 };
 
 /// A candidate that passed the score test, and what became of it.
