@@ -130,6 +130,17 @@ bool reports_come(const LcmListener& listener) {
   return false;
 }
 
+/// Datagrams that the kernel dropped because this program did not read them in time: column "drops" of
+/// proc(5) net/udp, for the port of kUrl.
+std::size_t dropped_here() {
+  std::ifstream file("/proc/net/udp");
+  std::size_t dropped = 0;
+  for (std::string line; std::getline(file, line);)
+    if (line.find(":1DF3 ") != std::string::npos)
+      dropped += std::stoul(line.substr(line.find_last_of(' ', line.find_last_not_of(' ')) + 1));
+  return dropped;
+}
+
 struct Latency {
   double p50 = 0.0, p90 = 0.0, p99 = 0.0, p999 = 0.0, worst = 0.0;  ///< ms
 };
@@ -208,8 +219,13 @@ bool judge(const char* what, double value, double bar) {
   return holds;
 }
 
+struct Usage {
+  double cpu_s = 0.0, memory_mb = 0.0;
+  std::size_t dropped = 0;  ///< by the listening side, not by the daemon
+};
+
 int report(const Arguments& arguments, const WirePlayer& player, const LcmListener& listener,
-           const Interval& interval, double cpu_s, double memory_mb) {
+           const Interval& interval, const Usage& usage) {
   const Ticks ticks = ticks_of(player, listener, interval);
   const Scans scans = scans_of(player, listener, interval);
   const double seconds = 1e-9 * static_cast<double>(interval.end - interval.begin);
@@ -219,14 +235,15 @@ int report(const Arguments& arguments, const WirePlayer& player, const LcmListen
   std::printf("the player was late %llu times by more than 0.5 ms; bytes not taken by the port: %llu\n",
               static_cast<unsigned long long>(player.late()),
               static_cast<unsigned long long>(player.overrun()));
+  std::printf("datagrams dropped at the listening socket: %zu\n", usage.dropped);
   show("frame to LCM publication", ticks.published);
   show("frame to a subscriber's handler", ticks.handled);
   show("scan to LCM publication", scans.published);
   bool good =
       judge("lost", static_cast<double>(ticks.lost + (scans.sent - std::min(scans.sent, scans.seen))), 0.0);
   good &= judge("frame to publication p99, ms", ticks.published.p99, arguments.bars.latency_ms);
-  good &= judge("processor, % of one core", 100.0 * cpu_s / seconds, arguments.bars.cpu_percent);
-  good &= judge("memory, MB", memory_mb, arguments.bars.memory_mb);
+  good &= judge("processor, % of one core", 100.0 * usage.cpu_s / seconds, arguments.bars.cpu_percent);
+  good &= judge("memory, MB", usage.memory_mb, arguments.bars.memory_mb);
   return good ? 0 : 1;
 }
 
@@ -244,23 +261,24 @@ int measure(const Arguments& arguments) {
   if (!listener.usable()) return std::fprintf(stderr, "bench_daemon: LCM has no multicast here\n"), 2;
   const Workplace workplace(player);
   Interval interval;
-  double cpu = 0.0, memory = 0.0;
+  Usage usage;
   {
     const Daemon daemon(workplace.folder());
     if (!reports_come(listener)) return std::fprintf(stderr, "bench_daemon: no reports came\n"), 2;
     pause(kSettle);
     interval.first = player.newest() + 1;
     interval.begin = wall_ns();
-    cpu = daemon.cpu();
+    usage.cpu_s = daemon.cpu();
     pause(arguments.seconds);
     interval.last = player.newest();
     interval.end = wall_ns();
-    cpu = daemon.cpu() - cpu;
-    memory = daemon.memory();
+    usage.cpu_s = daemon.cpu() - usage.cpu_s;
+    usage.memory_mb = daemon.memory();
     pause(0.2);
+    usage.dropped = dropped_here();
     listener.end();
   }
-  return report(arguments, player, listener, interval, cpu, memory);
+  return report(arguments, player, listener, interval, usage);
 }
 
 }  // namespace

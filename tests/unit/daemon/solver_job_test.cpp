@@ -1,0 +1,100 @@
+// The one thread beside the loop: what it tells while the loop looks, and when either of them ends first.
+#include "daemon/service/solver_job.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+namespace odomcalib {
+namespace {
+
+std::filesystem::path recording() {
+  const auto path = std::filesystem::path(testing::TempDir()) / ("solver_job_" + std::to_string(getpid()));
+  std::ofstream(path) << R"({"type":"robot","wheel_diameter":0.1,"track_width":0.3,"ticks_per_rev":1000})"
+                      << "\n"
+                      << R"({"type":"ticks","t":0,"left":0,"right":0})"
+                      << "\n"
+                      << R"({"type":"ticks","t":1,"left":9,"right":9})"
+                      << "\n";
+  return path;
+}
+
+/// Tells a thousand steps and waits until it may end.
+Calibrator slow(std::shared_ptr<std::atomic<bool>> may_end) {
+  Calibrator calibrator;
+  calibrator.solve = [may_end](const std::vector<Recording>& recordings, const std::vector<std::string>&,
+                               const Calibrator::Progress& progress) {
+    for (int i = 0; i < 1000; ++i) progress("step " + std::to_string(i), 1e-3 * i);
+    while (!*may_end) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    Calibration calibration;
+    calibration.robot = recordings.at(0).robot;
+    return calibration;
+  };
+  return calibrator;
+}
+
+std::optional<Result<Calibration>> wait_for(SolverJob& job) {
+  for (int i = 0; i < 30'000; ++i) {
+    if (auto result = job.take_result()) return result;
+    const auto [phase, fraction] = job.progress();
+    EXPECT_FALSE(phase.empty());
+    EXPECT_TRUE(fraction >= 0.0 && fraction <= 1.0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return std::nullopt;
+}
+
+TEST(SolverJob, tells_its_progress_and_its_result_once) {
+  const auto path = recording();
+  const auto may_end = std::make_shared<std::atomic<bool>>(false);
+  SolverJob job(slow(may_end), {path}, {"auto"});
+  for (int i = 0; i < 10'000 && job.progress().first != "step 999"; ++i) {
+    EXPECT_FALSE(job.take_result());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(job.progress().first, "step 999");
+  *may_end = true;
+  const auto result = wait_for(job);
+  ASSERT_TRUE(result && result->ok());
+  EXPECT_EQ(result->value().robot.track_width, 0.3);
+  EXPECT_FALSE(job.take_result());
+  std::filesystem::remove(path);
+}
+
+TEST(SolverJob, that_throws_or_finds_no_file_is_an_error) {
+  Calibrator calibrator;
+  calibrator.solve = [](const auto&, const auto&, const auto&) -> Calibration {
+    throw std::runtime_error("no solution");
+  };
+  const auto path = recording();
+  SolverJob throwing(calibrator, {path}, {});
+  const auto thrown = wait_for(throwing);
+  ASSERT_TRUE(thrown && !thrown->ok());
+  EXPECT_NE(thrown->error().text().find("no solution"), std::string::npos);
+  std::filesystem::remove(path);
+  SolverJob absent(calibrator, {"/nonexistent"}, {});
+  const auto missed = wait_for(absent);
+  ASSERT_TRUE(missed && !missed->ok());
+}
+
+TEST(SolverJob, that_is_forgotten_ends_by_itself) {
+  const auto path = recording();
+  const auto may_end = std::make_shared<std::atomic<bool>>(false);
+  {
+    const SolverJob job(slow(may_end), {path}, {});
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  *may_end = true;
+  for (int i = 0; i < 10'000 && may_end.use_count() > 1; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(may_end.use_count(), 1);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace odomcalib
