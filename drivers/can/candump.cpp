@@ -4,12 +4,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace odomcalib::drivers {
 namespace {
 
 constexpr std::uint32_t kErrorFlag = 0x20000000;
 constexpr std::uint32_t kMaxExtended = 0x1FFFFFFF;
+constexpr double kLatest_s = 1e11;  // no clock says more since 1970
 
 /// The text up to the separator, which is consumed too; nullopt when there is none.
 std::optional<std::string_view> cut(std::string_view& text, char separator) {
@@ -67,6 +69,13 @@ std::string_view trim_end(std::string_view line) {
   return direction ? line.substr(0, line.size() - 2) : line;
 }
 
+/// In microseconds, as candump writes it, of any time that a double can hold.
+std::string time_text(double t) {
+  std::array<char, std::numeric_limits<double>::max_exponent10 + 16> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), t, std::chars_format::fixed, 6).ptr;
+  return {text.data(), end};
+}
+
 /// "(time) interface id##flags data"
 bool is_fd(std::string_view line) {
   const std::size_t id = line.find('#');
@@ -79,9 +88,9 @@ std::optional<CanFrame> parse_candump_line(std::string_view line) {
   line = trim_end(line);
   if (line.empty() || line[0] != '(') return std::nullopt;
   line.remove_prefix(1);
-  const auto time_text = cut(line, ')');
-  const auto time = time_text ? parse<double>(*time_text, std::chars_format::fixed) : std::nullopt;
-  if (!time || !std::isfinite(*time) || line.empty() || line[0] != ' ') return std::nullopt;
+  const auto time_word = cut(line, ')');
+  const auto time = time_word ? parse<double>(*time_word, std::chars_format::fixed) : std::nullopt;
+  if (!time || !(std::abs(*time) < kLatest_s) || line.empty() || line[0] != ' ') return std::nullopt;
   line.remove_prefix(1);
   const auto interface = cut(line, ' ');
   const auto id = cut(line, '#');
@@ -95,13 +104,12 @@ std::optional<CanFrame> parse_candump_line(std::string_view line) {
 }
 
 std::string candump_line(const CanFrame& frame, std::string_view interface) {
-  std::array<char, 64> text{};
+  std::array<char, 16> text{};
   const bool wide = frame.extended || frame.error;
   const std::uint32_t id = frame.id | (frame.error ? kErrorFlag : 0U);
-  int n = std::snprintf(text.data(), text.size(), "(%.6f) ", frame.t);
-  std::string line(text.data(), static_cast<std::size_t>(n));
+  std::string line = "(" + time_text(frame.t) + ") ";
   line += interface;
-  n = std::snprintf(text.data(), text.size(), wide ? " %08X#" : " %03X#", id);
+  int n = std::snprintf(text.data(), text.size(), wide ? " %08X#" : " %03X#", id);
   line.append(text.data(), static_cast<std::size_t>(n));
   if (frame.remote) return line + 'R' + (frame.length > 0 ? std::to_string(frame.length) : "");
   for (std::size_t i = 0; i < frame.length && i < frame.data.size(); ++i) {

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -87,6 +88,7 @@ class Daemon {
     const std::string config = folder / "odomcalib.toml";
     std::vector<std::string> words{ODOMCALIB_DAEMON, "--config", config};
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (auto& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     if (posix_spawn(&pid_, ODOMCALIB_DAEMON, nullptr, nullptr, pointers.data(), environ) != 0) pid_ = -1;
@@ -163,6 +165,7 @@ void show(const char* what, const Latency& latency) {
 struct Interval {
   std::int64_t first = 0, last = 0;
   std::int64_t begin = 0, end = 0;  ///< ns of CLOCK_REALTIME
+  [[nodiscard]] std::int64_t reports() const { return last - first + 1; }
 };
 
 struct Ticks {
@@ -171,7 +174,7 @@ struct Ticks {
 };
 
 Ticks ticks_of(const WirePlayer& player, const LcmListener& listener, const Interval& interval) {
-  std::vector<int> times(static_cast<std::size_t>(interval.last - interval.first + 1));
+  std::vector<int> times(static_cast<std::size_t>(interval.reports()));
   std::vector<double> published, handled;
   for (const Seen& seen : listener.ticks()) {
     if (seen.count < interval.first || seen.count > interval.last) continue;
@@ -230,8 +233,8 @@ int report(const Arguments& arguments, const WirePlayer& player, const LcmListen
   const Scans scans = scans_of(player, listener, interval);
   const double seconds = 1e-9 * static_cast<double>(interval.end - interval.begin);
   std::printf("measured %.1f s; %lld reports, lost %zu, twice %zu; %zu scans, %zu published; wrong %zu\n",
-              seconds, static_cast<long long>(interval.last - interval.first + 1), ticks.lost, ticks.twice,
-              scans.sent, scans.seen, listener.wrong());
+              seconds, static_cast<long long>(interval.reports()), ticks.lost, ticks.twice, scans.sent,
+              scans.seen, listener.wrong());
   std::printf("the player was late %llu times by more than 0.5 ms; bytes not taken by the port: %llu\n",
               static_cast<unsigned long long>(player.late()),
               static_cast<unsigned long long>(player.overrun()));
@@ -283,7 +286,7 @@ int measure(const Arguments& arguments) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{"odomcalibd under 1 kHz counts and 40 Hz scans of 1081 beams, in real time"};
   Arguments arguments;
   app.add_option("--seconds", arguments.seconds, "length of the measurement")->capture_default_str();
@@ -291,4 +294,7 @@ int main(int argc, char** argv) {
                "real-time priority for the daemon and for the devices it talks to");
   CLI11_PARSE(app, argc, argv);
   return measure(arguments);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "bench_daemon: %s\n", error.what());
+  return 2;
 }

@@ -7,6 +7,7 @@ namespace odomcalib::bench {
 namespace {
 
 constexpr std::size_t kBeams = 1081;
+constexpr int kPatience = 50;  // ms
 
 std::string_view bytes_of(const lcm_recv_buf_t* buffer) {
   return {static_cast<const char*>(buffer->data), buffer->data_size};
@@ -34,8 +35,7 @@ void LcmListener::end() {
 }
 
 void LcmListener::listen() {
-  constexpr int kPatience_ms = 50;
-  while (!ended_) (void)lcm_handle_timeout(lcm_, kPatience_ms);
+  while (!ended_) (void)lcm_handle_timeout(lcm_, kPatience);
 }
 
 void LcmListener::on_ticks(const lcm_recv_buf_t* buffer, const char* /*channel*/, void* self) {

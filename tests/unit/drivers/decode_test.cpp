@@ -70,6 +70,18 @@ void expect_same(const CanFrame& a, const CanFrame& b) {
   EXPECT_EQ(a.data, b.data);
 }
 
+TEST(Candump, times_that_no_clock_says_are_refused_and_any_time_can_be_written) {
+  EXPECT_FALSE(parse_candump_line("(" + std::string(60, '3') + ") can0 001#12"));
+  EXPECT_FALSE(parse_candump_line("(-1" + std::string(20, '0') + ") can0 001#12"));
+  CanFrame frame;
+  for (const double t : {1e300, -1e300, 1e11}) {
+    frame.t = t;
+    EXPECT_GT(candump_line(frame, "can0").size(), 20U);
+  }
+  frame.t = 1436509052.249713;
+  EXPECT_EQ(candump_line(frame, "can0"), "(1436509052.249713) can0 000#");
+}
+
 TEST(Candump, no_damaged_line_gives_a_frame_that_cannot_be_written_again) {
   auto random = test::seeded(12);
   const std::vector<std::string> good = {"(1436509052.249713) vcan0 044#2A366C2BBA",
