@@ -29,12 +29,14 @@ void ScanFreshness::seen(const Scan& scan, double now) {
   const std::uint64_t fingerprint = fingerprint_of(scan);
   frozen_ = last_ && fingerprint == fingerprint_;
   fingerprint_ = fingerprint;
-  if (!frozen_ && has_reading(scan)) last_ = now;
+  empty_ = !has_reading(scan);
+  if (!frozen_ && !empty_) last_ = now;
 }
 
 std::optional<std::string> ScanFreshness::stale(double now) const {
+  if (last_ && now - *last_ <= kScanTimeout) return std::nullopt;
+  if (empty_) return "the lidar sees nothing: no beam has an echo";
   if (!last_) return "no scan yet";
-  if (now - *last_ <= kScanTimeout) return std::nullopt;
   return frozen_ ? "lidar repeats the same scan" : "no scan for more than 250 ms";
 }
 

@@ -24,7 +24,7 @@ class ScanFreshness {
  private:
   std::optional<double> last_;
   std::uint64_t fingerprint_ = 0;
-  bool frozen_ = false;
+  bool frozen_ = false, empty_ = false;
 };
 
 /// Counts arrive, and those of a wheel that is told to turn change.

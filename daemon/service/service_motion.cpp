@@ -29,7 +29,9 @@ std::optional<Error> Service::Impl::motion_forbidden(const routines::Plan& plan)
                      "an interrupted write-back has left the controller's values unknown",
                      "connect the controller and restart odomcalibd, then see odomcalibctl params get");
   const auto state = base.controller().state();
-  if (state != ControllerState::disabled && state != ControllerState::enabled)
+  // A drive in fault that is configured may be started again: enabling it by hand resets the fault.
+  const bool faulty = state == ControllerState::fault && base.controller().watchdog_armed();
+  if (state != ControllerState::disabled && state != ControllerState::enabled && !faulty)
     return forbidden(ErrorCode::device, "controller is " + name_of(state), "see odomcalibctl check");
   if (!base.controller().watchdog_armed())
     return forbidden(ErrorCode::device, "the controller would not stop by itself if this program died",
@@ -87,11 +89,14 @@ void Service::Impl::watch_agreement(const Scan& scan) {
   const bool judge = std::hypot(moved.x, moved.y) > 0.25 || std::abs(moved.yaw) > 0.6;
   if (agreement_scan && !judge) return;
   if (agreement_scan) {
-    const auto seen = calibrator.match(*agreement_scan, scan, moved, config.lidar_pose);
+    auto seen = calibrator.match(*agreement_scan, scan, moved, config.lidar_pose);
+    // Odometry that is far from the truth is no guess: swapped sides turn the wrong way.
+    if (!seen) seen = calibrator.match(*agreement_scan, scan, {}, config.lidar_pose);
     const auto why = seen ? safety::disagreement(moved, *seen) : std::nullopt;
-    // One bad match must not stop the robot; two in a row are a fact.
+    // One bad match must not stop the robot; two in a row are a fact. The second judge is the next scan.
     disagreements = why ? disagreements + 1 : 0;
     if (disagreements >= 2) disagreement = why;
+    if (why) return;
   }
   agreement_scan = scan;
   agreement_pose = odometry.pose();

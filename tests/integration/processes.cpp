@@ -48,10 +48,10 @@ double monotonic() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-bool wait_until(const std::function<bool()>& condition, double seconds) {
+bool wait_until(const std::function<bool()>& condition, double seconds, double pause) {
   for (const double end = monotonic() + seconds; monotonic() < end;) {
     if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+    std::this_thread::sleep_for(std::chrono::duration<double>(pause));
   }
   return condition();
 }
@@ -96,6 +96,13 @@ std::optional<int> Process::wait(double seconds) {
   return status_;
 }
 
+double Process::processor_time() const {
+  clockid_t clock = 0;
+  timespec used{};
+  if (clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0.0;
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
 const std::vector<WheelSpeed>& WheelLog::read() {
   if (!file_.is_open()) file_.open(path_);
   file_.clear();
@@ -112,19 +119,23 @@ const std::vector<WheelSpeed>& WheelLog::read() {
   return speeds_;
 }
 
-RobotAndDaemon::RobotAndDaemon(int seed) {
+RobotAndDaemon::RobotAndDaemon(int seed, CanWiring wiring) : wiring_(std::move(wiring)) {
   std::string name = "/tmp/odomcalib-pt-XXXXXX";
   folder_ = mkdtemp(name.data());
   std::filesystem::create_directory(folder_ / "ports");
   wheels_ = std::make_unique<WheelLog>(folder_ / "wheels");
-  robot = std::make_unique<Process>(
-      std::vector<std::string>{ODOMCALIB_SIM, "--seed", std::to_string(seed), "--link", folder_ / "ports",
-                               "--truth", folder_ / "truth.json", "--wheel-log", folder_ / "wheels",
-                               "--commands"},
-      folder_ / "robot.log");
+  robot = std::make_unique<Process>(robot_command(seed), folder_ / "robot.log");
   (void)wait_until([this] { return std::filesystem::exists(folder_ / "ports" / "lidar"); }, kPatience);
   write_configuration();
   start_daemon();
+}
+
+std::vector<std::string> RobotAndDaemon::robot_command(int seed) const {
+  std::vector<std::string> words{ODOMCALIB_SIM,      "--seed",    std::to_string(seed),   "--link",
+                                 folder_ / "ports",  "--truth",   folder_ / "truth.json", "--wheel-log",
+                                 folder_ / "wheels", "--commands"};
+  if (!wiring_.of_robot.empty()) words.insert(words.end(), {"--can", wiring_.of_robot});
+  return words;
 }
 
 RobotAndDaemon::~RobotAndDaemon() {
@@ -136,10 +147,11 @@ RobotAndDaemon::~RobotAndDaemon() {
 
 void RobotAndDaemon::write_configuration() const {
   const std::string ports = folder_ / "ports";
+  const std::string can =
+      wiring_.of_daemon.empty() ? "slcan:" + ports + "/can?bitrate=500000" : "socketcan:" + wiring_.of_daemon;
   std::ofstream(folder_ / "odomcalib.toml")
-      << "[controller]\ndevice = \"slcan:" << ports << "/can?bitrate=500000\"\nprofile = \""
-      << ODOMCALIB_PROFILE << "\"\n[lidar]\ndevice = \"serial:" << ports
-      << "/lidar?baud=230400\"\npose = [0.10, 0.0, 0.0]\n"
+      << "[controller]\ndevice = \"" << can << "\"\nprofile = \"" << ODOMCALIB_PROFILE
+      << "\"\n[lidar]\ndevice = \"serial:" << ports << "/lidar?baud=230400\"\npose = [0.10, 0.0, 0.0]\n"
       << "[robot]\nwheel_diameter = 0.150\ntrack_width = 0.400\n[limits]\ncountdown = 0.0\n"
       << "[lcm]\nenabled = false\n[daemon]\nstate_dir = \"" << (folder_ / "state").string()
       << "\"\nsocket = \"" << (folder_ / "control").string() << "\"\n";
@@ -197,7 +209,7 @@ std::optional<double> RobotAndDaemon::time_to_rest(double clock) {
     }
     return rest && wheels_->read().back().simulated - *rest > kStays;
   };
-  if (!wait_until(stands, kPatience)) return std::nullopt;
+  if (!wait_until(stands, kPatience, 0.05)) return std::nullopt;
   return *rest - begin;
 }
 

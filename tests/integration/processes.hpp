@@ -16,8 +16,8 @@ namespace odomcalib::testing {
 /// s of the monotonic clock, the one in the wheel log of odomcalib-sim.
 double monotonic();
 
-/// Asks again every few milliseconds until `condition` holds. @return false when it did not within `seconds`
-bool wait_until(const std::function<bool()>& condition, double seconds);
+/// Asks again every `pause` seconds until `condition` holds. @return false when it did not within `seconds`
+bool wait_until(const std::function<bool()>& condition, double seconds, double pause = 0.003);
 
 class Process {
  public:
@@ -31,6 +31,8 @@ class Process {
   void tell(const std::string& line) const;  ///< to its standard input
   /// Exit status, 128 + signal when a signal ended it, nullopt when it still runs after `seconds`.
   std::optional<int> wait(double seconds);
+  /// s of processor time that it has used so far.
+  [[nodiscard]] double processor_time() const;
 
  private:
   pid_t pid_ = -1;
@@ -55,10 +57,15 @@ class WheelLog {
   std::vector<WheelSpeed> speeds_;
 };
 
+/// CAN interfaces of both ends; empty: a pseudo-terminal with an slcan adapter between them.
+struct CanWiring {
+  std::string of_robot, of_daemon;
+};
+
 /// Simulator and daemon on a configuration of their own in a temporary folder.
 class RobotAndDaemon {
  public:
-  explicit RobotAndDaemon(int seed);
+  explicit RobotAndDaemon(int seed, CanWiring wiring = {});
   ~RobotAndDaemon();
 
   void start_daemon();
@@ -77,6 +84,9 @@ class RobotAndDaemon {
  private:
   void write_configuration() const;
 
+  [[nodiscard]] std::vector<std::string> robot_command(int seed) const;
+
+  CanWiring wiring_;
   std::filesystem::path folder_;
   std::unique_ptr<WheelLog> wheels_;
   int clients_ = 0;

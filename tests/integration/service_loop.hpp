@@ -76,6 +76,7 @@ class ServiceLoop : public testing::Test {
     folder_ = mkdtemp(name.data());
     sim::SimRobotOptions options;
     options.truth = sim::draw_truth(options.nominal, 3);
+    adjust(options);
     auto robot = sim::SimRobot::create(options);
     ASSERT_TRUE(robot.ok()) << robot.error().text();
     robot_ = std::move(robot).value();
@@ -89,6 +90,8 @@ class ServiceLoop : public testing::Test {
   }
 
   virtual Calibrator calibrator() { return {}; }
+  virtual void adjust(sim::SimRobotOptions& /*options*/) {}
+  virtual void adjust(Config& /*config*/) {}
 
   void start_service() {
     Config config;
@@ -105,6 +108,7 @@ class ServiceLoop : public testing::Test {
     config.lcm_enabled = false;
     config.state_dir = folder_ / "state";
     config.socket = folder_ / "control";
+    adjust(config);
     auto service = Service::create(config, clock_, calibrator());
     ASSERT_TRUE(service.ok()) << service.error().text();
     service_ = std::move(service).value();

@@ -190,8 +190,20 @@ void DriveNode::send_life_sign(double now) {
 void DriveNode::send_tpdos(double now) {
   if (nmt_ != NmtState::operational || faults.pdo_silent) return;
   for (TransmitPdo& pdo : tpdos_)
-    if (const auto frame = pdo.poll(now, faults.pdo_frozen))
-      send(*frame, now + faults.pdo_delay + wheels_.lateness);
+    if (const auto frame = pdo.poll(now, faults.pdo_frozen)) send_tpdo(*frame, now);
+}
+
+void DriveNode::send_tpdo(const Frame& frame, double now) {
+  const double due = now + faults.pdo_delay + wheels_.lateness;
+  const auto held = held_back_.find(frame.id);
+  if (faults.pdo_reordered && held == held_back_.end()) {
+    held_back_.emplace(frame.id, frame);
+    return;
+  }
+  send(frame, due);
+  if (held == held_back_.end()) return;
+  send(held->second, due);
+  held_back_.erase(held);
 }
 
 void DriveNode::report_error(std::uint16_t code, std::uint8_t error_register, double now) {

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -63,6 +64,7 @@ struct NodeFaults {
   bool pdo_silent = false;     ///< no TPDO is sent
   bool pdo_frozen = false;     ///< TPDOs go on with the content of the last one
   double pdo_delay = 0.0;      ///< s, every TPDO leaves later
+  bool pdo_reordered = false;  ///< of each two TPDOs with one identifier the second leaves first
   bool store_fails = false;    ///< 1010h is answered with a hardware error
   bool store_is_lost = false;  ///< 1010h is answered well, and nothing is stored
   bool swap_sides = false;     ///< positions and actual speeds of left and right exchanged
@@ -119,6 +121,7 @@ class DriveNode {
   void lost_connection(std::uint16_t code, double now);
   void send_life_sign(double now);
   void send_tpdos(double now);
+  void send_tpdo(const Frame& frame, double now);
   void send(const Frame& frame, double due);
   void report_error(std::uint16_t code, std::uint8_t error_register, double now);
   AbortCode store(std::uint32_t signature);
@@ -137,6 +140,7 @@ class DriveNode {
   DriveStateMachine machine_;
   NmtState nmt_ = NmtState::booting;
   std::deque<Outgoing> outgoing_;
+  std::map<std::uint32_t, Frame> held_back_;  // by identifier, while TPDOs are reordered
   WheelState wheels_;
   std::array<std::int64_t, 2> zero_{};
   double now_ = 0.0, boot_at_ = 0.0, last_life_sign_ = 0.0;

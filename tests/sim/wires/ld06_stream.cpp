@@ -64,10 +64,12 @@ Beam Ld06Stream::altered(Beam beam) {
   if (faults.blind) beam.range = beam.intensity = 0.0;
   const auto index = static_cast<std::size_t>(beam.index);
   frozen_ranges_.resize(static_cast<std::size_t>(options_.beams_per_turn), 0.0);
-  if (faults.frozen)
+  if (faults.frozen) {
     beam.range = frozen_ranges_[index];
-  else
-    frozen_ranges_[index] = beam.range;
+    return beam;
+  }
+  frozen_ranges_[index] = beam.range;
+  if (faults.mirrored) beam.range = frozen_ranges_[(frozen_ranges_.size() - index) % frozen_ranges_.size()];
   return beam;
 }
 

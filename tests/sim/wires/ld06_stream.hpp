@@ -30,6 +30,7 @@ struct LidarFaults {
   bool blind = false;         ///< no beam has an echo
   double extra_delay = 0.0;   ///< s
   double share_lost = 0.0;    ///< of the packets, chosen regularly
+  bool mirrored = false;      ///< mounted upside down: left is right (a turn late)
   bool half_packets = false;  ///< the second half of every packet is missing
 };
 

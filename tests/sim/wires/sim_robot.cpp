@@ -95,6 +95,12 @@ void SimRobot::hold_encoder(std::size_t side, bool held) {
   held_[side] = held ? std::optional(wheel_state().counts[side]) : std::nullopt;
 }
 
+void SimRobot::scale_encoder(std::size_t side, double gain) {
+  const std::int64_t before = wheel_state().counts[side];
+  gain_[side] = gain;
+  shift_[side] += before - wheel_state().counts[side];
+}
+
 void SimRobot::inject(const Frame& frame) {
   node_.receive(frame, now());
   if (can_) can_->deliver({frame}, now());
@@ -120,7 +126,8 @@ WheelState SimRobot::wheel_state() {
   state.rate = body_.rate();
   state.lateness = std::max(0.0, reading.stamp - reading.t);
   for (std::size_t side = 0; side < 2; ++side)
-    state.counts[side] = held_[side].value_or(reading.counts[side] + shift_[side]);
+    state.counts[side] = held_[side].value_or(
+        std::llround(gain_[side] * static_cast<double>(reading.counts[side])) + shift_[side]);
   return state;
 }
 

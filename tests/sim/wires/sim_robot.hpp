@@ -92,6 +92,9 @@ class SimRobot {
   void inject_lidar_bytes(const std::string& bytes);
   /// The encoder of this side no longer moves (or moves again).
   void hold_encoder(std::size_t side, bool held);
+  /// From now on counts of this side advance by `gain` times what they should: -1 inverted, 2 a wrong line
+  /// count.
+  void scale_encoder(std::size_t side, double gain);
 
  private:
   explicit SimRobot(const SimRobotOptions& options);
@@ -113,6 +116,7 @@ class SimRobot {
   std::unique_ptr<Pty> lidar_pty_;
   std::vector<Beam> beams_;
   std::array<std::int64_t, 2> shift_{};
+  std::array<double, 2> gain_{1.0, 1.0};
   std::array<std::optional<std::int64_t>, 2> held_;
   double wanted_ = 0.0;  ///< s, time that was asked for
   bool can_cut_ = false;
