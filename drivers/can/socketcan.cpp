@@ -12,7 +12,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
+#include <fstream>
+#include <utility>
 
 #include "drivers/can/socketcan_frame.hpp"
 
@@ -21,14 +24,27 @@ namespace {
 
 constexpr int kFramesAtMost = 512;  // per call, so that a full bus cannot hold the event loop
 constexpr double kOldest_s = 1.0;   // an older stamp means that the wall clock was set meanwhile
+constexpr double kStep_s = 0.005;   // adjusting a clock is slower than this from one call to the next
 
 Error bus_error(const std::string& interface, const std::string& what, const std::string& remedy) {
   return {ErrorCode::device, what, interface, remedy};
 }
 
-double wall_clock() {
+Error bus_off(const std::string& interface) {
+  return bus_error(
+      interface, "the interface is off the bus (bus-off)",
+      "see to wiring, termination and bit rate, then: ip link set " + interface + " type can restart");
+}
+
+/// Of an interface that is up.
+bool has_carrier(const std::string& interface) {
+  std::ifstream file("/sys/class/net/" + interface + "/carrier");
+  return file.get() != '0';
+}
+
+double read_clock(clockid_t clock) {
   timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
+  clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -66,6 +82,10 @@ class SocketCan final : public CanTransport {
   Result<void> send(const CanFrame& frame) override {
     if (frame.error || frame.length > 8)
       return Error{ErrorCode::usage, "not a frame to send", interface_, ""};
+    if (off_the_bus()) {
+      ++send_failed_;
+      return bus_off(interface_);
+    }
     const can_frame raw = to_kernel(frame);
     if (::write(fd_, &raw, sizeof raw) == static_cast<ssize_t>(sizeof raw)) {
       ++sent_;
@@ -81,15 +101,20 @@ class SocketCan final : public CanTransport {
 
   Result<std::vector<CanFrame>> receive(double now) override {
     std::vector<CanFrame> out;
-    const double wall_now = wall_clock();
+    if (failed_ != 0) return told_failure();
+    const double wall_now = read_clock(CLOCK_REALTIME);
+    const bool stepped = wall_clock_stepped(wall_now);
     for (int i = 0; i < kFramesAtMost; ++i) {
       Received got;
       const int status = read_one(got);
       if (status == EAGAIN) break;
-      if (status != 0) return out.empty() ? Result<std::vector<CanFrame>>(gone(status)) : out;
+      if (status != 0) {  // the kernel says it once: told after these frames
+        failed_ = status;
+        if (out.empty()) return told_failure();
+        break;
+      }
       if (got.overflows) lost_ = *got.overflows;
-      const double age = got.wall_time ? std::clamp(wall_now - *got.wall_time, 0.0, kOldest_s) : 0.0;
-      got.frame.t = now - (age < kOldest_s ? age : 0.0);
+      got.frame.t = now - (stepped ? 0.0 : age_of(got, wall_now));
       if (!rejected_last_) out.push_back(got.frame);
     }
     return out;
@@ -110,6 +135,26 @@ class SocketCan final : public CanTransport {
   }
 
  private:
+  /// s; 0 for a frame without stamp.
+  static double age_of(const Received& got, double wall_now) {
+    const double age = got.wall_time ? std::max(wall_now - *got.wall_time, 0.0) : 0.0;
+    return age < kOldest_s ? age : 0.0;
+  }
+
+  /// Stamps are wall-clock times: those taken before the clock was set cannot be told from those after.
+  bool wall_clock_stepped(double wall_now) {
+    const double offset = wall_now - read_clock(CLOCK_MONOTONIC);
+    const double before = std::exchange(offset_, offset);
+    return std::abs(offset - before) > kStep_s;
+  }
+
+  /// Without carrier the kernel takes frames, says "sent" and drops them. The carrier goes with bus-off and
+  /// comes back with the restart.
+  bool off_the_bus() {
+    off_ = off_ && !has_carrier(interface_);
+    return off_;
+  }
+
   /// @return 0, or errno; EAGAIN when nothing is left
   int read_one(Received& out) {
     can_frame raw{};
@@ -139,7 +184,16 @@ class SocketCan final : public CanTransport {
     }
     out.frame = *frame;
     ++(frame->error ? error_frames_ : frames_);
-    if (frame->error && (frame->id & CAN_ERR_BUSOFF) != 0) ++bus_off_;
+    if (!frame->error || (frame->id & CAN_ERR_BUSOFF) == 0) return;
+    ++bus_off_;
+    off_ = true;
+  }
+
+  /// A socket whose interface went down lives again when it comes up; any other failure is for ever.
+  Error told_failure() {
+    const Error error = gone(failed_);
+    if (failed_ == ENETDOWN) failed_ = 0;
+    return error;
   }
 
   [[nodiscard]] Error gone(int cause) const {
@@ -151,6 +205,9 @@ class SocketCan final : public CanTransport {
   int fd_;
   std::string interface_;
   bool rejected_last_ = false;
+  int failed_ = 0;    // errno that is still to be told
+  bool off_ = false;  // an error frame said bus-off, and no carrier was seen since
+  double offset_ = read_clock(CLOCK_REALTIME) - read_clock(CLOCK_MONOTONIC);  // s, wall minus monotonic
   std::uint64_t frames_ = 0, sent_ = 0, send_failed_ = 0, lost_ = 0, error_frames_ = 0, bus_off_ = 0;
   std::uint64_t bytes_in_ = 0, skipped_ = 0, bad_frame_ = 0;
 };
@@ -183,6 +240,7 @@ std::optional<Error> bind_to(int fd, const std::string& interface) {
   if (ioctl(fd, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) == 0)
     return bus_error(interface, "interface is down",
                      "ip link set " + interface + " up type can bitrate 500000");
+  if (!has_carrier(interface)) return bus_off(interface);
   return std::nullopt;
 }
 
