@@ -95,6 +95,7 @@ TEST_P(NamesTheEffect, and_keeps_the_wheels_right) {
     for (const std::string& variable : result.unexplained->depends_on)
       named = named || variable == GetParam().name;
   EXPECT_TRUE(named) << "found: " << found << (result.unexplained ? "and a curve" : "");
+  EXPECT_LE(result.effects.size(), 1U) << "more than what is there: " << found;
   for (const double sigma : compare(result, run.truth).sigmas) EXPECT_LT(std::abs(sigma), 4.0);
 }
 

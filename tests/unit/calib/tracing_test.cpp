@@ -18,11 +18,12 @@ const BaseParameters kBase{0.075, 0.074, 0.4, {0.1, 0.02, 0.3}};
 constexpr unsigned kSeed = 4711;
 
 /// Four minutes in which both wheels speed up, slow down and reverse on their own.
-DriveModel lively_model() {
+/// @param haste times the usual pace, over the same ground
+DriveModel lively_model(double haste = 1.0) {
   WheelTrack track;
   for (int k = 0; k <= 6000; ++k) {
-    const double t = 0.04 * k;
-    track.t.push_back(t);
+    track.t.push_back(0.04 * k);
+    const double t = haste * 0.04 * k;
     track.left.push_back(9.0 * std::sin(0.31 * t) + 4.0 * std::sin(0.113 * t) + 0.4 * t);
     track.right.push_back(8.0 * std::sin(0.43 * t + 0.5) + 5.0 * std::sin(0.097 * t) + 0.5 * t);
     track.segment.push_back(0);
@@ -109,6 +110,22 @@ TEST(Tracing, says_which_variable_when_it_has_no_name) {
   EXPECT_EQ(result.curves[0].curve.harmonic, 5);
 }
 
+TEST(Tracing, a_clock_is_asked_before_what_happened_before) {
+  const DriveModel model = lively_model();
+  const SearchResult result = searched(measured(model, {find_effect("time_offset")}, {0.03}));
+  ASSERT_EQ(result.findings.size(), 1U) << "seed " << kSeed;
+  EXPECT_EQ(result.findings[0].effect->name(), "time_offset");
+  EXPECT_TRUE(result.curves.empty());
+}
+
+TEST(Tracing, a_wheel_that_keeps_what_the_last_push_did_is_flagged) {
+  const DriveModel model = lively_model(3.0);
+  const Curve seat{{Variable::previous_push, Carrier::track}, -1.0, 1.0, 0.0, 0};
+  const SearchResult result = searched(measured(model, {make_curve_effect(seat)}, {0.01, 0.0, 0.0, 0.0}));
+  ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
+  EXPECT_EQ(result.curves[0].curve.law.variable, Variable::previous_push);
+}
+
 TEST(Tracing, several_recordings_share_no_zero_of_time_heading_or_phase) {
   const DriveModel model = lively_model();
   const std::vector<const DriveModel*> one = {&model}, two = {&model, &model};
@@ -127,6 +144,42 @@ TEST(Curve, is_zero_at_rest_but_on_the_turn_path) {
   }
   const Curve turn{{Variable::turn_rate, Carrier::turn_path}, -1.0, 1.0, 0.0, 0};
   EXPECT_EQ(basis(turn, StepContext{})[0], 1.0);
+}
+
+TEST(Curve, about_its_mean_it_has_none_over_the_drive) {
+  const DriveModel model = lively_model();
+  const DriveModel* models[] = {&model};
+  const Curve curve = centred({{Variable::left_speed, Carrier::left_travel}, -0.8, 0.8, 0.0, 0}, models);
+  std::vector<double> sum(basis_size(curve), 0.0);
+  double way = 0.0;
+  for (const StepContext& c : model.context()) {
+    way += std::abs(c.left_delta);
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += std::abs(c.left_delta) * basis(curve, c)[k];
+  }
+  for (const double value : sum) EXPECT_NEAR(value / way, 0.0, 1e-12);
+  const std::vector<FittedCurve> written = {{curve, std::vector<double>(sum.size(), 0.01), ""}};
+  const auto read = curves_from_json(curves_to_json(written));
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].curve.mean, curve.mean);
+}
+
+TEST(StepContext, remembers_the_last_push_through_steady_motion) {
+  WheelTrack track;
+  double angle = 0.0, rate = 0.0;
+  for (int k = 0; k <= 400; ++k) {  // speeds up for 1 s, goes on steadily, slows down for 0.5 s, goes on
+    const double t = 0.02 * k;
+    const double acceleration = t < 1.0 ? 5.0 : t > 4.0 && t < 4.5 ? -5.0 : 0.0;
+    rate += 0.02 * acceleration;
+    angle += 0.02 * rate;
+    track.t.push_back(t);
+    track.left.push_back(angle);
+    track.right.push_back(angle);
+    track.segment.push_back(0);
+  }
+  const auto context = make_context(track, kBase);
+  EXPECT_EQ(context.front().previous_push, 0.0);
+  EXPECT_GT(context[190].previous_push, 0.8);
+  EXPECT_LT(context[350].previous_push, -0.5);
 }
 
 TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
