@@ -191,7 +191,8 @@ class Solver {
     report("tracing the lidar", 0.0);
     lidar_ = asked_of_lidar_.empty() ? trace_lidar(lidar_pairs(), sees_all_round(*session_))
                                      : fit_lidar(lidar_pairs(), asked_of_lidar_);
-    if (lidar_.empty()) return fit;
+    if (std::none_of(lidar_.begin(), lidar_.end(), [](const auto& f) { return f.effect->is_correctable(); }))
+      return fit;
     const auto before = held_out_now(fit.value());
     const auto uncorrected = std::pair(parameters_, effects_);
     auto better = fit_corrected();

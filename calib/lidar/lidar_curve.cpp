@@ -61,6 +61,7 @@ class OfBearing final : public UnnamedError {
 class OfRange final : public UnnamedError {
  public:
   OfRange() : UnnamedError("range", true, kKnots) {}
+  [[nodiscard]] bool is_correctable() const override { return false; }
 
  private:
   static constexpr std::size_t kKnots = 4;
@@ -79,6 +80,7 @@ class OfRange final : public UnnamedError {
 class OfIncidence final : public UnnamedError {
  public:
   OfIncidence() : UnnamedError("incidence", true, 4) {}
+  [[nodiscard]] bool is_correctable() const override { return false; }
 
  private:
   [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {

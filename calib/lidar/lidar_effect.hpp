@@ -39,6 +39,9 @@ class LidarEffect {
   /// Of an unnamed dependence, the variable.
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual bool is_named() const { return true; }
+  /// Whether scans may be corrected by it. What is nearly a common scale no scan shows well enough: it is
+  /// reported, and the scans stay as they are.
+  [[nodiscard]] virtual bool is_correctable() const { return true; }
   /// The variable it depends on. A rest that depends on the same one is the same effect with another law.
   [[nodiscard]] virtual std::string variable() const = 0;
   [[nodiscard]] virtual std::vector<LidarParameter> parameters() const = 0;

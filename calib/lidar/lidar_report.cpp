@@ -27,6 +27,7 @@ std::string lidar_curves_to_json(const std::vector<LidarFinding>& findings) {
     for (std::size_t k = 0; k < parameters.size(); ++k) coefficients[parameters[k].name] = finding.values[k];
     list.push_back({{"variable", finding.effect->name()},
                     {"law_of_a_name", completes(finding, findings)},
+                    {"corrected", finding.effect->is_correctable()},
                     {"held_out_before", finding.before},
                     {"held_out_after", finding.after},
                     {"coefficients", coefficients}});

@@ -176,6 +176,7 @@ Scan corrected(const Scan& scan, const std::vector<LidarFinding>& findings, doub
     double angle = scan.angle(k);
     double true_range = range;
     for (const LidarFinding& finding : findings) {
+      if (!finding.effect->is_correctable()) continue;
       const BeamShift shift = finding.effect->total({scan.angle(k), range, tilts[k]}, finding.values);
       true_range -= shift.radial;
       angle -= shift.angular;

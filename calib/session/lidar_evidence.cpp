@@ -43,7 +43,8 @@ void refine(std::vector<LidarFinding>& findings, const std::vector<HeadingPair>&
   for (const LidarFinding& finding : findings) effects.push_back(finding.effect);
   const std::vector<LidarFinding> rest = fit_lidar(pairs, effects);
   for (std::size_t k = 0; k < rest.size(); ++k)
-    for (std::size_t j = 0; j < findings[k].values.size(); ++j) findings[k].values[j] += rest[k].values[j];
+    for (std::size_t j = 0; findings[k].effect->is_correctable() && j < findings[k].values.size(); ++j)
+      findings[k].values[j] += rest[k].values[j];
 }
 
 }  // namespace odomcalib::calib

@@ -199,7 +199,8 @@ class Search {
   std::optional<Trial> best_name(const ScoreTable& table) {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (!candidates_[k].curve && table.scores()[k].family_p_value <= level(candidates_[k]))
+      if (!candidates_[k].curve && table.scores()[k].family_p_value <= level(candidates_[k]) &&
+          !is_rest_of_a_law(table, k))
         order.push_back(k);
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return penalised(table.scores()[a]) > penalised(table.scores()[b]);
@@ -213,6 +214,24 @@ class Search {
     const auto best = std::max_element(trials_.begin(), trials_.end(),
                                        [](const Trial& a, const Trial& b) { return a.gain < b.gain; });
     return best == trials_.end() ? std::nullopt : std::optional(*best);
+  }
+
+  /// What a finding leaves on its own ground is the rest of its law, unless a second name explains nearly all
+  /// that a free curve would.
+  [[nodiscard]] bool is_rest_of_a_law(const ScoreTable& table, std::size_t candidate) const {
+    constexpr double kNearlyAll = 0.9;
+    const std::vector<Law> laws = candidates_[candidate].effect->laws();
+    const auto is_taken = [&](const Law& law) {
+      return std::any_of(result_.findings.begin(), result_.findings.end(),
+                         [&](const Finding& f) { return contains(f.effect->laws(), law); });
+    };
+    if (std::none_of(laws.begin(), laws.end(), is_taken)) return false;
+    double of_curves = 0.0;
+    for (std::size_t k = 0; k < candidates_.size(); ++k)
+      if (candidates_[k].curve && contains(laws, candidates_[k].curve->law) &&
+          is_taken(candidates_[k].curve->law))
+        of_curves += table.scores()[k].statistic;
+    return table.scores()[candidate].statistic < kNearlyAll * of_curves;
   }
 
   std::optional<Trial> refit(std::size_t index, bool keep_noise) {
