@@ -191,7 +191,7 @@ class SocketCan final : public CanTransport {
 
   /// A socket whose interface went down lives again when it comes up; any other failure is for ever.
   Error told_failure() {
-    const Error error = gone(failed_);
+    Error error = gone(failed_);
     if (failed_ == ENETDOWN) failed_ = 0;
     return error;
   }
