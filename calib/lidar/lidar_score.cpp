@@ -126,10 +126,6 @@ Eigen::MatrixXd project(const std::vector<PairScore>& pairs, const std::vector<E
   return projected;
 }
 
-double significance(double statistic, Eigen::Index degrees) {
-  return -std::log10(std::max(chi_squared_tail(statistic, static_cast<std::size_t>(degrees)), 1e-300));
-}
-
 /// Random signs for the pairs: what statistics look like when nothing is missing. Errors that points of one
 /// pair share make them larger than chi-squared, all by about the same factor.
 class SignFlips {

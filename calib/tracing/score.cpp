@@ -89,11 +89,6 @@ Eigen::MatrixXd block_scores(const Eigen::MatrixXd& basis, const Eigen::VectorXd
   return scores;
 }
 
-/// -log10 of the tail probability, finite for any statistic.
-double significance(double statistic, Eigen::Index degrees) {
-  return -std::log10(std::max(chi_squared_tail(statistic, static_cast<std::size_t>(degrees)), 1e-300));
-}
-
 /// The largest significance over all candidates of each draw of signs. Candidates of equal degrees are
 /// compared by their statistic, which spares most of the tail probabilities.
 std::vector<double> largest_of_draws(const std::vector<Eigen::MatrixXd>& scores, double variance) {
@@ -144,6 +139,10 @@ class Projection {
 double chi_squared_tail(double statistic, std::size_t degrees) {
   if (degrees == 0 || !(statistic > 0.0)) return 1.0;
   return boost::math::gamma_q(static_cast<double>(degrees) / 2.0, std::min(statistic, 1e6) / 2.0);
+}
+
+double significance(double statistic, Eigen::Index degrees) {
+  return -std::log10(std::max(chi_squared_tail(statistic, static_cast<std::size_t>(degrees)), 1e-300));
 }
 
 ScoreTable::ScoreTable(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,

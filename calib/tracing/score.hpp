@@ -23,6 +23,8 @@ struct Score {
 
 /// Upper tail of the chi-squared distribution.
 double chi_squared_tail(double statistic, std::size_t degrees);
+/// -log10 of that, finite for any statistic.
+double significance(double statistic, Eigen::Index degrees);
 
 /// Score tests (Rao 1948) of every candidate, at its start, on top of the fitted model.
 /// Family-wise significance: block scores of 5 s get random signs (Rademacher), 1999 draws with a fixed seed;
