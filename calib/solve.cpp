@@ -5,14 +5,11 @@
 #include <tuple>
 
 #include "calib/effects/catalogue.hpp"
-#include "calib/gate.hpp"
-#include "calib/lidar/lidar_report.hpp"
+#include "calib/findings.hpp"
 #include "calib/report.hpp"
-#include "calib/report_data.hpp"
 #include "calib/session/lidar_evidence.hpp"
 #include "calib/session/start_values.hpp"
 #include "calib/tracing/search.hpp"
-#include "calib/tracing/tracing_json.hpp"
 #include "calib/validation/held_out.hpp"
 
 namespace odomcalib::calib {
@@ -22,31 +19,6 @@ namespace {
 constexpr double kOffsetSignificance = 4.0;
 /// ... and longer than what a careful driver leaves, s.
 constexpr double kNegligibleOffset = 3e-3;
-
-/// What stays without a name, put together from its parts.
-class UnnamedSummary {
- public:
-  void mention(const std::string& variable) {
-    auto& names = all_.depends_on;
-    if (std::find(names.begin(), names.end(), variable) == names.end()) names.push_back(variable);
-  }
-  void add(const std::string& variable, double p_value, double before, double after) {
-    if (all_.depends_on.empty()) all_.p_value = p_value;
-    mention(variable);
-    const double ratio = before > 0.0 ? after / before : 1.0;
-    left_ *= std::min(ratio * ratio, 1.0);
-  }
-  [[nodiscard]] std::optional<Unexplained> result() const {
-    if (all_.depends_on.empty()) return std::nullopt;
-    Unexplained out = all_;
-    out.share = 1.0 - left_;
-    return out;
-  }
-
- private:
-  Unexplained all_;
-  double left_ = 1.0;  // of the squared error
-};
 
 class Solver {
  public:
@@ -261,135 +233,9 @@ class Solver {
   }
 
   void fill() {
-    const FitResult& fit = outcome_.fit;
-    const std::span<const double> p(fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size()));
-    const bool matched = !recordings_.front().scans.empty() && !session_->reference_is_base();
-    const Eigen::MatrixXd covariance =
-        matched ? with_matcher_scale(fit.covariance, to_base(p)) : fit.covariance;
-    calibration_.parameters = base_quantities(to_base(p), covariance);
-    calibration_.covariance_order = base_quantity_names();
-    calibration_.covariance = diameter_covariance(covariance);
-    calibration_.methods.push_back(joint_method(fit));
     report("validating", 0.0);
-    fit_plain();
-    fill_residual();
-    fill_effects();
-    fill_unnamed();
-    if (!outcome_.considered.empty())
-      calibration_.extensions["considered"] = considered_to_json(outcome_.considered);
-    store_report_data(make_report_data(*session_, effects_, outcome_.fit, plain_), calibration_);
-    const GateResult gate = judge(calibration_, fit.converged);
-    calibration_.verdict = gate.verdict;
-    calibration_.reasons = gate.reasons;
+    fill_calibration({*session_, outcome_, lidar_}, calibration_);
     report("validating", 1.0);
-  }
-
-  /// The six base parameters alone, on the same pairs: what the effects are measured against.
-  void fit_plain() {
-    if (effects_.empty()) {
-      plain_ = outcome_.fit;
-      return;
-    }
-    FitOptions options;
-    options.fixed = session_->fixed(0);
-    auto plain = fit_joint(session_->data(), {}, parameters_.head(kBaseCount), options);
-    if (plain) plain_ = std::move(plain).value();
-  }
-
-  void fill_residual() {
-    const auto after =
-        held_out_residual(session_->data(), effects_, outcome_.fit, fixed_with(session_->fixed(0), effects_));
-    calibration_.residual.held_out = after.has_value();
-    if (!after) return;
-    calibration_.residual.after = after->rms;
-    calibration_.residual.noise_floor = after->noise_floor;
-    calibration_.residual.before = after->rms;
-    if (effects_.empty() || !plain_) return;
-    const auto before = held_out_residual(session_->data(), {}, *plain_, session_->fixed(0));
-    if (before) calibration_.residual.before = before->rms;
-  }
-
-  [[nodiscard]] const Finding* finding_of(const Effect* effect) const {
-    for (const Finding& finding : outcome_.findings)
-      if (finding.effect.get() == effect) return &finding;
-    return nullptr;
-  }
-
-  /// Evidence for an effect that the search did not add: the delay found before it, or what the user asked
-  /// for.
-  [[nodiscard]] Evidence evidence_against_plain(double z) const {
-    Evidence evidence;
-    evidence.p_value = std::erfc(z / std::sqrt(2.0));
-    if (!plain_) return evidence;
-    const std::vector<bool> trusted = trusted_pairs(*plain_, outcome_.fit);
-    const auto before = horizon_error(session_->data(), {}, *plain_, session_->fixed(0), trusted);
-    const auto after = horizon_error(session_->data(), effects_, outcome_.fit,
-                                     fixed_with(session_->fixed(0), effects_), trusted);
-    if (before) evidence.held_out_before = before->rms_position();
-    if (after) evidence.held_out_after = after->rms_position();
-    return evidence;
-  }
-
-  void fill_effects() {
-    calibration_.effects = effect_results(lidar_);
-    Eigen::Index index = kBaseCount;
-    for (const auto& effect : effects_) {
-      const auto curve = std::find_if(outcome_.curves.begin(), outcome_.curves.end(),
-                                      [&](const AddedCurve& c) { return c.effect == effect; });
-      if (curve == outcome_.curves.end())
-        calibration_.effects.push_back(describe(*effect, index));
-      else
-        fitted_curves_.push_back(fitted(*curve, index));
-      index += static_cast<Eigen::Index>(effect->parameters().size());
-    }
-    if (!fitted_curves_.empty()) calibration_.extensions[kCurvesMember] = curves_to_json(fitted_curves_);
-  }
-
-  [[nodiscard]] FittedCurve fitted(const AddedCurve& added, Eigen::Index index) const {
-    FittedCurve curve{added.curve, {}, added.law_of ? added.law_of->name() : ""};
-    for (std::size_t k = 0; k < basis_size(added.curve); ++k)
-      curve.coefficients.push_back(outcome_.fit.parameters(index++));
-    return curve;
-  }
-
-  /// @param index of the effect's first parameter in the parameter vector
-  [[nodiscard]] EffectResult describe(const Effect& effect, Eigen::Index index) const {
-    EffectResult result;
-    result.name = effect.name();
-    double z = 0.0;
-    for (const EffectParameter& parameter : effect.parameters()) {
-      const double value = outcome_.fit.parameters(index);
-      const double deviation = std::sqrt(std::max(outcome_.fit.covariance(index, index), 0.0));
-      result.parameters.push_back(
-          {parameter.name, {value, parameter.fixed ? -1.0 : deviation, parameter.unit}});
-      if (deviation > 0.0 && parameter.start == 0.0) z = std::max(z, std::abs(value) / deviation);
-      ++index;
-    }
-    const Finding* finding = finding_of(&effect);
-    result.aliases = finding != nullptr ? finding->aliases : effect.always_alike();
-    result.evidence = finding != nullptr ? Evidence{finding->proof.family_p_value, finding->proof.before,
-                                                    finding->proof.after}
-                                         : evidence_against_plain(z);
-    return result;
-  }
-
-  /// Curves without a name: variables they depend on, in the order found.
-  void fill_unnamed() {
-    UnnamedSummary summary;
-    for (const LidarFinding& finding : lidar_)
-      if (!finding.effect->is_named() && !completes(finding, lidar_))
-        summary.add(finding.effect->name(), finding.family_p_value, finding.before, finding.after);
-    for (const AddedCurve& added : outcome_.curves)
-      if (!added.law_of)
-        summary.add(to_string(added.curve.law.variable), added.proof.family_p_value, added.proof.before,
-                    added.proof.after);
-    for (const AddedCurve& added : outcome_.curves)
-      for (const Variable variable : added.law_of ? std::vector<Variable>{} : added.alike)
-        summary.mention(to_string(variable));
-    calibration_.unexplained = summary.result();
-    const auto has_no_name = [](const LidarFinding& finding) { return !finding.effect->is_named(); };
-    if (std::any_of(lidar_.begin(), lidar_.end(), has_no_name))
-      calibration_.extensions[kLidarCurvesMember] = lidar_curves_to_json(lidar_);
   }
 
   std::span<const Recording> recordings_;
@@ -400,8 +246,6 @@ class Solver {
   bool automatic_ = false;
   EffectList effects_;
   SearchResult outcome_;
-  std::optional<FitResult> plain_;
-  std::vector<FittedCurve> fitted_curves_;
   Eigen::VectorXd parameters_;
   std::vector<LidarEffectPtr> asked_of_lidar_;
   std::vector<LidarFinding> lidar_;

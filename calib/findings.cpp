@@ -1,0 +1,189 @@
+#include "calib/findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/gate.hpp"
+#include "calib/lidar/lidar_report.hpp"
+#include "calib/report.hpp"
+#include "calib/report_data.hpp"
+#include "calib/tracing/tracing_json.hpp"
+#include "calib/validation/held_out.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+/// What stays without a name, put together from its parts.
+class UnnamedSummary {
+ public:
+  void mention(const std::string& variable) {
+    auto& names = all_.depends_on;
+    if (std::find(names.begin(), names.end(), variable) == names.end()) names.push_back(variable);
+  }
+  void add(const std::string& variable, double p_value, double before, double after) {
+    if (all_.depends_on.empty()) all_.p_value = p_value;
+    mention(variable);
+    const double ratio = before > 0.0 ? after / before : 1.0;
+    left_ *= std::min(ratio * ratio, 1.0);
+  }
+  [[nodiscard]] std::optional<Unexplained> result() const {
+    if (all_.depends_on.empty()) return std::nullopt;
+    Unexplained out = all_;
+    out.share = 1.0 - left_;
+    return out;
+  }
+
+ private:
+  Unexplained all_;
+  double left_ = 1.0;  // of the squared error
+};
+
+class Filler {
+ public:
+  Filler(const Findings& found, Calibration& calibration) : found_(found), calibration_(calibration) {}
+
+  void run() {
+    const FitResult& fit = found_.outcome.fit;
+    const std::span<const double> p(fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size()));
+    const bool matched =
+        !found_.session.recordings().front().scans.empty() && !found_.session.reference_is_base();
+    const Eigen::MatrixXd covariance =
+        matched ? with_matcher_scale(fit.covariance, to_base(p)) : fit.covariance;
+    calibration_.parameters = base_quantities(to_base(p), covariance);
+    calibration_.covariance_order = base_quantity_names();
+    calibration_.covariance = diameter_covariance(covariance);
+    calibration_.methods.push_back(joint_method(fit));
+    fit_plain();
+    fill_residual();
+    fill_effects();
+    fill_unnamed();
+    if (!found_.outcome.considered.empty())
+      calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
+    store_report_data(make_report_data(found_.session, effects(), found_.outcome.fit, plain_), calibration_);
+    const GateResult gate = judge(calibration_, fit.converged);
+    calibration_.verdict = gate.verdict;
+    calibration_.reasons = gate.reasons;
+  }
+
+ private:
+  [[nodiscard]] const EffectList& effects() const { return found_.outcome.effects; }
+  [[nodiscard]] std::vector<bool> fixed() const { return fixed_with(found_.session.fixed(0), effects()); }
+
+  /// The six base parameters alone, on the same pairs: what the effects are measured against.
+  void fit_plain() {
+    if (effects().empty()) {
+      plain_ = found_.outcome.fit;
+      return;
+    }
+    FitOptions options;
+    options.fixed = found_.session.fixed(0);
+    auto plain =
+        fit_joint(found_.session.data(), {}, found_.outcome.fit.parameters.head(kBaseCount), options);
+    if (plain) plain_ = std::move(plain).value();
+  }
+
+  void fill_residual() {
+    const auto after = held_out_residual(found_.session.data(), effects(), found_.outcome.fit, fixed());
+    calibration_.residual.held_out = after.has_value();
+    if (!after) return;
+    calibration_.residual.after = after->rms;
+    calibration_.residual.noise_floor = after->noise_floor;
+    calibration_.residual.before = after->rms;
+    if (effects().empty() || !plain_) return;
+    const auto before = held_out_residual(found_.session.data(), {}, *plain_, found_.session.fixed(0));
+    if (before) calibration_.residual.before = before->rms;
+  }
+
+  [[nodiscard]] const Finding* finding_of(const Effect* effect) const {
+    for (const Finding& finding : found_.outcome.findings)
+      if (finding.effect.get() == effect) return &finding;
+    return nullptr;
+  }
+
+  /// Evidence for an effect that the search did not add: the delay found before it, or what the user asked
+  /// for.
+  [[nodiscard]] Evidence evidence_against_plain(double z) const {
+    Evidence evidence;
+    evidence.p_value = std::erfc(z / std::sqrt(2.0));
+    if (!plain_) return evidence;
+    const std::vector<bool> trusted = trusted_pairs(*plain_, found_.outcome.fit);
+    const auto before = horizon_error(found_.session.data(), {}, *plain_, found_.session.fixed(0), trusted);
+    const auto after = horizon_error(found_.session.data(), effects(), found_.outcome.fit, fixed(), trusted);
+    if (before) evidence.held_out_before = before->rms_position();
+    if (after) evidence.held_out_after = after->rms_position();
+    return evidence;
+  }
+
+  void fill_effects() {
+    calibration_.effects = effect_results(found_.lidar);
+    Eigen::Index index = kBaseCount;
+    for (const auto& effect : effects()) {
+      const auto curve = std::find_if(found_.outcome.curves.begin(), found_.outcome.curves.end(),
+                                      [&](const AddedCurve& c) { return c.effect == effect; });
+      if (curve == found_.outcome.curves.end())
+        calibration_.effects.push_back(describe(*effect, index));
+      else
+        fitted_curves_.push_back(fitted(*curve, index));
+      index += static_cast<Eigen::Index>(effect->parameters().size());
+    }
+    if (!fitted_curves_.empty()) calibration_.extensions[kCurvesMember] = curves_to_json(fitted_curves_);
+  }
+
+  [[nodiscard]] FittedCurve fitted(const AddedCurve& added, Eigen::Index index) const {
+    FittedCurve curve{added.curve, {}, added.law_of ? added.law_of->name() : ""};
+    for (std::size_t k = 0; k < basis_size(added.curve); ++k)
+      curve.coefficients.push_back(found_.outcome.fit.parameters(index++));
+    return curve;
+  }
+
+  /// @param index of the effect's first parameter in the parameter vector
+  [[nodiscard]] EffectResult describe(const Effect& effect, Eigen::Index index) const {
+    EffectResult result;
+    result.name = effect.name();
+    double z = 0.0;
+    for (const EffectParameter& parameter : effect.parameters()) {
+      const double value = found_.outcome.fit.parameters(index);
+      const double deviation = std::sqrt(std::max(found_.outcome.fit.covariance(index, index), 0.0));
+      result.parameters.push_back(
+          {parameter.name, {value, parameter.fixed ? -1.0 : deviation, parameter.unit}});
+      if (deviation > 0.0 && parameter.start == 0.0) z = std::max(z, std::abs(value) / deviation);
+      ++index;
+    }
+    const Finding* finding = finding_of(&effect);
+    result.aliases = finding != nullptr ? finding->aliases : effect.always_alike();
+    result.evidence = finding != nullptr ? Evidence{finding->proof.family_p_value, finding->proof.before,
+                                                    finding->proof.after}
+                                         : evidence_against_plain(z);
+    return result;
+  }
+
+  /// Curves without a name: variables they depend on, in the order found.
+  void fill_unnamed() {
+    UnnamedSummary summary;
+    for (const LidarFinding& finding : found_.lidar)
+      if (!finding.effect->is_named() && !completes(finding, found_.lidar))
+        summary.add(finding.effect->name(), finding.family_p_value, finding.before, finding.after);
+    for (const AddedCurve& added : found_.outcome.curves)
+      if (!added.law_of)
+        summary.add(to_string(added.curve.law.variable), added.proof.family_p_value, added.proof.before,
+                    added.proof.after);
+    for (const AddedCurve& added : found_.outcome.curves)
+      for (const Variable variable : added.law_of ? std::vector<Variable>{} : added.alike)
+        summary.mention(to_string(variable));
+    calibration_.unexplained = summary.result();
+    const auto has_no_name = [](const LidarFinding& finding) { return !finding.effect->is_named(); };
+    if (std::any_of(found_.lidar.begin(), found_.lidar.end(), has_no_name))
+      calibration_.extensions[kLidarCurvesMember] = lidar_curves_to_json(found_.lidar);
+  }
+
+  const Findings& found_;
+  Calibration& calibration_;
+  std::optional<FitResult> plain_;
+  std::vector<FittedCurve> fitted_curves_;
+};
+
+}  // namespace
+
+void fill_calibration(const Findings& found, Calibration& calibration) { Filler(found, calibration).run(); }
+
+}  // namespace odomcalib::calib
