@@ -14,7 +14,8 @@
 namespace odomcalib::drivers {
 namespace {
 
-constexpr std::size_t kReadAtMost = 64 * 1024;  // per call, so that a fast device cannot hold the event loop
+constexpr std::size_t kReadAtMost =
+    std::size_t{64} * 1024;  // per call, so that a fast device cannot hold the event loop
 
 Error net_error(const std::string& address, const std::string& what) {
   return {ErrorCode::device, what, address,

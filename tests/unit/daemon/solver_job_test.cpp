@@ -14,7 +14,7 @@ namespace odomcalib {
 namespace {
 
 std::filesystem::path recording() {
-  const auto path = std::filesystem::path(testing::TempDir()) / ("solver_job_" + std::to_string(getpid()));
+  auto path = std::filesystem::path(testing::TempDir()) / ("solver_job_" + std::to_string(getpid()));
   std::ofstream(path) << R"({"type":"robot","wheel_diameter":0.1,"track_width":0.3,"ticks_per_rev":1000})"
                       << "\n"
                       << R"({"type":"ticks","t":0,"left":0,"right":0})"
@@ -25,7 +25,7 @@ std::filesystem::path recording() {
 }
 
 /// Tells a thousand steps and waits until it may end.
-Calibrator slow(std::shared_ptr<std::atomic<bool>> may_end) {
+Calibrator slow(const std::shared_ptr<std::atomic<bool>>& may_end) {
   Calibrator calibrator;
   calibrator.solve = [may_end](const std::vector<Recording>& recordings, const std::vector<std::string>&,
                                const Calibrator::Progress& progress) {

@@ -163,7 +163,7 @@ std::string event_bytes(std::uint32_t number, const std::string& channel, const 
          big(channel.size(), 4) + big(data.size(), 4) + channel + data;
 }
 
-messages::Stamp stamp_of(int i) {
+messages::Stamp stamp_of(std::int64_t i) {
   return {1'700'000'000'000'000 + i * 10'000, 1'000'000'000 + i * 10'000'000};
 }
 
