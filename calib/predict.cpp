@@ -18,10 +18,20 @@ constexpr std::size_t kHistory = 32;
 struct Correction {
   Eigen::VectorXd parameters;
   EffectList effects;
+  double time = 0.0;  ///< s, at which whatever changes with time is taken
 };
 
 double value_or(const Calibration& calibration, const std::string& name, double otherwise) {
   return calibration.parameter(name).value_or(otherwise);
+}
+
+/// Wheels that change with time are used as they were on the average of the drive: when the next drive
+/// begins, nobody knows how warm they are.
+bool counts_by_its_mean(const Effect& effect) { return effect.name() == "drift_with_time"; }
+
+/// Half the duration of the drive that the calibration comes from, s.
+double middle_of_drive(const Calibration& calibration) {
+  return calibration.data.empty() ? 0.0 : calibration.data.front().duration / 2.0;
 }
 
 /// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the
@@ -51,11 +61,11 @@ Correction correction_of(const Calibration& calibration) {
   base.right_radius =
       value_or(calibration, "right_wheel_diameter", calibration.robot.right_wheel_diameter) / 2.0;
   base.track_width = value_or(calibration, "track_width", calibration.robot.track_width);
-  Correction correction{to_vector(base), {}};
+  Correction correction{to_vector(base), {}, middle_of_drive(calibration)};
   std::vector<double> values(correction.parameters.data(), correction.parameters.data() + kBaseCount);
   for (const EffectResult& result : calibration.effects) {
     const auto effect = effect_of(result);
-    if (!effect || place_of(*effect) != Place::odometry) continue;
+    if (!effect || !(place_of(*effect) == Place::odometry || counts_by_its_mean(*effect))) continue;
     correction.effects.push_back(effect);
     for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
   }
@@ -112,7 +122,9 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
   const WheelTrack track = wheel_track_from_ticks(recording);
   if (track.empty()) return poses;
   const Correction correction = correction_of(calibration);
-  const DriveModel model(track, make_context(track, nominal_of(recording.robot)));
+  std::vector<StepContext> context = make_context(track, nominal_of(recording.robot));
+  for (StepContext& c : context) c.t = correction.time;
+  const DriveModel model(track, std::move(context));
   const std::vector<Pose> base = model.trajectory(as_span(correction.parameters), correction.effects).poses();
   std::size_t k = 0;
   for (const TickSample& sample : recording.ticks) {
@@ -127,7 +139,6 @@ struct Odometry::State {
   BaseParameters nominal;
   double ticks_per_rev = 0.0;
   std::deque<TickSample> history;
-  double begin = 0.0;  ///< s, time of the first sample
   Pose pose;
   DriveHistory drive{{}};
 };
@@ -144,7 +155,6 @@ Odometry& Odometry::operator=(Odometry&&) noexcept = default;
 
 PoseSample Odometry::update(const TickSample& sample) {
   State& s = *state_;
-  if (s.history.empty()) s.begin = sample.t;
   const bool advances = !s.history.empty() && sample.t > s.history.back().t;
   if (s.history.empty() || advances) s.history.push_back(sample);
   if (s.history.size() > kHistory) s.history.pop_front();
@@ -157,7 +167,7 @@ PoseSample Odometry::update(const TickSample& sample) {
   recent.ticks.assign(s.history.begin(), s.history.end());
   WheelTrack track = wheel_track_from_ticks(recent);
   StepContext context = make_context(track, s.nominal).back();
-  context.t += s.history.front().t - s.begin;
+  context.t = s.correction.time;
   s.drive.advance(context);
 
   const std::size_t n = track.t.size();

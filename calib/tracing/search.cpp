@@ -121,7 +121,10 @@ class Search {
       if (shapes.empty()) shapes.push_back(effect);
       for (const auto& shape : shapes) candidates_.push_back({shape, std::nullopt, key_of(*shape)});
     }
-    for (const Curve& curve : candidate_curves(models())) {
+    for (const Curve& free : candidate_curves(models())) {
+      // Odometry does without what belongs to the place or the day: then the base must be that of the whole
+      // drive.
+      const Curve curve = belongs_to_the_place(free.law.variable) ? centred(free, models()) : free;
       const auto effect = make_curve_effect(curve);
       candidates_.push_back(
           {effect, curve,

@@ -53,6 +53,25 @@ double distance(const PoseSample& a, const PoseSample& b) {
   return std::hypot(a.x - b.x, a.y - b.y) + 0.2 * std::abs(std::remainder(a.yaw - b.yaw, 2.0 * M_PI));
 }
 
+// A drive may begin with cold wheels or warm ones: odometry takes what they were on the average.
+TEST(Odometry, wheels_that_change_with_time_count_by_their_mean_over_the_drive) {
+  const Recording recording = drive();
+  Calibration drifting = nominal_calibration(kRobot);
+  drifting.data.resize(1);
+  drifting.data[0].duration = 200.0;
+  drifting.effects = {{"drift_with_time",
+                       {{"common", {0.01, -1.0, "1/(100 s)"}},
+                        {"differential", {0.0, -1.0, "1/(100 s)"}},
+                        {"time_constant", {1e5, -1.0, "s"}}},
+                       {},
+                       {},
+                       "host"}};
+  Calibration larger = nominal_calibration(kRobot);  // by 1 % after the first 100 s of 200
+  for (std::size_t k = 0; k < 2; ++k) larger.parameters[k].second.value *= 1.01;
+  EXPECT_LT(distance(predict(recording, drifting).back(), predict(recording, larger).back()), 1e-4);
+  EXPECT_LT(distance(end_of(recording, drifting), end_of(recording, larger)), 1e-4);
+}
+
 // The daemon sees speeds from the past only; apart from that it does what predict does.
 TEST(Odometry, sample_by_sample_applies_every_effect_as_predict_does) {
   const Recording recording = drive();
