@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/estimators/path_fit.hpp"
 #include "calib/findings.hpp"
 #include "calib/report.hpp"
 #include "calib/session/lidar_evidence.hpp"
@@ -19,6 +21,8 @@ namespace {
 constexpr double kOffsetSignificance = 4.0;
 /// ... and longer than what a careful driver leaves, s.
 constexpr double kNegligibleOffset = 3e-3;
+/// Two estimates from the same scans agree within this many standard deviations of both together.
+constexpr double kAgreement = 4.0;
 
 class Solver {
  public:
@@ -47,6 +51,7 @@ class Solver {
       search(fit.value());
     else
       outcome_ = {effects_, fit.value(), {}, {}, {}};
+    place_every_scan();
     fill();
     return calibration_;
   }
@@ -232,9 +237,50 @@ class Solver {
     if (!fit) effects_ = outcome_.effects, parameters_ = outcome_.fit.parameters;
   }
 
+  /// The same parameters from every scan instead of keyframes, where the room has walls enough to place all
+  /// of them.
+  void place_every_scan() {
+    if (session_->reference_is_base() || recordings_.front().scans.empty()) return;
+    report("placing every scan", 0.0);
+    const auto paths = paths_of_all();
+    if (!paths) return;
+    const auto fit = fit_path(*paths, effects_, parameters_,
+                              {fixed_with(session_->fixed(0), effects_), outcome_.fit.prior_information});
+    if (!fit || !improves(fit.value())) return;
+    parameters_ = outcome_.fit.parameters = fit.value().parameters;
+    outcome_.fit.covariance = fit.value().covariance;
+    every_scan_placed_ = true;
+  }
+
+  [[nodiscard]] std::optional<std::vector<PathData>> paths_of_all() const {
+    const std::span<const double> p(parameters_.data(), static_cast<std::size_t>(parameters_.size()));
+    std::vector<PathData> paths;
+    for (std::size_t i = 0; i < session_->recordings().size(); ++i) {
+      const DriveModel* model = session_->data()[i].model;
+      ScanPath path =
+          place_scans(session_->recordings()[i], *model, p, effects_, session_->pair_sets()[i].range_noise);
+      if (!path.is_usable()) return std::nullopt;
+      paths.push_back({model, std::move(path.scans)});
+    }
+    return paths;
+  }
+
+  /// Places are believed where they confirm the matches and know better: a map may be wrong as a whole.
+  [[nodiscard]] bool improves(const PathFit& path) const {
+    double gain = 0.0;  // logarithm of the ratio of variances, summed
+    for (Eigen::Index k = 0; k < parameters_.size(); ++k) {
+      const double before = outcome_.fit.covariance(k, k), after = path.covariance(k, k);
+      if (!(before > 0.0) || !(after > 0.0)) continue;
+      const double apart = path.parameters(k) - parameters_(k);
+      if (apart * apart > kAgreement * kAgreement * (before + after)) return false;
+      if (k < kBaseCount) gain += std::log(before / after);
+    }
+    return gain > 0.0;
+  }
+
   void fill() {
     report("validating", 0.0);
-    fill_calibration({*session_, outcome_, lidar_}, calibration_);
+    fill_calibration({*session_, outcome_, lidar_, every_scan_placed_}, calibration_);
     report("validating", 1.0);
   }
 
@@ -244,6 +290,8 @@ class Solver {
   Calibration calibration_;
   std::unique_ptr<Session> session_;
   bool automatic_ = false;
+  bool every_scan_placed_ =
+      false;  ///< the parameters come from the whole path, not from matches of keyframes
   EffectList effects_;
   SearchResult outcome_;
   Eigen::VectorXd parameters_;

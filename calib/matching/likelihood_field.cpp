@@ -6,7 +6,6 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr int kMaxLevel = 6;          ///< maxima over 64 cells
 constexpr double kMaxExtent = 200.0;  ///< m; what lies farther out is left out of the map
 
 Eigen::Vector2d lower_corner(std::span<const Eigen::Vector2d> points) {
@@ -21,6 +20,8 @@ Eigen::Vector2d upper_corner(std::span<const Eigen::Vector2d> points) {
   return corner.cwiseMin(kMaxExtent);
 }
 
+std::uint8_t larger(std::uint8_t a, std::uint8_t b) { return a > b ? a : b; }
+
 }  // namespace
 
 LikelihoodField::LikelihoodField(std::span<const Eigen::Vector2d> reference, const FieldOptions& options)
@@ -28,9 +29,10 @@ LikelihoodField::LikelihoodField(std::span<const Eigen::Vector2d> reference, con
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(options.cap + options.cell);
   origin_ = lower_corner(reference) - margin;
   const Eigen::Vector2i last = cell_of(upper_corner(reference) + margin);
-  width_ = last.x() + 1 + pad_;
-  height_ = last.y() + 1 + pad_;
-  levels_.emplace_back(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0);
+  width_ = last.x() + 1 + 2 * pad_;
+  height_ = last.y() + 1 + 2 * pad_;
+  scores_.reserve((kMaxLevel + 1) * cells());
+  scores_.resize(cells());
   for (const Eigen::Vector2d& point : reference)
     if (point.cwiseAbs().maxCoeff() < kMaxExtent) stamp(cell_of(point));
 }
@@ -44,33 +46,32 @@ void LikelihoodField::stamp(const Eigen::Vector2i& at) {
       const int x = at.x() + dx + pad_;
       const int y = at.y() + dy + pad_;
       if (distance >= options_.cap || x < 0 || y < 0 || x >= width_ || y >= height_) continue;
-      auto& cell = levels_.front()[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                                   static_cast<std::size_t>(x)];
+      auto& cell = scores_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                           static_cast<std::size_t>(x)];
       cell = std::max(cell, static_cast<std::uint8_t>(std::lround(kBest * (1.0 - distance / options_.cap))));
     }
 }
 
 void LikelihoodField::add_levels(int highest) {
-  while (static_cast<int>(levels_.size()) <= std::min(highest, kMaxLevel))
-    levels_.push_back(coarser(levels_.back(), 1 << (levels_.size() - 1)));
+  for (int level = static_cast<int>(scores_.size() / cells()); level <= std::min(highest, kMaxLevel); ++level)
+    make_coarser(level);
 }
 
-/// Maximum of four cells `reach` apart: twice as wide a window.
-LikelihoodField::Level LikelihoodField::coarser(const Level& fine, int reach) const {
-  Level coarse = fine;
-  const auto width = static_cast<std::size_t>(width_);
-  const auto step = static_cast<std::size_t>(reach);
-  for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y)
-    for (std::size_t x = 0; x + step < width; ++x)
-      coarse[y * width + x] = std::max(fine[y * width + x], fine[y * width + x + step]);
-  for (std::size_t y = 0; y + step < static_cast<std::size_t>(height_); ++y)
-    for (std::size_t x = 0; x < width; ++x)
-      coarse[y * width + x] = std::max(coarse[y * width + x], coarse[(y + step) * width + x]);
-  return coarse;
+/// Maximum of four cells half a window apart. First along rows, then of rows; a row's end may see the
+/// beginning of the next, which only raises a bound.
+void LikelihoodField::make_coarser(int level) {
+  scores_.resize(static_cast<std::size_t>(level + 1) * cells());
+  const auto along = std::ptrdiff_t{1} << (level - 1);
+  const auto across = along * width_;
+  const auto coarse = scores_.end() - static_cast<std::ptrdiff_t>(cells());
+  const auto fine = coarse - static_cast<std::ptrdiff_t>(cells());
+  std::transform(fine, coarse - along, fine + along, coarse, larger);
+  std::copy(coarse - along, coarse, scores_.end() - along);
+  std::transform(coarse, scores_.end() - across, coarse + across, coarse, larger);
 }
 
 Eigen::Vector2i LikelihoodField::cell_of(const Eigen::Vector2d& position) const {
-  const Eigen::Vector2d cells = (position - origin_) / options_.cell;
+  const Eigen::Vector2d cells = in_cells(position);
   constexpr double kFar = 1e6;  // outside of every map, and within int
   return {static_cast<int>(std::floor(std::clamp(cells.x(), -kFar, kFar))),
           static_cast<int>(std::floor(std::clamp(cells.y(), -kFar, kFar)))};

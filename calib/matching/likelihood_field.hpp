@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,20 +21,35 @@ class LikelihoodField {
  public:
   static constexpr int kBest = 255;  ///< score of a point that lies on a point of the reference
 
+  static constexpr int kMaxLevel = 5;  ///< maxima over 32 cells
+
   LikelihoodField(std::span<const Eigen::Vector2d> reference, const FieldOptions& options);
 
   /// Best score of the 2^level by 2^level cells that begin at (x, y); 0 outside of the map, so that a pose
   /// that moves the scan off the map gains nothing by it. Levels above 0 are made by `add_levels`.
   [[nodiscard]] int score(int level, int x, int y) const {
-    x += pad_;
-    y += pad_;
-    if (x < 0 || y < 0 || x >= width_ || y >= height_) return 0;
-    return levels_[static_cast<std::size_t>(
-        level)][static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+    if (!holds(x, y, 0)) return 0;
+    return scores(level)[offset(x, y)];
+  }
+  /// Scores of a level, for sums over many cells: that of (x, y) is at `offset(x, y)`, and a step of one cell
+  /// in x or y always adds the same to it.
+  [[nodiscard]] const std::uint8_t* scores(int level) const {
+    return scores_.data() + static_cast<std::size_t>(level) * cells();
+  }
+  [[nodiscard]] std::ptrdiff_t offset(int x, int y) const {
+    return static_cast<std::ptrdiff_t>(y + pad_) * width_ + (x + pad_);
+  }
+  /// Whether every cell up to `reach` steps from (x, y) is in the map.
+  [[nodiscard]] bool holds(int x, int y, int reach) const {
+    return x + pad_ >= reach && y + pad_ >= reach && x + pad_ + reach < width_ && y + pad_ + reach < height_;
   }
   /// Coarser maps for branch and bound; each holds maxima over four times as many cells as the one before.
   void add_levels(int highest);
 
+  /// A position in the reference frame in units of cells.
+  [[nodiscard]] Eigen::Vector2d in_cells(const Eigen::Vector2d& position) const {
+    return (position - origin_) / options_.cell;
+  }
   /// Cell of a position in the reference frame.
   [[nodiscard]] Eigen::Vector2i cell_of(const Eigen::Vector2d& position) const;
   [[nodiscard]] double cell() const { return options_.cell; }
@@ -41,15 +57,19 @@ class LikelihoodField {
   [[nodiscard]] double fit(std::span<const Eigen::Vector2d> points, const Pose& pose) const;
 
  private:
-  using Level = std::vector<std::uint8_t>;
+  [[nodiscard]] std::size_t cells() const {
+    return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  }
   void stamp(const Eigen::Vector2i& at);
-  [[nodiscard]] Level coarser(const Level& fine, int reach) const;
+  void make_coarser(int level);
 
   FieldOptions options_;
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
-  int pad_ = 0;  ///< cells before the first, so that coarse cells may begin outside
+  int pad_ = 0;  ///< cells before the first and after the last, so that scans may reach out and coarse cells
+                 ///< begin there
   int width_ = 0, height_ = 0;
-  std::vector<Level> levels_;
+  std::vector<std::uint8_t>
+      scores_;  ///< of all levels made so far, in one block: allocating costs more than filling
 };
 
 }  // namespace odomcalib::calib

@@ -11,17 +11,7 @@ namespace {
 /// Lattice steps on each side of the centre.
 int steps(double half, double step) { return static_cast<int>(std::floor(half / step + 1e-9)); }
 
-/// Cells of the points at one yaw; a shift in x and y then only adds to them.
-std::vector<Eigen::Vector2i> cells_at(const LikelihoodField& field, std::span<const Eigen::Vector2d> points,
-                                      const Pose& pose) {
-  const double c = std::cos(pose.yaw);
-  const double s = std::sin(pose.yaw);
-  std::vector<Eigen::Vector2i> cells;
-  cells.reserve(points.size());
-  for (const Eigen::Vector2d& p : points)
-    cells.push_back(field.cell_of({pose.x + c * p.x() - s * p.y(), pose.y + s * p.x() + c * p.y()}));
-  return cells;
-}
+using FourSums = std::array<int, 4>;
 
 /// The lattice of a window, and the sums of scores on it: whole numbers, so that equal means equal.
 class Lattice {
@@ -31,9 +21,16 @@ class Lattice {
         window_(window),
         count_(points.size()),
         shifts_(steps(window.half_width, field.cell())),
-        turns_(steps(window.half_angle, window.angle_step)) {
-    for (int turn = -turns_; turn <= turns_; ++turn)
-      cells_.push_back(cells_at(field, points, pose(turn, 0, 0)));
+        turns_(steps(window.half_angle, window.angle_step)),
+        offsets_(count_ * static_cast<std::size_t>(2 * turns_ + 1)),
+        turned_(static_cast<std::size_t>(2 * turns_ + 1)) {
+    for (const Eigen::Vector2d& p : points) {
+      x_.push_back(p.x() / field.cell());
+      y_.push_back(p.y() / field.cell());
+    }
+    cell_x_.resize(count_);
+    cell_y_.resize(count_);
+    for (int turn = -turns_; turn <= turns_; ++turn) place(turn);
   }
 
   [[nodiscard]] int shifts() const { return shifts_; }
@@ -42,12 +39,39 @@ class Lattice {
     return {window_.centre.x + x * field_.cell(), window_.centre.y + y * field_.cell(),
             window_.centre.yaw + turn * window_.angle_step};
   }
-  /// No pose of the 2^level by 2^level shifts that begin at (x, y) scores more; exact at level 0.
-  [[nodiscard]] int bound(int level, int turn, int x, int y) const {
+  [[nodiscard]] int score(int turn, int x, int y) const {
+    const Turned& turned = turned_[static_cast<std::size_t>(turn + turns_)];
+    const std::uint8_t* scores = field_.scores(0) + (field_.offset(x, y) - field_.offset(0, 0));
     int sum = 0;
-    for (const Eigen::Vector2i& cell : cells_[static_cast<std::size_t>(turn + turns_)])
-      sum += field_.score(level, cell.x() + x, cell.y() + y);
+    for (const std::int32_t at : turned.inside) sum += scores[at];
+    for (const Eigen::Vector2i& cell : turned.border) sum += field_.score(0, cell.x() + x, cell.y() + y);
     return sum;
+  }
+  /// No pose of the 2^level by 2^level shifts that begin at (x, y) scores more than the first number; exact
+  /// at level 0. The others are for the sets that begin 2^level farther in x, in y and in both: they share
+  /// most of the work. A set that begins outside of the window is given the bound of one inside.
+  [[nodiscard]] FourSums bounds(int level, int turn, int x, int y) const {
+    const Turned& turned = turned_[static_cast<std::size_t>(turn + turns_)];
+    const int far_x = std::min(x + (1 << level), shifts_), far_y = std::min(y + (1 << level), shifts_);
+    const std::uint8_t* scores = field_.scores(level) - field_.offset(0, 0);
+    const std::uint8_t* a = scores + field_.offset(x, y);
+    const std::uint8_t* b = scores + field_.offset(far_x, y);
+    const std::uint8_t* c = scores + field_.offset(x, far_y);
+    const std::uint8_t* d = scores + field_.offset(far_x, far_y);
+    FourSums sums{};
+    for (const std::int32_t at : turned.inside) {
+      sums[0] += a[at];
+      sums[1] += b[at];
+      sums[2] += c[at];
+      sums[3] += d[at];
+    }
+    for (const Eigen::Vector2i& cell : turned.border) {
+      sums[0] += field_.score(level, cell.x() + x, cell.y() + y);
+      sums[1] += field_.score(level, cell.x() + far_x, cell.y() + y);
+      sums[2] += field_.score(level, cell.x() + x, cell.y() + far_y);
+      sums[3] += field_.score(level, cell.x() + far_x, cell.y() + far_y);
+    }
+    return sums;
   }
   [[nodiscard]] double mean(int sum) const {
     return count_ == 0 ? 0.0
@@ -55,69 +79,115 @@ class Lattice {
   }
 
  private:
+  /// The points at one yaw: those that no shift brings out of the map, as offsets into it, and the others.
+  struct Turned {
+    std::span<const std::int32_t> inside;
+    std::vector<Eigen::Vector2i> border;
+  };
+
+  /// Cells of the points at one yaw; a shift in x and y then only adds to them. Plain loops over plain
+  /// arrays, which the compiler turns into vector instructions.
+  void turn_points(int turn) {
+    constexpr double kFar =
+        1e6;  // outside of every map, and within int; added so that truncation rounds down
+    const double yaw = window_.centre.yaw + turn * window_.angle_step;
+    const double c = std::cos(yaw), s = std::sin(yaw);
+    const Eigen::Vector2d at = field_.in_cells({window_.centre.x, window_.centre.y});
+    const double x0 = at.x() + kFar, y0 = at.y() + kFar;
+    const double* const x = x_.data();
+    const double* const y = y_.data();
+    int* const cell_x = cell_x_.data();
+    int* const cell_y = cell_y_.data();
+    for (std::size_t i = 0; i < count_; ++i)
+      cell_x[i] = static_cast<int>(std::min(std::max(x0 + c * x[i] - s * y[i], 0.0), 2.0 * kFar));
+    for (std::size_t i = 0; i < count_; ++i)
+      cell_y[i] = static_cast<int>(std::min(std::max(y0 + s * x[i] + c * y[i], 0.0), 2.0 * kFar));
+    for (std::size_t i = 0; i < count_; ++i) cell_x[i] -= static_cast<int>(kFar);
+    for (std::size_t i = 0; i < count_; ++i) cell_y[i] -= static_cast<int>(kFar);
+  }
+
+  void place(int turn) {
+    turn_points(turn);
+    const auto row = static_cast<std::size_t>(turn + turns_);
+    std::int32_t* const first = offsets_.data() + row * count_;
+    std::int32_t* next = first;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const int x = cell_x_[i], y = cell_y_[i];
+      if (field_.holds(x, y, shifts_))
+        *next++ = static_cast<std::int32_t>(field_.offset(x, y));
+      else
+        turned_[row].border.emplace_back(x, y);
+    }
+    turned_[row].inside = {first, next};
+  }
+
   const LikelihoodField& field_;
   SearchWindow window_;
   std::size_t count_;
   int shifts_, turns_;
-  std::vector<std::vector<Eigen::Vector2i>> cells_;
+  std::vector<double> x_, y_;  ///< of the points, in cells
+  std::vector<int> cell_x_, cell_y_;
+  std::vector<std::int32_t> offsets_;
+  std::vector<Turned> turned_;
 };
 
 struct Node {
   int level, turn, x, y, bound;
 };
 
+/// Best first: when the most promising set left is a single pose, none can be better.
 class BranchAndBound {
  public:
   explicit BranchAndBound(const Lattice& lattice) : lattice_(lattice) {}
 
   SearchResult run(int highest) {
-    std::vector<Node> roots;
     const int shifts = lattice_.shifts();
+    open_.reserve(static_cast<std::size_t>(16 * (2 * lattice_.turns() + 1)));
     for (int turn = -lattice_.turns(); turn <= lattice_.turns(); ++turn)
-      for (int y = -shifts; y <= shifts; y += 1 << highest)
-        for (int x = -shifts; x <= shifts; x += 1 << highest) roots.push_back(node(highest, turn, x, y));
-    explore(roots);
-    return {lattice_.pose(best_.turn, best_.x, best_.y), lattice_.mean(best_.bound), evaluated_};
+      for (int y = -shifts; y <= shifts; y += 2 << highest)
+        for (int x = -shifts; x <= shifts; x += 2 << highest) open_four(highest, turn, x, y);
+    std::make_heap(open_.begin(), open_.end(), less_promising);
+    while (open_.front().level > 0) quarter(take());
+    const Node& best = open_.front();
+    return {lattice_.pose(best.turn, best.x, best.y), lattice_.mean(best.bound), evaluated_};
   }
 
  private:
-  Node node(int level, int turn, int x, int y) {
-    ++evaluated_;
-    return {level, turn, x, y, lattice_.bound(level, turn, x, y)};
+  /// Of equals the finer one is taken first: it is nearer to the end.
+  static bool less_promising(const Node& a, const Node& b) {
+    return a.bound != b.bound ? a.bound < b.bound : a.level > b.level;
   }
-
-  /// The most promising first, so that the others fall below the best found.
-  void explore(std::vector<Node>& nodes) {
-    std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.bound > b.bound; });
-    for (const Node& next : nodes) {
-      if (next.bound <= best_.bound) return;
-      if (next.level == 0) {
-        best_ = next;
-        continue;
-      }
-      std::vector<Node> children = quarter(next);
-      explore(children);  // as deep as there are levels
+  Node take() {
+    std::pop_heap(open_.begin(), open_.end(), less_promising);
+    const Node next = open_.back();
+    open_.pop_back();
+    return next;
+  }
+  void open_four(int level, int turn, int x, int y) {
+    const FourSums bounds = lattice_.bounds(level, turn, x, y);
+    for (int k = 0; k < 4; ++k) {
+      const int at_x = x + (k % 2 << level), at_y = y + (k / 2 << level);
+      if (at_x > lattice_.shifts() || at_y > lattice_.shifts()) continue;
+      open_.push_back({level, turn, at_x, at_y, bounds[static_cast<std::size_t>(k)]});
+      ++evaluated_;
     }
   }
-
-  std::vector<Node> quarter(const Node& parent) {
-    std::vector<Node> children;
-    const int half = 1 << (parent.level - 1);
-    for (const int dy : {0, half})
-      for (const int dx : {0, half})
-        if (parent.x + dx <= lattice_.shifts() && parent.y + dy <= lattice_.shifts())
-          children.push_back(node(parent.level - 1, parent.turn, parent.x + dx, parent.y + dy));
-    return children;
+  void quarter(const Node& parent) {
+    const auto before = static_cast<std::ptrdiff_t>(open_.size());
+    open_four(parent.level - 1, parent.turn, parent.x, parent.y);
+    for (auto end = open_.begin() + before; end != open_.end();)
+      std::push_heap(open_.begin(), ++end, less_promising);
   }
 
   const Lattice& lattice_;
-  Node best_{0, 0, 0, 0, -1};
+  std::vector<Node> open_;
   std::size_t evaluated_ = 0;
 };
 
+/// Two sets a side cover the window: coarser ones would hardly exclude anything.
 int highest_level(int shifts) {
   int level = 0;
-  while ((1 << (level + 1)) <= shifts && level < 5) ++level;
+  while ((2 << level) < 2 * shifts + 1 && level < LikelihoodField::kMaxLevel) ++level;
   return level;
 }
 
@@ -131,7 +201,7 @@ SearchResult search_brute_force(const LikelihoodField& field, std::span<const Ei
   for (int turn = -lattice.turns(); turn <= lattice.turns(); ++turn)
     for (int y = -lattice.shifts(); y <= lattice.shifts(); ++y)
       for (int x = -lattice.shifts(); x <= lattice.shifts(); ++x) {
-        const int sum = lattice.bound(0, turn, x, y);
+        const int sum = lattice.score(turn, x, y);
         ++result.evaluated;
         if (sum <= best) continue;
         best = sum;

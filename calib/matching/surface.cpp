@@ -106,11 +106,6 @@ void attach_line(std::vector<SurfacePoint>& points, const RunSums& sums, std::si
   }
 }
 
-bool usable(const Scan& scan, std::size_t beam) {
-  const auto range = static_cast<double>(scan.ranges[beam]);
-  return range > 0.0 && range >= scan.range_min && (scan.range_max <= 0.0 || range <= scan.range_max);
-}
-
 SurfacePoint beam_end(const Scan& scan, std::size_t beam, const BeamMotion& motion) {
   SurfacePoint point;
   point.range = static_cast<double>(scan.ranges[beam]);
@@ -139,7 +134,7 @@ void collect_line_noise(const Scan& scan, std::vector<double>& out) {
   constexpr std::size_t kRun = 13;
   std::vector<SurfacePoint> points;
   for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam)
-    if (usable(scan, beam)) points.push_back(beam_end(scan, beam, [](double) { return Pose{}; }));
+    if (is_usable(scan, beam)) points.push_back(beam_end(scan, beam, [](double) { return Pose{}; }));
   const RunSums sums(points);
   const double step = angular_step(scan);
   for (std::size_t first = 0; first + kRun <= points.size(); first += kRun / 2) {
@@ -160,6 +155,11 @@ double incidence(const SurfacePoint& point) {
   return std::atan2(point.normal.x() * back.y() - point.normal.y() * back.x(), point.normal.dot(back));
 }
 
+bool is_usable(const Scan& scan, std::size_t beam) {
+  const auto range = static_cast<double>(scan.ranges[beam]);
+  return range > 0.0 && range >= scan.range_min && (scan.range_max <= 0.0 || range <= scan.range_max);
+}
+
 double beam_time(const Scan& scan, std::size_t beam) {
   if (!scan.times.empty()) return static_cast<double>(scan.times[beam]);
   return scan.time_increment.value_or(0.0) * static_cast<double>(beam);
@@ -173,7 +173,7 @@ Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_no
   Surface surface;
   surface.points.reserve(scan.ranges.size());
   for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam)
-    if (usable(scan, beam)) surface.points.push_back(beam_end(scan, beam, motion));
+    if (is_usable(scan, beam)) surface.points.push_back(beam_end(scan, beam, motion));
   const double step = angular_step(scan);
   const RunSums sums(surface.points);
   for (std::size_t i = 0; i < surface.points.size(); ++i)

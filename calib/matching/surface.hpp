@@ -40,6 +40,9 @@ double beam_time(const Scan& scan, std::size_t beam);
 /// Middle of the sweep after Scan::t in s: the scan's reference time; 0 when beam times are unknown.
 double reference_time(const Scan& scan);
 
+/// Whether a beam returned a range within the scan's limits.
+bool is_usable(const Scan& scan, std::size_t beam);
+
 /// De-skewed points with local lines. Beams without reading or outside the scan's range limits are left out.
 /// @param range_noise standard deviation of a range, m; decides what still counts as one line
 Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_noise);

@@ -1,0 +1,233 @@
+#include "calib/graph/scan_graph.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "calib/graph/optimize.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr std::size_t kTried = 4;      ///< places that a keyframe is compared with
+constexpr std::size_t kApart = 3;      ///< keyframes between two of them
+constexpr std::size_t kWait = 5;       ///< keyframes within which a loop must be confirmed
+constexpr std::size_t kSamePlace = 8;  ///< keyframes between what two loops that confirm each other lead to
+constexpr double kAgreement = 0.15;    ///< m, and with half the number rad, between two loops
+constexpr double kWidest = 3.0;        ///< m, of the search
+constexpr double kWidestAngle = 0.8;   ///< rad
+constexpr double kMostChi2 = 30.0;     ///< of a new loop after settling; three degrees of freedom
+constexpr double kMotionFloor =
+    5e-3;  ///< m; neighbouring matches err together, which their covariance ignores
+constexpr double kRotationFloor = 3e-3;  ///< rad
+constexpr double kNeighbourOverlap =
+    0.25;  ///< share of lines; doors and corners hide much from one step to the next
+constexpr double kMostFromOdometry = 0.5;  ///< m and rad between a match of neighbours and odometry
+
+std::array<double, 6> information_of(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d floor = Eigen::Vector3d(kMotionFloor * kMotionFloor, kMotionFloor * kMotionFloor,
+                                                kRotationFloor * kRotationFloor)
+                                    .asDiagonal();
+  const Eigen::Matrix3d i = (covariance + floor).ldlt().solve(Eigen::Matrix3d::Identity());
+  return {i(0, 0), i(0, 1), i(0, 2), i(1, 1), i(1, 2), i(2, 2)};
+}
+
+GraphEdge edge_of(std::size_t from, std::size_t to, const Pose& motion, const Eigen::Matrix3d& covariance) {
+  return {from, to, {motion.x, motion.y, wrap_angle(motion.yaw)}, information_of(covariance)};
+}
+
+double size_of(const Pose& motion) {
+  return std::max(std::hypot(motion.x, motion.y), std::abs(wrap_angle(motion.yaw)));
+}
+
+struct Loop {
+  std::size_t from = 0, to = 0;
+  LoopMatch match;
+};
+
+class Builder {
+ public:
+  Builder(std::span<const Surface> surfaces, std::span<const Pose> odometry, const ScanGraphOptions& options)
+      : surfaces_(surfaces), odometry_(odometry), options_(options) {
+    out_.scans = choose_keyframes(odometry, options.spacing);
+  }
+
+  ScanGraph run() {
+    for (std::size_t k = 0; k < out_.scans.size(); ++k) {
+      add_vertex(k);
+      for (const std::size_t j : places_seen_before(k)) look(j, k);
+    }
+    for (const Loop& loop : waiting_) refuse(loop, "not confirmed");
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] const Surface& surface(std::size_t k) const { return surfaces_[out_.scans[k]]; }
+  [[nodiscard]] Pose pose(std::size_t k) const {
+    const GraphVertex& v = out_.graph.vertices[k];
+    return {v.x, v.y, v.yaw};
+  }
+
+  void add_vertex(std::size_t k) {
+    references_.push_back(std::make_unique<MatchReference>(surface(k), options_.loop.range_noise));
+    Pose at;
+    if (k > 0) {
+      const GraphEdge edge = step_to(k);
+      out_.graph.edges.push_back(edge);
+      at = compose(pose(k - 1), Pose{edge.motion[0], edge.motion[1], edge.motion[2]});
+      const Pose step = between(pose(k - 1), at);
+      way_.push_back(way_.back() +
+                     std::max(std::hypot(step.x, step.y), 0.5 * std::abs(wrap_angle(step.yaw))));
+    } else {
+      way_.push_back(0.0);
+    }
+    out_.graph.vertices.push_back(
+        {static_cast<std::int64_t>(k), VertexKind::pose, at.x, at.y, at.yaw, k == 0});
+  }
+
+  /// A match of neighbours, completed by odometry where the match leaves a direction open; odometry alone
+  /// where there is no match that agrees with it.
+  GraphEdge step_to(std::size_t k) {
+    const Pose guess = between(odometry_[out_.scans[k - 1]], odometry_[out_.scans[k]]);
+    const double variance = options_.odometry_sigma * options_.odometry_sigma;
+    const LoopMatch found = match_neighbour(k, guess);
+    if (found.ok && size_of(between(guess, found.motion)) < kMostFromOdometry) {
+      out_.sources.push_back(EdgeSource::match);
+      return edge_of(k - 1, k, found.motion, found.covariance);
+    }
+    out_.sources.push_back(EdgeSource::odometry);
+    return edge_of(k - 1, k, guess, variance * Eigen::Matrix3d::Identity());
+  }
+
+  [[nodiscard]] LoopMatch match_neighbour(std::size_t k, const Pose& guess) const {
+    MatchOptions match;
+    match.range_noise = options_.loop.range_noise;
+    match.min_overlap = kNeighbourOverlap;
+    const MatchResult found = match_point_to_line(*references_[k - 1], surface(k), guess, match);
+    if (found.is_usable()) return {true, "", found.motion, found.covariance};
+    if (found.status == MatchStatus::degenerate && found.eigenvalue_ratio > 0.0)
+      return with_odometry(found, guess);
+    LoopCheckOptions narrow = options_.loop;
+    narrow.half_width = narrow.half_angle = kMostFromOdometry;
+    narrow.min_overlap = kNeighbourOverlap;
+    return match_loop(*references_[k - 1], surface(k), guess, narrow);
+  }
+
+  /// Along a corridor the wheels know better than the scans.
+  [[nodiscard]] LoopMatch with_odometry(const MatchResult& found, const Pose& guess) const {
+    const double weight = 1.0 / (options_.odometry_sigma * options_.odometry_sigma);
+    const Eigen::Matrix3d matched = found.covariance.ldlt().solve(Eigen::Matrix3d::Identity());
+    const Eigen::Matrix3d both = matched + weight * Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d apart(guess.x - found.motion.x, guess.y - found.motion.y,
+                                wrap_angle(guess.yaw - found.motion.yaw));
+    const Eigen::Vector3d step = both.ldlt().solve(weight * apart);
+    const Pose motion{found.motion.x + step(0), found.motion.y + step(1), found.motion.yaw + step(2)};
+    return {true, "", motion, both.ldlt().solve(Eigen::Matrix3d::Identity())};
+  }
+
+  /// Half width of the search: what may have gone wrong since the map last closed.
+  [[nodiscard]] double reach(std::size_t k) const {
+    return std::min(options_.loop.half_width + options_.drift_per_metre * (way_[k] - closed_at_), kWidest);
+  }
+
+  /// The nearest ones, some keyframes apart.
+  [[nodiscard]] std::vector<std::size_t> places_seen_before(std::size_t k) const {
+    std::vector<std::pair<double, std::size_t>> near;
+    for (std::size_t j = 0; j < k; ++j) {
+      if (way_[k] - way_[j] < options_.min_way_round) break;
+      const Pose apart = between(pose(j), pose(k));
+      const double distance = std::hypot(apart.x, apart.y);
+      if (distance < reach(k)) near.emplace_back(distance + 0.5 * std::abs(wrap_angle(apart.yaw)), j);
+    }
+    std::sort(near.begin(), near.end());
+    std::vector<std::size_t> places;
+    for (const auto& [distance, j] : near) {
+      const bool close = std::any_of(places.begin(), places.end(), [j = j](std::size_t other) {
+        return (other > j ? other - j : j - other) < kApart;
+      });
+      if (!close) places.push_back(j);
+      if (places.size() == kTried) break;
+    }
+    return places;
+  }
+
+  void look(std::size_t j, std::size_t k) {
+    LoopCheckOptions check = options_.loop;
+    check.half_width = reach(k);
+    check.half_angle =
+        std::min(check.half_angle + options_.drift_per_metre * (way_[k] - closed_at_), kWidestAngle);
+    const Loop loop{j, k, match_loop(*references_[j], surface(k), between(pose(j), pose(k)), check)};
+    if (!loop.match.ok) return refuse(loop, loop.match.reason);
+    confirm(loop);
+  }
+
+  void refuse(const Loop&, const std::string& reason) { ++out_.refused[reason]; }
+
+  /// Two loops of different keyframes that say the same about the drift are believed, one alone is not.
+  void confirm(const Loop& loop) {
+    bool confirmed = false;
+    std::vector<Loop> still;
+    for (Loop& earlier : waiting_) {
+      if (earlier.to + kWait < loop.to)
+        refuse(earlier, "not confirmed");
+      else if (earlier.to != loop.to && agree(earlier, loop))
+        confirmed = tie(earlier) || confirmed;
+      else
+        still.push_back(std::move(earlier));
+    }
+    waiting_ = std::move(still);
+    if (confirmed)
+      tie(loop);
+    else
+      waiting_.push_back(loop);
+  }
+
+  [[nodiscard]] bool agree(const Loop& a, const Loop& b) const {
+    const std::size_t apart = a.from > b.from ? a.from - b.from : b.from - a.from;
+    if (apart > kSamePlace && size_of(between(pose(a.from), pose(b.from))) > 1.0) return false;
+    const Pose by_a = compose(compose(between(pose(b.from), pose(a.from)), a.match.motion),
+                              between(pose(a.to), pose(b.to)));
+    const Pose error = between(by_a, b.match.motion);
+    return std::hypot(error.x, error.y) < kAgreement && std::abs(wrap_angle(error.yaw)) < 0.5 * kAgreement;
+  }
+
+  /// The edge stays if the graph can live with it.
+  bool tie(const Loop& loop) {
+    const PoseGraph before = out_.graph;
+    out_.graph.edges.push_back(edge_of(loop.from, loop.to, loop.match.motion, loop.match.covariance));
+    const GraphSummary summary = optimize_graph(out_.graph);
+    PoseGraph alone = out_.graph;
+    alone.edges = {out_.graph.edges.back()};
+    if (!summary.is_usable() || graph_chi2(alone) > kMostChi2) {
+      out_.graph = before;
+      refuse(loop, "contradicts the graph");
+      return false;
+    }
+    out_.sources.push_back(EdgeSource::loop);
+    closed_at_ = way_[loop.to];
+    return true;
+  }
+
+  std::span<const Surface> surfaces_;
+  std::span<const Pose> odometry_;
+  const ScanGraphOptions& options_;
+  ScanGraph out_;
+  std::vector<std::unique_ptr<MatchReference>> references_;  ///< of each vertex
+  std::vector<double> way_;                                  ///< to each vertex: m, turning counted, too
+  double closed_at_ = 0.0;                                   ///< way at the last loop
+  std::vector<Loop> waiting_;                                ///< to be confirmed
+};
+
+}  // namespace
+
+std::size_t ScanGraph::count(EdgeSource source) const {
+  return static_cast<std::size_t>(std::count(sources.begin(), sources.end(), source));
+}
+
+ScanGraph build_scan_graph(std::span<const Surface> surfaces, std::span<const Pose> odometry,
+                           const ScanGraphOptions& options) {
+  return Builder(surfaces, odometry, options).run();
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,95 @@
+#include "calib/map/localise.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/statistics/median.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr std::size_t kMinInliers = 40;
+constexpr double kMinInlierShare = 0.5;  ///< of the beams that should strike a wall
+constexpr double kMinEigenvalueRatio = 0.01;
+constexpr double kSettled = 0.1;  ///< sigma
+constexpr int kWholeSteps = 5;
+constexpr double kTukey = 4.685;  ///< 95 % efficiency at the normal distribution
+
+std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>& beams, const Pose& pose,
+                                    const PlaceOptions& options, double gate, std::size_t& strikes) {
+  std::vector<RangeTerm> terms;
+  const std::vector<Strike> struck = map.strikes(beams, pose);
+  strikes = struck.size();
+  terms.reserve(struck.size());
+  for (const Strike& strike : struck) {
+    const RangeTerm term = map.term(beams[strike.beam], strike.wall, pose, options.range_noise);
+    if (std::abs(term.residual) < gate) terms.push_back(term);
+  }
+  return terms;
+}
+
+double robust_scale(const std::vector<RangeTerm>& terms) {
+  std::vector<double> sizes;
+  sizes.reserve(terms.size());
+  for (const RangeTerm& term : terms) sizes.push_back(std::abs(term.residual) / std::sqrt(term.variance));
+  return std::max(1.0, kMadToSigma * median_of(std::move(sizes)));
+}
+
+/// One step, `share` of it taken; its whole length in sigmas.
+double improve(const std::vector<RangeTerm>& terms, double share, Place& place) {
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  place.information.setZero();
+  place.inliers = 0;
+  for (const RangeTerm& term : terms) {
+    const double weight =
+        tukey_weight(term.residual / (std::sqrt(term.variance) * place.scale)) / term.variance;
+    if (!(weight > 0.0)) continue;
+    place.information += weight * term.by_pose * term.by_pose.transpose();
+    gradient += weight * term.residual * term.by_pose;
+    ++place.inliers;
+  }
+  const Eigen::Matrix3d damped =
+      place.information + 1e-9 * (place.information.trace() + 1.0) * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d step = damped.ldlt().solve(gradient);
+  place.pose.x -= share * step(0);
+  place.pose.y -= share * step(1);
+  place.pose.yaw -= share * step(2);
+  return std::sqrt(std::max(step.dot(place.information * step), 0.0));
+}
+
+}  // namespace
+
+double tukey_weight(double z) {
+  const double root = 1.0 - (z / kTukey) * (z / kTukey);
+  return root > 0.0 ? root * root : 0.0;
+}
+
+bool Place::is_usable() const {
+  if (!converged || inliers < kMinInliers) return false;
+  if (static_cast<double>(inliers) < kMinInlierShare * static_cast<double>(strikes)) return false;
+  const Eigen::Matrix2d schur = information.topLeftCorner<2, 2>() - information.topRightCorner<2, 1>() *
+                                                                        information.bottomLeftCorner<1, 2>() /
+                                                                        std::max(information(2, 2), 1e-300);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(schur);
+  return eigen.eigenvalues()(0) > kMinEigenvalueRatio * eigen.eigenvalues()(1);
+}
+
+Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const Pose& guess,
+                 const PlaceOptions& options) {
+  Place place;
+  place.pose = guess;
+  const double last_gate = std::max(0.05, 6.0 * options.range_noise);
+  for (int i = 0; i < options.iterations && !place.converged; ++i) {
+    const double gate = std::max(options.gate * std::pow(0.4, i), last_gate);
+    const auto terms = terms_within(map, beams, place.pose, options, gate, place.strikes);
+    if (terms.size() < kMinInliers) return place;
+    place.scale = robust_scale(terms);
+    // Beams next to the end of a wall may strike it and miss it in turn; half steps settle between.
+    const double step = improve(terms, i < kWholeSteps ? 1.0 : 0.5, place);
+    place.converged = gate <= last_gate && step < kSettled * place.scale;
+  }
+  return place;
+}
+
+}  // namespace odomcalib::calib

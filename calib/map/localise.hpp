@@ -1,0 +1,34 @@
+// Where a scan was taken, in a map of walls.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/map/wall_map.hpp"
+
+namespace odomcalib::calib {
+
+struct PlaceOptions {
+  double range_noise = 0.01;  ///< m
+  double gate = 0.3;          ///< m, largest difference of a range from what the map expects
+  int iterations = 12;
+};
+
+struct Place {
+  Pose pose;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of x, y (map axes), yaw; the map taken as exact
+  std::size_t strikes = 0;                                ///< beams that should strike a known wall
+  std::size_t inliers = 0;                                ///< of those, beams that did
+  double scale = 1.0;  ///< robust sigma of the ranges over their stated noise
+  bool converged = false;
+  /// Enough walls from enough sides.
+  [[nodiscard]] bool is_usable() const;
+};
+
+Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const Pose& guess,
+                 const PlaceOptions& options);
+
+/// Tukey's weight for a residual of z robust sigmas.
+double tukey_weight(double z);
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,143 @@
+#include "calib/map/scan_path.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "calib/matching/point_to_line.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kNewWallsAfter = 0.3;       ///< m of travel, or ...
+constexpr double kNewWallsAfterTurn = 0.35;  ///< rad
+constexpr std::size_t kAdjusted = 500;       ///< scans that the map is adjusted to
+constexpr std::size_t kMostWalls = 300;
+constexpr std::size_t kFewestScans = 50;
+constexpr double kMostLost = 0.1;    ///< share of the scans
+constexpr double kFirstGate = 0.15;  ///< m, for a scan placed from the one before it
+
+class Mapper {
+ public:
+  Mapper(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
+         const EffectList& effects, double range_noise)
+      : recording_(recording),
+        mount_(to_base(parameters).mount),
+        trajectory_(model.trajectory(parameters, effects)),
+        options_{range_noise, kFirstGate} {
+    for (std::size_t k = 0; k < recording.scans.size(); ++k) {
+      const Scan& scan = recording.scans[k];
+      const double end = scan.t + 2.0 * reference_time(scan);
+      if (model.track().covers(scan.t, end)) chosen_.push_back(k);
+    }
+  }
+
+  ScanPath run() {
+    if (chosen_.size() < kFewestScans) return {};
+    explore();
+    if (path_.map.walls().empty() || path_.map.walls().size() > kMostWalls) return {};
+    adjust();
+    place_all();
+    return std::move(path_);
+  }
+
+ private:
+  [[nodiscard]] const Scan& scan(std::size_t k) const { return recording_.scans[chosen_[k]]; }
+  [[nodiscard]] double time(std::size_t k) const { return scan(k).t + reference_time(scan(k)); }
+  [[nodiscard]] Pose sensor_at(double t) const { return compose(trajectory_.at(t), mount_); }
+
+  [[nodiscard]] BeamMotion motion_of(std::size_t k) const {
+    const double begin = scan(k).t;
+    if (!(reference_time(scan(k)) > 0.0)) return [](double) { return Pose{}; };
+    const Pose middle = sensor_at(time(k));
+    return [this, begin, middle](double seconds) { return between(middle, sensor_at(begin + seconds)); };
+  }
+
+  [[nodiscard]] Surface surface(std::size_t k) const {
+    return make_surface(scan(k), motion_of(k), options_.range_noise);
+  }
+
+  /// From here on new scans are matched with this one where the map does not know the place.
+  void make_key(std::size_t k, const Pose& pose) {
+    key_ = std::make_unique<MatchReference>(surface(k), options_.range_noise);
+    key_pose_ = pose;
+    path_.map.insert(key_->walls(), pose);
+  }
+
+  [[nodiscard]] Pose predicted(std::size_t k) const {
+    return compose(poses_.back(), between(sensor_at(time(k - 1)), sensor_at(time(k))));
+  }
+
+  void explore() {
+    poses_ = {Pose{}};
+    make_key(0, Pose{});
+    for (std::size_t k = 1; k < chosen_.size(); ++k) {
+      const Pose guess = predicted(k);
+      const auto found = find(k, guess);
+      poses_.push_back(found.value_or(guess));
+      const Pose step = between(key_pose_, poses_.back());
+      if (found && (std::hypot(step.x, step.y) > kNewWallsAfter || std::abs(step.yaw) > kNewWallsAfterTurn))
+        make_key(k, *found);
+    }
+  }
+
+  /// In the map, or else by a match with the last key scan.
+  [[nodiscard]] std::optional<Pose> find(std::size_t k, const Pose& guess) const {
+    const Place place = place_scan(path_.map, make_beams(scan(k), motion_of(k)), guess, options_);
+    if (place.is_usable()) return place.pose;
+    MatchOptions match;
+    match.range_noise = options_.range_noise;
+    const MatchResult result = match_point_to_line(*key_, surface(k), between(key_pose_, guess), match);
+    if (!result.is_usable()) return std::nullopt;
+    return compose(key_pose_, result.motion);
+  }
+
+  /// Every few scans show all walls; more would only take longer.
+  void adjust() {
+    std::vector<std::vector<Beam>> beams;
+    std::vector<Place> places;
+    const std::size_t stride = chosen_.size() / kAdjusted + 1;
+    for (std::size_t k = 0; k < chosen_.size(); k += stride) {
+      beams.push_back(make_beams(scan(k), motion_of(k)));
+      places.push_back(place_scan(path_.map, beams.back(), poses_[k], options_));
+    }
+    adjust_map(beams, options_, path_.map, places);
+  }
+
+  void place_all() {
+    for (std::size_t k = 0; k < chosen_.size(); ++k) {
+      const Place place = place_scan(path_.map, make_beams(scan(k), motion_of(k)), poses_[k], options_);
+      if (!place.is_usable()) {
+        ++path_.lost;
+        continue;
+      }
+      const Eigen::Matrix3d covariance = place.information.ldlt().solve(Eigen::Matrix3d::Identity());
+      path_.scans.push_back({time(k), place.pose, place.scale * place.scale * covariance});
+    }
+  }
+
+  const Recording& recording_;
+  Pose mount_;
+  Trajectory trajectory_;
+  PlaceOptions options_;
+  std::vector<std::size_t> chosen_;  ///< scans that the ticks cover
+  std::vector<Pose> poses_;          ///< of those, while the map grows
+  std::unique_ptr<MatchReference> key_;
+  Pose key_pose_;
+  ScanPath path_;
+};
+
+}  // namespace
+
+bool ScanPath::is_usable() const {
+  return scans.size() >= kFewestScans &&
+         static_cast<double>(lost) < kMostLost * static_cast<double>(lost + scans.size());
+}
+
+ScanPath place_scans(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
+                     const EffectList& effects, double range_noise) {
+  return Mapper(recording, model, parameters, effects, range_noise).run();
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,34 @@
+// Where every scan of a recording was taken: placed one after the other in a map of walls that grows on the
+// way, the map adjusted to all of them, and all placed again. Each scan's error is then its own: it does not
+// add up along the drive as that of a chain of matches does.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "calib/map/adjust.hpp"
+#include "calib/model/drive_model.hpp"
+#include "proto/recording.hpp"
+
+namespace odomcalib::calib {
+
+struct PlacedScan {
+  double time = 0.0;           ///< s, the scan's reference time on the sensor's clock
+  Pose pose;                   ///< of the sensor in the map
+  Eigen::Matrix3d covariance;  ///< x, y in map axes, yaw
+};
+
+struct ScanPath {
+  std::vector<PlacedScan> scans;  ///< in time order
+  std::size_t lost = 0;           ///< scans that could not be placed
+  WallMap map;
+  /// Lost scans are few enough for the others to be trusted.
+  [[nodiscard]] bool is_usable() const;
+};
+
+/// @param parameters, effects of the model, for guesses and for de-skewing
+/// @param range_noise m
+ScanPath place_scans(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
+                     const EffectList& effects, double range_noise);
+
+}  // namespace odomcalib::calib

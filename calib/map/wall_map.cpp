@@ -1,0 +1,144 @@
+#include "calib/map/wall_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kMinLength = 0.25;     ///< m; shorter pieces may be curved
+constexpr double kMaxOffset = 0.06;     ///< m across, between pieces of one wall
+constexpr double kMinAlike = 0.995;     ///< cosine between their normals, 5.7 degrees
+constexpr double kMaxGapAlong = 0.5;    ///< m, between pieces of one wall
+constexpr double kShade = 0.1;          ///< m, a wall may be this much longer than what was seen of it
+constexpr double kEndMargin = 0.02;     ///< m, at ends that are already short of what was seen
+constexpr double kSurfaceFloor = 1e-3;  ///< m, unevenness of surfaces
+
+struct Frame {
+  explicit Frame(const Pose& pose) : at(pose.x, pose.y), c(std::cos(pose.yaw)), s(std::sin(pose.yaw)) {}
+  [[nodiscard]] Eigen::Vector2d turn(const Eigen::Vector2d& v) const {
+    return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+  }
+  Eigen::Vector2d at;
+  double c, s;
+};
+
+Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
+
+LineSums moved(const LineSums& sums, const Frame& frame) {
+  Eigen::Matrix2d turn;
+  turn << frame.c, -frame.s, frame.s, frame.c;
+  const Eigen::Vector2d first = turn * sums.first;
+  LineSums out = sums;
+  out.first = first + sums.weight * frame.at;
+  out.noise = turn * sums.noise * turn.transpose();
+  out.second = turn * sums.second * turn.transpose() + first * frame.at.transpose() +
+               frame.at * first.transpose() + sums.weight * frame.at * frame.at.transpose();
+  return out;
+}
+
+MapWall in_map(const Wall& wall, const Frame& frame) {
+  MapWall out;
+  out.centre = frame.at + frame.turn(wall.line.centre);
+  out.normal = frame.turn(wall.line.normal);
+  out.low = wall.low;
+  out.high = wall.high;
+  out.sums = moved(wall.sums, frame);
+  if (out.normal.dot(frame.at - out.centre) > 0.0) return out;
+  out.normal = -out.normal;
+  std::swap(out.low, out.high);
+  out.low = -out.low;
+  out.high = -out.high;
+  return out;
+}
+
+/// `from`'s ends along `wall`, from its centre.
+std::pair<double, double> ends_along(const MapWall& from, const MapWall& wall) {
+  const auto along = [&](double s) {
+    return wall.direction().dot(from.centre + s * from.direction() - wall.centre);
+  };
+  return {along(from.low), along(from.high)};
+}
+
+void merge(MapWall& into, const MapWall& piece) {
+  const MapWall before = into;
+  into.sums += piece.sums;
+  const FittedLine line = fit_line(into.sums);
+  into.centre = line.centre;
+  into.normal = line.normal.dot(before.normal) > 0.0 ? line.normal : Eigen::Vector2d(-line.normal);
+  const auto [a, b] = ends_along(before, into);
+  const auto [c, d] = ends_along(piece, into);
+  into.low = std::min(a, c);
+  into.high = std::max(b, d);
+}
+
+}  // namespace
+
+MapWall* WallMap::find_alike(const MapWall& wall) {
+  for (MapWall& known : walls_) {
+    if (known.normal.dot(wall.normal) < kMinAlike) continue;
+    const auto [low, high] = ends_along(wall, known);
+    if (low > known.high + kMaxGapAlong || high < known.low - kMaxGapAlong) continue;
+    const Eigen::Vector2d apart = wall.centre - known.centre;
+    if (std::abs(known.normal.dot(apart)) < kMaxOffset) return &known;
+  }
+  return nullptr;
+}
+
+void WallMap::insert(const Walls& seen, const Pose& sensor) {
+  const Frame frame(sensor);
+  for (const Wall& wall : seen.walls) {
+    if (wall.high - wall.low < kMinLength) continue;
+    const MapWall piece = in_map(wall, frame);
+    if (MapWall* known = find_alike(piece))
+      merge(*known, piece);
+    else
+      walls_.push_back(piece);
+  }
+}
+
+std::vector<Strike> WallMap::strikes(const std::vector<Beam>& beams, const Pose& sensor) const {
+  const Frame frame(sensor);
+  std::vector<Strike> found;
+  found.reserve(beams.size());
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const Eigen::Vector2d from = frame.at + frame.turn(beams[i].origin);
+    const Eigen::Vector2d direction = frame.turn(beams[i].direction);
+    double nearest = std::numeric_limits<double>::infinity();
+    Strike strike{i, walls_.size()};
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      const MapWall& wall = walls_[w];
+      const double towards = wall.normal.dot(direction);
+      if (towards >= 0.0) continue;
+      const double range = wall.normal.dot(wall.centre - from) / towards;
+      if (range <= 0.0 || range >= nearest) continue;
+      const double s = wall.direction().dot(from + range * direction - wall.centre);
+      if (s < wall.low - kShade || s > wall.high + kShade) continue;
+      nearest = range;
+      const bool inside = s > wall.low + kEndMargin && s < wall.high - kEndMargin;
+      strike.wall = inside && towards < -kMinWallIncidence ? w : walls_.size();
+    }
+    if (strike.wall < walls_.size()) found.push_back(strike);
+  }
+  return found;
+}
+
+RangeTerm WallMap::term(const Beam& beam, std::size_t index, const Pose& sensor, double range_noise) const {
+  const Frame frame(sensor);
+  const MapWall& wall = walls_[index];
+  const Eigen::Vector2d from = frame.at + frame.turn(beam.origin);
+  const Eigen::Vector2d direction = frame.turn(beam.direction);
+  const double towards = wall.normal.dot(direction);
+  const double expected = wall.normal.dot(wall.centre - from) / towards;
+  const Eigen::Vector2d point = from + expected * direction;
+  RangeTerm term;
+  term.residual = beam.range - expected;
+  const double floor = kSurfaceFloor / towards;
+  term.variance = range_noise * range_noise + floor * floor;
+  term.by_pose << wall.normal / towards, wall.normal.dot(quarter_turn(point - frame.at)) / towards;
+  term.by_wall << -1.0 / towards, wall.direction().dot(point - wall.centre) / towards;
+  return term;
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "calib/map/adjust.hpp"
+#include "tests/unit/calib/room_scans.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+using testing::kRoom;
+using testing::scan_from;
+
+constexpr double kNoise = 0.01;
+const BeamMotion kAtRest = [](double) { return Pose{}; };
+
+Walls walls_of(const Scan& scan) { return find_walls(make_surface(scan, kAtRest, kNoise), kNoise); }
+
+/// The room as several scans from known places show it.
+WallMap map_of_room() {
+  WallMap map;
+  unsigned seed = 100;
+  for (const Pose& pose : {Pose{0, 0, 0}, Pose{0.5, 1.0, 1.0}, Pose{3.0, 2.5, 2.0}, Pose{-1.0, -1.0, -2.0}})
+    map.insert(walls_of(scan_from(kRoom, pose, kNoise, ++seed)), pose);
+  return map;
+}
+
+TEST(WallMap, pieces_of_one_wall_become_one) {
+  // Six walls, of which two stand out into the room and are seen from both sides; a wall behind them may stay
+  // in two.
+  EXPECT_LE(map_of_room().walls().size(), 10U);
+  EXPECT_GE(map_of_room().walls().size(), 6U);
+}
+
+TEST(WallMap, a_beam_strikes_the_nearest_wall_and_no_wall_behind_it) {
+  const WallMap map = map_of_room();
+  const Pose pose{0.0, 0.0, 0.0};
+  const auto beams = make_beams(scan_from(kRoom, pose, 0.0, 1), kAtRest);
+  const auto strikes = map.strikes(beams, pose);
+  EXPECT_GT(strikes.size(), beams.size() / 2);
+  for (const Strike& strike : strikes)
+    EXPECT_LT(std::abs(map.term(beams[strike.beam], strike.wall, pose, kNoise).residual), 0.05);
+}
+
+TEST(WallMap, derivatives_agree_with_central_differences) {
+  constexpr double kStep = 1e-6;
+  WallMap map = map_of_room();
+  const Pose pose{0.2, -0.1, 0.3};
+  const auto beams = make_beams(scan_from(kRoom, pose, kNoise, 1), kAtRest);
+  for (const Strike& strike : map.strikes(beams, pose)) {
+    const Beam& beam = beams[strike.beam];
+    const RangeTerm term = map.term(beam, strike.wall, pose, kNoise);
+    for (int k = 0; k < 3; ++k) {
+      const auto at = [&](double step) {
+        const Pose moved{pose.x + (k == 0) * step, pose.y + (k == 1) * step, pose.yaw + (k == 2) * step};
+        return map.term(beam, strike.wall, moved, kNoise).residual;
+      };
+      EXPECT_NEAR((at(kStep) - at(-kStep)) / (2.0 * kStep), term.by_pose(k),
+                  1e-4 * (1.0 + std::abs(term.by_pose(k))));
+    }
+    const MapWall wall = map.walls()[strike.wall];
+    const auto with = [&](const Eigen::Vector2d& step) {
+      MapWall& moved = map.walls()[strike.wall];
+      moved.centre = wall.centre + step(0) * wall.normal;
+      moved.normal = Eigen::Rotation2Dd(step(1)) * wall.normal;
+      const double residual = map.term(beam, strike.wall, pose, kNoise).residual;
+      moved = wall;
+      return residual;
+    };
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(k);
+      EXPECT_NEAR((with(step) - with(-step)) / (2.0 * kStep), term.by_wall(k),
+                  1e-4 * (1.0 + std::abs(term.by_wall(k))));
+    }
+  }
+}
+
+/// The room from scans at known places, adjusted, and then 200 scans from other places placed in it.
+TEST(PlaceScan, finds_the_place_and_states_its_own_error) {
+  WallMap map;
+  std::vector<std::vector<Beam>> scans;
+  std::vector<Place> places;
+  const PlaceOptions options{kNoise, 0.15};
+  for (unsigned k = 0; k < 60; ++k) {
+    const Pose pose{1.5 * std::sin(0.4 * k) - 0.3, 0.9 * std::cos(0.5 * k), 0.3 * k};
+    const Scan scan = scan_from(kRoom, pose, kNoise, 1000 + k);
+    if (k % 5 == 0) map.insert(walls_of(scan), pose);
+    scans.push_back(make_beams(scan, kAtRest));
+    places.push_back(place_scan(map, scans.back(), pose, options));
+  }
+  adjust_map(scans, options, map, places);
+  double sum = 0.0;
+  constexpr unsigned kScans = 200;
+  for (unsigned k = 0; k < kScans; ++k) {
+    const Pose truth{1.2 * std::sin(0.7 * k) - 0.3, 0.7 * std::cos(0.3 * k), 0.9 * k};
+    const auto beams = make_beams(scan_from(kRoom, truth, kNoise, 5000 + k), kAtRest);
+    const Place place = place_scan(map, beams, {truth.x + 0.02, truth.y - 0.02, truth.yaw + 0.01}, options);
+    ASSERT_TRUE(place.is_usable()) << "scan " << k << ": converged " << place.converged << ", "
+                                   << place.inliers << " of " << place.strikes << " beams at " << truth.x
+                                   << ", " << truth.y;
+    const Eigen::Vector3d error(place.pose.x - truth.x, place.pose.y - truth.y, place.pose.yaw - truth.yaw);
+    sum += error.dot(place.information * error) / kScans;
+  }
+  // Chi-square with three degrees of freedom; the map's frame hangs on the first scan and has that scan's
+  // error.
+  EXPECT_GT(sum, 2.0);
+  EXPECT_LT(sum, 8.0);
+}
+
+TEST(PlaceScan, a_scan_of_another_room_finds_no_place) {
+  const WallMap map = map_of_room();
+  const std::vector<testing::RoomWall> other = {
+      {-1, -1.3, 1.6, -0.9}, {1.6, -0.9, 1.1, 1.8}, {1.1, 1.8, -1, -1.3}};
+  const Place place =
+      place_scan(map, make_beams(scan_from(other, {}, kNoise, 1), kAtRest), {}, {kNoise, 0.15});
+  EXPECT_FALSE(place.is_usable());
+}
+
+TEST(PlaceScan, along_a_corridor_the_place_is_not_usable) {
+  WallMap map;
+  const Scan scan = scan_from(testing::kCorridor, {}, kNoise, 1);
+  map.insert(walls_of(scan), {});
+  EXPECT_FALSE(place_scan(map, make_beams(scan, kAtRest), {}, {kNoise, 0.15}).is_usable());
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
