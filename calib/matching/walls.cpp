@@ -17,6 +17,7 @@ constexpr double kMaxJoinSquares = 12.0;  ///< chi-square of two degrees of free
 constexpr double kMinJoinCosine = 0.9;    ///< between the normals of the pieces
 constexpr double kMinEndMargin = 0.03;    ///< m, about one beam to the next
 constexpr double kSurfaceFloor = 1e-3;    ///< m, unevenness of surfaces and angular error of beams
+constexpr double kFlat = 0.5;  ///< cosine; a flatter beam meets an uneven wall far from where it ends
 
 struct Piece {
   std::size_t first, last;  ///< points of the surface, both included
@@ -222,7 +223,7 @@ FittedLine fit_line(const LineSums& sums) {
 double place_of_beam(const FittedLine& line, const Eigen::Vector2d& end, const Eigen::Vector2d& beam) {
   const Eigen::Vector2d offset = end - line.centre;
   const double place = line.direction().dot(offset), cosine = line.normal.dot(beam);
-  if (std::abs(cosine) < kMinWallIncidence) return place;
+  if (std::abs(cosine) < kFlat) return place;
   return place - line.normal.dot(offset) / cosine * line.direction().dot(beam);
 }
 

@@ -33,10 +33,18 @@ class RobotOnCan : public ::testing::Test {
     if (!both_) both_ = std::make_unique<RobotAndDaemon>(3, wiring);
     ASSERT_TRUE(wait_until([] { return both_->ready(); }, 20.0, kPause)) << both_->status();
   }
+  /// An emulated processor may pause for longer than the limits of safety, and a stop by them is no fault of
+  /// the case: the motion is then started again, as a user would, and the log says so.
   void drive() {
-    client_ = both_->run({"straight", "--yes", "--distance", "0.3"});
-    ASSERT_TRUE(wait_until([] { return both_->rim() > 0.15; }, 20.0, 0.02))
-        << both_->output() << both_->status();
+    constexpr int kAttempts = 3;
+    for (int attempt = 1; attempt <= kAttempts; ++attempt) {
+      client_ = both_->run({"straight", "--yes", "--distance", "0.3"});
+      (void)wait_until([this] { return both_->rim() > 0.15 || client_->wait(0.0); }, 20.0, 0.02);
+      if (both_->rim() > 0.15) return;
+      std::printf("attempt %d did not move: %s\n", attempt, both_->output().c_str());
+      (void)wait_until([] { return both_->ready(); }, 20.0, kPause);
+    }
+    FAIL() << both_->status();
   }
   static json status() { return json::parse(both_->status(), nullptr, false); }
   static std::string last_stop() {
