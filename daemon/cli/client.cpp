@@ -62,6 +62,12 @@ std::string with_lease(const std::string& parameters, const std::string& lease) 
   return body.dump();
 }
 
+// With its time: a daemon that reads late knows when it was sent.
+std::string renewal_of(const std::string& lease) {
+  const std::chrono::duration<double> now = Clock::now().time_since_epoch();
+  return ordered_json{{"lease", lease}, {"sent", now.count()}}.dump();
+}
+
 // Progress goes to the caller; a final reply is returned.
 std::optional<control::Reply> final_reply(const control::Reply& reply,
                                           const std::function<void(const std::string&)>& progress) {
@@ -159,12 +165,11 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
   const auto lease = ordered_json::parse(given.value(), nullptr, false).value("lease", std::string());
   if (auto sent = worker.value().send(method, with_lease(parameters, lease), true); !sent)
     return sent.error();
-  const std::string renewal = ordered_json{{"lease", lease}}.dump();
   auto next = Clock::now();
   while (interrupted == 0) {
     if (Clock::now() >= next) {
       next = Clock::now() + kRenewal;
-      if (auto sent = keeper.value().send("Renew", renewal); !sent) return sent.error();
+      if (auto sent = keeper.value().send("Renew", renewal_of(lease)); !sent) return sent.error();
     }
     (void)keeper.value().receive(0);
     const auto reply = worker.value().receive(10);

@@ -1,5 +1,6 @@
 #include "daemon/cli/output.hpp"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -37,7 +38,9 @@ ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
 ProgressLine::~ProgressLine() { clear(); }
 
 void ProgressLine::show(const std::string& text) {
-  if (!terminal_) return;
+  // A terminal that takes nothing now (Ctrl-S, a slow line) must not hold up whoever keeps a motion alive.
+  pollfd terminal{STDERR_FILENO, POLLOUT, 0};
+  if (!terminal_ || poll(&terminal, 1, 0) != 1 || (terminal.revents & POLLOUT) == 0) return;
   std::cerr << "\r\x1b[K" << text << std::flush;
   shown_ = true;
 }

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
+#include <utility>
 
 namespace odomcalib::safety {
 namespace {
@@ -20,17 +23,17 @@ std::string new_id() {
 }  // namespace
 
 Result<std::string> Lease::acquire(std::uint64_t owner, double now) {
-  if (active(now))
-    return refused("another client holds the lease", "wait, or stop it with odomcalibctl stop");
+  if (active()) return refused("another client holds the lease", "wait, or stop it with odomcalibctl stop");
   id_ = new_id();
   owner_ = owner;
-  renewed_ = now;
+  renewed_ = looked_ = now;
   return id_;
 }
 
-Result<void> Lease::renew(const std::string& id, double now) {
-  if (!holds(id, now)) return refused("the lease has lapsed or was never given", "acquire a new one");
-  renewed_ = now;
+Result<void> Lease::renew(const std::string& id, double now, std::optional<double> sent) {
+  if (!holds(id)) return refused("the lease has lapsed or was never given", "acquire a new one");
+  const double when = sent && std::isfinite(*sent) ? *sent : now;
+  renewed_ = std::clamp(when, renewed_, std::max(renewed_, now));
   return {};
 }
 
@@ -42,8 +45,10 @@ void Lease::lost(std::uint64_t owner) {
   if (owner == owner_) id_.clear();
 }
 
-bool Lease::holds(const std::string& id, double now) const { return active(now) && id == id_; }
-
-bool Lease::active(double now) const { return !id_.empty() && now - renewed_ <= kLeaseTime; }
+void Lease::looked(double now) {
+  if (now - std::exchange(looked_, now) > kLateLook) chance_until_ = now + kSecondChance;
+  const bool silent = age(now) > kLeaseTime && now > chance_until_;
+  if (silent || age(now) > kLongestSilence) id_.clear();
+}
 
 }  // namespace odomcalib::safety

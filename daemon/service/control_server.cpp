@@ -213,10 +213,10 @@ Result<ControlServer> ControlServer::create(const std::filesystem::path& path, c
   return ControlServer(std::move(state));
 }
 
-std::vector<ControlServer::Watch> ControlServer::watches() const {
-  std::vector<Watch> all{{state_->listener, false}};
-  for (const auto& [id, client] : state_->clients) all.push_back({client.fd, !client.output.empty()});
-  return all;
+void ControlServer::watch(std::vector<pollfd>& polled) const {
+  polled.push_back({state_->listener, POLLIN, 0});
+  for (const auto& [id, client] : state_->clients)
+    polled.push_back({client.fd, static_cast<short>(client.output.empty() ? POLLIN : POLLIN | POLLOUT), 0});
 }
 
 void ControlServer::step() {

@@ -1,6 +1,7 @@
 // The control socket: Varlink calls of local clients whose credentials were checked. Never blocks.
 #pragma once
 
+#include <poll.h>
 #include <sys/types.h>
 
 #include <cstdint>
@@ -39,12 +40,8 @@ class ControlServer {
   ControlServer(ControlServer&&) noexcept;
   ControlServer& operator=(ControlServer&&) noexcept;
 
-  struct Watch {
-    int fd;
-    bool writing;
-  };
-  /// What to poll: the listener and each client.
-  [[nodiscard]] std::vector<Watch> watches() const;
+  /// Appends what to poll: the listener and each client.
+  void watch(std::vector<pollfd>& polled) const;
   /// Accepts, reads, writes; call after each poll.
   void step();
 

@@ -61,9 +61,7 @@ void MotionRun::fault(const std::string& text) {
 
 // Everything that forbids motion, in the order in which it is reported.
 void MotionRun::check(const Situation& situation) {
-  if (!situation.lease)
-    return stop(
-        {ErrorCode::cancelled, "the client stopped or no longer renews its lease", "motion", "start again"});
+  if (situation.lapsed) return stop({ErrorCode::cancelled, *situation.lapsed, "motion", "start again"});
   if (situation.stale) return stop(protective(*situation.stale));
   if (phase_ == Phase::countdown || phase_ == Phase::enabling) return;
   if (controller_.state() != drivers::ControllerState::enabled)

@@ -26,10 +26,10 @@ struct Leg {
 struct Situation {
   double now = 0.0;
   routines::Pose odometry;
-  bool lease = false;
-  std::optional<std::string> stale;         ///< why sensors block motion
-  std::optional<std::string> disagreement;  ///< between odometry and lidar
-  bool blocked = false;                     ///< obstacle in the way
+  std::optional<std::string> lapsed = "there is no lease";  ///< why the client does not count as present
+  std::optional<std::string> stale;                         ///< why sensors block motion
+  std::optional<std::string> disagreement;                  ///< between odometry and lidar
+  bool blocked = false;                                     ///< obstacle in the way
 };
 
 class MotionRun {

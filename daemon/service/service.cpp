@@ -44,36 +44,45 @@ Service::Impl::Impl(const Config& configuration, Clock& time, Calibrator functio
 }
 
 void Service::Impl::wait(int timeout_ms) {
-  polled.clear();
-  for (const int fd : {base.fd(), lidar.fd()})
-    if (fd >= 0) polled.push_back({fd, POLLIN, 0});
-  for (const auto& watch : server.watches())
-    polled.push_back({watch.fd, static_cast<short>(watch.writing ? POLLIN | POLLOUT : POLLIN), 0});
+  polled = {{base.fd(), POLLIN, 0},
+            {lidar.fd(), POLLIN, 0}};  // one that is absent is -1: poll passes it over
+  const auto clients = static_cast<std::ptrdiff_t>(polled.size());
+  server.watch(polled);
   const int limit = run ? std::min(timeout_ms, kMovingTimeout) : timeout_ms;
-  if (poll(polled.data(), polled.size(), limit) <= 0) polled.clear();
+  loop.begin(clock.now(), 1e-3 * limit);
+  const bool any = poll(polled.data(), polled.size(), limit) > 0;
+  lidar_woke = any && polled[1].revents != 0;
+  clients_woke = any && std::any_of(polled.begin() + clients, polled.end(),
+                                    [](const pollfd& file) { return file.revents != 0; });
 }
 
 // A counter that reports every millisecond must not make everything else turn as often.
-bool Service::Impl::due(std::span<const int> files, double& next) const {
-  const bool woke = std::any_of(polled.begin(), polled.end(), [&](const pollfd& file) {
-    return file.revents != 0 && std::find(files.begin(), files.end(), file.fd) != files.end();
-  });
+bool Service::Impl::due(bool woke, double& next) const {
   if (!woke && now < next) return false;
   next = now + kIdleStep;
   return true;
 }
 
 void Service::Impl::turn() {
+  using Part = std::pair<const char*, void (Impl::*)()>;
+  static constexpr std::array<Part, 8> kParts = {{{"base", &Impl::serve_base},
+                                                  {"lidar", &Impl::serve_lidar},
+                                                  {"clients", &Impl::serve_clients},
+                                                  {"motion", &Impl::serve_motion},
+                                                  {"solver", &Impl::serve_solver},
+                                                  {"write-back", &Impl::serve_writeback},
+                                                  {"recording", &Impl::serve_recording},
+                                                  {"telemetry", &Impl::serve_telemetry}}};
   now = clock.now();
-  serve_base();
-  serve_lidar();
-  serve_clients();
-  serve_motion();
-  serve_solver();
-  serve_writeback();
-  serve_recording();
-  serve_telemetry();
+  loop.passed("waiting", now);
+  for (const auto& [name, serve] : kParts) {
+    (this->*serve)();
+    loop.passed(name, clock.now());
+  }
   base.flush();
+  const double end = clock.now();
+  loop.passed("sending", end);
+  loop.end(end);
 }
 
 void Service::Impl::serve_base() {
@@ -100,7 +109,7 @@ void Service::Impl::serve_base() {
 }
 
 void Service::Impl::serve_lidar() {
-  if (!due(std::array{lidar.fd()}, next_lidar)) return;
+  if (!due(lidar_woke, next_lidar)) return;
   lidar.step(now);
   for (Scan& scan : lidar.take_scans()) {
     ++scan_count;
@@ -118,10 +127,12 @@ void Service::Impl::serve_lidar() {
 void Service::Impl::serve_motion() {
   if (!run || now < next_command) return;
   next_command = now + kControlStep;
+  watch_loop();
+  if (const auto problem = telemetry.recorder.problem()) run->stop(*problem);
   Situation situation;
   situation.now = now;
   situation.odometry = odometry.pose();
-  situation.lease = lease.holds(pending ? pending->lease : "", now);
+  situation.lapsed = lapsed();
   situation.stale = encoders.stale(now) ? encoders.stale(now) : scans.stale(now);
   situation.disagreement = disagreement;
   situation.blocked = obstacles.blocked();
@@ -142,8 +153,6 @@ void Service::Impl::serve_solver() {
   if (!*result) return fail_pending(result->error());
   const std::string text = to_json(result->value());
   telemetry.publisher.send("RESULT", messages::encode_json(clock.wall_us(), "odomcalib-calibration/1", text));
-  (void)write_calibration(result->value(),
-                          config.state_dir / "calibrations" / (recording_path.stem().string() + ".json"));
   ordered_json answer_body = {{"recording", recording_path.string()},
                               {"calibration", ordered_json::parse(text)}};
   if (calibrator.next_manoeuvre)
@@ -153,14 +162,17 @@ void Service::Impl::serve_solver() {
 }
 
 void Service::Impl::serve_recording() {
-  if (!pending || pending->method != "Record") return;
+  telemetry.recorder.serve();
+  if (!pending || pending->method != "Record" || pending->ending) return;
   const bool over = pending->until > 0.0 && now >= pending->until;
   progress("recording", 0.0, pending->until > 0.0 ? std::optional(pending->until - now) : std::nullopt);
-  if (!over) return;
-  const auto path = telemetry.recorder.finish();
-  if (!path) return fail_pending(path.error());
-  answer(pending->client, {{"path", path.value().string()}});
-  pending.reset();
+  if (!over && !telemetry.recorder.problem()) return;
+  pending->ending = true;
+  telemetry.recorder.finish([this](const Result<std::filesystem::path>& path) {
+    if (!path) return fail_pending(path.error());
+    answer(pending->client, {{"path", path.value().string()}});
+    pending.reset();
+  });
 }
 
 void Service::Impl::serve_telemetry() {

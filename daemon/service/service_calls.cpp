@@ -103,17 +103,19 @@ void Service::Impl::fail_pending(const Error& error) {
 }
 
 void Service::Impl::serve_clients() {
-  std::vector<int> files;
-  for (const auto& watch : server.watches()) files.push_back(watch.fd);
-  if (due(files, next_clients)) server.step();
-  for (const ClientId gone : server.take_gone()) {
-    lease.lost(gone);
-    monitors.erase(gone);
-    // Who asked for a motion and went away cannot watch it: it ends.
-    if (run && pending && pending->client == gone)
-      run->stop({ErrorCode::cancelled, "the client closed its connection", "motion", "start again"});
-  }
+  if (!due(clients_woke, next_clients)) return;
+  server.step();
+  for (const ClientId gone : server.take_gone()) forget(gone);
   for (const IncomingCall& incoming : server.take_calls()) handle(incoming);
+  lease.looked(now);
+}
+
+void Service::Impl::forget(ClientId gone) {
+  lease.lost(gone);
+  monitors.erase(gone);
+  // Who asked for a motion and went away cannot watch it: it ends.
+  if (run && pending && pending->client == gone)
+    run->stop({ErrorCode::cancelled, "the client closed its connection", "motion", "start again"});
 }
 
 void Service::Impl::handle(const IncomingCall& incoming) {
@@ -140,7 +142,7 @@ void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& p
     return answer(client, {{"lease", given.value()}, {"ttl_ms", std::lround(1000.0 * safety::kLeaseTime)}});
   }
   if (method == "Renew") {
-    const auto renewed = lease.renew(text(parameters, "lease", ""), now);
+    const auto renewed = lease.renew(text(parameters, "lease", ""), now, number(parameters, "sent", now));
     if (!renewed) return refuse(client, renewed.error());
     return answer(client, {{"ttl_ms", std::lround(1000.0 * safety::kLeaseTime)}});
   }

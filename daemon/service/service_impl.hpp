@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "daemon/service/control_server.hpp"
 #include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/lidar_link.hpp"
+#include "daemon/service/loop_watch.hpp"
 #include "daemon/service/motion_run.hpp"
 #include "daemon/service/service.hpp"
 #include "daemon/service/solver_job.hpp"
@@ -42,6 +42,7 @@ struct PendingCall {
   std::optional<std::string> calibration;      ///< JSON text, apply and rollback
   RoundingError rounding;                      ///< of what is written
   double until = 0.0;                          ///< s, end of a recording without motion; 0: until Stop
+  bool ending = false;                         ///< the recording is being written to its end
 };
 
 struct Service::Impl {
@@ -50,8 +51,8 @@ struct Service::Impl {
 
   // service.cpp: the loop
   void wait(int timeout_ms);
-  /// Whether one of these files woke the loop, or nothing was looked at for a while; then `next` is set anew.
-  bool due(std::span<const int> files, double& next) const;
+  /// Whether this woke the loop, or was not looked at for a while; then `next` is set anew.
+  bool due(bool woke, double& next) const;
   void turn();
   void serve_base();
   void serve_lidar();
@@ -63,6 +64,7 @@ struct Service::Impl {
 
   // service_calls.cpp: what clients ask for
   void serve_clients();
+  void forget(ClientId gone);
   void handle(const IncomingCall& incoming);
   void dispatch(const IncomingCall& incoming, const ordered_json& parameters);
   void call_straight(const IncomingCall& incoming, const ordered_json& parameters);
@@ -82,8 +84,11 @@ struct Service::Impl {
   void start_motion(const IncomingCall& incoming, const routines::Plan& plan, const ordered_json& parameters,
                     PendingCall pending);
   void motion_ended();
+  void recording_written(const Result<std::filesystem::path>& path, const ordered_json& legs);
   ordered_json leg_report(const Leg& leg) const;
   void watch_agreement(const Scan& scan);
+  void watch_loop();
+  std::optional<std::string> lapsed() const;
   routines::WheelGeometry geometry() const;
 
   // service_writeback.cpp
@@ -121,7 +126,9 @@ struct Service::Impl {
   Telemetry telemetry;
 
   double now = 0.0;
-  std::vector<pollfd> polled;  ///< answers of the last wait
+  LoopWatch loop;
+  std::vector<pollfd> polled;  ///< what the last wait was for: base, lidar, then the control socket
+  bool lidar_woke = false, clients_woke = false;
   safety::Lease lease;
   safety::EncoderFreshness encoders;
   safety::ScanFreshness scans;
@@ -147,9 +154,10 @@ struct Service::Impl {
   bool parameters_known = false;
   bool operator_needed = false;
   drivers::ControllerState controller_state = drivers::ControllerState::absent;
-  std::uint64_t tick_count = 0, scan_count = 0;
+  std::uint64_t tick_count = 0, scan_count = 0, late_steps = 0;
   double next_robot = 0.0, next_status = 0.0, next_progress = 0.0, next_command = 0.0, next_read = 0.0;
   double next_lidar = 0.0, next_clients = 0.0;
+  double stepped_at = 0.0;  ///< s, last control step of the motion
 };
 
 std::string name_of(drivers::ControllerState state);

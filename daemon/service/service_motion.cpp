@@ -13,6 +13,9 @@ Error forbidden(ErrorCode code, const std::string& what, const std::string& reme
   return {code, what, "motion", remedy};
 }
 
+constexpr double kNoticedPause = 0.050;  // s between control steps that are due every 10 ms
+constexpr double kLongestPause = 0.200;  // s; M1
+
 ordered_json json_of(const routines::Pose& pose) { return {pose.x, pose.y, pose.yaw}; }
 
 }  // namespace
@@ -53,7 +56,7 @@ std::optional<Error> Service::Impl::motion_forbidden(const routines::Plan& plan)
 void Service::Impl::start_motion(const IncomingCall& incoming, const routines::Plan& plan,
                                  const ordered_json& parameters, PendingCall call) {
   const bool dry_run = parameters.value("dry_run", ordered_json(false)) == true;
-  if (!dry_run && !lease.holds(call.lease, now))
+  if (!dry_run && !lease.holds(call.lease))
     return refuse(incoming.client,
                   forbidden(ErrorCode::not_permitted, "no lease", "acquire one and keep it alive"));
   if (const auto error = motion_forbidden(plan)) return refuse(incoming.client, *error);
@@ -72,6 +75,8 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
   agreement_scan.reset();
   disagreement.reset();
   disagreements = 0;
+  loop.motion_begins();
+  stepped_at = now;
   pending = std::move(call);
   run.emplace(MotionRun::Options{.plan = plan,
                                  .geometry = geometry(),
@@ -80,6 +85,30 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
                                  .flush = [this] { base.flush(); }},
               base.controller());
   event(messages::Severity::info, "motion", plan.name + " begins");
+}
+
+// While the loop is held up, nobody steers. The drive's own watchdog stops it after 200 ms without us (M1);
+// so do we, and say what it was. What is shorter is told.
+void Service::Impl::watch_loop() {
+  const double pause = now - std::exchange(stepped_at, now);
+  if (pause < kNoticedPause) return;
+  const auto& longest = loop.in_motion();
+  const std::string text =
+      fmt::format("the daemon was held up for {:.0f} ms (in \"{}\")", 1e3 * pause, longest.part);
+  ++late_steps;
+  if (pause < kLongestPause) return event(messages::Severity::warning, "loop_late", text);
+  run->stop({ErrorCode::protective_stop, text, "daemon",
+             "see \"loop\" in odomcalibctl status --json; relieve the processor"});
+}
+
+// Names both sides: how old the last renewal is, and how long nobody here looked.
+std::optional<std::string> Service::Impl::lapsed() const {
+  if (lease.holds(pending ? pending->lease : "")) return std::nullopt;
+  const auto& longest = loop.in_motion();
+  return fmt::format(
+      "the client stopped or no longer renews its lease: last renewal {:.0f} ms ago (the longest turn of the "
+      "daemon's loop in this motion was {:.0f} ms, in \"{}\", {:.1f} s ago)",
+      1e3 * lease.age(now), 1e3 * longest.seconds, longest.part, now - longest.at);
 }
 
 // Rule M9. The newest scan against one from a quarter of a metre or 30 degrees before.
@@ -131,23 +160,28 @@ void Service::Impl::motion_ended() {
   ordered_json legs = ordered_json::array();
   if (!error && pending && pending->method != "Calibrate")
     for (const Leg& leg : run->legs()) legs.push_back(leg_report(leg));
-  const auto path = telemetry.recorder.finish();
   run.reset();
   encoders.commanded(0.0, 0.0, now);
   if (error) {
+    telemetry.recorder.finish({});
     last_stop = error->text();
     event(messages::Severity::stop, "stopped", error->text());
     return fail_pending(*error);
   }
+  // The disk takes its time; whoever asked gets the answer when the recording is whole.
+  telemetry.recorder.finish(
+      [this, legs](const Result<std::filesystem::path>& path) { recording_written(path, legs); });
   event(messages::Severity::info, "motion", "motion finished");
+}
+
+void Service::Impl::recording_written(const Result<std::filesystem::path>& path, const ordered_json& legs) {
   if (!path) return fail_pending(path.error());
-  if (pending && pending->method == "Calibrate") {
-    auto recordings = pending->earlier;
-    recordings.push_back(path.value());
-    solver.emplace(calibrator, std::move(recordings), pending->effects);
-    return;
-  }
-  finish_pending({{"recording", path.value().string()}, {"moves", legs}});
+  if (!pending || pending->method != "Calibrate")
+    return finish_pending({{"recording", path.value().string()}, {"moves", legs}});
+  auto recordings = pending->earlier;
+  recordings.push_back(path.value());
+  const auto kept = config.state_dir / "calibrations" / (path.value().stem().string() + ".json");
+  solver.emplace(calibrator, std::move(recordings), pending->effects, kept);
 }
 
 }  // namespace odomcalib

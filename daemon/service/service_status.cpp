@@ -13,6 +13,10 @@ ordered_json check(const std::string& name, bool good, const std::string& found,
       {"name", name}, {"outcome", good ? "ok" : "fail"}, {"found", found}, {"remedy", good ? "" : remedy}};
 }
 
+ordered_json json_of(const LoopWatch::Longest& turn) {
+  return {{"seconds", turn.seconds}, {"part", turn.part}};
+}
+
 std::string text_of(const std::optional<Error>& problem) { return problem ? problem->text() : ""; }
 
 // What a controller cannot hold stays on the host, value by value.
@@ -37,6 +41,7 @@ std::string Service::Impl::activity() const {
   if (run) return "moving: " + run->activity();
   if (solver) return "solving";
   if (transaction.busy()) return "reading or writing parameters";
+  if (pending && telemetry.recorder.finishing()) return "writing the recording";
   if (pending && pending->method == "Record") return "recording";
   return "idle";
 }
@@ -89,7 +94,12 @@ ordered_json Service::Impl::status() const {
                      {"not_permitted", server.counters().not_permitted},
                      {"malformed", server.counters().malformed},
                      {"too_many", server.counters().too_many}};
+  body["loop"] = {{"turns", loop.turns()},
+                  {"late_steps", late_steps},
+                  {"longest_turn", json_of(loop.since_start())},
+                  {"longest_turn_in_motion", json_of(loop.in_motion())}};
   body["recording_bytes"] = telemetry.recorder.bytes();
+  body["recording_bytes_waiting"] = telemetry.recorder.bytes_waiting();
   return body;
 }
 

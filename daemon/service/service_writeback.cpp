@@ -24,7 +24,7 @@ ordered_json to_json(const RoundingError& error) {
 }  // namespace
 
 std::optional<Error> Service::Impl::write_forbidden(const std::string& name) const {
-  if (!lease.holds(name, now))
+  if (!lease.holds(name))
     return Error{ErrorCode::not_permitted, "no lease", "write-back", "acquire one and keep it alive"};
   if (transaction.busy())
     return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};

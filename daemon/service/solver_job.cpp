@@ -44,11 +44,14 @@ Result<Calibration> solve(const Calibrator& calibrator, const std::vector<std::f
 }  // namespace
 
 SolverJob::SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::path> recordings,
-                     std::vector<std::string> effects)
+                     std::vector<std::string> effects, std::filesystem::path keep)
     : state_(std::make_shared<State>()) {
-  std::thread([calibrator, paths = std::move(recordings), effects = std::move(effects), state = state_] {
+  std::thread([calibrator, paths = std::move(recordings), effects = std::move(effects),
+               keep = std::move(keep), state = state_] {
     const auto progress = [&state](const std::string& phase, double share) { state->report(phase, share); };
-    state->finish(solve(calibrator, paths, effects, progress));
+    auto result = solve(calibrator, paths, effects, progress);
+    if (result && !keep.empty()) (void)write_calibration(result.value(), keep);
+    state->finish(std::move(result));
   }).detach();
 }
 

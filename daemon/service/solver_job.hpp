@@ -15,8 +15,9 @@ class SolverJob {
  public:
   struct State;
   /// @param recordings of one robot, solved jointly
+  /// @param keep file for a copy of the result; empty: none
   SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::path> recordings,
-            std::vector<std::string> effects);
+            std::vector<std::string> effects, std::filesystem::path keep = {});
   ~SolverJob();
   SolverJob(const SolverJob&) = delete;
   SolverJob& operator=(const SolverJob&) = delete;

@@ -12,6 +12,7 @@ namespace odomcalib {
 namespace {
 
 constexpr std::uint64_t kLargestRecording = std::uint64_t{512} << 20;
+constexpr std::uint64_t kMostFrameBytes = kLargestRecording / 2;  // of frames: measurements come first
 constexpr std::uintmax_t kLeastSpace = std::uintmax_t{64} << 20;
 
 bool usable_name(const std::string& name) {
@@ -54,53 +55,81 @@ void Publisher::send(const std::string& channel, const std::string& message) {
   ++(good ? sent_ : failed_);
 }
 
+Recorder::Recorder(std::filesystem::path folder, std::string prefix, MakeSink make_sink)
+    : folder_(std::move(folder)), prefix_(std::move(prefix)), make_sink_(std::move(make_sink)) {}
+
+// One that ended may not have its file yet.
+std::filesystem::path Recorder::free_path(const std::string& name) const {
+  const auto taken = [this](const std::filesystem::path& path) {
+    return std::filesystem::exists(path) ||
+           std::any_of(ending_.begin(), ending_.end(), [&](const Job& job) { return job.path == path; });
+  };
+  std::filesystem::path path = folder_ / (name + ".lcmlog");
+  for (int i = 2; taken(path) && i < 10000; ++i) path = folder_ / fmt::format("{}-{}.lcmlog", name, i);
+  return path;
+}
+
 Result<std::filesystem::path> Recorder::start(const std::string& name) {
   if (!usable_name(name))
     return Error{ErrorCode::usage, fmt::format("\"{}\" is no name for a recording", name), "",
                  "use letters, digits, - and _, at most 64"};
+  if (ending_.size() >= kMostUnfinished)
+    return Error{ErrorCode::io, "older recordings are still being written", folder_.string(),
+                 "wait; check the disk"};
   if (auto problem = too_little_space(folder_)) return *problem;
-  std::filesystem::path path = folder_ / (name + ".lcmlog");
-  for (int i = 2; std::filesystem::exists(path) && i < 10000; ++i)
-    path = folder_ / fmt::format("{}-{}.lcmlog", name, i);
-  auto log = RecordingLog::create(path, prefix_);
-  if (!log) return log.error();
-  log_.emplace(std::move(log).value());
-  problem_.reset();
-  return path;
+  Job job;
+  job.path = free_path(name);
+  job.writer = std::make_unique<RecordingWriter>(make_sink_(job.path, prefix_));
+  current_.emplace(std::move(job));
+  return current_->path;
+}
+
+void Recorder::push(RecordedItem item) {
+  const auto refuse = [this](const char* what, const char* remedy) {
+    current_->problem = Error{ErrorCode::io, what, current_->path.string(), remedy};
+  };
+  if (current_->problem) return;
+  current_->bytes += item.bytes.size();
+  if (current_->bytes > kLargestRecording)
+    return refuse("recording has reached 512 MiB", "record less at once");
+  if (!current_->writer->push(std::move(item)))
+    refuse("the disk does not keep up with the recording", "check the disk; record to a faster one");
 }
 
 void Recorder::write(std::int64_t utime, const std::string& channel, const std::string& message) {
-  if (!log_ || problem_) return;
-  if (log_->bytes() + message.size() > kLargestRecording) {
-    problem_ =
-        Error{ErrorCode::io, "recording has reached 512 MiB", log_->path().string(), "record less at once"};
-    return;
-  }
-  if (auto written = log_->write(utime, prefix_ + channel, message); !written) problem_ = written.error();
+  if (current_) push({utime, prefix_ + channel, message});
 }
 
 void Recorder::write_frame(std::int64_t utime, const drivers::CanFrame& frame) {
-  if (!log_ || frame_bytes_ > kLargestRecording) return;
-  if (!frames_.is_open()) {
-    auto path = log_->path();
-    frames_.open(path.replace_extension(".candump"), std::ios::trunc);
-  }
+  if (!current_ || current_->frame_bytes > kMostFrameBytes) return;
   drivers::CanFrame stamped = frame;
   stamped.t = 1e-6 * static_cast<double>(utime);
-  const std::string line = drivers::candump_line(stamped, "can0") + "\n";
-  frame_bytes_ += line.size();
-  frames_ << line;
+  std::string line = drivers::candump_line(stamped, "can0") + "\n";
+  current_->frame_bytes += line.size();
+  push({utime, "", std::move(line)});
 }
 
-Result<std::filesystem::path> Recorder::finish() {
-  if (!log_) return Error{ErrorCode::usage, "nothing is being recorded", "", "start a recording first"};
-  const std::filesystem::path path = log_->path();
-  if (auto flushed = log_->flush(true); !flushed && !problem_) problem_ = flushed.error();
-  log_.reset();
-  frames_.close();
-  frame_bytes_ = 0;
-  if (problem_) return *problem_;
-  return path;
+void Recorder::finish(Done done) {
+  if (!current_) return;
+  current_->writer->end();
+  current_->done = std::move(done);
+  ending_.push_back(std::move(*current_));
+  current_.reset();
 }
+
+void Recorder::serve() {
+  for (std::size_t i = 0; i < ending_.size();) {
+    if (!ending_[i].writer->finished()) {
+      ++i;
+      continue;
+    }
+    const Job job = std::move(ending_[i]);
+    ending_.erase(ending_.begin() + static_cast<std::ptrdiff_t>(i));
+    const auto problem = job.first_problem();
+    if (job.done) job.done(problem ? Result<std::filesystem::path>(*problem) : job.path);
+  }
+}
+
+std::optional<Error> Recorder::problem() const { return current_ ? current_->first_problem() : std::nullopt; }
 
 }  // namespace odomcalib

@@ -3,14 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "daemon/service/recording_file.hpp"
+#include "daemon/service/recording_writer.hpp"
 #include "drivers/can/transport.hpp"
 #include "proto/messages.hpp"
-#include "proto/recording_log.hpp"
 
 namespace odomcalib {
 
@@ -36,30 +38,53 @@ class Publisher {
   std::uint64_t sent_ = 0, failed_ = 0;
 };
 
-/// The recording in progress, if any, bounded in size.
+/// The recording in progress, if any, bounded in size, and those whose end is still being written. Belongs to
+/// the loop and never waits for a disk; who asks learns of the end from serve().
 class Recorder {
  public:
-  explicit Recorder(std::filesystem::path folder, std::string prefix)
-      : folder_(std::move(folder)), prefix_(std::move(prefix)) {}
-  /// Starts a file <name>.lcmlog in the folder; the name gets a number when it exists. Errors: io (also too
-  /// little space), usage (name).
+  using Done = std::function<void(const Result<std::filesystem::path>&)>;
+  using MakeSink = std::function<std::unique_ptr<RecordingSink>(const std::filesystem::path&,
+                                                                const std::string& channel_prefix)>;
+  static constexpr std::size_t kMostUnfinished = 4;
+
+  Recorder(std::filesystem::path folder, std::string prefix, MakeSink make_sink = recording_file);
+  /// Starts a file <name>.lcmlog in the folder; the name gets a number when it exists. Errors: io (too little
+  /// space, or older recordings are still being written), usage (name). That the file cannot be made shows in
+  /// problem().
   Result<std::filesystem::path> start(const std::string& name);
   void write(std::int64_t utime, const std::string& channel, const std::string& message);
   /// A frame on the bus goes into a candump log of the same name beside the recording; canplayer sends it
   /// again.
   void write_frame(std::int64_t utime, const drivers::CanFrame& frame);
-  /// Syncs and closes. @return path of the finished file. Error: io, when anything could not be written.
-  Result<std::filesystem::path> finish();
-  [[nodiscard]] bool active() const { return log_.has_value(); }
-  [[nodiscard]] std::uint64_t bytes() const { return log_ ? log_->bytes() : 0; }
+  /// Ends the recording in progress. @param done called by serve() once it is on the disk, with its path or
+  /// with the error (io) when anything could not be written; may be empty
+  void finish(Done done);
+  void serve();
+  /// Why what is written now does not reach the disk: there is no use in going on.
+  [[nodiscard]] std::optional<Error> problem() const;
+  [[nodiscard]] bool active() const { return current_.has_value(); }
+  /// Ended, not yet on the disk.
+  [[nodiscard]] bool finishing() const { return !ending_.empty(); }
+  [[nodiscard]] std::uint64_t bytes() const { return current_ ? current_->bytes : 0; }
+  [[nodiscard]] std::size_t bytes_waiting() const { return current_ ? current_->writer->bytes_waiting() : 0; }
 
  private:
+  struct Job {
+    std::filesystem::path path;
+    std::unique_ptr<RecordingWriter> writer;
+    std::uint64_t bytes = 0, frame_bytes = 0;
+    std::optional<Error> problem;
+    Done done;
+    [[nodiscard]] std::optional<Error> first_problem() const { return problem ? problem : writer->problem(); }
+  };
+  [[nodiscard]] std::filesystem::path free_path(const std::string& name) const;
+  void push(RecordedItem item);
+
   std::filesystem::path folder_;
   std::string prefix_;
-  std::optional<RecordingLog> log_;
-  std::ofstream frames_;
-  std::uint64_t frame_bytes_ = 0;
-  std::optional<Error> problem_;
+  MakeSink make_sink_;
+  std::optional<Job> current_;
+  std::vector<Job> ending_;
 };
 
 /// Both at once.

@@ -56,6 +56,66 @@ TEST_F(ServiceLoop, a_lease_that_is_not_renewed_stops_within_250_ms) {
   EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
 }
 
+// Held up for longer than a lease lasts: by what the daemon does itself, or with the whole machine.
+class HeldUp : public ServiceLoop {
+ protected:
+  // The robot goes on, the service does not turn.
+  void hold_up(double seconds, bool client_too) {
+    for (double left = seconds; left > 0.0; left -= 0.03) {
+      robot_->step(std::min(left, 0.03));
+      clock_.time += std::min(left, 0.03);
+      if (!client_too) renew();
+    }
+  }
+  void renew() { client_->call("Renew", {{"lease", lease_}, {"sent", clock_.time}}); }
+  void expect_end(TestClient& mover) {
+    const auto end = wait_reply(mover, 40.0);
+    EXPECT_EQ(end.error, "") << end.parameters;
+  }
+};
+
+TEST_F(HeldUp, a_renewal_that_the_daemon_reads_late_counts_and_the_delay_is_told) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  hold_up(0.15, false);
+  expect_end(mover);
+  const json loop = status()["loop"];
+  EXPECT_EQ(loop["late_steps"], 1) << loop;
+  EXPECT_NEAR(loop["longest_turn"]["seconds"].get<double>(), 0.15, 0.02) << loop;
+  EXPECT_EQ(loop["longest_turn"]["part"], "outside") << loop;
+}
+
+TEST_F(HeldUp, a_pause_of_the_whole_machine_does_not_end_a_motion) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  hold_up(0.15, true);
+  expect_end(mover);
+}
+
+TEST_F(HeldUp, a_client_that_is_gone_after_the_pause_still_ends_it_and_the_reason_names_both_sides) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  renewing_ = false;
+  hold_up(0.10, true);
+  EXPECT_LT(time_to_rest(), 0.250);
+  EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
+  const std::string said = status()["last_stop"];
+  EXPECT_NE(said.find("last renewal 1"), std::string::npos) << said;
+  EXPECT_NE(said.find("loop in this motion was 10"), std::string::npos) << said;
+}
+
+TEST_F(HeldUp, a_daemon_that_was_away_for_longer_than_the_drives_watchdog_stops) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  hold_up(0.3, false);
+  EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.ProtectiveStop");
+  EXPECT_LT(time_to_rest(), 0.5);
+}
+
 TEST_F(ServiceLoop, a_closed_connection_stops_at_once) {
   acquire();
   TestClient mover(folder_ / "control");
