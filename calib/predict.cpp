@@ -79,10 +79,6 @@ Correction correction_of(const Calibration& calibration) {
   return correction;
 }
 
-std::span<const double> as_span(const Eigen::VectorXd& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
 BaseParameters nominal_of(const RobotDescription& robot) {
   return {robot.left_wheel_diameter / 2.0, robot.right_wheel_diameter / 2.0, robot.track_width, {}};
 }

@@ -17,10 +17,6 @@ constexpr std::size_t kHistogramBins = 20;
 constexpr double kHistogramEnd = 5.0;  ///< sigma
 constexpr double kTrustedWeight = 0.3;
 
-std::span<const double> as_span(const Eigen::VectorXd& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
 std::size_t stride(std::size_t count, std::size_t most) {
   return std::max<std::size_t>(1, (count + most - 1) / most);
 }

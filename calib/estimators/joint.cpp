@@ -34,10 +34,6 @@ Eigen::Vector3d difference(const Pose& measured, const Pose& predicted) {
   return {measured.x - predicted.x, measured.y - predicted.y, wrap_angle(measured.yaw - predicted.yaw)};
 }
 
-std::span<const double> as_span(const Eigen::VectorXd& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
 /// Velocity of the sensor in room axes by a central difference over 40 ms.
 Eigen::Vector3d velocity_at(const Trajectory& trajectory, const Pose& mount, double time) {
   constexpr double kHalf = 0.02;

@@ -6,6 +6,7 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/noise/noise_estimate.hpp"
 
 namespace odomcalib::calib {
@@ -20,10 +21,6 @@ constexpr double kBlockSeconds = 5.0;     ///< cluster length of the robust cova
 constexpr double kMinRolled = 1e-4;       ///< m, even standing wheels are not ideal
 constexpr double kMinPivot = 1e-12;
 
-std::span<const double> as_span(const Eigen::VectorXd& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
 /// A motion from one placed scan to the next, in map axes.
 struct Link {
   Interval interval;
@@ -36,17 +33,11 @@ struct Link {
   Eigen::Matrix3d forward, sideways, yaw;        ///< covariance by unit variance of the wheels' error
 };
 
-Eigen::Matrix3d rotation(double yaw) {
-  Eigen::Matrix3d r;
-  r << std::cos(yaw), -std::sin(yaw), 0.0, std::sin(yaw), std::cos(yaw), 0.0, 0.0, 0.0, 1.0;
-  return r;
-}
-
 /// d^2 of the error of the wheels, `rolled` metres long: a push of the base or a turn of it, seen at the
 /// sensor.
 void set_wheel_errors(Link& link, const Pose& mount, double rolled) {
   const double base = link.heading - mount.yaw + 0.5 * link.measured.yaw;
-  const Eigen::Matrix3d to_map = rotation(base);
+  const Eigen::Matrix3d to_map = rotation_about_z(base);
   const Eigen::Vector3d forward = to_map.col(0);
   const Eigen::Vector3d sideways = to_map.col(1);
   const Eigen::Vector3d yaw = to_map * Eigen::Vector3d(-mount.y, mount.x, 1.0);
@@ -59,7 +50,7 @@ Eigen::Vector3d velocity(const Trajectory& trajectory, const Pose& mount, double
   constexpr double kHalf = 0.02;  // s
   const Pose step =
       between(compose(trajectory.at(time - kHalf), mount), compose(trajectory.at(time + kHalf), mount));
-  return rotation(heading) * Eigen::Vector3d(step.x, step.y, step.yaw) / (2.0 * kHalf);
+  return rotation_about_z(heading) * Eigen::Vector3d(step.x, step.y, step.yaw) / (2.0 * kHalf);
 }
 
 double rolled_between(const WheelTrack& track, const Interval& interval, const BaseParameters& base) {
@@ -126,7 +117,7 @@ void linearise(const PathData& data, const EffectList& effects, const Eigen::Vec
     const Pose& m = part.links[k].measured;
     const Eigen::Vector3d apart(m.x - predicted[k].x, m.y - predicted[k].y,
                                 wrap_angle(m.yaw - predicted[k].yaw));
-    const Eigen::Matrix3d turn = rotation(part.links[k].heading);
+    const Eigen::Matrix3d turn = rotation_about_z(part.links[k].heading);
     part.residual.block<3, 1>(row, 0) = turn * apart;
     part.jacobian.middleRows<3>(row) = (turn * part.jacobian.middleRows<3>(row)).eval();
   }

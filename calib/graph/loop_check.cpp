@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/matching/pose_search.hpp"
 
 namespace odomcalib::calib {
@@ -58,10 +59,10 @@ FreeSpace::FreeSpace(const Surface& surface) : ranges_(kBins, 0.0) {
 double FreeSpace::range_towards(double angle) const { return ranges_[bin_of(angle)]; }
 
 double intrusion(const FreeSpace& seen, const std::vector<Eigen::Vector2d>& points, const Pose& motion) {
-  const double c = std::cos(motion.yaw), s = std::sin(motion.yaw);
+  const Frame frame(motion);
   std::size_t looked_at = 0, inside = 0;
   for (const Eigen::Vector2d& p : points) {
-    const Eigen::Vector2d at(motion.x + c * p.x() - s * p.y(), motion.y + s * p.x() + c * p.y());
+    const Eigen::Vector2d at = frame.transform(p);
     const double range = seen.range_towards(std::atan2(at.y(), at.x()));
     if (!(range > 0.0)) continue;
     ++looked_at;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/matching/point_to_line.hpp"
 
 namespace odomcalib::calib {
@@ -47,12 +48,6 @@ std::vector<HeadingPair> choose(const ScanSurfaces& scans, std::size_t most) {
     chosen.push_back({k, *partner, {}});
   }
   return chosen;
-}
-
-Eigen::Vector2d rotated(double yaw, const Eigen::Vector2d& v) {
-  const double c = std::cos(yaw);
-  const double s = std::sin(yaw);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
 /// A straight surface that the first scan knows from all its readings, seen from one of the sensors.
@@ -120,18 +115,18 @@ class Meeting {
 };
 
 std::optional<DoubleSighting> compare(const MatchReference& reference, const SurfacePoint& point,
-                                      const Pose& motion, double range_noise) {
+                                      const Frame& frame, double range_noise) {
   if (!point.has_line) return std::nullopt;
-  const Eigen::Vector2d sensor(motion.x, motion.y);
-  const Eigen::Vector2d beam = rotated(motion.yaw, point.beam);
-  const Eigen::Vector2d end = sensor + rotated(motion.yaw, point.position);
+  const Eigen::Vector2d& sensor = frame.origin();
+  const Eigen::Vector2d beam = frame.rotate(point.beam);
+  const Eigen::Vector2d end = sensor + frame.rotate(point.position);
   const Meeting meeting(reference, end, beam);
   if (meeting.partner() == nullptr) return std::nullopt;
   const SurfacePoint& partner = *meeting.partner();
   const Plane plane = meeting.plane();
   if (-plane.normal.dot(beam) < kMinIncidence || -plane.normal.dot(partner.beam) < kMinIncidence)
     return std::nullopt;
-  if (rotated(motion.yaw, point.normal).dot(plane.normal) < kMinAgreement) return std::nullopt;
+  if (frame.rotate(point.normal).dot(plane.normal) < kMinAgreement) return std::nullopt;
   const double distance = plane.normal.dot(end - partner.anchor);
   if (std::abs(distance) > kGate) return std::nullopt;
   return DoubleSighting{plane.seen(Eigen::Vector2d::Zero(), partner.beam, partner.bearing),
@@ -152,8 +147,9 @@ void fill(const ScanSurfaces& scans, HeadingPair& pair) {
   options.range_noise = scans.range_noise();
   const MatchResult match = match_point_to_line(reference, second, scans.guess(pair.from, pair.to), options);
   if (!match.is_usable()) return;
+  const Frame frame(match.motion);
   for (const SurfacePoint& point : second.points)
-    if (const auto sighting = compare(reference, point, match.motion, scans.range_noise()))
+    if (const auto sighting = compare(reference, point, frame, scans.range_noise()))
       pair.points.push_back(*sighting);
 }
 

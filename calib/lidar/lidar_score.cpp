@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/statistics/median.hpp"
 #include "calib/tracing/score.hpp"
 
@@ -16,12 +17,10 @@ constexpr unsigned kSeed = 20210602;
 constexpr double kClip = 3.5;      // robust sigma
 constexpr double kVisible = 1e-3;  // least share of a direction's signature that poses must leave
 
-Eigen::Vector2d across(const Eigen::Vector2d& beam) { return {-beam.y(), beam.x()}; }
-
 /// How much farther from the first scan's line the shift puts a point, m.
 double pushed(const BeamShift& shift, const Eigen::Vector2d& beam, double range,
               const Eigen::Vector2d& normal) {
-  return normal.dot(shift.radial * beam + shift.angular * range * across(beam));
+  return normal.dot(shift.radial * beam + shift.angular * range * quarter_turn(beam));
 }
 
 struct Rows {
@@ -37,7 +36,8 @@ Rows rows_of(const HeadingPair& pair, const std::vector<LidarColumns>& candidate
     const DoubleSighting& p = pair.points[static_cast<std::size_t>(i)];
     const double weight = 1.0 / p.deviation;
     rows.residual(i) = weight * p.distance;
-    rows.pose.row(i) << weight * p.normal.x(), weight * p.normal.y(), weight * p.normal.dot(across(p.arm));
+    rows.pose.row(i) << weight * p.normal.x(), weight * p.normal.y(),
+        weight * p.normal.dot(quarter_turn(p.arm));
     for (const LidarColumns& c : candidates) {
       const auto first = c.effect->shifts(p.first), second = c.effect->shifts(p.second);
       for (Eigen::Index k = 0; k < c.count; ++k) {

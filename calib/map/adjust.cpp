@@ -3,6 +3,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "calib/geometry/vector2.hpp"
+#include "calib/statistics/tukey.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -31,8 +34,7 @@ class Adjustment {
     std::vector<Eigen::Index> slot(map.walls().size(), -1);
     for (const Strike& strike : map.strikes(beams, place.pose)) {
       const RangeTerm term = map.term(beams[strike.beam], strike.wall, place.pose, options.range_noise);
-      const double weight =
-          tukey_weight(term.residual / (std::sqrt(term.variance) * place.scale)) / term.variance;
+      const double weight = weight_of(term, place.scale);
       if (weight > 0.0) enter(term, strike.wall, weight, slot, terms);
     }
     if (!anchored) eliminate(terms);
@@ -79,8 +81,7 @@ class Adjustment {
 
 void move(MapWall& wall, const Eigen::Vector2d& step) {
   wall.centre -= step(0) * wall.normal;
-  const double c = std::cos(step(1)), s = std::sin(step(1));
-  wall.normal = {c * wall.normal.x() + s * wall.normal.y(), -s * wall.normal.x() + c * wall.normal.y()};
+  wall.normal = Frame({0.0, 0.0, -step(1)}).rotate(wall.normal);
 }
 
 /// Poses follow the walls.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/statistics/median.hpp"
+#include "calib/statistics/tukey.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -14,7 +15,6 @@ constexpr double kMinInlierShare = 0.5;  ///< of the beams that should strike a 
 constexpr double kMinEigenvalueRatio = 0.01;
 constexpr double kSettled = 0.1;  ///< sigma
 constexpr int kWholeSteps = 5;
-constexpr double kTukey = 4.685;  ///< 95 % efficiency at the normal distribution
 
 std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>& beams, const Pose& pose,
                                     const PlaceOptions& options, double gate, std::size_t& strikes) {
@@ -42,8 +42,7 @@ double improve(const std::vector<RangeTerm>& terms, double share, Place& place) 
   place.information.setZero();
   place.inliers = 0;
   for (const RangeTerm& term : terms) {
-    const double weight =
-        tukey_weight(term.residual / (std::sqrt(term.variance) * place.scale)) / term.variance;
+    const double weight = weight_of(term, place.scale);
     if (!(weight > 0.0)) continue;
     place.information += weight * term.by_pose * term.by_pose.transpose();
     gradient += weight * term.residual * term.by_pose;
@@ -60,9 +59,8 @@ double improve(const std::vector<RangeTerm>& terms, double share, Place& place) 
 
 }  // namespace
 
-double tukey_weight(double z) {
-  const double root = 1.0 - (z / kTukey) * (z / kTukey);
-  return root > 0.0 ? root * root : 0.0;
+double weight_of(const RangeTerm& term, double scale) {
+  return tukey_weight(term.residual / (std::sqrt(term.variance) * scale) / kTukeyCut) / term.variance;
 }
 
 bool Place::is_usable() const {

@@ -28,7 +28,7 @@ struct Place {
 Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const Pose& guess,
                  const PlaceOptions& options);
 
-/// Tukey's weight for a residual of z robust sigmas.
-double tukey_weight(double z);
+/// What a reading counts, 1/m^2: less the farther out it lies, nothing beyond a few robust sigmas.
+double weight_of(const RangeTerm& term, double scale);
 
 }  // namespace odomcalib::calib

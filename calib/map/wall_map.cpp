@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/geometry/vector2.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -15,37 +17,25 @@ constexpr double kShade = 0.1;          ///< m, a wall may be this much longer t
 constexpr double kEndMargin = 0.02;     ///< m, at ends that are already short of what was seen
 constexpr double kSurfaceFloor = 1e-3;  ///< m, unevenness of surfaces
 
-struct Frame {
-  explicit Frame(const Pose& pose) : at(pose.x, pose.y), c(std::cos(pose.yaw)), s(std::sin(pose.yaw)) {}
-  [[nodiscard]] Eigen::Vector2d turn(const Eigen::Vector2d& v) const {
-    return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
-  }
-  Eigen::Vector2d at;
-  double c, s;
-};
-
-Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
-
 LineSums moved(const LineSums& sums, const Frame& frame) {
-  Eigen::Matrix2d turn;
-  turn << frame.c, -frame.s, frame.s, frame.c;
-  const Eigen::Vector2d first = turn * sums.first;
+  const Eigen::Matrix2d turn = frame.rotation();
+  const Eigen::Vector2d &at = frame.origin(), first = turn * sums.first;
   LineSums out = sums;
-  out.first = first + sums.weight * frame.at;
+  out.first = first + sums.weight * at;
   out.noise = turn * sums.noise * turn.transpose();
-  out.second = turn * sums.second * turn.transpose() + first * frame.at.transpose() +
-               frame.at * first.transpose() + sums.weight * frame.at * frame.at.transpose();
+  out.second = turn * sums.second * turn.transpose() + first * at.transpose() + at * first.transpose() +
+               sums.weight * at * at.transpose();
   return out;
 }
 
 MapWall in_map(const Wall& wall, const Frame& frame) {
   MapWall out;
-  out.centre = frame.at + frame.turn(wall.line.centre);
-  out.normal = frame.turn(wall.line.normal);
+  out.centre = frame.origin() + frame.rotate(wall.line.centre);
+  out.normal = frame.rotate(wall.line.normal);
   out.low = wall.low;
   out.high = wall.high;
   out.sums = moved(wall.sums, frame);
-  if (out.normal.dot(frame.at - out.centre) > 0.0) return out;
+  if (out.normal.dot(frame.origin() - out.centre) > 0.0) return out;
   out.normal = -out.normal;
   std::swap(out.low, out.high);
   out.low = -out.low;
@@ -103,8 +93,8 @@ std::vector<Strike> WallMap::strikes(const std::vector<Beam>& beams, const Pose&
   std::vector<Strike> found;
   found.reserve(beams.size());
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    const Eigen::Vector2d from = frame.at + frame.turn(beams[i].origin);
-    const Eigen::Vector2d direction = frame.turn(beams[i].direction);
+    const Eigen::Vector2d from = frame.origin() + frame.rotate(beams[i].origin);
+    const Eigen::Vector2d direction = frame.rotate(beams[i].direction);
     double nearest = std::numeric_limits<double>::infinity();
     Strike strike{i, walls_.size()};
     for (std::size_t w = 0; w < walls_.size(); ++w) {
@@ -127,8 +117,8 @@ std::vector<Strike> WallMap::strikes(const std::vector<Beam>& beams, const Pose&
 RangeTerm WallMap::term(const Beam& beam, std::size_t index, const Pose& sensor, double range_noise) const {
   const Frame frame(sensor);
   const MapWall& wall = walls_[index];
-  const Eigen::Vector2d from = frame.at + frame.turn(beam.origin);
-  const Eigen::Vector2d direction = frame.turn(beam.direction);
+  const Eigen::Vector2d from = frame.origin() + frame.rotate(beam.origin);
+  const Eigen::Vector2d direction = frame.rotate(beam.direction);
   const double towards = wall.normal.dot(direction);
   const double expected = wall.normal.dot(wall.centre - from) / towards;
   const Eigen::Vector2d point = from + expected * direction;
@@ -136,7 +126,7 @@ RangeTerm WallMap::term(const Beam& beam, std::size_t index, const Pose& sensor,
   term.residual = beam.range - expected;
   const double floor = kSurfaceFloor / towards;
   term.variance = range_noise * range_noise + floor * floor;
-  term.by_pose << wall.normal / towards, wall.normal.dot(quarter_turn(point - frame.at)) / towards;
+  term.by_pose << wall.normal / towards, wall.normal.dot(quarter_turn(point - frame.origin())) / towards;
   term.by_wall << -1.0 / towards, wall.direction().dot(point - wall.centre) / towards;
   return term;
 }

@@ -3,20 +3,15 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/statistics/median.hpp"
+#include "calib/statistics/tukey.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
 constexpr int kMaxIterations = 10;
 constexpr double kSettled = 0.02;  ///< sigma, a step that no longer matters
-constexpr double kTukey = 4.685;   ///< 95 % efficiency at the normal distribution
-
-Eigen::Vector2d turned(const Pose& pose, const Eigen::Vector2d& p) {
-  const double c = std::cos(pose.yaw);
-  const double s = std::sin(pose.yaw);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
-}
 
 /// Normal equations of the motion with the two parameters of every line eliminated.
 struct Reduced {
@@ -37,7 +32,7 @@ struct WallTerms {
 class Refinement {
  public:
   Refinement(const Walls& reference, const std::vector<WallPoint>& points, const Pose& start)
-      : reference_(reference), points_(points), weights_(points.size(), 1.0) {
+      : reference_(reference), points_(points), weights_(points.size(), 1.0), frame_(start) {
     estimate_.motion = start;
     for (const Wall& wall : reference.walls) lines_.push_back(wall.line);
   }
@@ -54,6 +49,7 @@ class Refinement {
       estimate_.motion.x -= step(0);
       estimate_.motion.y -= step(1);
       estimate_.motion.yaw -= step(2);
+      frame_ = Frame(estimate_.motion);
       estimate_.information = system.information - system.spurious;
       estimate_.converged = step.dot(system.information * step) < kSettled * kSettled;
     }
@@ -62,7 +58,7 @@ class Refinement {
 
  private:
   [[nodiscard]] Eigen::Vector2d moved(const WallPoint& point) const {
-    return Eigen::Vector2d(estimate_.motion.x, estimate_.motion.y) + turned(estimate_.motion, point.position);
+    return frame_.origin() + frame_.rotate(point.position);
   }
   [[nodiscard]] double distance(const WallPoint& point) const {
     const FittedLine& line = lines_[point.wall];
@@ -78,10 +74,9 @@ class Refinement {
     estimate_.scale = std::max(1.0, kMadToSigma * median_of(normalised));
     estimate_.inliers = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const double z = normalised[i] / (estimate_.scale * kTukey);
-      const double root = std::max(0.0, 1.0 - z * z);
-      weights_[i] = root * root / points_[i].variance;
-      if (z < 1.0) ++estimate_.inliers;
+      const double weight = tukey_weight(normalised[i] / (estimate_.scale * kTukeyCut));
+      weights_[i] = weight / points_[i].variance;
+      if (weight > 0.0) ++estimate_.inliers;
     }
   }
 
@@ -90,8 +85,7 @@ class Refinement {
     std::vector<WallTerms> terms(reference_.walls.size());
     for (std::size_t i = 0; i < points_.size(); ++i)
       if (weights_[i] > 0.0)
-        terms[points_[i].wall].sums.add(moved(points_[i]), weights_[i],
-                                        turned(estimate_.motion, points_[i].spread));
+        terms[points_[i].wall].sums.add(moved(points_[i]), weights_[i], frame_.rotate(points_[i].spread));
     for (std::size_t w = 0; w < terms.size(); ++w) {
       if (terms[w].sums.count == 0) continue;
       LineSums both = reference_.walls[w].sums;
@@ -105,7 +99,7 @@ class Refinement {
 
   void add(const WallPoint& point, double weight, WallTerms& terms) const {
     const FittedLine& line = lines_[point.wall];
-    const Eigen::Vector2d arm = turned(estimate_.motion, point.position);
+    const Eigen::Vector2d arm = frame_.rotate(point.position);
     const Eigen::Vector2d offset = moved(point) - line.centre;
     const Eigen::Vector3d jacobian(line.normal.x(), line.normal.y(), -line.direction().dot(arm));
     const Eigen::Vector2d line_jacobian(1.0, line.direction().dot(offset));
@@ -114,7 +108,7 @@ class Refinement {
     terms.line += weight * line_jacobian * line_jacobian.transpose();
     terms.gradient += weight * line.normal.dot(offset) * jacobian;
     // The arm carries the noise of the distance: their mean product would turn the scan.
-    const Eigen::Vector2d spread = turned(estimate_.motion, point.spread);
+    const Eigen::Vector2d spread = frame_.rotate(point.spread);
     terms.gradient(2) -= weight * line.normal.dot(spread) * -line.direction().dot(spread);
   }
 
@@ -130,7 +124,7 @@ class Refinement {
       system.gradient += t.gradient;
       // A line that is off by an angle takes a motion along it for one across it.
       const Eigen::Vector2d along = lines_[w].direction();
-      const Eigen::Vector2d arm = t.sums.centre() - Eigen::Vector2d(estimate_.motion.x, estimate_.motion.y);
+      const Eigen::Vector2d arm = t.sums.centre() - frame_.origin();
       const Eigen::Vector3d slide(along.x(), along.y(), lines_[w].normal.dot(arm));
       const double own = reference_.walls[w].sums.weight;
       const double offset_information = own * t.sums.weight / (own + t.sums.weight);
@@ -157,6 +151,7 @@ class Refinement {
   std::vector<double> weights_;
   std::vector<FittedLine> lines_;
   JointEstimate estimate_;
+  Frame frame_;  ///< at the estimate
 };
 
 }  // namespace

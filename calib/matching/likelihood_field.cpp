@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/geometry/vector2.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -79,11 +81,10 @@ Eigen::Vector2i LikelihoodField::cell_of(const Eigen::Vector2d& position) const 
 
 double LikelihoodField::fit(std::span<const Eigen::Vector2d> points, const Pose& pose) const {
   if (points.empty()) return 0.0;
-  const double c = std::cos(pose.yaw);
-  const double s = std::sin(pose.yaw);
+  const Frame frame(pose);
   int sum = 0;
   for (const Eigen::Vector2d& p : points) {
-    const Eigen::Vector2i at = cell_of({pose.x + c * p.x() - s * p.y(), pose.y + s * p.x() + c * p.y()});
+    const Eigen::Vector2i at = cell_of(frame.transform(p));
     sum += score(0, at.x(), at.y());
   }
   return sum / (static_cast<double>(kBest) * static_cast<double>(points.size()));

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/matching/joint_lines.hpp"
 #include "calib/statistics/median.hpp"
+#include "calib/statistics/tukey.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -13,7 +15,6 @@ namespace {
 constexpr std::size_t kMinPoints = 20;
 constexpr double kMinNormalAgreement = 0.8;  ///< cosine between the two scans' normals
 constexpr double kMinIncidence = 0.2;        ///< cosine; flatter beams say little and err much
-constexpr double kTukey = 4.685;             ///< 95 % efficiency at the normal distribution
 constexpr int kCoarseIterations = 4;
 constexpr std::size_t kCoarsePoints = 180;
 constexpr int kDampedFrom = 12;
@@ -34,65 +35,52 @@ struct Linearised {
   std::size_t inliers = 0;
 };
 
-Eigen::Vector2d transform(const Pose& pose, const Eigen::Vector2d& p) {
-  const double c = std::cos(pose.yaw);
-  const double s = std::sin(pose.yaw);
-  return {pose.x + c * p.x() - s * p.y(), pose.y + s * p.x() + c * p.y()};
-}
-
-Eigen::Vector2d rotate(double yaw, const Eigen::Vector2d& p) {
-  const double c = std::cos(yaw);
-  const double s = std::sin(yaw);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
-}
-
 /// Range noise acts along the beam; across the line only its projection counts. Reference lines average their
 /// own readings, but each reading serves several lines, so over the scan the reference adds as much as the
 /// scan itself.
-double pair_variance(const SurfacePoint& point, const Eigen::Vector2d& normal, double yaw,
-                     double range_noise) {
-  return 2.0 * distance_variance(rotate(yaw, point.beam).dot(normal), range_noise);
+double pair_variance(double cosine_of_incidence, double range_noise) {
+  return 2.0 * distance_variance(cosine_of_incidence, range_noise);
 }
 
 std::vector<Correspondence> correspond(const MatchReference& reference, const Surface& scan, const Pose& pose,
                                        double gate, double range_noise, std::size_t stride) {
+  const Frame frame(pose);
   std::vector<Correspondence> pairs;
   pairs.reserve(scan.points.size());
   for (std::size_t k = 0; k < scan.points.size(); k += stride) {
     const SurfacePoint& point = scan.points[k];
-    const Eigen::Vector2d moved = transform(pose, point.position);
+    const Eigen::Vector2d moved = frame.transform(point.position);
     const auto [index, squared] = reference.tree().nearest(moved);
     const SurfacePoint& partner = reference.surface().points[index];
     if (squared > gate * gate || !partner.has_line) continue;
-    if (point.has_line && rotate(pose.yaw, point.normal).dot(partner.normal) < kMinNormalAgreement) continue;
-    if (rotate(pose.yaw, point.beam).dot(partner.normal) > -kMinIncidence) continue;
-    pairs.push_back({point.position, partner.anchor, partner.normal,
-                     pair_variance(point, partner.normal, pose.yaw, range_noise)});
+    if (point.has_line && frame.rotate(point.normal).dot(partner.normal) < kMinNormalAgreement) continue;
+    const double cosine = frame.rotate(point.beam).dot(partner.normal);
+    if (cosine > -kMinIncidence) continue;
+    pairs.push_back({point.position, partner.anchor, partner.normal, pair_variance(cosine, range_noise)});
   }
   return pairs;
 }
 
-double distance(const Correspondence& pair, const Pose& pose) {
-  return pair.normal.dot(transform(pose, pair.position) - pair.anchor);
+double distance(const Correspondence& pair, const Frame& frame) {
+  return pair.normal.dot(frame.transform(pair.position) - pair.anchor);
 }
 
 /// Robust sigma of the distances in units of their expectation, at least 1 so that good matches stay good.
-double residual_scale(const std::vector<Correspondence>& pairs, const Pose& pose) {
+double residual_scale(const std::vector<Correspondence>& pairs, const Frame& frame) {
   std::vector<double> magnitudes;
   magnitudes.reserve(pairs.size());
   for (const Correspondence& pair : pairs)
-    magnitudes.push_back(std::abs(distance(pair, pose)) / std::sqrt(pair.variance));
+    magnitudes.push_back(std::abs(distance(pair, frame)) / std::sqrt(pair.variance));
   return kMadToSigma * median_of(std::move(magnitudes));
 }
 
-Linearised linearise(const std::vector<Correspondence>& pairs, const Pose& pose, double scale) {
+Linearised linearise(const std::vector<Correspondence>& pairs, const Frame& frame, double scale) {
   Linearised system;
   for (const Correspondence& pair : pairs) {
-    const double r = distance(pair, pose);
-    const double z = r / (std::sqrt(pair.variance) * scale * kTukey);
-    if (std::abs(z) >= 1.0) continue;
-    const double weight = (1.0 - z * z) * (1.0 - z * z) / pair.variance;
-    const Eigen::Vector2d turned = rotate(pose.yaw, pair.position);
+    const double r = distance(pair, frame);
+    const double weight = tukey_weight(r / (std::sqrt(pair.variance) * scale * kTukeyCut)) / pair.variance;
+    if (!(weight > 0.0)) continue;
+    const Eigen::Vector2d turned = frame.rotate(pair.position);
     const Eigen::Vector3d jacobian(pair.normal.x(), pair.normal.y(),
                                    pair.normal.y() * turned.x() - pair.normal.x() * turned.y());
     system.information += weight * jacobian * jacobian.transpose();
@@ -122,26 +110,28 @@ bool lies_on(const Wall& wall, const Eigen::Vector2d& moved, const Eigen::Vector
 }
 
 /// Both beams come from the same side of the wall, neither too flat, and the scan sees a line that is alike.
-bool faces(const Wall& wall, const SurfacePoint& partner, const SurfacePoint& point, double yaw) {
-  const double cosine = rotate(yaw, point.beam).dot(wall.line.normal);
+bool faces(const Wall& wall, const SurfacePoint& partner, const SurfacePoint& point, const Frame& frame,
+           double cosine) {
   if (std::abs(cosine) < kMinWallIncidence || cosine * partner.beam.dot(wall.line.normal) < 0.0) return false;
-  return !point.has_line || std::abs(rotate(yaw, point.normal).dot(wall.line.normal)) >= kMinNormalAgreement;
+  return !point.has_line || std::abs(frame.rotate(point.normal).dot(wall.line.normal)) >= kMinNormalAgreement;
 }
 
 std::vector<WallPoint> points_on_walls(const MatchReference& reference, const Surface& scan, const Pose& pose,
                                        double gate, double range_noise) {
+  const Frame frame(pose);
   std::vector<WallPoint> found;
   const Walls& walls = reference.walls();
   for (const SurfacePoint& point : scan.points) {
-    const Eigen::Vector2d moved = transform(pose, point.position);
+    const Eigen::Vector2d moved = frame.transform(point.position);
     const auto [index, squared] = reference.tree().nearest(moved);
     const std::size_t w = walls.of_point[index];
     if (squared > gate * gate || w == Walls::kNone) continue;
     const Wall& wall = walls.walls[w];
-    if (!lies_on(wall, moved, rotate(pose.yaw, point.beam), gate) ||
-        !faces(wall, reference.surface().points[index], point, pose.yaw))
+    const Eigen::Vector2d beam = frame.rotate(point.beam);
+    const double cosine = beam.dot(wall.line.normal);
+    if (!lies_on(wall, moved, beam, gate) ||
+        !faces(wall, reference.surface().points[index], point, frame, cosine))
       continue;
-    const double cosine = rotate(pose.yaw, point.beam).dot(wall.line.normal);
     found.push_back({point.position, w, distance_variance(cosine, range_noise), range_noise * point.beam});
   }
   return found;
@@ -227,8 +217,9 @@ bool iterate(const MatchReference& reference, const Surface& scan, const MatchOp
   const auto pairs = correspond(reference, scan, match.motion, gate_at(i, options), options.range_noise,
                                 stride_at(i, scan.points.size()));
   if (pairs.size() < kMinPoints) return false;
-  match.scale = std::max(1.0, residual_scale(pairs, match.motion));
-  match.system = linearise(pairs, match.motion, match.scale);
+  const Frame frame(match.motion);
+  match.scale = std::max(1.0, residual_scale(pairs, frame));
+  match.system = linearise(pairs, frame, match.scale);
   const Eigen::Matrix3d& information = match.system.information;
   const Eigen::Matrix3d damped = information + 1e-9 * information.trace() * Eigen::Matrix3d::Identity();
   const Eigen::Vector3d step = damped.ldlt().solve(match.system.gradient);

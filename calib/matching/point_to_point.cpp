@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/geometry/vector2.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -16,11 +18,10 @@ struct Pairs {
 
 Pairs correspond(const NearestTree& reference, std::span<const Eigen::Vector2d> scan, const Pose& pose,
                  double max_distance) {
-  const double c = std::cos(pose.yaw);
-  const double s = std::sin(pose.yaw);
+  const Frame frame(pose);
   Pairs pairs;
   for (const Eigen::Vector2d& p : scan) {
-    const Eigen::Vector2d moved(pose.x + c * p.x() - s * p.y(), pose.y + s * p.x() + c * p.y());
+    const Eigen::Vector2d moved = frame.transform(p);
     const Neighbour partner = reference.nearest(moved);
     if (partner.squared_distance > max_distance * max_distance) continue;
     pairs.from.push_back(p);

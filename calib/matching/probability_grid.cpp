@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "calib/geometry/vector2.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -20,11 +22,10 @@ ProbabilityGrid::ProbabilityGrid(const GridOptions& options)
       log_odds_(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_), 0.0F) {}
 
 void ProbabilityGrid::insert(const Pose& sensor, std::span<const Eigen::Vector2d> beam_ends) {
-  const double c = std::cos(sensor.yaw);
-  const double s = std::sin(sensor.yaw);
-  const Eigen::Vector2i from = cell_of({sensor.x, sensor.y});
+  const Frame frame(sensor);
+  const Eigen::Vector2i from = cell_of(frame.origin());
   for (const Eigen::Vector2d& p : beam_ends) {
-    const Eigen::Vector2i to = cell_of({sensor.x + c * p.x() - s * p.y(), sensor.y + s * p.x() + c * p.y()});
+    const Eigen::Vector2i to = cell_of(frame.transform(p));
     trace(from, to);
     update(to, hit_);
   }

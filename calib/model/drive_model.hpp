@@ -20,6 +20,11 @@ Eigen::VectorXd to_vector(const BaseParameters& base, std::size_t effect_paramet
 BaseParameters to_base(std::span<const double> parameters);
 std::size_t count_parameters(const EffectList& effects);
 
+/// Parameters as the model takes them.
+inline std::span<const double> as_span(const Eigen::VectorXd& parameters) {
+  return {parameters.data(), static_cast<std::size_t>(parameters.size())};
+}
+
 /// Begin and end of a measured motion, s on the sensor's clock.
 struct Interval {
   double begin = 0.0;

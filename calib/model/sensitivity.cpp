@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/model/step_twist.hpp"
 
 namespace odomcalib::calib {
@@ -67,16 +68,10 @@ Eigen::Matrix3d carried(const Pose& begin, const Pose& here, const Pose& end) {
   return m;
 }
 
-Eigen::Matrix3d rotation(double yaw) {
-  Eigen::Matrix3d r;
-  r << std::cos(yaw), -std::sin(yaw), 0.0, std::sin(yaw), std::cos(yaw), 0.0, 0.0, 0.0, 1.0;
-  return r;
-}
-
 /// How the twist of a step changes a base motion: `part` of the twist from the pose `from` on leads to `to`.
 Eigen::Matrix3d twist_to_motion(const Pose& begin, const Pose& from, const Pose& to, const Pose& end,
                                 const Eigen::Matrix3d& part) {
-  return carried(begin, to, end) * rotation(from.yaw) * part;
+  return carried(begin, to, end) * rotation_about_z(from.yaw) * part;
 }
 
 /// Twist derivatives of every step by the parameters [first, first + kJetSize).
@@ -113,7 +108,7 @@ Path path_of(const Linearisation& at, const Pose& mount, double begin, double en
   Path path{end_at(at, begin), end_at(at, end), {}, {}, {}, {}};
   const Pose &b = path.begin.pose, &e = path.end.pose;
   path.to_sensor = conjugate_derivative(between(b, e), mount);
-  path.by_end = rotation(-b.yaw) * path.end.velocity;
+  path.by_end = rotation_about_z(-b.yaw) * path.end.velocity;
   path.by_begin = -carried(b, b, e) * path.begin.velocity;
   for (std::size_t k = path.begin.step; k <= path.end.step; ++k) {
     const bool first = k == path.begin.step, last = k == path.end.step;

@@ -3,16 +3,10 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "calib/geometry/vector2.hpp"
+
 namespace odomcalib::calib {
 namespace {
-
-Eigen::Matrix3d rotation_about_z(double yaw) {
-  const double c = std::cos(yaw);
-  const double s = std::sin(yaw);
-  Eigen::Matrix3d r;
-  r << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
-  return r;
-}
 
 /// Symmetric square root: neighbouring pairs keep the same axes, so that their errors line up.
 Eigen::Matrix3d symmetric_root(const Eigen::Matrix3d& covariance) {

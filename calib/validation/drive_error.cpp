@@ -17,10 +17,6 @@ constexpr std::size_t kFewest = 4;
 constexpr int kDraws = 1000;
 constexpr unsigned kSeed = 20010823;
 
-std::span<const double> as_span(const Eigen::VectorXd& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
 /// Predicted minus measured motion of each stretch, in the base's frame at its begin.
 std::vector<Pose> errors_of(std::span<const FitData> data, const std::vector<Stretch>& stretches,
                             const std::vector<Eigen::VectorXd>& parameters, const EffectList& effects) {

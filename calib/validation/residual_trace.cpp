@@ -93,10 +93,6 @@ struct Samples {
   std::vector<std::array<double, kVariables.size()>> variables;
 };
 
-std::span<const double> as_span(const Eigen::VectorXd& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
 std::array<double, kVariables.size()> variables_of(const DriveModel& model, const Interval& interval) {
   const std::size_t first = model.track().interval_at(interval.begin);
   const std::size_t last = std::max(first, model.track().interval_at(interval.end));

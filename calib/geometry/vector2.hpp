@@ -1,0 +1,48 @@
+// Points and directions of the plane under rigid motions.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "calib/geometry/se2.hpp"
+
+namespace odomcalib::calib {
+
+/// A pose with its sine and cosine, for many points.
+class Frame {
+ public:
+  explicit Frame(const Pose& pose)
+      : origin_(pose.x, pose.y), cosine_(std::cos(pose.yaw)), sine_(std::sin(pose.yaw)) {}
+
+  [[nodiscard]] const Eigen::Vector2d& origin() const { return origin_; }
+  /// A direction of this frame in the frame of the pose.
+  [[nodiscard]] Eigen::Vector2d rotate(const Eigen::Vector2d& v) const {
+    return {cosine_ * v.x() - sine_ * v.y(), sine_ * v.x() + cosine_ * v.y()};
+  }
+  /// A point of this frame in the frame of the pose.
+  [[nodiscard]] Eigen::Vector2d transform(const Eigen::Vector2d& p) const {
+    return {origin_.x() + cosine_ * p.x() - sine_ * p.y(), origin_.y() + sine_ * p.x() + cosine_ * p.y()};
+  }
+  [[nodiscard]] Eigen::Matrix2d rotation() const {
+    Eigen::Matrix2d m;
+    m << cosine_, -sine_, sine_, cosine_;
+    return m;
+  }
+
+ private:
+  Eigen::Vector2d origin_;
+  double cosine_, sine_;
+};
+
+/// Turned by 90 degrees, counter-clockwise.
+inline Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
+
+/// Rotation of (x, y, yaw) in other axes: yaw stays what it is.
+inline Eigen::Matrix3d rotation_about_z(double yaw) {
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  Eigen::Matrix3d r;
+  r << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  return r;
+}
+
+}  // namespace odomcalib::calib
