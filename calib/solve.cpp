@@ -199,7 +199,7 @@ class Solver {
   }
 
   Result<FitResult> fit_corrected() {
-    corrected_ = corrected(recordings_, lidar_, session_->pair_sets());
+    corrected_ = corrected(recordings_, lidar_);
     return fit_on(corrected_);
   }
 

@@ -75,6 +75,14 @@ PairScore score_of(Rows rows) {
           static_cast<std::size_t>(rows.residual.size())};
 }
 
+PairScore& operator+=(PairScore& sum, const PairScore& pair) {
+  sum.gradient += pair.gradient;
+  sum.gram += pair.gram;
+  sum.squares += pair.squares;
+  sum.points += pair.points;
+  return sum;
+}
+
 /// Basis of the directions that the pairs can see, orthonormal in `gram`: B' gram B = I.
 Eigen::MatrixXd visible(const Eigen::MatrixXd& gram, double raw) {
   if (gram.size() == 0) return gram;
@@ -97,19 +105,17 @@ Eigen::MatrixXd part(const Eigen::MatrixXd& m, const std::vector<Eigen::Index>& 
 }
 
 /// A candidate's scores, pair by pair, beside what is accepted, in an orthonormal basis: degrees x pairs.
-Eigen::MatrixXd project(const std::vector<PairScore>& pairs, const std::vector<Eigen::Index>& accepted,
-                        const std::vector<Eigen::Index>& own) {
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(pairs.front().gram.rows(), pairs.front().gram.cols());
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(gram.rows());
-  for (const PairScore& pair : pairs) gram += pair.gram, gradient += pair.gradient;
+/// @param total of all pairs
+Eigen::MatrixXd project(const std::vector<PairScore>& pairs, const PairScore& total,
+                        const std::vector<Eigen::Index>& accepted, const std::vector<Eigen::Index>& own) {
   Eigen::MatrixXd onto(static_cast<Eigen::Index>(accepted.size()), static_cast<Eigen::Index>(own.size()));
   Eigen::VectorXd values(static_cast<Eigen::Index>(accepted.size()));
-  Eigen::MatrixXd rest = part(gram, own, own);
+  Eigen::MatrixXd rest = part(total.gram, own, own);
   if (!accepted.empty()) {
-    const Eigen::LDLT<Eigen::MatrixXd> ldlt(part(gram, accepted, accepted));
-    onto = ldlt.solve(part(gram, accepted, own));
-    values = ldlt.solve(gradient(accepted));
-    rest -= part(gram, own, accepted) * onto;
+    const Eigen::LDLT<Eigen::MatrixXd> ldlt(part(total.gram, accepted, accepted));
+    onto = ldlt.solve(part(total.gram, accepted, own));
+    values = ldlt.solve(total.gradient(accepted));
+    rest -= part(total.gram, own, accepted) * onto;
   }
   const Eigen::MatrixXd basis = visible(rest, kVisible);
   Eigen::MatrixXd projected(basis.cols(), static_cast<Eigen::Index>(pairs.size()));
@@ -130,13 +136,12 @@ Eigen::MatrixXd project(const std::vector<PairScore>& pairs, const std::vector<E
 /// pair share make them larger than chi-squared, all by about the same factor.
 class SignFlips {
  public:
-  explicit SignFlips(const std::vector<Eigen::MatrixXd>& scores) {
+  SignFlips(const std::vector<Eigen::MatrixXd>& scores, std::size_t pairs) {
     std::mt19937 engine(kSeed);
     std::vector<double> sums(scores.size(), 0.0);
     std::vector<Eigen::VectorXd> draws;
     for (int draw = 0; draw < kDraws; ++draw) {
-      Eigen::VectorXd signs(scores.front().cols());
-      for (const Eigen::MatrixXd& s : scores) signs.conservativeResize(std::max(signs.size(), s.cols()));
+      Eigen::VectorXd signs(static_cast<Eigen::Index>(pairs));
       for (Eigen::Index g = 0; g < signs.size(); ++g) signs(g) = (engine() & 1U) != 0U ? 1.0 : -1.0;
       Eigen::VectorXd statistics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scores.size()));
       for (std::size_t c = 0; c < scores.size(); ++c)
@@ -210,9 +215,11 @@ LidarScores::LidarScores(const std::vector<HeadingPair>& pairs,
     candidates_.push_back({effect, width, count});
     width += count;
   }
+  total_ = {Eigen::VectorXd::Zero(width), Eigen::MatrixXd::Zero(width, width)};
   std::vector<double> deviations;
   for (const HeadingPair& pair : pairs) {
     pairs_.push_back(score_of(rows_of(pair, candidates_, width)));
+    total_ += pairs_.back();
     for (const DoubleSighting& p : pair.points) deviations.push_back(p.deviation);
   }
   if (!deviations.empty()) typical_deviation_ = median_of(std::move(deviations));
@@ -243,10 +250,10 @@ std::vector<LidarScores::Score> LidarScores::score(const std::vector<std::size_t
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const bool is_taken = std::find(accepted.begin(), accepted.end(), c) != accepted.end();
     projected.push_back(is_taken ? Eigen::MatrixXd()
-                                 : project(pairs_, taken, columns({c})) / std::sqrt(variance));
+                                 : project(pairs_, total_, taken, columns({c})) / std::sqrt(variance));
     scores[c].degrees = projected[c].rows();
   }
-  const SignFlips flips(projected);
+  const SignFlips flips(projected, pairs_.size());
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     if (scores[c].degrees == 0) continue;
     scores[c].statistic = projected[c].rowwise().sum().squaredNorm() / flips.inflation();
@@ -260,9 +267,8 @@ std::vector<LidarScores::Score> LidarScores::score(const std::vector<std::size_t
 LidarFit LidarScores::fit(const std::vector<std::size_t>& accepted) const {
   const std::vector<Eigen::Index> taken = columns(accepted);
   const auto n = static_cast<Eigen::Index>(taken.size());
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n), scatter = Eigen::MatrixXd::Zero(n, n);
-  for (const PairScore& pair : pairs_) gram += part(pair.gram, taken, taken);
-  const Eigen::MatrixXd basis = visible(gram, kVisible);
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
+  const Eigen::MatrixXd basis = visible(part(total_.gram, taken, taken), kVisible);
   LidarFit result{solved(pairs_, taken, kFolds), Eigen::VectorXd::Zero(n)};
   for (const PairScore& pair : pairs_) {
     const Eigen::VectorXd left = pair.gradient(taken) - part(pair.gram, taken, taken) * result.values;

@@ -62,6 +62,7 @@ class LidarScores {
 
   std::vector<LidarColumns> candidates_;
   std::vector<PairScore> pairs_;
+  PairScore total_;                 ///< of all pairs
   double typical_deviation_ = 0.0;  ///< m, of one distance
 };
 

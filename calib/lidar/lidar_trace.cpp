@@ -5,7 +5,6 @@
 
 #include "calib/lidar/lidar_curve.hpp"
 #include "calib/lidar/lidar_score.hpp"
-#include "calib/matching/surface.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -130,15 +129,6 @@ class Trace {
   std::vector<LidarFinding> evidence_;
 };
 
-/// Incidence of each beam in the scan as it stands; 0 where no surface was recognised.
-std::vector<double> incidences(const Scan& scan, double range_noise) {
-  std::vector<double> all(scan.ranges.size(), 0.0);
-  const Surface surface = make_surface(
-      scan, [](double) { return Pose{}; }, range_noise);
-  for (const SurfacePoint& point : surface.points) all[point.reading] = incidence(point);
-  return all;
-}
-
 }  // namespace
 
 bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all) {
@@ -167,9 +157,8 @@ std::vector<LidarFinding> fit_lidar(const std::vector<HeadingPair>& pairs,
   return Trace(pairs, effects).fit_all();
 }
 
-Scan corrected(const Scan& scan, const std::vector<LidarFinding>& findings, double range_noise) {
+Scan corrected(const Scan& scan, const std::vector<LidarFinding>& findings) {
   Scan out = scan;
-  const std::vector<double> tilts = incidences(scan, range_noise);
   out.angles.resize(scan.ranges.size());
   for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
     const auto range = static_cast<double>(scan.ranges[k]);
@@ -177,7 +166,7 @@ Scan corrected(const Scan& scan, const std::vector<LidarFinding>& findings, doub
     double true_range = range;
     for (const LidarFinding& finding : findings) {
       if (!finding.effect->is_correctable()) continue;
-      const BeamShift shift = finding.effect->total({scan.angle(k), range, tilts[k]}, finding.values);
+      const BeamShift shift = finding.effect->total({scan.angle(k), range}, finding.values);
       true_range -= shift.radial;
       angle -= shift.angular;
     }

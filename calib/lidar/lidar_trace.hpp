@@ -30,8 +30,7 @@ std::vector<LidarFinding> fit_lidar(const std::vector<HeadingPair>& pairs,
                                     const std::vector<LidarEffectPtr>& effects);
 
 /// The scan as it would be without the errors found.
-/// @param range_noise standard deviation of a range, m
-Scan corrected(const Scan& scan, const std::vector<LidarFinding>& findings, double range_noise);
+Scan corrected(const Scan& scan, const std::vector<LidarFinding>& findings);
 
 /// Whether scans cover (nearly) a whole turn.
 bool sees_all_round(const Scan& scan);

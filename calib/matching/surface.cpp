@@ -110,7 +110,6 @@ SurfacePoint beam_end(const Scan& scan, std::size_t beam, const BeamMotion& moti
   SurfacePoint point;
   point.range = static_cast<double>(scan.ranges[beam]);
   const Pose pose = motion(beam_time(scan, beam));
-  point.reading = beam;
   point.bearing = scan.angle(beam);
   const double angle = pose.yaw + point.bearing;
   point.beam = {std::cos(angle), std::sin(angle)};
@@ -148,12 +147,6 @@ void collect_line_noise(const Scan& scan, std::vector<double>& out) {
 }
 
 }  // namespace
-
-double incidence(const SurfacePoint& point) {
-  if (!point.has_line) return 0.0;
-  const Eigen::Vector2d back = -point.beam;
-  return std::atan2(point.normal.x() * back.y() - point.normal.y() * back.x(), point.normal.dot(back));
-}
 
 bool is_usable(const Scan& scan, std::size_t beam) {
   const auto range = static_cast<double>(scan.ranges[beam]);

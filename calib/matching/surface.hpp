@@ -18,18 +18,13 @@ struct SurfacePoint {
   Eigen::Vector2d anchor;  ///< point of the local line next to `position`
   Eigen::Vector2d normal;  ///< unit normal of the local line, towards the sensor
   double range = 0.0;
-  double bearing = 0.0;     ///< rad, as the sensor stated it, before de-skewing
-  std::size_t reading = 0;  ///< index of the beam in its scan
+  double bearing = 0.0;  ///< rad, as the sensor stated it, before de-skewing
   bool has_line = false;
 };
 
 struct Surface {
   std::vector<SurfacePoint> points;  ///< in beam order
 };
-
-/// Angle from the surface's normal to the way back along the beam, rad, counter-clockwise positive; 0 where
-/// no line was found.
-double incidence(const SurfacePoint& point);
 
 /// Motion of the sensor from the scan's reference time to the time of a beam, s after Scan::t.
 using BeamMotion = std::function<Pose(double seconds_after_first_beam)>;

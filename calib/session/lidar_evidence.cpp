@@ -30,11 +30,10 @@ bool sees_all_round(const Session& session) {
 }
 
 std::vector<Recording> corrected(std::span<const Recording> recordings,
-                                 const std::vector<LidarFinding>& findings,
-                                 const std::vector<PairSet>& sets) {
+                                 const std::vector<LidarFinding>& findings) {
   std::vector<Recording> out(recordings.begin(), recordings.end());
-  for (std::size_t i = 0; i < out.size(); ++i)
-    for (Scan& scan : out[i].scans) scan = corrected(scan, findings, sets[i].range_noise);
+  for (Recording& recording : out)
+    for (Scan& scan : recording.scans) scan = corrected(scan, findings);
   return out;
 }
 

@@ -17,9 +17,8 @@ std::vector<HeadingPair> heading_pairs(const Session& session, const Eigen::Vect
 /// Whether the scans of all recordings cover whole turns.
 bool sees_all_round(const Session& session);
 
-/// @param sets of the same recordings: their range noise
 std::vector<Recording> corrected(std::span<const Recording> recordings,
-                                 const std::vector<LidarFinding>& findings, const std::vector<PairSet>& sets);
+                                 const std::vector<LidarFinding>& findings);
 
 /// Adds what scans still show after a first correction.
 void refine(std::vector<LidarFinding>& findings, const std::vector<HeadingPair>& pairs);

@@ -77,8 +77,7 @@ TEST(LidarEffect, correction_undoes_the_error) {
       {make_range_bias(), {0.03}}, {make_angle_scale(), {0.002}}, {make_lidar_tilt(), {0.002, -0.001}}};
   for (const auto& [effect, values] : cases) {
     const Scan good = distorted(*effect, std::vector<double>(values.size(), 0.0));
-    const Scan mended =
-        corrected(distorted(*effect, values), {{effect, values, values, 0.0, 0.0, 0.0}}, 0.005);
+    const Scan mended = corrected(distorted(*effect, values), {{effect, values, values, 0.0, 0.0, 0.0}});
     for (std::size_t k = 0; k < good.ranges.size(); ++k) {
       EXPECT_NEAR(mended.ranges[k], good.ranges[k], 1e-4) << effect->name();  // second order is left
       EXPECT_NEAR(mended.angles[k], good.angles[k], 2e-5) << effect->name();
