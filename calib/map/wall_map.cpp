@@ -9,13 +9,12 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kMinLength = 0.25;     ///< m; shorter pieces may be curved
-constexpr double kMaxOffset = 0.06;     ///< m across, between pieces of one wall
-constexpr double kMinAlike = 0.995;     ///< cosine between their normals, 5.7 degrees
-constexpr double kMaxGapAlong = 0.5;    ///< m, between pieces of one wall
-constexpr double kShade = 0.1;          ///< m, a wall may be this much longer than what was seen of it
-constexpr double kEndMargin = 0.02;     ///< m, at ends that are already short of what was seen
-constexpr double kSurfaceFloor = 1e-3;  ///< m, unevenness of surfaces
+constexpr double kMinLength = 0.25;   ///< m; shorter pieces may be curved
+constexpr double kMaxOffset = 0.06;   ///< m across, between pieces of one wall
+constexpr double kMinAlike = 0.995;   ///< cosine between their normals, 5.7 degrees
+constexpr double kMaxGapAlong = 0.5;  ///< m, between pieces of one wall
+constexpr double kShade = 0.1;        ///< m, a wall may be this much longer than what was seen of it
+constexpr double kEndMargin = 0.02;   ///< m, at ends that are already short of what was seen
 
 LineSums moved(const LineSums& sums, const Frame& frame) {
   const Eigen::Matrix2d turn = frame.rotation();
@@ -124,8 +123,7 @@ RangeTerm WallMap::term(const Beam& beam, std::size_t index, const Pose& sensor,
   const Eigen::Vector2d point = from + expected * direction;
   RangeTerm term;
   term.residual = beam.range - expected;
-  const double floor = kSurfaceFloor / towards;
-  term.variance = range_noise * range_noise + floor * floor;
+  term.variance = distance_variance(towards, range_noise) / (towards * towards);
   term.by_pose << wall.normal / towards, wall.normal.dot(quarter_turn(point - frame.origin())) / towards;
   term.by_wall << -1.0 / towards, wall.direction().dot(point - wall.centre) / towards;
   return term;
