@@ -9,14 +9,6 @@ namespace {
 constexpr double kConvincing = 0.8;         ///< overlap above which no better pose is looked for
 constexpr std::size_t kSearchPoints = 150;  ///< of the scan; more tell little on cells of 10 cm
 
-/// Every few, in order.
-std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points, std::size_t most) {
-  const std::size_t stride = points.size() / most + 1;
-  std::vector<Eigen::Vector2d> kept;
-  for (std::size_t i = 0; i < points.size(); i += stride) kept.push_back(points[i]);
-  return kept;
-}
-
 MatchResult match_after_search(const MatchReference& reference, const Surface& scan, const Pose& guess,
                                const MatchOptions& options) {
   LikelihoodField field(positions(reference.surface()), FieldOptions{});

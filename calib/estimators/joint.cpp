@@ -6,13 +6,13 @@
 #include <string>
 
 #include "calib/noise/noise_estimate.hpp"
+#include "calib/statistics/cluster_robust.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kOutlier = 5.0;       ///< sigma of a standardised residual vector
-constexpr int kNoiseRounds = 3;        ///< noise and weights are settled over this many outer rounds
-constexpr double kBlockSeconds = 5.0;  ///< cluster length of the robust covariance
+constexpr double kOutlier = 5.0;  ///< sigma of a standardised residual vector
+constexpr int kNoiseRounds = 3;   ///< noise and weights are settled over this many outer rounds
 constexpr double kMinRelativePivot = 1e-12;
 
 /// Stacked residuals and Jacobians of all recordings, before weighting.
@@ -34,18 +34,10 @@ Eigen::Vector3d difference(const Pose& measured, const Pose& predicted) {
   return {measured.x - predicted.x, measured.y - predicted.y, wrap_angle(measured.yaw - predicted.yaw)};
 }
 
-/// Velocity of the sensor in room axes by a central difference over 40 ms.
-Eigen::Vector3d velocity_at(const Trajectory& trajectory, const Pose& mount, double time) {
-  constexpr double kHalf = 0.02;
-  const Pose a = compose(trajectory.at(time - kHalf), mount);
-  const Pose b = compose(trajectory.at(time + kHalf), mount);
-  return Eigen::Vector3d(b.x - a.x, b.y - a.y, b.yaw - a.yaw) / (2.0 * kHalf);
-}
-
 PairState state_of(const Trajectory& trajectory, const Pose& mount, const SensorPair& pair) {
   return {trajectory.at(pair.interval.begin).yaw + mount.yaw,
-          velocity_at(trajectory, mount, pair.interval.begin),
-          velocity_at(trajectory, mount, pair.interval.end)};
+          sensor_velocity(trajectory, mount, pair.interval.begin),
+          sensor_velocity(trajectory, mount, pair.interval.end)};
 }
 
 Stack make_stack(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& p,
@@ -250,31 +242,18 @@ Result<bool> descend(std::span<const FitData> data, const EffectList& effects,
   return false;
 }
 
-/// Cluster-robust (sandwich) covariance over blocks of kBlockSeconds (Liang and Zeger, Biometrika 1986).
-Eigen::MatrixXd robust_covariance(std::span<const FitData> data, const Stack& stack, const FitResult& fit,
-                                  const Eigen::MatrixXd& inverse) {
-  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
-  Eigen::VectorXd block = Eigen::VectorXd::Zero(inverse.rows());
-  double blocks = 0.0;
-  const auto close = [&] {
-    if (!block.isZero()) blocks += 1.0;
-    meat += block * block.transpose();
-    block.setZero();
-  };
+ClusterRobust robust_covariance(std::span<const FitData> data, const Stack& stack, const FitResult& fit,
+                                const Eigen::MatrixXd& inverse) {
+  ClusterRobust robust(inverse);
   for (std::size_t d = 0; d < data.size(); ++d) {
-    double begin = -1e300;
     for (std::size_t k = 0; k < data[d].pairs.size(); ++k) {
-      if (data[d].pairs[k].interval.begin > begin + kBlockSeconds) {
-        close();
-        begin = data[d].pairs[k].interval.begin;
-      }
       const auto row = static_cast<Eigen::Index>(3 * (stack.first[d] + k));
-      block += fit.whitened_jacobian.middleRows<3>(row).transpose() * fit.whitened_residual.segment<3>(row);
+      robust.add(data[d].pairs[k].interval.begin, fit.whitened_jacobian.middleRows<3>(row).transpose() *
+                                                      fit.whitened_residual.segment<3>(row));
     }
-    close();
+    robust.end_recording();
   }
-  const double small_sample = blocks > 1.0 ? blocks / (blocks - 1.0) : 1.0;
-  return small_sample * inverse * meat * inverse;
+  return robust;
 }
 
 /// Model covariance, each parameter's deviation raised to the robust one where that is larger.
@@ -288,13 +267,9 @@ void set_covariance(std::span<const FitData> data, const Stack& stack, const std
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
   const Eigen::MatrixXd inverse =
       system.scale.asDiagonal() * matrix.ldlt().solve(identity) * system.scale.asDiagonal();
-  const Eigen::MatrixXd robust = robust_covariance(data, stack, fit, inverse);
   const double variance = std::max(1.0, fit.whitened_residual.squaredNorm() /
                                             std::max(static_cast<double>(fit.whitened_residual.size()), 1.0));
-  Eigen::VectorXd inflation = Eigen::VectorXd::Ones(inverse.rows());
-  for (Eigen::Index k = 0; k < inverse.rows(); ++k)
-    if (inverse(k, k) > 0.0) inflation(k) = std::sqrt(std::max(variance, robust(k, k) / inverse(k, k)));
-  fit.covariance = inflation.asDiagonal() * inverse * inflation.asDiagonal();
+  fit.covariance = robust_covariance(data, stack, fit, inverse).inflated(variance);
 }
 
 void count_outliers(const std::vector<double>& squared, FitResult& fit) {

@@ -8,6 +8,8 @@
 
 #include "calib/geometry/vector2.hpp"
 #include "calib/noise/noise_estimate.hpp"
+#include "calib/reference/scan_surfaces.hpp"
+#include "calib/statistics/cluster_robust.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -16,8 +18,6 @@ constexpr int kRounds = 3;                ///< of noise and parameters
 constexpr int kSteps = 3;                 ///< Gauss-Newton steps a round
 constexpr int kSweeps = 2;                ///< over the noise parameters
 constexpr double kOutlierSquared = 30.0;  ///< chi-square of three degrees of freedom: one in 7e5
-constexpr double kMaxGap = 2.0;           ///< s between scans; beyond, the reference was interrupted
-constexpr double kBlockSeconds = 5.0;     ///< cluster length of the robust covariance
 constexpr double kMinRolled = 1e-4;       ///< m, even standing wheels are not ideal
 constexpr double kMinPivot = 1e-12;
 
@@ -46,11 +46,10 @@ void set_wheel_errors(Link& link, const Pose& mount, double rolled) {
   link.yaw = rolled * yaw * yaw.transpose();
 }
 
+/// In axes in which the sensor heads towards `heading` then.
 Eigen::Vector3d velocity(const Trajectory& trajectory, const Pose& mount, double time, double heading) {
-  constexpr double kHalf = 0.02;  // s
-  const Pose step =
-      between(compose(trajectory.at(time - kHalf), mount), compose(trajectory.at(time + kHalf), mount));
-  return rotation_about_z(heading) * Eigen::Vector3d(step.x, step.y, step.yaw) / (2.0 * kHalf);
+  const double by_wheels = trajectory.at(time).yaw + mount.yaw;
+  return rotation_about_z(heading - by_wheels) * sensor_velocity(trajectory, mount, time);
 }
 
 double rolled_between(const WheelTrack& track, const Interval& interval, const BaseParameters& base) {
@@ -322,33 +321,23 @@ class Fitter {
           out_[d][k] = true;
   }
 
-  /// Cluster-robust over blocks of the drive (Liang and Zeger, Biometrika 1986).
-  [[nodiscard]] Eigen::MatrixXd robust(const System& system, const Eigen::MatrixXd& inverse) const {
-    Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
-    double blocks = 0.0;
+  [[nodiscard]] ClusterRobust robust(const System& system, const Eigen::MatrixXd& inverse) const {
+    ClusterRobust sums(inverse);
     for (std::size_t d = 0; d < parts_.size(); ++d) {
-      Eigen::VectorXd score = Eigen::VectorXd::Zero(inverse.rows());
-      double until = -1e300;
       for (std::size_t k = 0; k < parts_[d].links.size(); ++k) {
-        if (parts_[d].links[k].interval.begin > until) {
-          meat += score * score.transpose();
-          score.setZero();
-          until = parts_[d].links[k].interval.begin + kBlockSeconds;
-          blocks += 1.0;
-        }
         const auto row = static_cast<Eigen::Index>(3 * k);
-        score += system.jacobians[d].middleRows<3>(row).transpose() * system.residuals[d].middleRows<3>(row);
+        sums.add(parts_[d].links[k].interval.begin,
+                 system.jacobians[d].middleRows<3>(row).transpose() * system.residuals[d].middleRows<3>(row));
       }
-      meat += score * score.transpose();
+      sums.end_recording();
     }
-    return blocks / std::max(blocks - 1.0, 1.0) * inverse * meat * inverse;
+    return sums;
   }
 
   std::optional<Error> conclude() {
     const System system = make_system();
     const auto model = inverse(system);
     if (!model) return undetermined();
-    const Eigen::MatrixXd sandwich = robust(system, *model);
     double squares = 0.0;
     for (std::size_t d = 0; d < parts_.size(); ++d) {
       squares += system.residuals[d].squaredNorm();
@@ -356,10 +345,7 @@ class Fitter {
     }
     const double variance =
         std::max(1.0, squares / (3.0 * static_cast<double>(std::max<std::size_t>(fit_.used, 1))));
-    Eigen::VectorXd inflation = Eigen::VectorXd::Ones(model->rows());
-    for (Eigen::Index k = 0; k < model->rows(); ++k)
-      if ((*model)(k, k) > 0.0) inflation(k) = std::sqrt(std::max(variance, sandwich(k, k) / (*model)(k, k)));
-    fit_.covariance = inflation.asDiagonal() * *model * inflation.asDiagonal();
+    fit_.covariance = robust(system, *model).inflated(variance);
     return std::nullopt;
   }
 

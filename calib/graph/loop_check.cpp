@@ -20,13 +20,6 @@ std::size_t bin_of(double angle) {
   return static_cast<std::size_t>((turns - std::floor(turns)) * kBins) % kBins;
 }
 
-std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points) {
-  const std::size_t stride = points.size() / kSearchPoints + 1;
-  std::vector<Eigen::Vector2d> kept;
-  for (std::size_t i = 0; i < points.size(); i += stride) kept.push_back(points[i]);
-  return kept;
-}
-
 /// The four windows that lie about the summit, clear of it, as far as the search went.
 bool has_rival(LikelihoodField& field, const std::vector<Eigen::Vector2d>& points, const SearchResult& best,
                const LoopCheckOptions& options) {
@@ -77,7 +70,7 @@ LoopMatch match_loop(const MatchReference& first, const Surface& second, const P
   const auto points = positions(second);
   if (points.size() < 40 || reference_points.size() < 40) return refused("too few readings");
   LikelihoodField field(reference_points, {});
-  const auto few = thinned(points);
+  const auto few = thinned(points, kSearchPoints);
   const SearchResult best =
       search_branch_and_bound(field, few, {guess, options.half_width, options.half_angle});
   MatchOptions match_options;

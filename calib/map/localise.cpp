@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/matching/observability.hpp"
 #include "calib/statistics/median.hpp"
 #include "calib/statistics/tukey.hpp"
 
@@ -66,11 +67,7 @@ double weight_of(const RangeTerm& term, double scale) {
 bool Place::is_usable() const {
   if (!converged || inliers < kMinInliers) return false;
   if (static_cast<double>(inliers) < kMinInlierShare * static_cast<double>(strikes)) return false;
-  const Eigen::Matrix2d schur = information.topLeftCorner<2, 2>() - information.topRightCorner<2, 1>() *
-                                                                        information.bottomLeftCorner<1, 2>() /
-                                                                        std::max(information(2, 2), 1e-300);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(schur);
-  return eigen.eigenvalues()(0) > kMinEigenvalueRatio * eigen.eigenvalues()(1);
+  return observability(information).ratio > kMinEigenvalueRatio;
 }
 
 Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const Pose& guess,

@@ -6,6 +6,7 @@
 
 #include "calib/geometry/vector2.hpp"
 #include "calib/matching/joint_lines.hpp"
+#include "calib/matching/observability.hpp"
 #include "calib/statistics/median.hpp"
 #include "calib/statistics/tukey.hpp"
 
@@ -90,18 +91,6 @@ Linearised linearise(const std::vector<Correspondence>& pairs, const Frame& fram
   return system;
 }
 
-/// Translation information after eliminating yaw, taken about the centre of the points so that it does not
-/// depend on where the sensor's origin lies.
-void judge_observability(const Eigen::Matrix3d& information, MatchResult& result) {
-  if (!(information(2, 2) > 0.0)) return;
-  const Eigen::Matrix2d schur = information.topLeftCorner<2, 2>() - information.topRightCorner<2, 1>() *
-                                                                        information.bottomLeftCorner<1, 2>() /
-                                                                        information(2, 2);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(schur);
-  result.eigenvalue_ratio = std::max(eigen.eigenvalues()(0), 0.0) / std::max(eigen.eigenvalues()(1), 1e-300);
-  result.weak_direction = eigen.eigenvectors().col(0);
-}
-
 /// Whether the reference saw the part of the wall that a moved point is next to. Points beyond the ends of
 /// what one scan saw would be pulled back there, and the motion towards zero.
 bool lies_on(const Wall& wall, const Eigen::Vector2d& moved, const Eigen::Vector2d& beam, double gate) {
@@ -154,7 +143,9 @@ void conclude(MatchResult& result, const Linearised& system, double scale, std::
   result.inliers = system.inliers;
   result.overlap = static_cast<double>(system.inliers) / static_cast<double>(lines);
   result.residual = scale;
-  judge_observability(system.information, result);
+  const Observability translation = observability(system.information);
+  result.eigenvalue_ratio = translation.ratio;
+  result.weak_direction = translation.weak_direction;
   if (result.overlap < options.min_overlap || system.inliers < kMinPoints)
     result.status = MatchStatus::no_overlap;
   else if (result.eigenvalue_ratio < options.min_eigenvalue_ratio)

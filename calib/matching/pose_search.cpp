@@ -193,6 +193,13 @@ int highest_level(int shifts) {
 
 }  // namespace
 
+std::vector<Eigen::Vector2d> thinned(std::span<const Eigen::Vector2d> points, std::size_t most) {
+  const std::size_t stride = points.size() / most + 1;
+  std::vector<Eigen::Vector2d> kept;
+  for (std::size_t i = 0; i < points.size(); i += stride) kept.push_back(points[i]);
+  return kept;
+}
+
 SearchResult search_brute_force(const LikelihoodField& field, std::span<const Eigen::Vector2d> points,
                                 const SearchWindow& window) {
   const Lattice lattice(field, points, window);

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "calib/geometry/se2.hpp"
 #include "calib/matching/likelihood_field.hpp"
@@ -29,6 +30,9 @@ struct SearchResult {
   double score = 0.0;         ///< mean over the points, 0 to 1
   std::size_t evaluated = 0;  ///< poses and sets of poses that were scored
 };
+
+/// Every few of the points, in order, so that no more than `most` remain.
+std::vector<Eigen::Vector2d> thinned(std::span<const Eigen::Vector2d> points, std::size_t most);
 
 SearchResult search_brute_force(const LikelihoodField& field, std::span<const Eigen::Vector2d> points,
                                 const SearchWindow& window);

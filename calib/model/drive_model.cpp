@@ -78,6 +78,13 @@ Pose Trajectory::at(double sensor_time) const {
   return pose_at(*track_, poses_, twists_, sensor_time - delay);
 }
 
+Eigen::Vector3d sensor_velocity(const Trajectory& trajectory, const Pose& mount, double time) {
+  constexpr double kHalf = 0.02;
+  const Pose a = compose(trajectory.at(time - kHalf), mount);
+  const Pose b = compose(trajectory.at(time + kHalf), mount);
+  return Eigen::Vector3d(b.x - a.x, b.y - a.y, b.yaw - a.yaw) / (2.0 * kHalf);
+}
+
 Trajectory DriveModel::trajectory(std::span<const double> parameters, const EffectList& effects) const {
   Integrated integrated = integrate(context_, parameters, effects);
   Trajectory trajectory;

@@ -48,6 +48,10 @@ class Trajectory {
   PlacedEffects effects_;
 };
 
+/// Velocity of a sensor at `mount` in the axes of the trajectory, by a central difference over 40 ms: m/s,
+/// m/s, rad/s. The time is the sensor's.
+Eigen::Vector3d sensor_velocity(const Trajectory& trajectory, const Pose& mount, double time);
+
 class DriveModel {
  public:
   /// @param context one per interval between samples of the track (see make_context)
