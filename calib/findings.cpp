@@ -45,8 +45,10 @@ class Filler {
   void run() {
     const FitResult& fit = found_.outcome.fit;
     const std::span<const double> p(fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size()));
-    const Eigen::MatrixXd covariance =
+    Eigen::MatrixXd covariance =
         lengths_may_be_scaled() ? with_matcher_scale(fit.covariance, to_base(p)) : fit.covariance;
+    for (const Eigen::VectorXd& doubt : found_.outcome.doubts)
+      covariance.topLeftCorner<kBaseCount, kBaseCount>() += doubt * doubt.transpose();
     calibration_.parameters = base_quantities(to_base(p), covariance);
     calibration_.covariance_order = base_quantity_names();
     calibration_.covariance = diameter_covariance(covariance);
@@ -68,7 +70,7 @@ class Filler {
   [[nodiscard]] std::vector<bool> fixed() const { return fixed_with(found_.session.fixed(0), effects()); }
 
   /// Matches of keyframes are not free of bias; neither is a model with a law that was found to fit, whose
-  /// true shape nobody knows. Places in a map are, as far as fifty simulated drives tell.
+  /// true shape nobody knows. Places in a map are, as far as simulated drives tell.
   [[nodiscard]] bool lengths_may_be_scaled() const {
     if (found_.session.recordings().front().scans.empty() || found_.session.reference_is_base()) return false;
     const bool only_delay = std::all_of(effects().begin(), effects().end(),

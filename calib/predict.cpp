@@ -70,7 +70,7 @@ Correction correction_of(const Calibration& calibration) {
     for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
   }
   for (const auto& [curve, coefficients, law_of] : curves_of(calibration)) {
-    if (belongs_to_the_place(curve.law.variable)) continue;
+    if (place_of(*make_curve_effect(curve)) != Place::odometry) continue;
     correction.effects.push_back(make_curve_effect(curve));
     values.insert(values.end(), coefficients.begin(), coefficients.end());
   }
@@ -94,11 +94,9 @@ std::vector<Placement> effect_placements(const Calibration& calibration) {
       placements.push_back({result.name, name, quantity, effect ? place_of(*effect) : otherwise});
   }
   for (const auto& [curve, coefficients, law_of] : curves_of(calibration)) {
-    Placement placement;
-    placement.effect = make_curve_effect(curve)->name();
-    placement.quantity = {static_cast<double>(coefficients.size()), -1.0, "coefficients"};
-    placement.place = belongs_to_the_place(curve.law.variable) ? Place::nowhere : Place::odometry;
-    placements.push_back(std::move(placement));
+    const auto effect = make_curve_effect(curve);
+    const Quantity count{static_cast<double>(coefficients.size()), -1.0, "coefficients"};
+    placements.push_back({effect->name(), "", count, place_of(*effect)});
   }
   return placements;
 }

@@ -10,6 +10,7 @@
 #include "calib/findings.hpp"
 #include "calib/report.hpp"
 #include "calib/session/lidar_evidence.hpp"
+#include "calib/session/location.hpp"
 #include "calib/session/start_values.hpp"
 #include "calib/tracing/search.hpp"
 #include "calib/validation/held_out.hpp"
@@ -47,11 +48,12 @@ class Solver {
       calibration_.methods.push_back(joint);
       return refuse(fit.error());
     }
+    fit = locate(std::move(fit));
     if (automatic_ && recordings_.front().increments.empty())
       search(fit.value());
     else
-      outcome_ = {effects_, fit.value(), {}, {}, {}};
-    place_every_scan();
+      outcome_ = {effects_, fit.value(), {}, {}, {}, {}};
+    fit_whole_path();
     fill();
     return calibration_;
   }
@@ -152,9 +154,7 @@ class Solver {
   }
 
   [[nodiscard]] bool may_trace_lidar() const {
-    const Recording& first = recordings_.front();
-    return (automatic_ || !asked_of_lidar_.empty()) && first.increments.empty() && !first.scans.empty() &&
-           !session_->reference_is_base();
+    return (automatic_ || !asked_of_lidar_.empty()) && sees_scans();
   }
 
   [[nodiscard]] std::vector<HeadingPair> lidar_pairs() const {
@@ -211,6 +211,31 @@ class Solver {
     return settle();
   }
 
+  /// From here on effects of the floor know the place. Those that were asked for are fitted once more.
+  Result<FitResult> locate(Result<FitResult> fit) {
+    place_every_scan();
+    std::vector<std::vector<Fix>> fixes;
+    for (std::size_t i = 0; i < recordings_.size(); ++i)
+      fixes.push_back(paths_.empty() ? fixes_of(recordings_[i]) : fixes_of(paths_[i], mount()));
+    session_->locate(fixes, parameters_, effects_);
+    if (!std::any_of(effects_.begin(), effects_.end(), [](const auto& e) { return acts_in_places(*e); }))
+      return fit;
+    auto better = fit_now();
+    if (better) parameters_ = better.value().parameters;
+    return better;
+  }
+
+  [[nodiscard]] Pose mount() const {
+    return to_base({parameters_.data(), static_cast<std::size_t>(parameters_.size())}).mount;
+  }
+
+  static bool acts_in_places(const Effect& effect) {
+    const auto laws = effect.laws();
+    return std::any_of(laws.begin(), laws.end(), [](const Law& law) {
+      return law.variable == Variable::heading || law.variable == Variable::position;
+    });
+  }
+
   /// What is missing beyond the delay: stepwise, each step proved on held-out data.
   void search(const FitResult& fit) {
     outcome_ = search_effects(session_->data(), effects_, fit, session_->fixed(0),
@@ -237,32 +262,39 @@ class Solver {
     if (!fit) effects_ = outcome_.effects, parameters_ = outcome_.fit.parameters;
   }
 
-  /// The same parameters from every scan instead of keyframes, where the room has walls enough to place all
-  /// of them.
+  [[nodiscard]] bool sees_scans() const {
+    const Recording& first = recordings_.front();
+    return first.increments.empty() && !first.scans.empty() && !session_->reference_is_base();
+  }
+
+  /// All or none: without walls enough to place nearly every scan of every recording there are no paths.
   void place_every_scan() {
-    if (session_->reference_is_base() || recordings_.front().scans.empty()) return;
+    paths_.clear();
+    placed_with_ = parameters_;
+    if (!sees_scans()) return;
     report("placing every scan", 0.0);
-    const auto paths = paths_of_all();
-    if (!paths) return;
-    const auto fit = fit_path(*paths, effects_, parameters_,
+    const std::span<const double> p(parameters_.data(), static_cast<std::size_t>(parameters_.size()));
+    for (std::size_t i = 0; i < recordings_.size(); ++i) {
+      paths_.push_back(place_scans(session_->recordings()[i], *session_->data()[i].model, p, effects_,
+                                   session_->pair_sets()[i].range_noise));
+      if (!paths_.back().is_usable()) return paths_.clear();
+    }
+  }
+
+  /// The same parameters from every scan instead of keyframes.
+  void fit_whole_path() {
+    const bool is_new = parameters_.size() != placed_with_.size() || parameters_ != placed_with_;
+    if (is_new) place_every_scan();
+    if (paths_.empty()) return;
+    std::vector<PathData> data;
+    for (std::size_t i = 0; i < paths_.size(); ++i)
+      data.push_back({session_->data()[i].model, paths_[i].scans});
+    const auto fit = fit_path(data, effects_, parameters_,
                               {fixed_with(session_->fixed(0), effects_), outcome_.fit.prior_information});
     if (!fit || !improves(fit.value())) return;
     parameters_ = outcome_.fit.parameters = fit.value().parameters;
     outcome_.fit.covariance = fit.value().covariance;
     every_scan_placed_ = true;
-  }
-
-  [[nodiscard]] std::optional<std::vector<PathData>> paths_of_all() const {
-    const std::span<const double> p(parameters_.data(), static_cast<std::size_t>(parameters_.size()));
-    std::vector<PathData> paths;
-    for (std::size_t i = 0; i < session_->recordings().size(); ++i) {
-      const DriveModel* model = session_->data()[i].model;
-      ScanPath path =
-          place_scans(session_->recordings()[i], *model, p, effects_, session_->pair_sets()[i].range_noise);
-      if (!path.is_usable()) return std::nullopt;
-      paths.push_back({model, std::move(path.scans)});
-    }
-    return paths;
   }
 
   /// Places are believed where they confirm the matches and know better: a map may be wrong as a whole.
@@ -295,6 +327,8 @@ class Solver {
   EffectList effects_;
   SearchResult outcome_;
   Eigen::VectorXd parameters_;
+  std::vector<ScanPath> paths_;  ///< one per recording, or none
+  Eigen::VectorXd placed_with_;  ///< parameters that the paths were made with
   std::vector<LidarEffectPtr> asked_of_lidar_;
   std::vector<LidarFinding> lidar_;
   std::vector<Recording> corrected_;  ///< without the lidar's errors; what the session measures then

@@ -12,6 +12,7 @@ std::string to_string(Variable variable) {
                                            "lateral_acceleration",
                                            "left_acceleration",
                                            "right_acceleration",
+                                           "turn_acceleration",
                                            "left_phase",
                                            "right_phase",
                                            "time",
@@ -29,7 +30,7 @@ std::string to_string(Variable variable) {
 std::string to_string(Carrier carrier) {
   static constexpr const char* kNames[] = {"left_travel",   "right_travel", "both_travel", "track",
                                            "sideways",      "left_path",    "right_path",  "both_path",
-                                           "sideways_path", "yaw_path",     "turn_path"};
+                                           "sideways_path", "yaw_path",     "turn_path",   "sensor_yaw"};
   return kNames[static_cast<std::size_t>(carrier)];
 }
 
@@ -72,6 +73,8 @@ double value_of(Variable variable, const StepContext& c) {
       return c.left_acceleration;
     case Variable::right_acceleration:
       return c.right_acceleration;
+    case Variable::turn_acceleration:
+      return 0.5 * (c.turn_acceleration_before + c.turn_acceleration_after);
     case Variable::left_phase:
       return c.left_angle;
     case Variable::right_phase:

@@ -16,6 +16,7 @@ enum class Variable {
   lateral_acceleration,
   left_acceleration,
   right_acceleration,
+  turn_acceleration,
   left_phase,
   right_phase,
   time,
@@ -46,7 +47,8 @@ double value_of(Variable variable, const StepContext& context);
 
 /// `travel` is signed and reverses with the motion, `path` is unsigned. Left, right, both: relative to the
 /// travel of those wheels. Track: relative. Sideways: m per m of the base. Yaw path: rad per m of the base.
-/// Turn path: m ahead per rad of turning either way.
+/// Turn path: m ahead per rad of turning either way. Sensor yaw: rad by which the sensor has turned on the
+/// base; f is its growth over the interval, so that it comes and goes with the variable.
 enum class Carrier {
   left_travel,
   right_travel,
@@ -59,8 +61,9 @@ enum class Carrier {
   sideways_path,
   yaw_path,
   turn_path,
+  sensor_yaw,
 };
-inline constexpr Carrier kLastCarrier = Carrier::turn_path;
+inline constexpr Carrier kLastCarrier = Carrier::sensor_yaw;
 std::string to_string(Carrier carrier);
 
 /// Lets a defect of size f act on the step.
@@ -105,6 +108,9 @@ void carry(Carrier carrier, const StepContext& c, const T& f, WheelStep<T>& step
     case Carrier::turn_path:
       step.left += f * turn;
       step.right += f * turn;
+      break;
+    case Carrier::sensor_yaw:
+      step.yaw += f;
       break;
   }
 }

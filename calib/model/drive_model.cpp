@@ -73,9 +73,28 @@ std::size_t count_parameters(const EffectList& effects) {
 DriveModel::DriveModel(WheelTrack track, std::vector<StepContext> context)
     : track_(std::move(track)), context_(std::move(context)) {}
 
+void DriveModel::locate(std::span<const Fix> fixes, std::span<const double> parameters,
+                        const EffectList& effects) {
+  const Trajectory path = trajectory(parameters, effects);
+  Pose origin;  // of dead reckoning, in the frame of the fixes
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < context_.size(); ++k) {
+    StepContext& c = context_[k];
+    for (; next < fixes.size() && (next == 0 || path.encoder_time(fixes[next].time) <= track_.t[k]); ++next)
+      origin = compose(fixes[next].pose, inverse(path.at(fixes[next].time)));
+    const Pose here = compose(origin, path.poses_[k]);
+    c.heading = here.yaw + path.twists_[k].yaw / 2.0;
+    c.x = here.x;
+    c.y = here.y;
+  }
+}
+
+double Trajectory::encoder_time(double sensor_time) const {
+  return sensor_time - effects_.delay<double>(sensor_time - middle_of(*track_), parameters_);
+}
+
 Pose Trajectory::at(double sensor_time) const {
-  const double delay = effects_.delay<double>(sensor_time - middle_of(*track_), parameters_);
-  return pose_at(*track_, poses_, twists_, sensor_time - delay);
+  return pose_at(*track_, poses_, twists_, encoder_time(sensor_time));
 }
 
 Eigen::Vector3d sensor_velocity(const Trajectory& trajectory, const Pose& mount, double time) {

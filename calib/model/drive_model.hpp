@@ -31,6 +31,12 @@ struct Interval {
   double end = 0.0;
 };
 
+/// Pose of the base at a time on the sensor's clock, s, known from something else than the wheels.
+struct Fix {
+  double time = 0.0;
+  Pose pose;
+};
+
 /// Base poses at the samples of a track and the constant twist in between.
 class Trajectory {
  public:
@@ -38,6 +44,7 @@ class Trajectory {
   [[nodiscard]] const std::vector<Pose>& poses() const { return poses_; }
   /// Base pose at the encoder time that belongs to a time on the sensor's clock.
   [[nodiscard]] Pose at(double sensor_time) const;
+  [[nodiscard]] double encoder_time(double sensor_time) const;
 
  private:
   friend class DriveModel;
@@ -59,6 +66,11 @@ class DriveModel {
 
   [[nodiscard]] const WheelTrack& track() const { return track_; }
   [[nodiscard]] const std::vector<StepContext>& context() const { return context_; }
+
+  /// Sets heading and place of every interval: the latest fix (in time order) and dead reckoning with these
+  /// parameters from there on. Without fixes dead reckoning alone, which is better than the nominal one of
+  /// make_context().
+  void locate(std::span<const Fix> fixes, std::span<const double> parameters, const EffectList& effects);
 
   /// Dead reckoning with these parameters, to be asked for poses.
   [[nodiscard]] Trajectory trajectory(std::span<const double> parameters, const EffectList& effects) const;

@@ -87,6 +87,12 @@ void Session::measure(const Eigen::VectorXd& parameters, const EffectList& effec
   }
 }
 
+void Session::locate(std::span<const std::vector<Fix>> fixes, const Eigen::VectorXd& parameters,
+                     const EffectList& effects) {
+  const std::span<const double> p(parameters.data(), static_cast<std::size_t>(parameters.size()));
+  for (std::size_t i = 0; i < models_.size(); ++i) models_[i].locate(fixes[i], p, effects);
+}
+
 std::size_t Session::pair_count() const {
   std::size_t count = 0;
   for (const FitData& d : data_) count += d.pairs.size();

@@ -31,6 +31,11 @@ class Session {
   /// Measures the pairs of all recordings anew with these parameters as guess and for de-skewing.
   void measure(const Eigen::VectorXd& parameters, const EffectList& effects, const PairOptions& options);
 
+  /// Tells the models where the base was (see DriveModel::locate).
+  /// @param fixes per recording
+  void locate(std::span<const std::vector<Fix>> fixes, const Eigen::VectorXd& parameters,
+              const EffectList& effects);
+
   [[nodiscard]] const std::vector<FitData>& data() const { return data_; }
   [[nodiscard]] const std::vector<PairSet>& pair_sets() const { return sets_; }
   [[nodiscard]] std::size_t pair_count() const;

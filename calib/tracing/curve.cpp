@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numeric>
 
 #include "calib/effects/step_effect.hpp"
 
@@ -35,6 +36,8 @@ Carriers carriers_of(Variable variable) {
       return {left_travel, left_path};
     case Variable::right_acceleration:
       return {right_travel, right_path};
+    case Variable::turn_acceleration:
+      return {sensor_yaw};
     case Variable::speed:
       return {both_travel, track, sideways};
     case Variable::turn_rate:
@@ -56,6 +59,20 @@ Carriers carriers_of(Variable variable) {
   return {};
 }
 
+/// Sway of a mast: both directions alike, more than linear at most by a square.
+BasisValues sway_functions(const Curve& curve, double z) {
+  const double relative = std::clamp(z / std::max(std::abs(curve.low), std::abs(curve.high)), -1.0, 1.0);
+  return {relative, relative * std::abs(relative)};
+}
+
+/// Of each function over the interval.
+BasisValues growth(const Curve& curve, const StepContext& c) {
+  BasisValues after = sway_functions(curve, c.turn_acceleration_after);
+  const BasisValues before = sway_functions(curve, c.turn_acceleration_before);
+  for (std::size_t k = 0; k < after.size(); ++k) after[k] -= before[k];
+  return after;
+}
+
 class CurveEffect final : public StepEffect<CurveEffect> {
  public:
   explicit CurveEffect(const Curve& curve) : curve_(curve) {}
@@ -72,12 +89,13 @@ class CurveEffect final : public StepEffect<CurveEffect> {
     return list;
   }
   [[nodiscard]] Storage storage() const override {
+    if (concerns_sensor(curve_)) return Storage::driver;
     return belongs_to_the_place(curve_.law.variable) ? Storage::nowhere : Storage::host;
   }
 
   template <typename T>
   void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) const {
-    const BasisValues functions = basis(curve_, c);
+    const BasisValues functions = concerns_sensor(curve_) ? growth(curve_, c) : basis(curve_, c);
     T f(0.0);
     for (std::size_t k = 0; k < functions.size(); ++k) f += p[k] * functions[k];
     carry(curve_.law.carrier, c, f, step);
@@ -86,7 +104,7 @@ class CurveEffect final : public StepEffect<CurveEffect> {
  private:
   /// Relative; rad per m; m per rad.
   [[nodiscard]] double typical_size() const {
-    if (curve_.law.carrier == Carrier::yaw_path) return 0.02;
+    if (curve_.law.carrier == Carrier::yaw_path || concerns_sensor(curve_)) return 0.02;
     // An error of the encoder's angle shows in its rate, n times as large for the n-th harmonic.
     if (curve_.harmonic > 0) return 5e-3 * curve_.harmonic;
     return curve_.law.carrier == Carrier::turn_path ? 1e-3 : 5e-3;
@@ -147,15 +165,14 @@ bool is_signed_speed(Variable variable) {
 /// Direction as a step, smooth over a few percent of the range so that noise about zero does not flip it.
 double direction_of(double relative) { return std::tanh(relative / 0.03); }
 
-/// Zero at rest; hats about four magnitudes, the direction, and the direction times the magnitude.
+/// Zero at rest; hats about magnitudes, the direction, and the direction times the magnitude.
 BasisValues speed_functions(const Curve& curve, double z) {
-  constexpr int kKnots = 4;
   const double relative = std::clamp(z / std::max(std::abs(curve.low), std::abs(curve.high)), -1.0, 1.0);
   const double direction = direction_of(relative), magnitude = std::abs(relative);
   if (curve.law.carrier == Carrier::turn_path) return {1.0, magnitude, direction, relative};
   BasisValues functions;
-  for (int k = 1; k <= kKnots; ++k)
-    functions.push_back(std::max(0.0, 1.0 - std::abs(kKnots * magnitude - k)));
+  for (int k = 1; k <= curve.knots; ++k)
+    functions.push_back(std::max(0.0, 1.0 - std::abs(curve.knots * magnitude - k)));
   functions.push_back(direction);
   functions.push_back(relative);
   return functions;
@@ -205,8 +222,8 @@ void add_periods(double duration, std::vector<Curve>& curves) {
     curves.push_back({{Variable::time, Carrier::both_travel}, 0.0, duration, duration / cycles, 0});
 }
 
-void add_harmonics(const Curve& curve, std::vector<Curve>& curves) {
-  for (int harmonic = kHarmonics + 1; harmonic <= kHighestHarmonic; ++harmonic) {
+void add_harmonics(const Curve& curve, int first, int last, std::vector<Curve>& curves) {
+  for (int harmonic = first; harmonic <= last; ++harmonic) {
     curves.push_back(curve);
     curves.back().harmonic = harmonic;
   }
@@ -232,6 +249,7 @@ double amount(Carrier carrier, const StepContext& c) {
 BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   const Variable variable = curve.law.variable;
   const double z = value_of(variable, c);
+  if (concerns_sensor(curve)) return sway_functions(curve, z);
   if (is_angle(variable))
     return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
   if (is_distance_since(variable)) return fading(variable, z);
@@ -250,6 +268,17 @@ BasisValues basis(const Curve& curve, const StepContext& c) {
   BasisValues functions = raw_basis(curve, c);
   for (std::size_t k = 0; k < curve.mean.size(); ++k) functions[k] -= curve.mean[k];
   return functions;
+}
+
+bool concerns_sensor(const Curve& curve) { return curve.law.carrier == Carrier::sensor_yaw; }
+
+std::optional<Curve> refined(const Curve& curve, std::span<const DriveModel* const> models) {
+  constexpr int kMost = 8;
+  const bool has_knots = is_signed_speed(curve.law.variable) && curve.law.carrier != Carrier::turn_path;
+  if (!has_knots || 2 * curve.knots > kMost) return std::nullopt;
+  Curve finer = curve;
+  finer.knots *= 2;
+  return curve.mean.empty() ? finer : centred(std::move(finer), models);
 }
 
 std::size_t basis_size(const Curve& curve) { return basis(curve, StepContext{}).size(); }
@@ -274,6 +303,20 @@ Curve centred(Curve curve, std::span<const DriveModel* const> models) {
   return curve;
 }
 
+double spread_of(const Curve& curve, std::span<const double> coefficients,
+                 std::span<const DriveModel* const> models) {
+  double sum = 0.0, total = 0.0;
+  for (const DriveModel* model : models)
+    for (const StepContext& c : model->context()) {
+      const BasisValues functions = basis(curve, c);
+      const double f = std::inner_product(functions.begin(), functions.end(), coefficients.begin(), 0.0);
+      const double weight = amount(curve.law.carrier, c);
+      sum += weight * f * f;
+      total += weight;
+    }
+  return std::sqrt(sum / std::max(total, 1e-12));
+}
+
 std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
   std::vector<Curve> curves;
   for (int v = 0; v <= static_cast<int>(kLastVariable); ++v) {
@@ -284,7 +327,10 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
     for (const Carrier carrier : carriers_of(variable)) {
       const Curve curve{{variable, carrier}, low, high, 0.0, 0};
       curves.push_back(curve);
-      if (variable == Variable::left_phase || variable == Variable::right_phase) add_harmonics(curve, curves);
+      if (variable == Variable::left_phase || variable == Variable::right_phase)
+        add_harmonics(curve, kHarmonics + 1, kHighestHarmonic, curves);
+      // A drive seldom shows all headings; one wave round the circle is what few of them can tell.
+      if (variable == Variable::heading) add_harmonics(curve, 1, 1, curves);
     }
     if (variable == Variable::time) add_periods(high - low, curves);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,14 @@
 namespace odomcalib::calib {
 
 /// f(z) = sum of coefficients times basis functions of the variable z:
-/// - angles: harmonics 1 to 3, or one higher harmonic;
+/// - angles: harmonics 1 to 3, or one alone;
 /// - distances since an event: piecewise linear in its logarithm, zero far away;
 /// - time with a period: one cosine and one sine;
 /// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both;
-/// - speeds and turn rate: piecewise linear in the magnitude (four knots), a step with the direction, and the
+/// - speeds and turn rate: piecewise linear in the magnitude (at four or eight knots), a step with the
+/// direction, and the
 ///   magnitude times the direction;
+/// - on the sensor's yaw: the variable and its signed square;
 /// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
 /// A constant is a base parameter's, except on the turn path, where it is the first function.
 struct Curve {
@@ -30,9 +33,10 @@ struct Curve {
   /// Subtracted from the functions; none: 0. Functions that are zero at rest leave the base parameters the
   /// meaning of slow motion; functions without a mean leave them that of the drive they were fitted to.
   std::vector<double> mean = {};
+  int knots = 4;  ///< of speeds only
 };
 
-/// At most eight functions' values. They are asked for each tick interval of each fit, so they stay off the
+/// At most sixteen functions' values. They are asked for each tick interval of each fit, so they stay off the
 /// heap.
 class BasisValues {
  public:
@@ -48,7 +52,7 @@ class BasisValues {
   [[nodiscard]] const double* end() const { return values_.data() + count_; }
 
  private:
-  std::array<double, 8> values_{};
+  std::array<double, 16> values_{};
   std::size_t count_ = 0;
 };
 
@@ -59,6 +63,16 @@ std::shared_ptr<const Effect> make_curve_effect(const Curve& curve);
 
 /// The same curve about its mean over these drives.
 Curve centred(Curve curve, std::span<const DriveModel* const> models);
+
+/// Root mean square of the curve over the motion of its carrier in these drives.
+double spread_of(const Curve& curve, std::span<const double> coefficients,
+                 std::span<const DriveModel* const> models);
+
+/// The same curve with twice the knots, where it has knots and few.
+std::optional<Curve> refined(const Curve& curve, std::span<const DriveModel* const> models);
+
+/// A dependence of the sensor's place on the base: none of odometry's.
+bool concerns_sensor(const Curve& curve);
 
 /// Curves worth trying on this data: every sensible (variable, carrier) whose variable varies, on its 0.5 to
 /// 99.5 % range, higher harmonics of the wheels, and

@@ -84,6 +84,26 @@ double excess_of_outliers(const FitResult& fit) {
   return std::sqrt(std::max(*nth, 0.0) / kExpected);
 }
 
+/// Base parameters that the carrier scales.
+std::vector<BaseIndex> lengths_of(Carrier carrier) {
+  switch (carrier) {
+    case Carrier::left_travel:
+      return {kLeftRadius};
+    case Carrier::right_travel:
+      return {kRightRadius};
+    case Carrier::both_travel:
+      return {kLeftRadius, kRightRadius};
+    case Carrier::track:
+      return {kTrackWidth};
+    default:
+      return {};
+  }
+}
+
+std::span<const double> as_span(const Eigen::VectorXd& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
 NoiseModel widened(NoiseModel noise, double factor) {
   noise.matcher_scale *= factor;
   noise.process_translation *= factor;
@@ -299,7 +319,7 @@ class Search {
   static double largest_ratio(const Candidate& candidate) {
     constexpr double kCurve = 0.97;
     if (must_be_worthwhile(candidate)) return kWorthwhile;
-    const bool will_be_used = candidate.effect->storage() != Storage::nowhere;
+    const bool will_be_used = candidate.effect->storage() == Storage::host;
     return candidate.curve && will_be_used ? kCurve : std::numeric_limits<double>::infinity();
   }
 
@@ -324,17 +344,19 @@ class Search {
       if (proof.improvement.upper < 1.0) return {};
       if (proof.improvement.lower > 1.0) return "held-out error rises";
     }
-    return gain_on_held_out(trial.fit, effects, selected) ? "" : "no gain on held-out data";
+    const HeldOutGain gain = compared_on_held_out(basis_, result_.effects, trial.fit, effects, selected);
+    return gain.lower > 0.0 ? "" : "no gain on held-out data";
   }
 
-  [[nodiscard]] bool gain_on_held_out(const FitResult& fit, const EffectList& effects,
-                                      const FoldFlags& selected) const {
-    std::vector<double> weights(fit.weights.size());
-    std::transform(fit.weights.begin(), fit.weights.end(), basis_.weights.begin(), weights.begin(),
+  /// Each model's own weights spare what it explains badly: both are compared with the larger ones.
+  [[nodiscard]] HeldOutGain compared_on_held_out(const FitResult& before, const EffectList& effects_before,
+                                                 const FitResult& after, const EffectList& effects_after,
+                                                 const FoldFlags& selected) const {
+    std::vector<double> weights(after.weights.size());
+    std::transform(after.weights.begin(), after.weights.end(), before.weights.begin(), weights.begin(),
                    [](double a, double b) { return std::max(a, b); });
-    const FitResult before = with_weights(data_, result_.effects, basis_, weights);
-    const FitResult after = with_weights(data_, effects, fit, weights);
-    return held_out_gain(data_, before, fixed(result_.effects), after, fixed(effects), selected).lower > 0.0;
+    return held_out_gain(data_, with_weights(data_, effects_before, before, weights), fixed(effects_before),
+                         with_weights(data_, effects_after, after, weights), fixed(effects_after), selected);
   }
 
   [[nodiscard]] std::string implausibility(const Effect& effect, const FitResult& fit) const {
@@ -388,7 +410,60 @@ class Search {
     if (!proof) return true;
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
     strike(candidate.key);
+    refine_newest_curve();
+    doubt_zero_of_newest_curve();
     return true;
+  }
+
+  /// A law with a narrow peak needs more knots than finding it did.
+  void refine_newest_curve() {
+    AddedCurve& newest = result_.curves.back();
+    const auto finer = refined(newest.curve, models());
+    if (!finer) return;
+    EffectList effects = result_.effects;
+    effects.back() = make_curve_effect(*finer);
+    auto fit = refit_with(effects, result_.fit);
+    if (!fit || spoils_base(*effects.back(), result_.fit, *fit)) return;
+    result_.doubts.emplace_back(fit->parameters.head<kBaseCount>() -
+                                result_.fit.parameters.head<kBaseCount>());
+    const auto more = basis_size(*finer) - basis_size(newest.curve);
+    if (result_.fit.cost - fit->cost < penalty(more)) return;
+    if (!(compared_on_held_out(result_.fit, result_.effects, *fit, effects, all_folds()).total > 0.0)) return;
+    newest.curve = *finer;
+    newest.effect = effects.back();
+    result_.effects = std::move(effects);
+    result_.fit = std::move(*fit);
+  }
+
+  /// A curve about its mean leaves the base the average of this drive; where its law would be zero, nobody
+  /// knows.
+  void doubt_zero_of_newest_curve() {
+    const Curve& curve = result_.curves.back().curve;
+    if (curve.mean.empty()) return;
+    const auto count = static_cast<Eigen::Index>(basis_size(curve));
+    const double spread = spread_of(curve, as_span(result_.fit.parameters.tail(count).eval()), models());
+    Eigen::VectorXd doubt = Eigen::VectorXd::Zero(kBaseCount);
+    for (const auto k : lengths_of(curve.law.carrier)) doubt(k) = spread * result_.fit.parameters(k);
+    result_.doubts.push_back(doubt);
+  }
+
+  /// With another last effect, on the same noise.
+  [[nodiscard]] std::optional<FitResult> refit_with(const EffectList& effects, const FitResult& fit) const {
+    const auto count = static_cast<Eigen::Index>(kBaseCount + count_parameters(effects));
+    const auto own = static_cast<Eigen::Index>(effects.back()->parameters().size());
+    Eigen::VectorXd start = Eigen::VectorXd::Zero(count);
+    start.head(count - own) = fit.parameters.head(count - own);
+    FitOptions options;
+    options.fixed = fixed(effects);
+    options.noise = fit.noise;
+    auto settled = fit_joint(data_, effects, start, options);
+    return settled ? std::optional(std::move(settled).value()) : std::nullopt;
+  }
+
+  static FoldFlags all_folds() {
+    FoldFlags flags;
+    flags.fill(true);
+    return flags;
   }
 
   /// Variables whose curves would have explained most of it too.

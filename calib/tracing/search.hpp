@@ -52,6 +52,9 @@ struct SearchResult {
   std::vector<Finding> findings;
   std::vector<AddedCurve> curves;
   std::vector<Considered> considered;  ///< in the order tried
+  /// What nobody knows about a curve's law is unknown of the base parameters too: by how much they move with
+  /// another shape, and with another zero.
+  std::vector<Eigen::VectorXd> doubts;
 
   [[nodiscard]] bool has_unnamed() const;
 };

@@ -18,14 +18,15 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   const auto variable = enum_from(entry.value("variable", ""), kLastVariable);
   const auto carrier = enum_from(entry.value("carrier", ""), kLastCarrier);
   if (!variable || !carrier) return std::nullopt;
-  const Curve curve{{*variable, *carrier},      entry.value("low", 0.0),
-                    entry.value("high", 0.0),   entry.value("period", 0.0),
-                    entry.value("harmonic", 0), entry.value("mean", std::vector<double>{})};
+  Curve curve{{*variable, *carrier},      entry.value("low", 0.0),    entry.value("high", 0.0),
+              entry.value("period", 0.0), entry.value("harmonic", 0), {},
+              entry.value("knots", 4)};
   const auto coefficients = entry.value("coefficients", std::vector<double>{});
-  if (!(curve.high > curve.low) ||
-      coefficients.size() != basis_size({curve.law, curve.low, curve.high, curve.period, curve.harmonic}) ||
-      (!curve.mean.empty() && curve.mean.size() != coefficients.size()))
+  if (!(curve.high > curve.low) || (curve.knots != 4 && curve.knots != 8) ||
+      coefficients.size() != basis_size(curve))
     return std::nullopt;
+  curve.mean = entry.value("mean", std::vector<double>{});
+  if (!curve.mean.empty() && curve.mean.size() != coefficients.size()) return std::nullopt;
   return FittedCurve{curve, coefficients, entry.value("law_of", "")};
 }
 
@@ -51,6 +52,7 @@ std::string curves_to_json(const std::vector<FittedCurve>& curves) {
                     {"period", curve.period},
                     {"mean", curve.mean},
                     {"harmonic", curve.harmonic},
+                    {"knots", curve.knots},
                     {"coefficients", coefficients},
                     {"law_of", law_of}});
   return list.dump();

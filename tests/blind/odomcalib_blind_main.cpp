@@ -3,11 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "tests/blind/blind_table.hpp"
 #include "tests/blind/blind_trial.hpp"
+#include "tests/sim/effects/effect.hpp"
 
 namespace {
 
@@ -47,6 +49,10 @@ int main(int argc, char** argv) {
   app.add_option("--without", options.share_without_effect, "share of recordings without effect");
   app.add_option("--effects", options.effects, "effects in one recording");
   app.add_flag("--catalogue", options.only_catalogue, "only effects that the catalogue has");
+  std::set<std::string> names;
+  for (const auto& kind : odomcalib::sim::effect_kinds()) names.insert(kind.name);
+  app.add_option("--only", options.only, "only these effects, for a closer look")
+      ->check(CLI::IsMember(names));
   app.add_option("--table", files, "make the table of these files of lines instead");
   CLI11_PARSE(app, argc, argv);
   return files.empty() ? run(campaign, first, count, options) : print_table(files);

@@ -18,10 +18,16 @@ BlindEffect describe(const EffectKind& kind, double size) {
   return {kind.name, kind.catalogue_name, kind.depends_on, size, kind.unit};
 }
 
+bool may_be_drawn(const EffectKind& kind, const BlindOptions& options) {
+  if (options.only_catalogue && kind.catalogue_name.empty()) return false;
+  return options.only.empty() ||
+         std::find(options.only.begin(), options.only.end(), kind.name) != options.only.end();
+}
+
 std::vector<const EffectKind*> drawable_kinds(const BlindOptions& options) {
   std::vector<const EffectKind*> kinds;
   for (const EffectKind& kind : effect_kinds())
-    if (!options.only_catalogue || !kind.catalogue_name.empty()) kinds.push_back(&kind);
+    if (may_be_drawn(kind, options)) kinds.push_back(&kind);
   return kinds;
 }
 

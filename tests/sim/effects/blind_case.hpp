@@ -38,6 +38,7 @@ struct BlindOptions {
   double size_factor = 1.0;  ///< scales the range of sizes of every effect
   unsigned effects = 1;      ///< of different kinds, in the recordings that have any
   bool only_catalogue = false;
+  std::vector<std::string> only;  ///< kinds by name; empty: all
 };
 
 /// Same campaign and number, same case. The recording's names give nothing away but campaign and number.

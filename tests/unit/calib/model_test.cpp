@@ -50,6 +50,29 @@ TEST(DriveModel, predicts_the_circle_about_the_centre_of_rotation) {
   EXPECT_NEAR(motions[1].yaw, quarter.yaw, 1e-12);
 }
 
+TEST(DriveModel, heading_and_place_follow_the_fixes_whatever_the_wheels_say) {
+  const WheelTrack track = lively_track();
+  const BaseParameters wrong{0.078, 0.074, 0.42, kBase.mount};
+  DriveModel model(track, make_context(track, wrong));
+  const DriveModel truth(track, make_context(track, kBase));
+  const Eigen::VectorXd p = to_vector(kBase);
+  const Trajectory path = truth.trajectory(as_span(p), {});
+  std::vector<Fix> fixes;
+  for (double t = 0.05; t < 39.9; t += 0.1) fixes.push_back({t, path.at(t)});
+  const auto worst = [&] {
+    double distance = 0.0;
+    for (std::size_t k = 0; k < model.context().size(); ++k)
+      distance = std::max(distance, std::hypot(model.context()[k].x - path.poses()[k].x,
+                                               model.context()[k].y - path.poses()[k].y));
+    return distance;
+  };
+  EXPECT_GT(worst(), 0.05);
+  model.locate(fixes, as_span(to_vector(wrong)), {});
+  EXPECT_LT(worst(), 0.01);
+  model.locate({}, as_span(p), {});
+  EXPECT_LT(worst(), 1e-12);
+}
+
 class JacobianOf : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(JacobianOf, agrees_with_central_differences) {

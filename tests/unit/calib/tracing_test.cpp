@@ -32,6 +32,27 @@ DriveModel lively_model(double haste = 1.0) {
   return {std::move(track), context};
 }
 
+/// Four minutes of steady motions with short ramps between them.
+DriveModel jerky_model() {
+  constexpr double kStep = 0.04, kRamp = 0.4, kLeg = 2.0;  // s
+  std::mt19937 engine(kSeed);
+  std::uniform_real_distribution<double> speed(-5.0, 5.0);
+  WheelTrack track;
+  double left = 0.0, right = 0.0, from[2] = {}, to[2] = {};
+  for (int k = 0; k <= 6000; ++k) {
+    const double in_leg = std::fmod(kStep * k, kLeg);
+    if (in_leg < kStep / 2.0)
+      for (int side = 0; side < 2; ++side) from[side] = to[side], to[side] = speed(engine);
+    const double share = std::min(in_leg / kRamp, 1.0);
+    track.t.push_back(kStep * k);
+    track.left.push_back(left += kStep * (from[0] + share * (to[0] - from[0])));
+    track.right.push_back(right += kStep * (from[1] + share * (to[1] - from[1])));
+    track.segment.push_back(0);
+  }
+  const auto context = make_context(track, kBase);
+  return {std::move(track), context};
+}
+
 std::span<const double> as_span(const Eigen::VectorXd& v) {
   return {v.data(), static_cast<std::size_t>(v.size())};
 }
@@ -126,6 +147,29 @@ TEST(Tracing, a_wheel_that_keeps_what_the_last_push_did_is_flagged) {
   EXPECT_EQ(result.curves[0].curve.law.variable, Variable::previous_push);
 }
 
+TEST(Tracing, a_mast_that_sways_is_flagged_and_kept_out_of_odometry) {
+  const DriveModel model = jerky_model();
+  const Curve sway{{Variable::turn_acceleration, Carrier::sensor_yaw}, -3.0, 3.0};
+  const SearchResult result = searched(measured(model, {make_curve_effect(sway)}, {0.03, 0.0}));
+  ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
+  EXPECT_EQ(result.curves[0].curve.law, sway.law);
+  EXPECT_EQ(result.curves[0].effect->storage(), Storage::driver);
+}
+
+TEST(Tracing, a_narrow_peak_gets_more_knots_and_the_wheel_a_wider_deviation) {
+  const DriveModel model = lively_model();
+  const Curve peak{{Variable::left_speed, Carrier::left_travel}, -0.3, 0.3, 0.0, 0, {}, 8};
+  const std::vector<double> values = {0.0, 0.0, 0.0, -0.03, -0.03, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const SearchResult result = searched(measured(model, {make_curve_effect(peak)}, values));
+  ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
+  EXPECT_EQ(result.curves[0].curve.law, peak.law);
+  EXPECT_EQ(result.curves[0].curve.knots, 8);
+  double doubt = 0.0;
+  for (const Eigen::VectorXd& d : result.doubts) doubt = std::hypot(doubt, d(kLeftRadius));
+  const double deviation = std::hypot(doubt, std::sqrt(result.fit.covariance(kLeftRadius, kLeftRadius)));
+  EXPECT_NEAR(result.fit.parameters(kLeftRadius), kBase.left_radius, 3.0 * deviation);
+}
+
 TEST(Tracing, several_recordings_share_no_zero_of_time_heading_or_phase) {
   const DriveModel model = lively_model();
   const std::vector<const DriveModel*> one = {&model}, two = {&model, &model};
@@ -144,6 +188,29 @@ TEST(Curve, is_zero_at_rest_but_on_the_turn_path) {
   }
   const Curve turn{{Variable::turn_rate, Carrier::turn_path}, -1.0, 1.0, 0.0, 0};
   EXPECT_EQ(basis(turn, StepContext{})[0], 1.0);
+}
+
+TEST(Curve, more_knots_can_say_all_that_few_can) {
+  const Curve coarse{{Variable::speed, Carrier::both_travel}, -0.5, 0.5};
+  const auto fine = refined(coarse, {});
+  ASSERT_TRUE(fine);
+  EXPECT_FALSE(refined(*fine, {}));
+  EXPECT_FALSE(refined({{Variable::heading, Carrier::both_travel}, -1.0, 1.0}, {}));
+  // A hat is the mean of its neighbours halfway between the old knots.
+  for (const double speed : {-0.41, -0.1, 0.03, 0.2, 0.38, 0.5}) {
+    StepContext c;
+    c.speed = speed;
+    const BasisValues few = basis(coarse, c), many = basis(*fine, c);
+    EXPECT_NEAR(few[1], 0.5 * many[2] + many[3] + 0.5 * many[4], 1e-12) << speed;
+  }
+}
+
+TEST(Curve, its_spread_is_that_of_the_law_over_the_drive) {
+  const DriveModel model = lively_model();
+  const DriveModel* models[] = {&model};
+  const Curve wave{{Variable::left_phase, Carrier::left_travel}, 0.0, 1.0, 0.0, 5};
+  // Root mean square of a sine, as the wheel passes all its angles alike.
+  EXPECT_NEAR(spread_of(wave, std::vector<double>{0.01, 0.0}, models), 0.01 / std::sqrt(2.0), 2e-4);
 }
 
 TEST(Curve, about_its_mean_it_has_none_over_the_drive) {
