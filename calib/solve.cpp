@@ -225,9 +225,7 @@ class Solver {
     return better;
   }
 
-  [[nodiscard]] Pose mount() const {
-    return to_base({parameters_.data(), static_cast<std::size_t>(parameters_.size())}).mount;
-  }
+  [[nodiscard]] Pose mount() const { return to_base(as_span(parameters_)).mount; }
 
   static bool acts_in_places(const Effect& effect) {
     const auto laws = effect.laws();
@@ -273,10 +271,9 @@ class Solver {
     placed_with_ = parameters_;
     if (!sees_scans()) return;
     report("placing every scan", 0.0);
-    const std::span<const double> p(parameters_.data(), static_cast<std::size_t>(parameters_.size()));
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
-      paths_.push_back(place_scans(session_->recordings()[i], *session_->data()[i].model, p, effects_,
-                                   session_->pair_sets()[i].range_noise));
+      paths_.push_back(place_scans(session_->recordings()[i], *session_->data()[i].model,
+                                   as_span(parameters_), effects_, session_->pair_sets()[i].range_noise));
       if (!paths_.back().is_usable()) return paths_.clear();
     }
   }

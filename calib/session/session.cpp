@@ -89,8 +89,7 @@ void Session::measure(const Eigen::VectorXd& parameters, const EffectList& effec
 
 void Session::locate(std::span<const std::vector<Fix>> fixes, const Eigen::VectorXd& parameters,
                      const EffectList& effects) {
-  const std::span<const double> p(parameters.data(), static_cast<std::size_t>(parameters.size()));
-  for (std::size_t i = 0; i < models_.size(); ++i) models_[i].locate(fixes[i], p, effects);
+  for (std::size_t i = 0; i < models_.size(); ++i) models_[i].locate(fixes[i], as_span(parameters), effects);
 }
 
 std::size_t Session::pair_count() const {

@@ -100,10 +100,6 @@ std::vector<BaseIndex> lengths_of(Carrier carrier) {
   }
 }
 
-std::span<const double> as_span(const Eigen::VectorXd& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-
 NoiseModel widened(NoiseModel noise, double factor) {
   noise.matcher_scale *= factor;
   noise.process_translation *= factor;
