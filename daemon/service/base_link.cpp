@@ -60,8 +60,11 @@ Result<void> BaseLink::open_port() {
   return {};
 }
 
-void BaseLink::receive(double now) {
+// What arrived is dated by a clock that is read as it is read: a turn that was held up in between would date
+// it wrongly.
+void BaseLink::receive(const Clock& clock) {
   if (!transport_) return;
+  const double now = clock.now();
   auto frames = transport_->receive(now);
   if (!frames) return lose(frames.error(), now);
   for (const auto& frame : frames.value()) {
@@ -70,9 +73,10 @@ void BaseLink::receive(double now) {
   }
 }
 
-void BaseLink::receive_bytes(double now) {
+void BaseLink::receive_bytes(const Clock& clock) {
   if (!port_) return;
   const auto bytes = port_->read();
+  const double now = clock.now();
   if (!bytes) return lose(bytes.error(), now);
   controller_->on_bytes(bytes.value(), now);
 }
@@ -95,11 +99,11 @@ void BaseLink::flush() {
   }
 }
 
-void BaseLink::step(double now) {
-  now_ = now;
+void BaseLink::step(const Clock& clock) {
+  const double now = now_ = clock.now();
   open_when_due(now);
-  receive(now);
-  receive_bytes(now);
+  receive(clock);
+  receive_bytes(clock);
   controller_->on_time(now);
   flush();
 }

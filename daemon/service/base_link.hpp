@@ -12,6 +12,7 @@
 #include "drivers/can/transport.hpp"
 #include "drivers/serial/port.hpp"
 
+#include "daemon/service/clock.hpp"
 namespace odomcalib {
 
 class BaseLink {
@@ -26,7 +27,7 @@ class BaseLink {
   /// To poll for reading; -1 while the bus is away.
   [[nodiscard]] int fd() const;
   /// Call every few ms: receives, lets the controller work, sends.
-  void step(double now);
+  void step(const Clock& clock);
   /// Sends what the controller has to say now, e.g. a quick stop that must not wait.
   void flush();
 
@@ -43,8 +44,8 @@ class BaseLink {
   void open_when_due(double now);
   Result<void> open();
   Result<void> open_port();
-  void receive(double now);
-  void receive_bytes(double now);
+  void receive(const Clock& clock);
+  void receive_bytes(const Clock& clock);
   void flush_bytes();
   void lose(const Error& error, double now);
 

@@ -127,12 +127,15 @@ void LidarLink::watch(double now) {
   if (silent && address_.network) lose(*data_problem_, now);
 }
 
-void LidarLink::step(double now) {
+void LidarLink::step(const Clock& clock) {
+  const double now = clock.now();
   open_when_due(now);
   if (!stream_ || !finish_connecting(now)) return;
   const auto bytes = stream_->read();
   if (!bytes) return lose(bytes.error(), now);
-  lidar_->on_bytes(bytes.value(), now);
+  // Read after the bytes: with a time from before, a pause in between would make them earlier than they were
+  // sent, and drivers that trust the least delay ever seen would date every scan by it for a minute.
+  lidar_->on_bytes(bytes.value(), clock.now());
   if (const auto written = stream_->write(lidar_->take_output()); !written) return lose(written.error(), now);
   watch(now);
 }

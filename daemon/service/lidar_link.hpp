@@ -11,6 +11,7 @@
 #include "drivers/lidar/lidar.hpp"
 #include "drivers/serial/port.hpp"
 
+#include "daemon/service/clock.hpp"
 namespace odomcalib {
 
 class LidarLink {
@@ -23,7 +24,7 @@ class LidarLink {
   ~LidarLink();
 
   [[nodiscard]] int fd() const { return stream_ ? stream_->fd() : -1; }
-  void step(double now);
+  void step(const Clock& clock);
   /// Whole turns only.
   std::vector<Scan> take_scans();
 

@@ -86,7 +86,7 @@ void Service::Impl::turn() {
 }
 
 void Service::Impl::serve_base() {
-  base.step(now);
+  base.step(clock);
   const auto samples = base.controller().take_ticks();
   const RobotDescription description = samples.empty() ? RobotDescription{} : robot();
   for (const TickSample& sample : samples) {
@@ -110,7 +110,7 @@ void Service::Impl::serve_base() {
 
 void Service::Impl::serve_lidar() {
   if (!due(lidar_woke, next_lidar)) return;
-  lidar.step(now);
+  lidar.step(clock);
   for (Scan& scan : lidar.take_scans()) {
     ++scan_count;
     scans.seen(scan, now);

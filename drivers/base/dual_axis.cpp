@@ -138,6 +138,7 @@ void DualAxis::forget_node() {
   phase_since_ = now_;
   watchdog_armed_ = false;
   positions_at_.reset();
+  timer_.reset();
   status_at_.reset();
   left_.unwrap.forget();
   right_.unwrap.forget();

@@ -13,6 +13,7 @@
 #include "drivers/base/parameter_job.hpp"
 #include "drivers/base/profile.hpp"
 #include "drivers/base/tick_unwrap.hpp"
+#include "drivers/base/timer_dates.hpp"
 
 namespace odomcalib::drivers {
 
@@ -81,7 +82,7 @@ class DualAxis final : public Controller {
 
   // dual_axis_motion.cpp: process data
   void on_process_data(const canopen::Pdo& pdo, const CanFrame& frame);
-  [[nodiscard]] double sampled_at(const canopen::Pdo& pdo, const CanFrame& frame) const;
+  [[nodiscard]] double sampled_at(const canopen::Pdo& pdo, const CanFrame& frame);
   void on_positions(std::int32_t left, std::int32_t right, double t);
   void on_status(std::uint32_t status);
   void cycle_motion();
@@ -128,6 +129,7 @@ class DualAxis final : public Controller {
   double motion_since_ = 0.0;
   double cycle_due_ = 0.0;
   std::optional<double> positions_at_;  // s, last position frame
+  std::optional<TimerDates> timer_;     // of the position frames, where the drive's timer sends them
   std::optional<double> status_at_;
   std::uint32_t status_ = 0;
   std::array<canopen::DriveState, 2> axes_{canopen::DriveState::not_ready, canopen::DriveState::not_ready};

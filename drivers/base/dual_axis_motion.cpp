@@ -24,6 +24,7 @@ constexpr double kStuckAngle_rad = 0.15;  // commanded without any count
 constexpr double kStuckTime_s = 0.3;
 constexpr std::size_t kMostQueued = 4096;
 constexpr std::uint8_t kMostSyncs = 240;  // transmission types 1..240: every n-th SYNC
+constexpr std::uint8_t kOnEvent = 254;    // 254, 255: on change or timer
 constexpr double kSyncLives_s = 0.05;     // a frame later than that belongs to no SYNC we know of
 
 /// Bits of a standard frame without stuffing, with its inter-frame space.
@@ -57,11 +58,16 @@ void DualAxis::on_process_data(const canopen::Pdo& pdo, const CanFrame& frame) {
     on_status(static_cast<std::uint32_t>(*status));
 }
 
-/// Data on SYNC were sampled at its end, others when the frame began.
-double DualAxis::sampled_at(const canopen::Pdo& pdo, const CanFrame& frame) const {
+/// Data on SYNC were sampled at its end, others when the frame began; those on the drive's timer keep its
+/// beat.
+double DualAxis::sampled_at(const canopen::Pdo& pdo, const CanFrame& frame) {
   const bool on_sync = pdo.type >= 1 && pdo.type <= kMostSyncs;
   if (on_sync && sync_at_ && frame.t - *sync_at_ < kSyncLives_s) return *sync_at_;
-  return frame.t - frame_time(frame, profile_.bitrate);
+  const double began = frame.t - frame_time(frame, profile_.bitrate);
+  const unsigned timer = pdo.type >= kOnEvent ? pdo.event_timer.value_or(0) : 0;
+  if (timer == 0) return began;
+  if (!timer_) timer_.emplace(1e-3 * profile_.heartbeat_unit_ms * timer);
+  return timer_->date(began);
 }
 
 void DualAxis::on_positions(std::int32_t left, std::int32_t right, double t) {

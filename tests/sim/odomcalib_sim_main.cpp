@@ -53,7 +53,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--truth", arguments.truth_file,
                  "file to write the true parameters to (JSON), refreshed every second");
   app.add_option("--wheel-log", arguments.wheel_log,
-                 "file to append a line to every 2 ms: monotonic clock in s, simulated s, faster rim in m/s");
+                 "file to append a line to every 2 ms: monotonic clock in s, simulated s, faster rim in m/s, "
+                 "angles of both wheels in rad");
   app.add_option("--can", arguments.can, "SocketCAN interface to use instead of an slcan port");
   app.add_option("--effect", arguments.effect,
                  "something that the plain model lacks, e.g. gear_play; random: any")
@@ -128,7 +129,9 @@ class WheelLog {
   void add(const SimRobot& robot) {
     if (!file_) return;
     const std::chrono::duration<double> clock = std::chrono::steady_clock::now().time_since_epoch();
-    std::fprintf(file_.get(), "%.6f %.6f %.6f\n", clock.count(), robot.now(), robot.fastest_rim());
+    const auto& angle = robot.body().angle();
+    std::fprintf(file_.get(), "%.6f %.6f %.6f %.8f %.8f\n", clock.count(), robot.now(), robot.fastest_rim(),
+                 angle[0], angle[1]);
   }
 
  private:
@@ -153,12 +156,13 @@ int run(SimRobot& robot, const Arguments& arguments, const odomcalib::sim::Drawn
       if (!written) return std::fprintf(stderr, "odomcalib-sim: %s\n", written.error().text().c_str()), 1;
       truth_due = robot.now() + 1.0;
     }
+    // What happens in these 2 ms is sent at their end: bytes may come late, never before they were sent.
+    std::this_thread::sleep_until(
+        start + i * std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kChunk)));
     if (commands) commands->serve(robot);
     robot.step(kChunk * arguments.speed);
     wheel_log.add(robot);
     if (arguments.duration > 0.0 && robot.now() >= arguments.duration) break;
-    std::this_thread::sleep_until(
-        start + i * std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kChunk)));
   }
   return 0;
 }

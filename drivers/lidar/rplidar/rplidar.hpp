@@ -7,8 +7,8 @@
 #include "drivers/lidar/lidar.hpp"
 #include "drivers/lidar/rplidar/startup.hpp"
 #include "drivers/lidar/rplidar/stream.hpp"
-#include "drivers/lidar/sample_clock.hpp"
 #include "drivers/lidar/sweep.hpp"
+#include "drivers/sample_clock.hpp"
 
 namespace odomcalib::drivers {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "drivers/lidar/lidar.hpp"
-#include "drivers/lidar/sample_clock.hpp"
 #include "drivers/lidar/sweep.hpp"
 #include "drivers/lidar/xv11/packet.hpp"
+#include "drivers/sample_clock.hpp"
 
 namespace odomcalib::drivers {
 

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "drivers/lidar/lidar.hpp"
-#include "drivers/lidar/sample_clock.hpp"
 #include "drivers/lidar/sweep.hpp"
 #include "drivers/lidar/ydlidar/packet.hpp"
 #include "drivers/lidar/ydlidar/startup.hpp"
+#include "drivers/sample_clock.hpp"
 
 namespace odomcalib::drivers {
 

@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <utility>
 
 #include "tests/sim/wires/cola_device.hpp"
 #include "tests/sim/wires/pty.hpp"
@@ -21,6 +23,32 @@ namespace {
 
 constexpr double kTurn = 1e-3;          // s between turns of the loop
 constexpr double kTolerance_m = 0.003;  // 2 ms at 1 m/s, and the millimetre of the protocols
+
+class At : public Clock {
+ public:
+  explicit At(double now) : now_(now) {}
+  [[nodiscard]] double now() const override { return now_; }
+  [[nodiscard]] std::int64_t wall_us() const override { return 0; }
+
+ private:
+  double now_;
+};
+
+/// A clock whose owner is put aside for a while after it has looked at it for the first time.
+class PutAside : public Clock {
+ public:
+  PutAside(const double& now, std::function<void()> pause) : now_(now), pause_(std::move(pause)) {}
+  [[nodiscard]] double now() const override {
+    const double read = now_;
+    if (pause_) std::exchange(pause_, nullptr)();
+    return read;
+  }
+  [[nodiscard]] std::int64_t wall_us() const override { return 0; }
+
+ private:
+  const double& now_;
+  mutable std::function<void()> pause_;
+};
 
 /// A device, its port, and a link to it.
 template <typename Port>
@@ -40,13 +68,20 @@ class Bench {
     std::vector<Scan> out;
     for (const double end = now + seconds; now < end; now += kTurn) {
       if (device_ && port_) serve();
-      link_->step(now);
+      link_->step(At(now));
       for (Scan& scan : link_->take_scans()) out.push_back(std::move(scan));
       const auto counters = link_->counters();
       EXPECT_EQ(counters.at("bytes_in"),
                 counters.at("good") + counters.at("skipped") + counters.at("buffered"));
     }
     return out;
+  }
+
+  /// The link begins a turn, is put aside for so many seconds, and only then reads.
+  void put_aside(double seconds) {
+    link_->step(PutAside(now, [this, end = now + seconds] {
+      for (; now < end; now += kTurn) serve();
+    }));
   }
 
   void unplug() { port_.reset(); }
@@ -154,6 +189,21 @@ TEST(LidarLinks, rplidar_in_every_mode_shows_the_wall_where_and_when_it_was) {
       EXPECT_NE(bench.link().identity().find("model 18h"), std::string::npos);
       EXPECT_EQ(problem_of(bench.link()), "");
     }
+}
+
+// The least delay ever seen dates every scan: one that comes out too small does so for a minute.
+TEST(LidarLinks, a_loop_that_is_put_aside_before_it_reads_dates_no_scan_too_early) {
+  const auto check = [](auto&& bench) {
+    (void)bench.run(2.0);
+    for (int i = 0; i < 4; ++i) {
+      bench.put_aside(0.015);
+      const auto scans = bench.run(0.5);
+      EXPECT_GE(scans.size(), 2U);
+      expect_wall(scans);
+    }
+  };
+  check(TcpBench(std::make_unique<sim::ScipDevice>(sim::ScipDevice::Options{}), "hokuyo"));
+  check(SerialBench(std::make_unique<sim::RplidarDevice>(sim::RplidarDevice::Options{}), "rplidar"));
 }
 
 TEST(LidarLinks, rplidar_in_error_is_reset_and_then_measures) {
@@ -338,7 +388,7 @@ TEST(LidarLinks, what_a_lidar_cannot_be_reached_by_is_refused_with_an_example) {
   EXPECT_FALSE(LidarLink::create("serial:/dev/x", "ld99").ok());
   auto named = LidarLink::create("tcp:sick.local", "sick");
   ASSERT_TRUE(named.ok());
-  named.value().step(0.0);
+  named.value().step(At(0.0));
   EXPECT_NE(named.value().problem()->text().find("numeric"), std::string::npos);
 }
 

@@ -1,4 +1,4 @@
-#include "drivers/lidar/sample_clock.hpp"
+#include "drivers/sample_clock.hpp"
 
 #include <algorithm>
 #include <cmath>
