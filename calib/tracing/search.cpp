@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "calib/effects/catalogue.hpp"
@@ -37,7 +38,8 @@ constexpr double kTelling = 10.0;  ///< expected gap of -2 log L that tells two 
 struct Candidate {
   std::shared_ptr<const Effect> effect;
   std::optional<Curve> curve;
-  std::string key;  ///< variants of one effect share it
+  std::string key;      ///< variants of one effect share it
+  bool struck = false;  ///< added, or failed its proof: not asked again
 };
 
 struct Trial {
@@ -168,16 +170,24 @@ class Search {
 
   /// One step; false when nothing more is justified.
   bool advance() {
+    if (has_changed_) look_again();
+    const auto name = may_name() ? best_name(*table_) : std::nullopt;
+    const auto curve = best_curve(*table_);
+    if (name && !(curve && curve_beats(*table_, *name, *curve)) && accept_name(*table_, *name)) return true;
+    const auto clock = curve && depends_on_history(candidates_[*curve]) ? best_clock() : std::nullopt;
+    if (clock) return accept_name(*table_, *clock);
+    return curve && accept_curve(*table_, *curve);
+  }
+
+  /// Scores of all that is left, on the model as it is now.
+  void look_again() {
     choose_basis();
+    std::erase_if(candidates_, [](const Candidate& c) { return c.struck; });
     EffectList effects;
     for (const Candidate& c : candidates_) effects.push_back(c.effect);
-    const ScoreTable table(data_, result_.effects, basis_, fixed(result_.effects), effects);
-    const auto name = may_name() ? best_name(table) : std::nullopt;
-    const auto curve = best_curve(table);
-    if (name && !(curve && curve_beats(table, *name, *curve)) && accept_name(table, *name)) return true;
-    const auto clock = curve && depends_on_history(candidates_[*curve]) ? best_clock() : std::nullopt;
-    if (clock) return accept_name(table, *clock);
-    return curve && accept_curve(table, *curve);
+    table_.emplace(data_, result_.effects, basis_, fixed(result_.effects), effects);
+    trials_.clear();
+    has_changed_ = false;
   }
 
   /// Where motions begin, clocks that disagree look like anything that goes with beginnings. A clock cannot
@@ -185,8 +195,8 @@ class Search {
   [[nodiscard]] std::optional<Trial> best_clock() const {
     std::optional<Trial> best;
     for (const Trial& trial : trials_)
-      if (candidates_[trial.candidate].effect->storage() == Storage::driver && trial.gain > 0.0 &&
-          (!best || trial.gain > best->gain))
+      if (is_open(trial.candidate) && candidates_[trial.candidate].effect->storage() == Storage::driver &&
+          trial.gain > 0.0 && (!best || trial.gain > best->gain))
         best = trial;
     return best;
   }
@@ -218,21 +228,29 @@ class Search {
   std::optional<Trial> best_name(const ScoreTable& table) {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (!candidates_[k].curve && table.scores()[k].family_p_value <= level(candidates_[k]) &&
+      if (is_open(k) && !candidates_[k].curve && table.scores()[k].family_p_value <= level(candidates_[k]) &&
           !is_rest_of_a_law(table, k))
         order.push_back(k);
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return penalised(table.scores()[a]) > penalised(table.scores()[b]);
     });
-    trials_.clear();
     std::set<std::string> tried;
-    for (const std::size_t k : order) {
-      if (tried.size() >= kRefits || !tried.insert(candidates_[k].key).second) continue;
-      if (auto trial = refit(k, true)) trials_.push_back(std::move(*trial));
-    }
-    const auto best = std::max_element(trials_.begin(), trials_.end(),
-                                       [](const Trial& a, const Trial& b) { return a.gain < b.gain; });
-    return best == trials_.end() ? std::nullopt : std::optional(*best);
+    for (const std::size_t k : order)
+      if (tried.size() < kRefits && tried.insert(candidates_[k].key).second) try_out(k);
+    const Trial* best = nullptr;
+    for (const Trial& trial : trials_)
+      if (is_open(trial.candidate) && (best == nullptr || trial.gain > best->gain)) best = &trial;
+    return best == nullptr ? std::nullopt : std::optional(*best);
+  }
+
+  [[nodiscard]] bool is_open(std::size_t candidate) const { return !candidates_[candidate].struck; }
+
+  /// Once as long as the model stays as it is.
+  void try_out(std::size_t candidate) {
+    const bool was_tried =
+        std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) { return t.candidate == candidate; });
+    if (was_tried) return;
+    if (auto trial = refit(candidate, true)) trials_.push_back(std::move(*trial));
   }
 
   /// What a finding leaves on its own ground is the rest of its law, unless a second name explains nearly all
@@ -282,7 +300,8 @@ class Search {
   [[nodiscard]] std::optional<std::size_t> best_curve(const ScoreTable& table) const {
     std::optional<std::size_t> best;
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      if (!candidates_[k].curve || table.scores()[k].family_p_value > level(candidates_[k])) continue;
+      if (!is_open(k) || !candidates_[k].curve || table.scores()[k].family_p_value > level(candidates_[k]))
+        continue;
       if (!best || penalised(table.scores()[k]) > penalised(table.scores()[*best])) best = k;
     }
     return best;
@@ -380,6 +399,7 @@ class Search {
     }
     result_.fit = std::move(settled->fit);
     result_.effects = std::move(effects);
+    has_changed_ = true;
     return proof;
   }
 
@@ -504,7 +524,8 @@ class Search {
 
   /// A candidate that was added, or failed its proof, is not asked again; the search goes on with the others.
   void strike(const std::string& key) {
-    std::erase_if(candidates_, [&](const Candidate& c) { return c.key == key; });
+    for (Candidate& candidate : candidates_)
+      if (candidate.key == key) candidate.struck = true;
   }
 
   /// What an earlier finding explained may belong to the one that was just added.
@@ -565,7 +586,9 @@ class Search {
   std::vector<bool> base_fixed_;
   std::function<void(double)> progress_;
   std::vector<Candidate> candidates_;
-  std::vector<Trial> trials_;
+  std::optional<ScoreTable> table_;
+  std::vector<Trial> trials_;  ///< refits on the model that the table belongs to
+  bool has_changed_ = true;    ///< the model, since the table was made
   SearchResult result_;
   FitResult basis_;
 };
