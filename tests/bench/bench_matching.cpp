@@ -34,10 +34,6 @@ double timed(const Search& search) {
          1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec);
 }
 
-}  // namespace
-
-namespace {
-
 /// Whether all optima are equal.
 bool compare(double cell) {
   std::mt19937 engine(1);

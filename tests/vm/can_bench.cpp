@@ -23,16 +23,13 @@ int ip(const std::string& arguments) {
   return std::system(("ip " + arguments + " >/tmp/ip.log 2>&1").c_str());
 }
 
-double monotonic() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-bool wait_until(const std::function<bool()>& condition, double seconds, double pause) {
-  for (const double end = monotonic() + seconds; monotonic() < end;) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::duration<double>(pause));
+bool cards_up() {
+  for (const std::string name : {"can0", "can1"}) {
+    if (ip("link show " + name) != 0) return false;
+    ip("link set " + name + " down");
+    EXPECT_EQ(ip("link set " + name + " up type can bitrate 500000"), 0) << name;
   }
-  return condition();
+  return true;
 }
 
 Vcan::Vcan(std::string name) : name_(std::move(name)) {

@@ -6,7 +6,6 @@
 #include <linux/can.h>
 
 #include <atomic>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -16,17 +15,19 @@
 #include <vector>
 
 #include "drivers/can/transport.hpp"
+#include "tests/integration/processes.hpp"
 
 namespace odomcalib::vm {
 
 /// Runs `ip` with these arguments. @return its exit status
 int ip(const std::string& arguments);
 
-/// s of the monotonic clock.
-double monotonic();
+using testing::monotonic;
+using testing::wait_until;
 
-/// Asks again every `pause` seconds. @return whether `condition` held within `seconds`
-bool wait_until(const std::function<bool()>& condition, double seconds, double pause = 0.001);
+/// The two cards of the virtual machine, on one bus at 500 kbit/s. @return whether they exist
+bool cards_up();
+constexpr const char* kNoCards = "two cards exist in the virtual machine only";
 
 /// A virtual CAN interface, up, removed with the object; an older one of that name is replaced.
 class Vcan {

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "drivers/can/candump.hpp"
-#include "tests/integration/processes.hpp"
+#include "tests/unit/drivers/test_support.hpp"
 #include "tests/vm/can_bench.hpp"
 
 namespace odomcalib::vm {
@@ -42,14 +42,6 @@ std::vector<CanFrame> varied_frames() {
   return frames;
 }
 
-void expect_same(const CanFrame& a, const CanFrame& b) {
-  EXPECT_EQ(a.id, b.id);
-  EXPECT_EQ(a.extended, b.extended);
-  EXPECT_EQ(a.remote, b.remote);
-  EXPECT_EQ(a.length, b.length);
-  EXPECT_EQ(a.data, b.data);
-}
-
 class CanUtils : public ::testing::Test {
  protected:
   void SetUp() override { std::filesystem::remove(kOutput); }
@@ -73,7 +65,7 @@ class CanUtils : public ::testing::Test {
     for (const CanFrame& frame : frames) {
       const auto got = reader.next();
       ASSERT_TRUE(got.has_value()) << log;
-      expect_same(*got, frame);
+      drivers::test::expect_same(*got, frame);
     }
   }
   static void expect_from_cansend(drivers::CanTransport& transport) {
@@ -84,7 +76,7 @@ class CanUtils : public ::testing::Test {
       ASSERT_EQ(got.size(), 1U) << text;
       const auto expected = drivers::parse_candump_line(std::string("(1.0) vcan0 ") + text);
       ASSERT_TRUE(expected.has_value());
-      expect_same(got[0], *expected);
+      drivers::test::expect_same(got[0], *expected);
     }
   }
 
@@ -107,7 +99,7 @@ TEST_F(CanUtils, canplayer_replays_a_log_of_ours) {
   Process player({tool("canplayer"), "-I", "/tmp/ours.candump", "vcan0=can0"}, kOutput);
   const auto got = frames_from(*transport, frames.size(), 5.0);
   ASSERT_EQ(got.size(), frames.size()) << text_of(kOutput);
-  for (std::size_t i = 0; i < frames.size(); ++i) expect_same(got[i], frames[i]);
+  for (std::size_t i = 0; i < frames.size(); ++i) drivers::test::expect_same(got[i], frames[i]);
 }
 
 // slcanpty is an adapter that somebody else wrote: Lawicel ASCII on a pseudo-terminal, vcan0 behind it.

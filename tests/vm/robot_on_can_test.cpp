@@ -201,11 +201,7 @@ TEST_F(RobotOnVcan, a_killed_daemon_leaves_the_stop_to_the_drive) {
 class RobotOnCards : public RobotOnCan {
  protected:
   void SetUp() override {
-    for (const std::string name : {"can0", "can1"}) {
-      if (ip("link show " + name) != 0) GTEST_SKIP() << "two cards exist in the virtual machine only";
-      ip("link set " + name + " down");
-      ASSERT_EQ(ip("link set " + name + " up type can bitrate 500000"), 0);
-    }
+    if (!cards_up()) GTEST_SKIP() << kNoCards;
     start({"can1", "can0"});
   }
 };

@@ -218,11 +218,7 @@ TEST_F(SocketCan, an_interface_that_is_no_can_bus_or_absent_is_named) {
 class CardPair : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const std::string name : {"can0", "can1"}) {
-      if (ip("link show " + name) != 0) GTEST_SKIP() << "two cards exist in the virtual machine only";
-      ip("link set " + name + " down");
-      ASSERT_EQ(ip("link set " + name + " up type can bitrate 500000"), 0);
-    }
+    if (!cards_up()) GTEST_SKIP() << kNoCards;
   }
   void TearDown() override {
     ip("link set can0 down");

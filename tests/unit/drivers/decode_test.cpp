@@ -61,15 +61,6 @@ TEST(Candump, refuses_cut_and_damaged_lines) {
     EXPECT_FALSE(parse_candump_line(bad)) << bad;
 }
 
-void expect_same(const CanFrame& a, const CanFrame& b) {
-  EXPECT_EQ(a.id, b.id);
-  EXPECT_EQ(a.extended, b.extended);
-  EXPECT_EQ(a.remote, b.remote);
-  EXPECT_EQ(a.error, b.error);
-  EXPECT_EQ(a.length, b.length);
-  EXPECT_EQ(a.data, b.data);
-}
-
 TEST(Candump, times_that_no_clock_says_are_refused_and_any_time_can_be_written) {
   EXPECT_FALSE(parse_candump_line("(" + std::string(60, '3') + ") can0 001#12"));
   EXPECT_FALSE(parse_candump_line("(-1" + std::string(20, '0') + ") can0 001#12"));
@@ -113,7 +104,7 @@ TEST(Candump, no_damaged_line_gives_a_frame_that_cannot_be_written_again) {
     ASSERT_LE(frame->id, frame->extended || frame->error ? 0x1FFFFFFFU : 0x7FFU);
     const auto again = parse_candump_line(candump_line(*frame, "can0"));
     ASSERT_TRUE(again);
-    expect_same(*again, *frame);
+    test::expect_same(*again, *frame);
   }
   EXPECT_GT(accepted, 500);
 }

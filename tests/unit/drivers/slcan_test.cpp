@@ -20,14 +20,6 @@ CanFrame random_frame(test::Random& random) {
   return frame;
 }
 
-void expect_same(const CanFrame& a, const CanFrame& b) {
-  EXPECT_EQ(a.id, b.id);
-  EXPECT_EQ(a.extended, b.extended);
-  EXPECT_EQ(a.remote, b.remote);
-  EXPECT_EQ(a.length, b.length);
-  EXPECT_EQ(a.data, b.data);
-}
-
 std::size_t frames_in(const std::vector<SlcanItem>& items) {
   std::size_t n = 0;
   for (const SlcanItem& item : items) n += item.kind == Kind::frame ? 1 : 0;
@@ -42,7 +34,7 @@ TEST(Slcan, reads_back_every_frame_that_it_writes) {
     const auto items = parser.on_bytes(bytes_of(slcan_line(frame)));
     ASSERT_EQ(items.size(), 1U);
     ASSERT_EQ(items[0].kind, Kind::frame);
-    expect_same(items[0].frame, frame);
+    test::expect_same(items[0].frame, frame);
     expect_accounted(parser.counters());
     EXPECT_EQ(parser.counters()["skipped"], 0U);
   }

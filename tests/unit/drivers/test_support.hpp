@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/can/transport.hpp"
 #include "drivers/lidar/lidar.hpp"
 
 namespace odomcalib::drivers::test {
@@ -43,6 +44,16 @@ inline ByteString bytes_of(const std::string& text) { return {text.begin(), text
 /// bytes_in = good + skipped + buffered, at any moment.
 inline void expect_accounted(const Counters& counters) {
   EXPECT_EQ(counters.at("bytes_in"), counters.at("good") + counters.at("skipped") + counters.at("buffered"));
+}
+
+/// All of a frame but its time.
+inline void expect_same(const CanFrame& a, const CanFrame& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.extended, b.extended);
+  EXPECT_EQ(a.remote, b.remote);
+  EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.length, b.length);
+  EXPECT_EQ(a.data, b.data);
 }
 
 /// Scans of whole turns since the last call.
