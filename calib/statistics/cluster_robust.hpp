@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace odomcalib::calib {
 
@@ -17,16 +18,24 @@ class ClusterRobust {
   /// Blocks do not reach into the next recording.
   void end_recording();
 
-  [[nodiscard]] Eigen::MatrixXd covariance() const;
-  /// The model's covariance, each deviation raised to the robust one where that is larger, and to `variance`
-  /// times the model's at least.
+  /// The model's covariance, each deviation raised to the robust one where that is larger, and to the root of
+  /// `variance` times the model's at least. Errors that drift for longer than a block are found by joining
+  /// neighbouring blocks: a parameter takes the scatter of longer ones where it exceeds that of the short
+  /// ones by more than chance allows.
   [[nodiscard]] Eigen::MatrixXd inflated(double variance) const;
 
  private:
-  Eigen::MatrixXd inverse_, scatter_;
-  Eigen::VectorXd block_;
-  double begin_;
-  double blocks_ = 0.0;
+  struct Scatter {
+    Eigen::VectorXd variances;  ///< of the parameters
+    double blocks = 0.0;
+  };
+  /// With so many neighbouring blocks taken as one.
+  [[nodiscard]] Scatter scatter(std::size_t joined) const;
+  [[nodiscard]] Eigen::VectorXd variances() const;
+
+  Eigen::MatrixXd inverse_;
+  std::vector<std::vector<Eigen::VectorXd>> recordings_;  ///< scores of their blocks
+  double begin_;                                          ///< s, of the last block
 };
 
 }  // namespace odomcalib::calib
