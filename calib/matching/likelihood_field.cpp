@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "calib/geometry/vector2.hpp"
 
@@ -24,6 +25,26 @@ Eigen::Vector2d upper_corner(std::span<const Eigen::Vector2d> points) {
 
 std::uint8_t larger(std::uint8_t a, std::uint8_t b) { return a > b ? a : b; }
 
+/// Scores of the cells about a point.
+struct Stamped {
+  int dx, dy;
+  std::uint8_t score;
+};
+using Stamp = std::vector<Stamped>;
+
+Stamp make_stamp(const FieldOptions& options) {
+  const int reach = static_cast<int>(options.cap / options.cell);
+  Stamp stamp;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const double share = options.cell * std::hypot(dx, dy) / options.cap;
+      if (share >= 1.0) continue;
+      stamp.push_back(
+          {dx, dy, static_cast<std::uint8_t>(std::lround(LikelihoodField::kBest * (1.0 - share)))});
+    }
+  return stamp;
+}
+
 }  // namespace
 
 LikelihoodField::LikelihoodField(std::span<const Eigen::Vector2d> reference, const FieldOptions& options)
@@ -33,43 +54,40 @@ LikelihoodField::LikelihoodField(std::span<const Eigen::Vector2d> reference, con
   const Eigen::Vector2i last = cell_of(upper_corner(reference) + margin);
   width_ = last.x() + 1 + 2 * pad_;
   height_ = last.y() + 1 + 2 * pad_;
-  scores_.reserve((kMaxLevel + 1) * cells());
-  scores_.resize(cells());
-  for (const Eigen::Vector2d& point : reference)
-    if (point.cwiseAbs().maxCoeff() < kMaxExtent) stamp(cell_of(point));
+  scores_ = std::make_unique_for_overwrite<std::uint8_t[]>((kMaxLevel + 1) * cells());
+  std::fill_n(scores_.get(), cells(), std::uint8_t{0});
+  stamp(reference);
 }
 
-/// Scores around one point of the reference; where several points reach, the nearest counts.
-void LikelihoodField::stamp(const Eigen::Vector2i& at) {
-  const int reach = static_cast<int>(options_.cap / options_.cell);
-  for (int dy = -reach; dy <= reach; ++dy)
-    for (int dx = -reach; dx <= reach; ++dx) {
-      const double distance = options_.cell * std::hypot(dx, dy);
-      const int x = at.x() + dx + pad_;
-      const int y = at.y() + dy + pad_;
-      if (distance >= options_.cap || x < 0 || y < 0 || x >= width_ || y >= height_) continue;
-      auto& cell = scores_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                           static_cast<std::size_t>(x)];
-      cell = std::max(cell, static_cast<std::uint8_t>(std::lround(kBest * (1.0 - distance / options_.cap))));
+/// Scores around the points of the reference; where several points reach, the nearest counts.
+void LikelihoodField::stamp(std::span<const Eigen::Vector2d> reference) {
+  const Stamp stamp = make_stamp(options_);
+  const CellBox map = within(0);
+  for (const Eigen::Vector2d& point : reference) {
+    if (!(point.cwiseAbs().maxCoeff() < kMaxExtent)) continue;
+    const Eigen::Vector2i at = cell_of(point);
+    for (const auto& [dx, dy, score] : stamp) {
+      if (!map.has(at.x() + dx, at.y() + dy)) continue;
+      std::uint8_t& cell = scores_[static_cast<std::size_t>(offset(at.x() + dx, at.y() + dy))];
+      cell = larger(cell, score);
     }
+  }
 }
 
 void LikelihoodField::add_levels(int highest) {
-  for (int level = static_cast<int>(scores_.size() / cells()); level <= std::min(highest, kMaxLevel); ++level)
-    make_coarser(level);
+  for (; levels_ <= std::min(highest, kMaxLevel); ++levels_) make_coarser(levels_);
 }
 
-/// Maximum of four cells half a window apart. First along rows, then of rows; a row's end may see the
-/// beginning of the next, which only raises a bound.
+/// Maximum of four cells half a window apart. A row's end may see the beginning of the next, which only
+/// raises a bound; the last rows are margin, where nothing scores.
 void LikelihoodField::make_coarser(int level) {
-  scores_.resize(static_cast<std::size_t>(level + 1) * cells());
-  const auto along = std::ptrdiff_t{1} << (level - 1);
-  const auto across = along * width_;
-  const auto coarse = scores_.end() - static_cast<std::ptrdiff_t>(cells());
-  const auto fine = coarse - static_cast<std::ptrdiff_t>(cells());
-  std::transform(fine, coarse - along, fine + along, coarse, larger);
-  std::copy(coarse - along, coarse, scores_.end() - along);
-  std::transform(coarse, scores_.end() - across, coarse + across, coarse, larger);
+  const auto along = std::size_t{1} << (level - 1), across = along * static_cast<std::size_t>(width_);
+  const std::uint8_t* const fine = scores(level - 1);
+  std::uint8_t* const coarse = scores_.get() + static_cast<std::size_t>(level) * cells();
+  const std::size_t whole = cells() - across - along;
+  for (std::size_t i = 0; i < whole; ++i)
+    coarse[i] = larger(larger(fine[i], fine[i + along]), larger(fine[i + across], fine[i + across + along]));
+  std::copy(fine + whole, fine + cells(), coarse + whole);
 }
 
 Eigen::Vector2i LikelihoodField::cell_of(const Eigen::Vector2d& position) const {

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "calib/geometry/se2.hpp"
 
@@ -15,6 +16,16 @@ namespace odomcalib::calib {
 struct FieldOptions {
   double cell = 0.1;  ///< m
   double cap = 0.3;   ///< m; a point farther than this from the reference scores nothing, however far it is
+};
+
+/// A rectangle of cells.
+struct CellBox {
+  int x = 0, y = 0;  ///< the first of them
+  unsigned width = 0, height = 0;
+  [[nodiscard]] bool has(int at_x, int at_y) const {
+    // Differences below 0 turn into large numbers.
+    return static_cast<unsigned>(at_x - x) < width && static_cast<unsigned>(at_y - y) < height;
+  }
 };
 
 class LikelihoodField {
@@ -28,21 +39,24 @@ class LikelihoodField {
   /// Best score of the 2^level by 2^level cells that begin at (x, y); 0 outside of the map, so that a pose
   /// that moves the scan off the map gains nothing by it. Levels above 0 are made by `add_levels`.
   [[nodiscard]] int score(int level, int x, int y) const {
-    if (!holds(x, y, 0)) return 0;
+    if (!within(0).has(x, y)) return 0;
     return scores(level)[offset(x, y)];
   }
   /// Scores of a level, for sums over many cells: that of (x, y) is at `offset(x, y)`, and a step of one cell
   /// in x or y always adds the same to it.
   [[nodiscard]] const std::uint8_t* scores(int level) const {
-    return scores_.data() + static_cast<std::size_t>(level) * cells();
+    return scores_.get() + static_cast<std::size_t>(level) * cells();
   }
   [[nodiscard]] std::ptrdiff_t offset(int x, int y) const {
     return static_cast<std::ptrdiff_t>(y + pad_) * width_ + (x + pad_);
   }
-  /// Whether every cell up to `reach` steps from (x, y) is in the map.
-  [[nodiscard]] bool holds(int x, int y, int reach) const {
-    return x + pad_ >= reach && y + pad_ >= reach && x + pad_ + reach < width_ && y + pad_ + reach < height_;
+  /// Cells from which every step up to `reach` stays in the map.
+  [[nodiscard]] CellBox within(int reach) const {
+    const int width = std::max(width_ - 2 * reach, 0), height = std::max(height_ - 2 * reach, 0);
+    return {reach - pad_, reach - pad_, static_cast<unsigned>(width), static_cast<unsigned>(height)};
   }
+  /// Cells from which some step up to `reach` leads to where something scores: the map's margins never do.
+  [[nodiscard]] CellBox about(int reach) const { return within(pad_ - reach); }
   /// Coarser maps for branch and bound; each holds maxima over four times as many cells as the one before.
   void add_levels(int highest);
 
@@ -60,7 +74,7 @@ class LikelihoodField {
   [[nodiscard]] std::size_t cells() const {
     return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   }
-  void stamp(const Eigen::Vector2i& at);
+  void stamp(std::span<const Eigen::Vector2d> reference);
   void make_coarser(int level);
 
   FieldOptions options_;
@@ -68,8 +82,9 @@ class LikelihoodField {
   int pad_ = 0;  ///< cells before the first and after the last, so that scans may reach out and coarse cells
                  ///< begin there
   int width_ = 0, height_ = 0;
-  std::vector<std::uint8_t>
-      scores_;  ///< of all levels made so far, in one block: allocating costs more than filling
+  /// Of all levels, in one block; those not made yet are not even filled, which would cost as much.
+  std::unique_ptr<std::uint8_t[]> scores_;
+  int levels_ = 1;  ///< made so far
 };
 
 }  // namespace odomcalib::calib

@@ -11,6 +11,10 @@ namespace {
 /// Lattice steps on each side of the centre.
 int steps(double half, double step) { return static_cast<int>(std::floor(half / step + 1e-9)); }
 
+/// Cells from the origin of the field; what lies farther out is in no map and counts as a point that does not
+/// fit.
+constexpr double kFarthest = 1e5;
+
 using FourSums = std::array<int, 4>;
 
 /// The lattice of a window, and the sums of scores on it: whole numbers, so that equal means equal.
@@ -25,11 +29,12 @@ class Lattice {
         offsets_(count_ * static_cast<std::size_t>(2 * turns_ + 1)),
         turned_(static_cast<std::size_t>(2 * turns_ + 1)) {
     for (const Eigen::Vector2d& p : points) {
+      if (!(p.norm() < kFarthest * field.cell())) continue;
       x_.push_back(p.x() / field.cell());
       y_.push_back(p.y() / field.cell());
     }
-    cell_x_.resize(count_);
-    cell_y_.resize(count_);
+    cell_x_.resize(x_.size());
+    cell_y_.resize(x_.size());
     for (int turn = -turns_; turn <= turns_; ++turn) place(turn);
   }
 
@@ -79,7 +84,8 @@ class Lattice {
   }
 
  private:
-  /// The points at one yaw: those that no shift brings out of the map, as offsets into it, and the others.
+  /// The points at one yaw: those that no shift brings out of the map, as offsets into it, and those that
+  /// some shift does. What no shift brings to where something scores is left out.
   struct Turned {
     std::span<const std::int32_t> inside;
     std::vector<Eigen::Vector2i> border;
@@ -88,22 +94,21 @@ class Lattice {
   /// Cells of the points at one yaw; a shift in x and y then only adds to them. Plain loops over plain
   /// arrays, which the compiler turns into vector instructions.
   void turn_points(int turn) {
-    constexpr double kFar =
-        1e6;  // outside of every map, and within int; added so that truncation rounds down
+    constexpr double kPositive = 3.0 * kFarthest;  // added so that truncation rounds down
     const double yaw = window_.centre.yaw + turn * window_.angle_step;
     const double c = std::cos(yaw), s = std::sin(yaw);
-    const Eigen::Vector2d at = field_.in_cells({window_.centre.x, window_.centre.y});
-    const double x0 = at.x() + kFar, y0 = at.y() + kFar;
+    const Eigen::Vector2d at =
+        field_.in_cells({window_.centre.x, window_.centre.y}).cwiseMax(-kFarthest).cwiseMin(kFarthest);
+    const double x0 = at.x() + kPositive, y0 = at.y() + kPositive;
     const double* const x = x_.data();
     const double* const y = y_.data();
     int* const cell_x = cell_x_.data();
     int* const cell_y = cell_y_.data();
-    for (std::size_t i = 0; i < count_; ++i)
-      cell_x[i] = static_cast<int>(std::min(std::max(x0 + c * x[i] - s * y[i], 0.0), 2.0 * kFar));
-    for (std::size_t i = 0; i < count_; ++i)
-      cell_y[i] = static_cast<int>(std::min(std::max(y0 + s * x[i] + c * y[i], 0.0), 2.0 * kFar));
-    for (std::size_t i = 0; i < count_; ++i) cell_x[i] -= static_cast<int>(kFar);
-    for (std::size_t i = 0; i < count_; ++i) cell_y[i] -= static_cast<int>(kFar);
+    const std::size_t count = x_.size();
+    for (std::size_t i = 0; i < count; ++i)
+      cell_x[i] = static_cast<int>(x0 + c * x[i] - s * y[i]) - static_cast<int>(kPositive);
+    for (std::size_t i = 0; i < count; ++i)
+      cell_y[i] = static_cast<int>(y0 + s * x[i] + c * y[i]) - static_cast<int>(kPositive);
   }
 
   void place(int turn) {
@@ -111,10 +116,15 @@ class Lattice {
     const auto row = static_cast<std::size_t>(turn + turns_);
     std::int32_t* const first = offsets_.data() + row * count_;
     std::int32_t* next = first;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const int x = cell_x_[i], y = cell_y_[i];
-      if (field_.holds(x, y, shifts_))
-        *next++ = static_cast<std::int32_t>(field_.offset(x, y));
+    const CellBox inside = field_.within(shifts_), scoring = field_.about(shifts_);
+    const std::ptrdiff_t begin = field_.offset(0, 0), width = field_.offset(0, 1) - begin;
+    const int* const cell_x = cell_x_.data();
+    const int* const cell_y = cell_y_.data();
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const int x = cell_x[i], y = cell_y[i];
+      if (!scoring.has(x, y)) continue;
+      if (inside.has(x, y))
+        *next++ = static_cast<std::int32_t>(begin + y * width + x);
       else
         turned_[row].border.emplace_back(x, y);
     }
