@@ -43,7 +43,7 @@ class Filler {
   Filler(const Findings& found, Calibration& calibration) : found_(found), calibration_(calibration) {}
 
   void run() {
-    const FitResult& fit = found_.outcome.fit;
+    const FitResult& fit = found_.outcome.model.fit;
     const std::span<const double> p(fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size()));
     Eigen::MatrixXd covariance =
         lengths_may_be_scaled() ? with_matcher_scale(fit.covariance, to_base(p)) : fit.covariance;
@@ -59,20 +59,21 @@ class Filler {
     fill_unnamed();
     if (!found_.outcome.considered.empty())
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
-    store_report_data(make_report_data(found_.session, effects(), found_.outcome.fit, plain_), calibration_);
+    store_report_data(make_report_data(found_.session, effects(), found_.outcome.model.fit, plain_),
+                      calibration_);
     const GateResult gate = judge(calibration_, fit.converged);
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;
   }
 
  private:
-  [[nodiscard]] const EffectList& effects() const { return found_.outcome.effects; }
+  [[nodiscard]] const EffectList& effects() const { return found_.outcome.model.effects; }
   [[nodiscard]] std::vector<bool> fixed() const { return fixed_with(found_.session.fixed(0), effects()); }
 
   /// Matches of keyframes are not free of bias; neither is a model with a law that was found to fit, whose
   /// true shape nobody knows. Places in a map are, as far as simulated drives tell.
   [[nodiscard]] bool lengths_may_be_scaled() const {
-    if (found_.session.recordings().front().scans.empty() || found_.session.reference_is_base()) return false;
+    if (!found_.session.reference_is_scans()) return false;
     const bool only_delay = std::all_of(effects().begin(), effects().end(),
                                         [](const auto& e) { return e->name() == "time_offset"; });
     return !found_.every_scan_placed || !only_delay || !found_.lidar.empty();
@@ -81,18 +82,18 @@ class Filler {
   /// The six base parameters alone, on the same pairs: what the effects are measured against.
   void fit_plain() {
     if (effects().empty()) {
-      plain_ = found_.outcome.fit;
+      plain_ = found_.outcome.model.fit;
       return;
     }
     FitOptions options;
     options.fixed = found_.session.fixed(0);
     auto plain =
-        fit_joint(found_.session.data(), {}, found_.outcome.fit.parameters.head(kBaseCount), options);
+        fit_joint(found_.session.data(), {}, found_.outcome.model.fit.parameters.head(kBaseCount), options);
     if (plain) plain_ = std::move(plain).value();
   }
 
   void fill_residual() {
-    const auto after = held_out_residual(found_.session.data(), effects(), found_.outcome.fit, fixed());
+    const auto after = held_out_residual(found_.session.data(), effects(), found_.outcome.model.fit, fixed());
     calibration_.residual.held_out = after.has_value();
     if (!after) return;
     calibration_.residual.after = after->rms;
@@ -115,9 +116,10 @@ class Filler {
     Evidence evidence;
     evidence.p_value = std::erfc(z / std::sqrt(2.0));
     if (!plain_) return evidence;
-    const std::vector<bool> trusted = trusted_pairs(*plain_, found_.outcome.fit);
+    const std::vector<bool> trusted = trusted_pairs(*plain_, found_.outcome.model.fit);
     const auto before = horizon_error(found_.session.data(), {}, *plain_, found_.session.fixed(0), trusted);
-    const auto after = horizon_error(found_.session.data(), effects(), found_.outcome.fit, fixed(), trusted);
+    const auto after =
+        horizon_error(found_.session.data(), effects(), found_.outcome.model.fit, fixed(), trusted);
     if (before) evidence.held_out_before = before->rms_position();
     if (after) evidence.held_out_after = after->rms_position();
     return evidence;
@@ -141,7 +143,7 @@ class Filler {
   [[nodiscard]] FittedCurve fitted(const AddedCurve& added, Eigen::Index index) const {
     FittedCurve curve{added.curve, {}, added.law_of ? added.law_of->name() : ""};
     for (std::size_t k = 0; k < basis_size(added.curve); ++k)
-      curve.coefficients.push_back(found_.outcome.fit.parameters(index++));
+      curve.coefficients.push_back(found_.outcome.model.fit.parameters(index++));
     return curve;
   }
 
@@ -151,8 +153,8 @@ class Filler {
     result.name = effect.name();
     double z = 0.0;
     for (const EffectParameter& parameter : effect.parameters()) {
-      const double value = found_.outcome.fit.parameters(index);
-      const double deviation = std::sqrt(std::max(found_.outcome.fit.covariance(index, index), 0.0));
+      const double value = found_.outcome.model.fit.parameters(index);
+      const double deviation = std::sqrt(std::max(found_.outcome.model.fit.covariance(index, index), 0.0));
       result.parameters.push_back(
           {parameter.name, {value, parameter.fixed ? -1.0 : deviation, parameter.unit}});
       if (deviation > 0.0 && parameter.start == 0.0) z = std::max(z, std::abs(value) / deviation);
@@ -176,9 +178,10 @@ class Filler {
       if (!added.law_of)
         summary.add(to_string(added.curve.law.variable), added.proof.family_p_value, added.proof.before,
                     added.proof.after);
-    for (const AddedCurve& added : found_.outcome.curves)
-      for (const Variable variable : added.law_of ? std::vector<Variable>{} : added.alike)
-        summary.mention(to_string(variable));
+    for (const AddedCurve& added : found_.outcome.curves) {
+      if (added.law_of) continue;
+      for (const Variable variable : added.alike) summary.mention(to_string(variable));
+    }
     calibration_.unexplained = summary.result();
     const auto has_no_name = [](const LidarFinding& finding) { return !finding.effect->is_named(); };
     if (std::any_of(found_.lidar.begin(), found_.lidar.end(), has_no_name))

@@ -52,7 +52,7 @@ class Solver {
     if (automatic_ && recordings_.front().increments.empty())
       search(fit.value());
     else
-      outcome_ = {effects_, fit.value(), {}, {}, {}, {}};
+      outcome_.model = {effects_, fit.value()};
     fit_whole_path();
     fill();
     return calibration_;
@@ -96,12 +96,9 @@ class Solver {
   [[nodiscard]] double delay() const { return has_offset() ? parameters_(offset_index()) : 0.0; }
 
   [[nodiscard]] Eigen::Index offset_index() const {
-    Eigen::Index index = kBaseCount;
-    for (const auto& effect : effects_) {
-      if (effect->name() == "time_offset") return index;
-      index += static_cast<Eigen::Index>(effect->parameters().size());
-    }
-    return index;
+    const auto offset = std::find_if(effects_.begin(), effects_.end(),
+                                     [](const auto& e) { return e->name() == "time_offset"; });
+    return first_parameter(effects_, static_cast<std::size_t>(offset - effects_.begin()));
   }
 
   /// First matches with nominal values; then the clocks' delay and what the recording does not state.
@@ -154,7 +151,7 @@ class Solver {
   }
 
   [[nodiscard]] bool may_trace_lidar() const {
-    return (automatic_ || !asked_of_lidar_.empty()) && sees_scans();
+    return (automatic_ || !asked_of_lidar_.empty()) && session_->reference_is_scans();
   }
 
   [[nodiscard]] std::vector<HeadingPair> lidar_pairs() const {
@@ -238,38 +235,30 @@ class Solver {
   void search(const FitResult& fit) {
     outcome_ = search_effects(session_->data(), effects_, fit, session_->fixed(0),
                               [&](double fraction) { report("tracing the residual", fraction); });
-    effects_ = outcome_.effects;
-    parameters_ = outcome_.fit.parameters;
+    effects_ = outcome_.model.effects;
+    parameters_ = outcome_.model.fit.parameters;
     retire_idle_offset();
   }
 
   /// The delay was fitted before anything else was known; what it stood for may have got its own name.
   void retire_idle_offset() {
     if (outcome_.findings.empty() && outcome_.curves.empty()) return;
-    if (!has_offset() || !is_idle(outcome_.fit, offset_index())) return;
+    if (!has_offset() || !is_idle(outcome_.model.fit, offset_index())) return;
     const auto offset = std::find_if(effects_.begin(), effects_.end(),
                                      [](const auto& e) { return e->name() == "time_offset"; });
-    const Eigen::Index k = offset_index(), after = parameters_.size() - k - 1;
-    Eigen::VectorXd fewer(parameters_.size() - 1);
-    fewer << parameters_.head(k), parameters_.tail(after);
-    effects_.erase(offset);
-    parameters_ = fewer;
-    auto fit = fit_now();
-    if (fit) outcome_.fit = std::move(fit).value();
-    if (fit) outcome_.effects = effects_, parameters_ = outcome_.fit.parameters;
-    if (!fit) effects_ = outcome_.effects, parameters_ = outcome_.fit.parameters;
-  }
-
-  [[nodiscard]] bool sees_scans() const {
-    const Recording& first = recordings_.front();
-    return first.increments.empty() && !first.scans.empty() && !session_->reference_is_base();
+    const FitTask task{session_->data(), session_->fixed(0)};
+    if (auto fewer =
+            without_effect(task, outcome_.model, static_cast<std::size_t>(offset - effects_.begin())))
+      outcome_.model = std::move(*fewer);
+    effects_ = outcome_.model.effects;
+    parameters_ = outcome_.model.fit.parameters;
   }
 
   /// All or none: without walls enough to place nearly every scan of every recording there are no paths.
   void place_every_scan() {
     paths_.clear();
     placed_with_ = parameters_;
-    if (!sees_scans()) return;
+    if (!session_->reference_is_scans()) return;
     report("placing every scan", 0.0);
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
       paths_.push_back(place_scans(session_->recordings()[i], *session_->data()[i].model,
@@ -286,11 +275,12 @@ class Solver {
     std::vector<PathData> data;
     for (std::size_t i = 0; i < paths_.size(); ++i)
       data.push_back({session_->data()[i].model, paths_[i].scans});
-    const auto fit = fit_path(data, effects_, parameters_,
-                              {fixed_with(session_->fixed(0), effects_), outcome_.fit.prior_information});
+    const auto fit =
+        fit_path(data, effects_, parameters_,
+                 {fixed_with(session_->fixed(0), effects_), outcome_.model.fit.prior_information});
     if (!fit || !improves(fit.value())) return;
-    parameters_ = outcome_.fit.parameters = fit.value().parameters;
-    outcome_.fit.covariance = fit.value().covariance;
+    parameters_ = outcome_.model.fit.parameters = fit.value().parameters;
+    outcome_.model.fit.covariance = fit.value().covariance;
     every_scan_placed_ = true;
   }
 
@@ -298,7 +288,7 @@ class Solver {
   [[nodiscard]] bool improves(const PathFit& path) const {
     double gain = 0.0;  // logarithm of the ratio of variances, summed
     for (Eigen::Index k = 0; k < parameters_.size(); ++k) {
-      const double before = outcome_.fit.covariance(k, k), after = path.covariance(k, k);
+      const double before = outcome_.model.fit.covariance(k, k), after = path.covariance(k, k);
       if (!(before > 0.0) || !(after > 0.0)) continue;
       const double apart = path.parameters(k) - parameters_(k);
       if (apart * apart > kAgreement * kAgreement * (before + after)) return false;

@@ -70,6 +70,11 @@ Result<Session> Session::open(std::span<const Recording> recordings) {
   return session;
 }
 
+bool Session::reference_is_scans() const {
+  const Recording& first = recordings_.front();
+  return first.increments.empty() && !first.scans.empty() && !reference_is_base_;
+}
+
 std::vector<bool> Session::fixed(std::size_t effect_parameters) const {
   std::vector<bool> fixed(kBaseCount + effect_parameters, false);
   for (const auto k : {kMountX, kMountY, kMountYaw}) fixed[k] = reference_is_base_;

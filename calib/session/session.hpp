@@ -25,6 +25,8 @@ class Session {
   [[nodiscard]] const BaseParameters& nominal() const { return nominal_; }
   /// True when a pose of the base itself is the reference, so that there is no sensor pose to estimate.
   [[nodiscard]] bool reference_is_base() const { return reference_is_base_; }
+  /// True when scans are the reference.
+  [[nodiscard]] bool reference_is_scans() const;
   /// Which of the base parameters stay at their nominal value.
   [[nodiscard]] std::vector<bool> fixed(std::size_t effect_parameters) const;
 

@@ -6,19 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "calib/estimators/joint.hpp"
 #include "calib/tracing/curve.hpp"
-#include "calib/tracing/horizon.hpp"
+#include "calib/tracing/fitted_model.hpp"
+#include "calib/tracing/proof.hpp"
 
 namespace odomcalib::calib {
-
-/// What speaks for an addition to the model.
-struct Proof {
-  double family_p_value = 1.0;
-  double before = 0.0;  ///< held-out position error at the horizon, m
-  double after = 0.0;
-  Improvement improvement;
-};
 
 struct Finding {
   std::shared_ptr<const Effect> effect;
@@ -47,8 +39,7 @@ struct Considered {
 };
 
 struct SearchResult {
-  EffectList effects;  ///< in the order of the parameter vector: those given, then what was added
-  FitResult fit;
+  FittedModel model;  ///< effects given, then what was added
   std::vector<Finding> findings;
   std::vector<AddedCurve> curves;
   std::vector<Considered> considered;  ///< in the order tried

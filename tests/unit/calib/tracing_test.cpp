@@ -88,7 +88,7 @@ TEST(Tracing, adds_nothing_when_nothing_is_missing) {
   const SearchResult result = searched(measured(model, {}, {}));
   EXPECT_TRUE(result.findings.empty());
   EXPECT_TRUE(result.curves.empty());
-  EXPECT_EQ(result.fit.parameters.size(), kBaseCount);
+  EXPECT_EQ(result.model.fit.parameters.size(), kBaseCount);
 }
 
 TEST(Tracing, names_what_is_in_the_catalogue_and_finds_its_size) {
@@ -105,8 +105,8 @@ TEST(Tracing, names_what_is_in_the_catalogue_and_finds_its_size) {
     EXPECT_LE(result.findings[0].proof.family_p_value, 0.003) << c.name;
     for (std::size_t k = 0; k < c.values.size(); ++k) {
       const auto index = static_cast<Eigen::Index>(kBaseCount + k);
-      EXPECT_NEAR(result.fit.parameters(index), c.values[k],
-                  4.0 * std::sqrt(result.fit.covariance(index, index)) + 1e-3)
+      EXPECT_NEAR(result.model.fit.parameters(index), c.values[k],
+                  4.0 * std::sqrt(result.model.fit.covariance(index, index)) + 1e-3)
           << c.name << " " << k;
     }
   }
@@ -166,8 +166,9 @@ TEST(Tracing, a_narrow_peak_gets_more_knots_and_the_wheel_a_wider_deviation) {
   EXPECT_EQ(result.curves[0].curve.knots, 8);
   double doubt = 0.0;
   for (const Eigen::VectorXd& d : result.doubts) doubt = std::hypot(doubt, d(kLeftRadius));
-  const double deviation = std::hypot(doubt, std::sqrt(result.fit.covariance(kLeftRadius, kLeftRadius)));
-  EXPECT_NEAR(result.fit.parameters(kLeftRadius), kBase.left_radius, 3.0 * deviation);
+  const double deviation =
+      std::hypot(doubt, std::sqrt(result.model.fit.covariance(kLeftRadius, kLeftRadius)));
+  EXPECT_NEAR(result.model.fit.parameters(kLeftRadius), kBase.left_radius, 3.0 * deviation);
 }
 
 TEST(Tracing, several_recordings_share_no_zero_of_time_heading_or_phase) {

@@ -1,0 +1,91 @@
+#include "calib/tracing/candidate.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "calib/effects/catalogue.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+/// Share of the error that a curve, or an effect of the place, must leave at most: less is not worth a model.
+constexpr double kWorthwhile = 0.95;
+constexpr double kUseful = 0.97;  ///< the same for any other curve that odometry uses
+
+std::string key_of(const Effect& effect) { return effect.name() + "/" + effect.parameters().front().name; }
+
+std::string key_of(const Effect& effect, const Curve& curve) {
+  return effect.name() + "/" + std::to_string(curve.period) + "/" + std::to_string(curve.harmonic);
+}
+
+bool belongs_to_one_recording(const Effect& effect) {
+  const auto laws = effect.laws();
+  return std::any_of(laws.begin(), laws.end(),
+                     [](const Law& law) { return begins_with_the_recording(law.variable); });
+}
+
+void add_names(const EffectList& given, bool one_recording, std::vector<Candidate>& candidates) {
+  std::set<std::string> present;
+  for (const auto& effect : given) present.insert(key_of(*effect));
+  for (const auto& effect : effect_catalogue()) {
+    if (present.count(key_of(*effect)) > 0 || (!one_recording && belongs_to_one_recording(*effect))) continue;
+    EffectList shapes = effect->variants();
+    if (shapes.empty()) shapes.push_back(effect);
+    for (const auto& shape : shapes) candidates.push_back({shape, std::nullopt, key_of(*shape)});
+  }
+}
+
+/// Odometry does without what belongs to the place or the day: then the base must be that of the whole drive.
+void add_curves(std::span<const DriveModel* const> models, std::vector<Candidate>& candidates) {
+  for (const Curve& free : candidate_curves(models)) {
+    const Curve curve = belongs_to_the_place(free.law.variable) ? centred(free, models) : free;
+    const auto effect = make_curve_effect(curve);
+    candidates.push_back({effect, curve, key_of(*effect, curve)});
+  }
+}
+
+}  // namespace
+
+std::vector<Candidate> all_candidates(const EffectList& present, std::span<const DriveModel* const> models) {
+  std::vector<Candidate> candidates;
+  add_names(present, models.size() == 1, candidates);
+  add_curves(models, candidates);
+  return candidates;
+}
+
+bool contains(const std::vector<Law>& laws, const Law& law) {
+  return std::find(laws.begin(), laws.end(), law) != laws.end();
+}
+
+std::vector<Law> laws_of(const Candidate& candidate) {
+  return candidate.curve ? std::vector<Law>{candidate.curve->law} : candidate.effect->laws();
+}
+
+bool depends_on_history(const Candidate& candidate) {
+  if (!candidate.curve) return false;
+  const Variable variable = candidate.curve->law.variable;
+  return is_memory(variable) || is_distance_since(variable);
+}
+
+bool must_be_worthwhile(const Candidate& candidate) {
+  if (depends_on_history(candidate)) return true;
+  const auto laws = laws_of(candidate);
+  return std::any_of(laws.begin(), laws.end(), [](const Law& law) {
+    return law.variable == Variable::heading || law.variable == Variable::position;
+  });
+}
+
+double largest_ratio(const Candidate& candidate) {
+  if (must_be_worthwhile(candidate)) return kWorthwhile;
+  const bool will_be_used = candidate.effect->storage() == Storage::host;
+  return candidate.curve && will_be_used ? kUseful : std::numeric_limits<double>::infinity();
+}
+
+std::size_t count_sizes(const Effect& effect) {
+  const auto parameters = effect.parameters();
+  return static_cast<std::size_t>(
+      std::count_if(parameters.begin(), parameters.end(), [](const EffectParameter& p) { return !p.fixed; }));
+}
+
+}  // namespace odomcalib::calib

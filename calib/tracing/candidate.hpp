@@ -1,0 +1,43 @@
+// What the search may add to the model, and what it asks of each.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/tracing/curve.hpp"
+
+namespace odomcalib::calib {
+
+/// One thing that may be missing: a named effect (one of its variants) or a curve.
+struct Candidate {
+  std::shared_ptr<const Effect> effect;
+  std::optional<Curve> curve;
+  std::string key;      ///< variants of one effect share it
+  bool struck = false;  ///< added, or failed its proof: not asked again
+};
+
+/// The catalogue without what the model has already, and the curves that these drives can show.
+std::vector<Candidate> all_candidates(const EffectList& present, std::span<const DriveModel* const> models);
+
+bool contains(const std::vector<Law>& laws, const Law& law);
+std::vector<Law> laws_of(const Candidate& candidate);
+
+/// A curve of what the robot did before.
+bool depends_on_history(const Candidate& candidate);
+
+/// Scan matching has a bias of its own in a room, and in a scripted drive what happened before stands for
+/// the place in the script: what goes with such variables must be more than that.
+bool must_be_worthwhile(const Candidate& candidate);
+
+/// Largest share of the open-loop error that the candidate may leave. A curve that odometry will use must be
+/// seen to help odometry.
+double largest_ratio(const Candidate& candidate);
+
+/// Parameters that a fit is free to choose.
+std::size_t count_sizes(const Effect& effect);
+
+}  // namespace odomcalib::calib

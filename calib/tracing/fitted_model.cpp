@@ -1,0 +1,83 @@
+#include "calib/tracing/fitted_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/noise/noise_estimate.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+/// Squared distance that a pair's weight stands for (the inverse of Student's t weight).
+double squared_distance(double weight) {
+  return ((kStudentDof + 3.0) / weight) - kStudentDof / kStudentConsistency;
+}
+
+/// How much larger the noise would have to be for the largest twentieth of the residuals to be noise.
+double excess_of_outliers(const FitResult& fit) {
+  constexpr double kShare = 0.95;
+  constexpr double kExpected = 7.815;  // quantile of chi-squared with three degrees of freedom
+  if (fit.weights.empty()) return 1.0;
+  std::vector<double> squared;
+  for (const double w : fit.weights) squared.push_back(squared_distance(w));
+  const auto nth =
+      squared.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(squared.size() - 1));
+  std::nth_element(squared.begin(), nth, squared.end());
+  return std::sqrt(std::max(*nth, 0.0) / kExpected);
+}
+
+NoiseModel widened(NoiseModel noise, double factor) {
+  noise.matcher_scale *= factor;
+  noise.process_translation *= factor;
+  noise.process_rotation *= factor;
+  noise.stamp_jitter *= factor;
+  return noise;
+}
+
+}  // namespace
+
+std::vector<const DriveModel*> FitTask::models() const {
+  std::vector<const DriveModel*> all;
+  for (const FitData& d : data) all.push_back(d.model);
+  return all;
+}
+
+std::optional<FitResult> FitTask::fit(const EffectList& effects, const Eigen::VectorXd& start,
+                                      const std::vector<NoiseModel>& noise) const {
+  FitOptions options;
+  options.fixed = fixed(effects);
+  options.max_iterations = 24;
+  options.noise = noise;
+  auto fit = fit_joint(data, effects, start, options);
+  return fit ? std::optional(std::move(fit).value()) : std::nullopt;
+}
+
+Eigen::Index first_parameter(const EffectList& effects, std::size_t index) {
+  Eigen::Index first = kBaseCount;
+  for (std::size_t e = 0; e < index; ++e) first += static_cast<Eigen::Index>(effects[e]->parameters().size());
+  return first;
+}
+
+std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel& model, std::size_t index) {
+  EffectList effects = model.effects;
+  effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(index));
+  const Eigen::VectorXd& all = model.fit.parameters;
+  const Eigen::Index first = first_parameter(model.effects, index);
+  const Eigen::Index after = first_parameter(model.effects, index + 1);
+  Eigen::VectorXd start(all.size() - (after - first));
+  start << all.head(first), all.tail(all.size() - after);
+  auto fit = task.fit(effects, start, {});
+  if (!fit) return std::nullopt;
+  return FittedModel{std::move(effects), std::move(*fit)};
+}
+
+FitResult widened_where_outlying(const FitTask& task, const FittedModel& model) {
+  constexpr double kTolerated = 1.3;
+  const double excess = excess_of_outliers(model.fit);
+  if (excess < kTolerated) return model.fit;
+  std::vector<NoiseModel> noise;
+  for (const NoiseModel& given : model.fit.noise) noise.push_back(widened(given, excess));
+  return task.fit(model.effects, model.fit.parameters, noise).value_or(model.fit);
+}
+
+}  // namespace odomcalib::calib

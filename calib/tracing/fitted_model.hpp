@@ -1,0 +1,41 @@
+// A model and its fit, and what the search does with the two together.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "calib/estimators/joint.hpp"
+
+namespace odomcalib::calib {
+
+struct FittedModel {
+  EffectList effects;  ///< in the order of the parameter vector
+  FitResult fit;
+};
+
+/// What the search fits: recordings, and which base parameters stay as they are.
+struct FitTask {
+  std::span<const FitData> data;
+  std::vector<bool> base_fixed;
+
+  [[nodiscard]] std::vector<bool> fixed(const EffectList& effects) const {
+    return fixed_with(base_fixed, effects);
+  }
+  [[nodiscard]] std::vector<const DriveModel*> models() const;
+  /// @param noise per recording; empty: estimated anew
+  [[nodiscard]] std::optional<FitResult> fit(const EffectList& effects, const Eigen::VectorXd& start,
+                                             const std::vector<NoiseModel>& noise) const;
+};
+
+/// Position of an effect's first parameter in the parameter vector.
+Eigen::Index first_parameter(const EffectList& effects, std::size_t index);
+
+/// Fitted without one of the effects; nullopt if that does not settle.
+std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel& model, std::size_t index);
+
+/// The same model with wider noise where many pairs are far out: something systematic is there, and robust
+/// weights must not take it for failed matches.
+FitResult widened_where_outlying(const FitTask& task, const FittedModel& model);
+
+}  // namespace odomcalib::calib

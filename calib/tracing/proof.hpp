@@ -1,0 +1,30 @@
+// Held-out proof that an addition to the model is worth its place.
+#pragma once
+
+#include <string>
+
+#include "calib/tracing/fitted_model.hpp"
+#include "calib/tracing/horizon.hpp"
+
+namespace odomcalib::calib {
+
+/// What speaks for an addition to the model.
+struct Proof {
+  double family_p_value = 1.0;
+  double before = 0.0;  ///< held-out position error at the horizon, m
+  double after = 0.0;
+  Improvement improvement;
+};
+
+/// On one noise model: error at the horizon, or else whitened residual per block.
+/// @param selected the choice itself is held out: a fold counts only if the others point to the candidate
+/// @param largest_ratio of the errors at the horizon after and before
+/// @return empty if it holds, otherwise what is missing
+std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,
+                      const FoldFlags& selected, double largest_ratio, Proof& proof);
+
+/// Each model's own weights spare what it explains badly: both are compared with the larger ones.
+HeldOutGain compared_on_held_out(const FitTask& task, const FittedModel& before, const FittedModel& after,
+                                 const FoldFlags& selected);
+
+}  // namespace odomcalib::calib
