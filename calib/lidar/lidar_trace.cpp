@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/geometry/se2.hpp"
 #include "calib/lidar/lidar_curve.hpp"
 #include "calib/lidar/lidar_score.hpp"
 
@@ -139,9 +140,10 @@ bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all
 
 bool sees_all_round(const Scan& scan) {
   if (scan.ranges.size() < 2) return false;
+  double swept = 0.0;  // angles that are stated beam by beam may start again at half a turn
+  for (std::size_t k = 1; k < scan.ranges.size(); ++k) swept += wrap_angle(scan.angle(k) - scan.angle(k - 1));
   const auto n = static_cast<double>(scan.ranges.size());
-  const double first = scan.angle(0), last = scan.angle(scan.ranges.size() - 1);
-  return std::abs(last - first) * n / (n - 1.0) > kAllRound;
+  return std::abs(swept) * n / (n - 1.0) > kAllRound;
 }
 
 std::vector<LidarFinding> trace_lidar(const std::vector<HeadingPair>& pairs, bool all_round) {

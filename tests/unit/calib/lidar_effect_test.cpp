@@ -85,6 +85,19 @@ TEST(LidarEffect, correction_undoes_the_error) {
   }
 }
 
+TEST(LidarEffect, a_turn_that_begins_anywhere_is_seen_as_one) {
+  Scan scan;
+  scan.angle_increment = 2.0 * std::numbers::pi / 300.0;
+  scan.ranges.assign(300, 1.0);
+  EXPECT_TRUE(sees_all_round(scan));
+  for (int k = 0; k < 300; ++k)
+    scan.angles.push_back(std::remainder(2.0 - k * 0.0209, 2.0 * std::numbers::pi));
+  EXPECT_TRUE(sees_all_round(scan)) << "beam by beam, clockwise, across half a turn";
+  scan.angles.clear();
+  scan.ranges.resize(200);
+  EXPECT_FALSE(sees_all_round(scan));
+}
+
 TEST(LidarEffect, too_few_pairs_tell_nothing) {
   EXPECT_TRUE(trace_lidar({}, true).empty());
   EXPECT_TRUE(trace_lidar(std::vector<HeadingPair>(3), true).empty());
