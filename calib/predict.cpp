@@ -38,7 +38,8 @@ double middle_of_drive(const Calibration& calibration) {
 /// lidar is none of odometry.
 Place place_of(const Effect& effect) {
   if (concerns_reference(effect)) return Place::reference;
-  return effect.storage() == Storage::nowhere ? Place::nowhere : Place::odometry;
+  const bool stays_behind = effect.storage() == Storage::nowhere && !counts_by_its_mean(effect);
+  return stays_behind ? Place::nowhere : Place::odometry;
 }
 
 /// The effect that the values were fitted for; null when this program does not know it.
@@ -65,7 +66,7 @@ Correction correction_of(const Calibration& calibration) {
   std::vector<double> values(correction.parameters.data(), correction.parameters.data() + kBaseCount);
   for (const EffectResult& result : calibration.effects) {
     const auto effect = effect_of(result);
-    if (!effect || !(place_of(*effect) == Place::odometry || counts_by_its_mean(*effect))) continue;
+    if (!effect || place_of(*effect) != Place::odometry) continue;
     correction.effects.push_back(effect);
     for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
   }

@@ -91,7 +91,7 @@ TEST(LidarEffect, a_turn_that_begins_anywhere_is_seen_as_one) {
   scan.ranges.assign(300, 1.0);
   EXPECT_TRUE(sees_all_round(scan));
   for (int k = 0; k < 300; ++k)
-    scan.angles.push_back(std::remainder(2.0 - k * 0.0209, 2.0 * std::numbers::pi));
+    scan.angles.push_back(static_cast<float>(std::remainder(2.0 - k * 0.0209, 2.0 * std::numbers::pi)));
   EXPECT_TRUE(sees_all_round(scan)) << "beam by beam, clockwise, across half a turn";
   scan.angles.clear();
   scan.ranges.resize(200);
