@@ -146,7 +146,7 @@ class Search {
     if (std::none_of(laws.begin(), laws.end(), is_taken)) return false;
     double of_curves = 0.0;
     for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (candidates_[k].curve && contains(laws, candidates_[k].curve->law) &&
+      if (is_open(k) && candidates_[k].curve && contains(laws, candidates_[k].curve->law) &&
           is_taken(candidates_[k].curve->law))
         of_curves += table.scores()[k].statistic;
     return table.scores()[candidate].statistic < kNearlyAll * of_curves;
@@ -265,7 +265,8 @@ class Search {
     const Variable own = candidates_[index].curve->law.variable;
     std::vector<Variable> alike;
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      if (!candidates_[k].curve || table.scores()[k].statistic < kMost * table.scores()[index].statistic)
+      if (!is_open(k) || !candidates_[k].curve ||
+          table.scores()[k].statistic < kMost * table.scores()[index].statistic)
         continue;
       const Variable other = candidates_[k].curve->law.variable;
       if (other != own && std::find(alike.begin(), alike.end(), other) == alike.end() &&
@@ -324,9 +325,9 @@ class Search {
         aliases.push_back(name);
     };
     for (const Trial& trial : trials_)
-      if (best.gain - trial.gain < kAmbiguity) add(trial.candidate);
+      if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity) add(trial.candidate);
     for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (!candidates_[k].curve && table.scores()[k].family_p_value <= kNamedLevel &&
+      if (is_open(k) && !candidates_[k].curve && table.scores()[k].family_p_value <= kNamedLevel &&
           too_close(table, best.candidate, k))
         add(k);
     return aliases;
