@@ -37,7 +37,7 @@ class CasterKick final : public StepEffect<CasterKick> {
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
     using std::exp;
-    const T side = p[0] * c.direction + p[1] * c.previous_turn + p[2];
+    const T side = p[0] * c.direction + p[1] * c.previous_turn[kUsualMemory] + p[2];
     const T distance = c.since_reversal / p[3];
     const T rise = p[4] > 1.5 ? distance : T(1.0);
     step.yaw += side * (std::abs(c.speed) * c.dt / p[3]) * rise * exp(-distance);

@@ -57,7 +57,7 @@ bool is_distance_since(Variable variable) {
          variable == Variable::right_since_reversal || variable == Variable::since_stop;
 }
 
-double value_of(Variable variable, const StepContext& c) {
+double value_of(Variable variable, const StepContext& c, std::size_t memory) {
   switch (variable) {
     case Variable::left_speed:
       return c.left_speed;
@@ -94,9 +94,9 @@ double value_of(Variable variable, const StepContext& c) {
     case Variable::since_stop:
       return c.since_stop;
     case Variable::previous_turn:
-      return c.previous_turn;
+      return c.previous_turn[memory];
     case Variable::previous_push:
-      return c.previous_push;
+      return c.previous_push[memory];
   }
   return 0.0;
 }

@@ -43,7 +43,8 @@ bool is_memory(Variable variable);
 bool is_distance_since(Variable variable);
 
 /// Value in an interval; of the position, x.
-double value_of(Variable variable, const StepContext& context);
+/// @param memory index of the span over which what happened before fades
+double value_of(Variable variable, const StepContext& context, std::size_t memory = kUsualMemory);
 
 /// `travel` is signed and reverses with the motion, `path` is unsigned. Left, right, both: relative to the
 /// travel of those wheels. Track: relative. Sideways: m per m of the base. Yaw path: rad per m of the base.

@@ -114,8 +114,7 @@ class DriveHistory {
   double since_reversal_ = 1e3;
   double stood_ = 0.0;  ///< s
   double since_stop_ = 1e3;
-  double previous_turn_ = 0.0;
-  double previous_push_ = 0.0;
+  Memory previous_turn_{}, previous_push_{};
 };
 
 /// Observable variables of each tick interval, from smoothed wheel angles and nominal geometry.

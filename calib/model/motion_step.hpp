@@ -1,6 +1,9 @@
 // One tick interval as the model and the effects see it.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 namespace odomcalib::calib {
 
 /// Base motion in one tick interval before integration, m and rad.
@@ -12,6 +15,11 @@ struct WheelStep {
   T yaw{0.0};    ///< rotation in addition to (right - left) / track_width
   T track{1.0};  ///< factor on the track width
 };
+
+/// What happened lately, fading over several spans: nobody knows how long a robot remembers.
+inline constexpr std::array<double, 3> kMemorySpans = {1.0 / 3.0, 1.0, 3.0};
+inline constexpr std::size_t kUsualMemory = 1;
+using Memory = std::array<double, kMemorySpans.size()>;
 
 /// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
 /// are smoothed, since differences of raw ticks are mostly quantisation noise.
@@ -31,11 +39,9 @@ struct StepContext {
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;
   double since_stop = 0.0;  ///< mean way of the two rims since the robot last stood still, m
-  double previous_turn =
-      0.0;  ///< which way it turned lately: mean of the turn's sign over the last radian, -1 to 1
-  double previous_push =
-      0.0;  ///< whether it was sped up or slowed down lately: mean sign over the last 0.1 m/s, -1 to 1
-  double direction = 0.0;  ///< sign of the forward speed, kept while standing
+  Memory previous_turn{};   ///< which way it turned lately: mean of the turn's sign over a radian, -1 to 1
+  Memory previous_push{};   ///< whether it was sped up or slowed down lately: the same over 0.1 m/s
+  double direction = 0.0;   ///< sign of the forward speed, kept while standing
 };
 
 }  // namespace odomcalib::calib

@@ -84,6 +84,12 @@ void fill_turn_accelerations(std::vector<StepContext>& contexts, double track_wi
   }
 }
 
+/// Means of a motion's sign move on by the motion, in units of the usual span.
+void remember(Memory& memory, double motion) {
+  for (std::size_t k = 0; k < memory.size(); ++k)
+    memory[k] -= std::expm1(-std::abs(motion) / kMemorySpans[k]) * (std::copysign(1.0, motion) - memory[k]);
+}
+
 }  // namespace
 
 double DriveHistory::Wheel::advance(double delta) {
@@ -132,14 +138,12 @@ void DriveHistory::remember_push(StepContext& c) {
   c.previous_push = previous_push_;
   const double acceleration = 0.5 * (c.left_acceleration + c.right_acceleration);
   if (std::abs(acceleration) < kLeast) return;
-  const double forgetting = -std::expm1(-std::abs(acceleration) * c.dt / kMemory);
-  previous_push_ += forgetting * (std::copysign(1.0, acceleration) - previous_push_);
+  remember(previous_push_, acceleration * c.dt / kMemory);
 }
 
 void DriveHistory::remember_turn(StepContext& c, double yaw) {
   c.previous_turn = previous_turn_;
-  const double forgetting = -std::expm1(-std::abs(yaw));
-  previous_turn_ += forgetting * (std::copysign(1.0, yaw) - previous_turn_);
+  remember(previous_turn_, yaw);
 }
 
 std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& nominal) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <numeric>
+#include <tuple>
 
 #include "calib/effects/step_effect.hpp"
 
@@ -122,12 +123,13 @@ class CurveEffect final : public StepEffect<CurveEffect> {
 };
 
 /// 0.5 and 99.5 % quantiles of the variable while the wheels turn; equal when it does not vary.
-std::pair<double, double> range_of(Variable variable, std::span<const DriveModel* const> models) {
+std::pair<double, double> range_of(Variable variable, std::span<const DriveModel* const> models,
+                                   std::size_t memory = kUsualMemory) {
   std::vector<double> values;
   for (const DriveModel* model : models)
     for (const StepContext& c : model->context()) {
       if (std::abs(c.left_speed) <= kMoving && std::abs(c.right_speed) <= kMoving) continue;
-      values.push_back(value_of(variable, c));
+      values.push_back(value_of(variable, c, memory));
       if (variable == Variable::position) values.push_back(c.y);
     }
   if (values.size() < 10) return {0.0, 0.0};
@@ -248,7 +250,7 @@ double amount(Carrier carrier, const StepContext& c) {
 
 BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   const Variable variable = curve.law.variable;
-  const double z = value_of(variable, c);
+  const double z = value_of(variable, c, curve.memory);
   if (concerns_sensor(curve)) return sway_functions(curve, z);
   if (is_angle(variable))
     return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
@@ -272,13 +274,23 @@ BasisValues basis(const Curve& curve, const StepContext& c) {
 
 bool concerns_sensor(const Curve& curve) { return curve.law.carrier == Carrier::sensor_yaw; }
 
-std::optional<Curve> refined(const Curve& curve, std::span<const DriveModel* const> models) {
-  constexpr int kMost = 8;
+std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models) {
+  constexpr int kMostKnots = 8;
+  std::vector<Curve> shapes;
   const bool has_knots = is_signed_speed(curve.law.variable) && curve.law.carrier != Carrier::turn_path;
-  if (!has_knots || 2 * curve.knots > kMost) return std::nullopt;
-  Curve finer = curve;
-  finer.knots *= 2;
-  return curve.mean.empty() ? finer : centred(std::move(finer), models);
+  if (has_knots && 2 * curve.knots <= kMostKnots) {
+    shapes.push_back(curve);
+    shapes.back().knots *= 2;
+  }
+  for (std::size_t memory = 0; is_memory(curve.law.variable) && memory < kMemorySpans.size(); ++memory) {
+    if (memory == curve.memory) continue;
+    shapes.push_back(curve);
+    shapes.back().memory = memory;
+    std::tie(shapes.back().low, shapes.back().high) = range_of(curve.law.variable, models, memory);
+  }
+  for (Curve& shape : shapes)
+    if (!shape.mean.empty()) shape = centred(std::move(shape), models);
+  return shapes;
 }
 
 std::size_t basis_size(const Curve& curve) { return basis(curve, StepContext{}).size(); }

@@ -4,7 +4,6 @@
 #include <array>
 #include <initializer_list>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +32,8 @@ struct Curve {
   /// Subtracted from the functions; none: 0. Functions that are zero at rest leave the base parameters the
   /// meaning of slow motion; functions without a mean leave them that of the drive they were fitted to.
   std::vector<double> mean = {};
-  int knots = 4;  ///< of speeds only
+  int knots = 4;                      ///< of speeds only
+  std::size_t memory = kUsualMemory;  ///< of what happened before only: span over which it fades
 };
 
 /// At most sixteen functions' values. They are asked for each tick interval of each fit, so they stay off the
@@ -68,8 +68,8 @@ Curve centred(Curve curve, std::span<const DriveModel* const> models);
 double spread_of(const Curve& curve, std::span<const double> coefficients,
                  std::span<const DriveModel* const> models);
 
-/// The same curve with twice the knots, where it has knots and few.
-std::optional<Curve> refined(const Curve& curve, std::span<const DriveModel* const> models);
+/// The same law in other shapes: twice the knots, other spans of memory.
+std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models);
 
 /// A dependence of the sensor's place on the base: none of odometry's.
 bool concerns_sensor(const Curve& curve);

@@ -32,25 +32,27 @@ FoldFlags all_folds() {
 
 }  // namespace
 
-std::optional<FinerCurve> refined(const FitTask& task, const FittedModel& model, const Curve& curve) {
+std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, const Curve& curve) {
+  std::vector<Reshaped> all;
   const auto models = task.models();
-  const auto finer = refined(curve, models);
-  if (!finer) return std::nullopt;
-  EffectList effects = model.effects;
-  effects.back() = make_curve_effect(*finer);
-  const Eigen::Index kept = first_parameter(effects, effects.size() - 1);
-  Eigen::VectorXd start = Eigen::VectorXd::Zero(kept + static_cast<Eigen::Index>(basis_size(*finer)));
-  start.head(kept) = model.fit.parameters.head(kept);
-  auto fit = task.fit(effects, start, model.fit.noise);
-  if (!fit || spoils_base(*effects.back(), model.fit, *fit)) return std::nullopt;
-  return FinerCurve{*finer, {std::move(effects), std::move(*fit)}};
+  const Eigen::Index kept = first_parameter(model.effects, model.effects.size() - 1);
+  for (const Curve& shape : other_shapes(curve, models)) {
+    EffectList effects = model.effects;
+    effects.back() = make_curve_effect(shape);
+    Eigen::VectorXd start = Eigen::VectorXd::Zero(kept + static_cast<Eigen::Index>(basis_size(shape)));
+    start.head(kept) = model.fit.parameters.head(kept);
+    auto fit = task.fit(effects, start, model.fit.noise);
+    if (!fit || spoils_base(*effects.back(), model.fit, *fit)) continue;
+    all.push_back({shape, {std::move(effects), std::move(*fit)}});
+  }
+  return all;
 }
 
-bool is_better(const FitTask& task, const FittedModel& coarse, const FittedModel& fine) {
-  const auto more = static_cast<double>(fine.fit.parameters.size() - coarse.fit.parameters.size());
-  const double penalty = more * std::log(static_cast<double>(coarse.fit.whitened_residual.size()));
-  return coarse.fit.cost - fine.fit.cost > penalty &&
-         compared_on_held_out(task, coarse, fine, all_folds()).total > 0.0;
+bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other) {
+  const auto more = static_cast<double>(other.fit.parameters.size() - given.fit.parameters.size());
+  const double penalty = more * std::log(static_cast<double>(given.fit.whitened_residual.size()));
+  return given.fit.cost - other.fit.cost > penalty &&
+         compared_on_held_out(task, given, other, all_folds()).total > 0.0;
 }
 
 Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, const Curve& curve) {

@@ -6,17 +6,17 @@
 
 namespace odomcalib::calib {
 
-/// The model with the same curve on twice the knots; nullopt where the curve has no knots or enough, or where
-/// the drive could not tell the finer one from the wheels.
-/// @param model whose last effect is the curve's
-struct FinerCurve {
+/// The model with a curve in another shape.
+struct Reshaped {
   Curve curve;
   FittedModel model;  ///< on the noise of the given one
 };
-std::optional<FinerCurve> refined(const FitTask& task, const FittedModel& model, const Curve& curve);
+/// The shapes that the drive can tell from the wheels.
+/// @param model whose last effect is the curve's
+std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, const Curve& curve);
 
-/// Whether the finer one is worth its parameters, and better on held-out data.
-bool is_better(const FitTask& task, const FittedModel& coarse, const FittedModel& fine);
+/// Whether the other shape is worth its parameters, and better on held-out data.
+bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other);
 
 /// A curve about its mean leaves the base the average of this drive; where its law would be zero, nobody
 /// knows. By how much that may move the base parameters.

@@ -243,18 +243,18 @@ class Search {
     return true;
   }
 
-  /// A law with a narrow peak needs more knots than finding it did. What another shape or another zero would
-  /// make of the base parameters is not known about them.
+  /// A law with a narrow peak needs more knots than finding it did, one of the past another memory. What
+  /// other shapes or another zero would make of the base parameters is not known about them.
   void settle_shape_of_newest_curve() {
     AddedCurve& newest = result_.curves.back();
-    if (auto finer = refined(task_, result_.model, newest.curve)) {
-      result_.doubts.emplace_back(finer->model.fit.parameters.head<kBaseCount>() -
-                                  result_.model.fit.parameters.head<kBaseCount>());
-      if (is_better(task_, result_.model, finer->model)) {
-        result_.model = std::move(finer->model);
-        newest.curve = std::move(finer->curve);
-        newest.effect = result_.model.effects.back();
-      }
+    const FittedModel first = result_.model;
+    for (Reshaped& other : reshaped(task_, first, newest.curve)) {
+      result_.doubts.emplace_back(other.model.fit.parameters.head<kBaseCount>() -
+                                  first.fit.parameters.head<kBaseCount>());
+      if (!is_better(task_, result_.model, other.model)) continue;
+      result_.model = std::move(other.model);
+      newest.curve = std::move(other.curve);
+      newest.effect = result_.model.effects.back();
     }
     result_.doubts.push_back(doubt_of_zero(task_, result_.model, newest.curve));
   }

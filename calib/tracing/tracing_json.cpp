@@ -22,8 +22,9 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
               entry.value("period", 0.0), entry.value("harmonic", 0), {},
               entry.value("knots", 4)};
   const auto coefficients = entry.value("coefficients", std::vector<double>{});
-  if (!(curve.high > curve.low) || (curve.knots != 4 && curve.knots != 8) ||
-      coefficients.size() != basis_size(curve))
+  curve.memory = entry.value("memory", kUsualMemory);
+  if (!(curve.high > curve.low) || curve.memory >= kMemorySpans.size() ||
+      (curve.knots != 4 && curve.knots != 8) || coefficients.size() != basis_size(curve))
     return std::nullopt;
   curve.mean = entry.value("mean", std::vector<double>{});
   if (!curve.mean.empty() && curve.mean.size() != coefficients.size()) return std::nullopt;
@@ -53,6 +54,7 @@ std::string curves_to_json(const std::vector<FittedCurve>& curves) {
                     {"mean", curve.mean},
                     {"harmonic", curve.harmonic},
                     {"knots", curve.knots},
+                    {"memory", curve.memory},
                     {"coefficients", coefficients},
                     {"law_of", law_of}});
   return list.dump();

@@ -171,6 +171,15 @@ TEST(Tracing, a_narrow_peak_gets_more_knots_and_the_wheel_a_wider_deviation) {
   EXPECT_NEAR(result.model.fit.parameters(kLeftRadius), kBase.left_radius, 3.0 * deviation);
 }
 
+TEST(Tracing, how_long_a_robot_remembers_is_found_out) {
+  const DriveModel model = jerky_model();
+  const Curve twist{{Variable::previous_turn, Carrier::left_travel}, -1.0, 1.0, 0.0, 0, {}, 4, 0};
+  const SearchResult result = searched(measured(model, {make_curve_effect(twist)}, {0.01, 0.0, 0.0, 0.0}));
+  ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
+  EXPECT_EQ(result.curves[0].curve.law, twist.law);
+  EXPECT_EQ(result.curves[0].curve.memory, 0U);
+}
+
 TEST(Tracing, several_recordings_share_no_zero_of_time_heading_or_phase) {
   const DriveModel model = lively_model();
   const std::vector<const DriveModel*> one = {&model}, two = {&model, &model};
@@ -193,15 +202,16 @@ TEST(Curve, is_zero_at_rest_but_on_the_turn_path) {
 
 TEST(Curve, more_knots_can_say_all_that_few_can) {
   const Curve coarse{{Variable::speed, Carrier::both_travel}, -0.5, 0.5};
-  const auto fine = refined(coarse, {});
-  ASSERT_TRUE(fine);
-  EXPECT_FALSE(refined(*fine, {}));
-  EXPECT_FALSE(refined({{Variable::heading, Carrier::both_travel}, -1.0, 1.0}, {}));
+  const auto shapes = other_shapes(coarse, {});
+  ASSERT_EQ(shapes.size(), 1U);
+  const Curve& fine = shapes.front();
+  EXPECT_TRUE(other_shapes(fine, {}).empty());
+  EXPECT_TRUE(other_shapes({{Variable::heading, Carrier::both_travel}, -1.0, 1.0}, {}).empty());
   // A hat is the mean of its neighbours halfway between the old knots.
   for (const double speed : {-0.41, -0.1, 0.03, 0.2, 0.38, 0.5}) {
     StepContext c;
     c.speed = speed;
-    const BasisValues few = basis(coarse, c), many = basis(*fine, c);
+    const BasisValues few = basis(coarse, c), many = basis(fine, c);
     EXPECT_NEAR(few[1], 0.5 * many[2] + many[3] + 0.5 * many[4], 1e-12) << speed;
   }
 }
@@ -245,9 +255,9 @@ TEST(StepContext, remembers_the_last_push_through_steady_motion) {
     track.segment.push_back(0);
   }
   const auto context = make_context(track, kBase);
-  EXPECT_EQ(context.front().previous_push, 0.0);
-  EXPECT_GT(context[190].previous_push, 0.8);
-  EXPECT_LT(context[350].previous_push, -0.5);
+  EXPECT_EQ(context.front().previous_push[kUsualMemory], 0.0);
+  EXPECT_GT(context[190].previous_push[kUsualMemory], 0.8);
+  EXPECT_LT(context[350].previous_push[kUsualMemory], -0.5);
 }
 
 TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
