@@ -65,11 +65,13 @@ double intrusion(const FreeSpace& seen, const std::vector<Eigen::Vector2d>& poin
 }
 
 LoopMatch match_loop(const MatchReference& first, const Surface& second, const Pose& guess,
-                     const LoopCheckOptions& options) {
+                     const LoopCheckOptions& options, std::span<const Eigen::Vector2d> seen_about) {
   const auto reference_points = positions(first.surface());
   const auto points = positions(second);
   if (points.size() < 40 || reference_points.size() < 40) return refused("too few readings");
-  LikelihoodField field(reference_points, {});
+  std::vector<Eigen::Vector2d> place = reference_points;
+  place.insert(place.end(), seen_about.begin(), seen_about.end());
+  LikelihoodField field(place, {});
   const auto few = thinned(points, kSearchPoints);
   const SearchResult best =
       search_branch_and_bound(field, few, {guess, options.half_width, options.half_angle});

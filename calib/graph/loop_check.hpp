@@ -1,6 +1,7 @@
 // Whether two scans that match really show the same place.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,10 @@ struct LoopCheckOptions {
 };
 
 /// Searches for the motion about `guess`, refines it and questions the result.
+/// @param seen_about points of the place in the frame of the first scan, as other scans saw it from nearby:
+/// the search counts on them, too, so that what the first scan did not see does not speak against the truth
 LoopMatch match_loop(const MatchReference& first, const Surface& second, const Pose& guess,
-                     const LoopCheckOptions& options);
+                     const LoopCheckOptions& options, std::span<const Eigen::Vector2d> seen_about = {});
 
 /// Share of `points` (moved by `motion`) that lie clearly in front of what `seen` saw there.
 double intrusion(const FreeSpace& seen, const std::vector<Eigen::Vector2d>& points, const Pose& motion);

@@ -5,12 +5,16 @@
 #include <cmath>
 #include <memory>
 
+#include "calib/geometry/vector2.hpp"
+#include "calib/graph/odometry_correction.hpp"
 #include "calib/graph/optimize.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
-constexpr std::size_t kTried = 4;      ///< places that a keyframe is compared with
+constexpr double kTried = 4.0;         ///< places that a keyframe is compared with, per least search window
+constexpr double kAllRound = 5.2;      ///< rad (300 degrees); what sees more sees the same in every direction
+constexpr std::size_t kAbout = 2;      ///< keyframes before and after that show the same place
 constexpr std::size_t kApart = 3;      ///< keyframes between two of them
 constexpr std::size_t kWait = 5;       ///< keyframes within which a loop must be confirmed
 constexpr std::size_t kSamePlace = 8;  ///< keyframes between what two loops that confirm each other lead to
@@ -24,6 +28,7 @@ constexpr double kRotationFloor = 3e-3;  ///< rad
 constexpr double kNeighbourOverlap =
     0.25;  ///< share of lines; doors and corners hide much from one step to the next
 constexpr double kMostFromOdometry = 0.5;  ///< m and rad between a match of neighbours and odometry
+constexpr double kMostSigmas = 6.0;        ///< the same in deviations of odometry, as learnt so far
 
 std::array<double, 6> information_of(const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix3d floor = Eigen::Vector3d(kMotionFloor * kMotionFloor, kMotionFloor * kMotionFloor,
@@ -41,6 +46,13 @@ double size_of(const Pose& motion) {
   return std::max(std::hypot(motion.x, motion.y), std::abs(wrap_angle(motion.yaw)));
 }
 
+/// Angle between the outermost readings, rad.
+double view_of(const Surface& surface) {
+  const auto by_bearing = [](const SurfacePoint& a, const SurfacePoint& b) { return a.bearing < b.bearing; };
+  const auto [low, high] = std::minmax_element(surface.points.begin(), surface.points.end(), by_bearing);
+  return low == surface.points.end() ? 0.0 : high->bearing - low->bearing;
+}
+
 struct Loop {
   std::size_t from = 0, to = 0;
   LoopMatch match;
@@ -49,7 +61,7 @@ struct Loop {
 class Builder {
  public:
   Builder(std::span<const Surface> surfaces, std::span<const Pose> odometry, const ScanGraphOptions& options)
-      : surfaces_(surfaces), odometry_(odometry), options_(options) {
+      : surfaces_(surfaces), odometry_(odometry), options_(options), correction_(options.odometry_sigma) {
     out_.scans = choose_keyframes(odometry, options.spacing);
   }
 
@@ -71,6 +83,7 @@ class Builder {
 
   void add_vertex(std::size_t k) {
     references_.push_back(std::make_unique<MatchReference>(surface(k), options_.loop.range_noise));
+    views_.push_back(view_of(surface(k)));
     Pose at;
     if (k > 0) {
       const GraphEdge edge = step_to(k);
@@ -89,56 +102,83 @@ class Builder {
   /// A match of neighbours, completed by odometry where the match leaves a direction open; odometry alone
   /// where there is no match that agrees with it.
   GraphEdge step_to(std::size_t k) {
-    const Pose guess = between(odometry_[out_.scans[k - 1]], odometry_[out_.scans[k]]);
-    const double variance = options_.odometry_sigma * options_.odometry_sigma;
-    const LoopMatch found = match_neighbour(k, guess);
-    if (found.ok && size_of(between(guess, found.motion)) < kMostFromOdometry) {
+    const Pose step = between(odometry_[out_.scans[k - 1]], odometry_[out_.scans[k]]);
+    const Pose guess = correction_.corrected(step);
+    const StepMatch found = match_neighbour(k, guess);
+    if (found.match.ok && agrees(guess, found.match.motion)) {
+      if (!found.leans_on_odometry) correction_.learn(step, found.match.motion);
       out_.sources.push_back(EdgeSource::match);
-      return edge_of(k - 1, k, found.motion, found.covariance);
+      return edge_of(k - 1, k, found.match.motion, found.match.covariance);
     }
     out_.sources.push_back(EdgeSource::odometry);
-    return edge_of(k - 1, k, guess, variance * Eigen::Matrix3d::Identity());
+    return edge_of(k - 1, k, guess, odometry_covariance());
   }
 
-  [[nodiscard]] LoopMatch match_neighbour(std::size_t k, const Pose& guess) const {
+  [[nodiscard]] Eigen::Matrix3d odometry_covariance() const {
+    return correction_.sigma().cwiseAbs2().asDiagonal();
+  }
+
+  /// As far as odometry is known by now.
+  [[nodiscard]] bool agrees(const Pose& guess, const Pose& motion) const {
+    const Pose apart = between(guess, motion);
+    const Eigen::Vector3d limit = (kMostSigmas * correction_.sigma()).cwiseMin(kMostFromOdometry);
+    return std::abs(apart.x) < limit(0) && std::abs(apart.y) < limit(1) &&
+           std::abs(wrap_angle(apart.yaw)) < limit(2);
+  }
+
+  struct StepMatch {
+    LoopMatch match;
+    bool leans_on_odometry = false;
+  };
+
+  [[nodiscard]] StepMatch match_neighbour(std::size_t k, const Pose& guess) const {
     MatchOptions match;
     match.range_noise = options_.loop.range_noise;
     match.min_overlap = kNeighbourOverlap;
+    match.guess_information = odometry_covariance().ldlt().solve(Eigen::Matrix3d::Identity());
     const MatchResult found = match_point_to_line(*references_[k - 1], surface(k), guess, match);
-    if (found.is_usable()) return {true, "", found.motion, found.covariance};
-    if (found.status == MatchStatus::degenerate && found.eigenvalue_ratio > 0.0)
-      return with_odometry(found, guess);
+    if (found.is_usable()) return {{true, "", found.motion, found.covariance}};
+    if (found.status == MatchStatus::degenerate)
+      return {{true, "", found.motion, with_odometry(found.information, match.guess_information)}, true};
     LoopCheckOptions narrow = options_.loop;
     narrow.half_width = narrow.half_angle = kMostFromOdometry;
     narrow.min_overlap = kNeighbourOverlap;
-    return match_loop(*references_[k - 1], surface(k), guess, narrow);
+    return {match_loop(*references_[k - 1], surface(k), guess, narrow)};
   }
 
-  /// Along a corridor the wheels know better than the scans.
-  [[nodiscard]] LoopMatch with_odometry(const MatchResult& found, const Pose& guess) const {
-    const double weight = 1.0 / (options_.odometry_sigma * options_.odometry_sigma);
-    const Eigen::Matrix3d matched = found.covariance.ldlt().solve(Eigen::Matrix3d::Identity());
-    const Eigen::Matrix3d both = matched + weight * Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d apart(guess.x - found.motion.x, guess.y - found.motion.y,
-                                wrap_angle(guess.yaw - found.motion.yaw));
-    const Eigen::Vector3d step = both.ldlt().solve(weight * apart);
-    const Pose motion{found.motion.x + step(0), found.motion.y + step(1), found.motion.yaw + step(2)};
-    return {true, "", motion, both.ldlt().solve(Eigen::Matrix3d::Identity())};
+  /// Covariance where the wheels know what the scans do not tell, as along a corridor: there the scans'
+  /// information may come out below zero.
+  static Eigen::Matrix3d with_odometry(const Eigen::Matrix3d& scans, const Eigen::Matrix3d& odometry) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scans);
+    const Eigen::Matrix3d known = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+                                  eigen.eigenvectors().transpose();
+    return (known + odometry).ldlt().solve(Eigen::Matrix3d::Identity());
   }
 
-  /// Half width of the search: what may have gone wrong since the map last closed.
+  /// Half width of the search: what may have gone wrong since the map last closed. Errors of steps are
+  /// independent, so that heading wanders with the root of the way; integrated, that displaces the end.
   [[nodiscard]] double reach(std::size_t k) const {
-    return std::min(options_.loop.half_width + options_.drift_per_metre * (way_[k] - closed_at_), kWidest);
+    const double way = way_[k] - closed_at_;
+    const double wander = options_.drift * (std::sqrt(way) + std::pow(way, 1.5) / std::sqrt(3.0));
+    return std::min(options_.loop.half_width + wander, kWidest);
   }
 
-  /// The nearest ones, some keyframes apart.
+  /// Of two scans with a limited view, taken in directions that are `turned` apart, whether each sees half of
+  /// what the other does.
+  [[nodiscard]] bool share_view(std::size_t j, std::size_t k, double turned) const {
+    const double view = std::min(views_[j], views_[k]);
+    return view > kAllRound || std::abs(wrap_angle(turned)) < 0.5 * view + kWidestAngle;
+  }
+
+  /// The nearest ones, some keyframes apart: more of them the less the graph knows where this is.
   [[nodiscard]] std::vector<std::size_t> places_seen_before(std::size_t k) const {
     std::vector<std::pair<double, std::size_t>> near;
     for (std::size_t j = 0; j < k; ++j) {
       if (way_[k] - way_[j] < options_.min_way_round) break;
       const Pose apart = between(pose(j), pose(k));
       const double distance = std::hypot(apart.x, apart.y);
-      if (distance < reach(k)) near.emplace_back(distance + 0.5 * std::abs(wrap_angle(apart.yaw)), j);
+      if (distance < reach(k) && share_view(j, k, apart.yaw))
+        near.emplace_back(distance + 0.5 * std::abs(wrap_angle(apart.yaw)), j);
     }
     std::sort(near.begin(), near.end());
     std::vector<std::size_t> places;
@@ -147,17 +187,30 @@ class Builder {
         return (other > j ? other - j : j - other) < kApart;
       });
       if (!close) places.push_back(j);
-      if (places.size() == kTried) break;
+      if (static_cast<double>(places.size()) >= kTried * reach(k) / options_.loop.half_width) break;
     }
     return places;
+  }
+
+  /// What the keyframes next to j saw, in its frame, without those next to k.
+  [[nodiscard]] std::vector<Eigen::Vector2d> seen_about(std::size_t j, std::size_t k) const {
+    std::vector<Eigen::Vector2d> points;
+    const std::size_t last = std::min(j + kAbout, k - 1);
+    for (std::size_t i = j > kAbout ? j - kAbout : 0; i <= last; ++i) {
+      if (i == j) continue;
+      const Frame frame(between(pose(j), pose(i)));
+      for (const SurfacePoint& point : surface(i).points) points.push_back(frame.transform(point.position));
+    }
+    return points;
   }
 
   void look(std::size_t j, std::size_t k) {
     LoopCheckOptions check = options_.loop;
     check.half_width = reach(k);
     check.half_angle =
-        std::min(check.half_angle + options_.drift_per_metre * (way_[k] - closed_at_), kWidestAngle);
-    const Loop loop{j, k, match_loop(*references_[j], surface(k), between(pose(j), pose(k)), check)};
+        std::min(check.half_angle + options_.drift * std::sqrt(way_[k] - closed_at_), kWidestAngle);
+    const Pose guess = between(pose(j), pose(k));
+    const Loop loop{j, k, match_loop(*references_[j], surface(k), guess, check, seen_about(j, k))};
     if (!loop.match.ok) return refuse(loop, loop.match.reason);
     confirm(loop);
   }
@@ -212,9 +265,11 @@ class Builder {
   std::span<const Surface> surfaces_;
   std::span<const Pose> odometry_;
   const ScanGraphOptions& options_;
+  OdometryCorrection correction_;
   ScanGraph out_;
   std::vector<std::unique_ptr<MatchReference>> references_;  ///< of each vertex
   std::vector<double> way_;                                  ///< to each vertex: m, turning counted, too
+  std::vector<double> views_;                                ///< of each vertex, rad
   double closed_at_ = 0.0;                                   ///< way at the last loop
   std::vector<Loop> waiting_;                                ///< to be confirmed
 };

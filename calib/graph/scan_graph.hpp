@@ -17,10 +17,10 @@ namespace odomcalib::calib {
 
 struct ScanGraphOptions {
   KeyframeSpacing spacing;
-  LoopCheckOptions loop;          ///< window: of the least search; it grows with the way since the last loop
-  double min_way_round = 4.0;     ///< m of path (or radians times 0.5 m) before a place counts as seen again
-  double drift_per_metre = 0.04;  ///< m and rad of error that odometry and matches may gather, at most
-  double odometry_sigma = 0.1;    ///< m and rad per step, where a match fails and odometry stands in
+  LoopCheckOptions loop;        ///< window: of the least search; it grows with the way since the last loop
+  double min_way_round = 4.0;   ///< m of path (or radians times 0.5 m) before a place counts as seen again
+  double drift = 0.04;          ///< m and rad of error that matches and odometry gather per root of a metre
+  double odometry_sigma = 0.1;  ///< m and rad per step, where a match fails and odometry stands in
 };
 
 /// How an edge came about.

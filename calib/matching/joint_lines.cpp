@@ -31,8 +31,9 @@ struct WallTerms {
 
 class Refinement {
  public:
-  Refinement(const Walls& reference, const std::vector<WallPoint>& points, const Pose& start)
-      : reference_(reference), points_(points), weights_(points.size(), 1.0), frame_(start) {
+  Refinement(const Walls& reference, const std::vector<WallPoint>& points, const Pose& start,
+             const GuessPrior& prior)
+      : reference_(reference), points_(points), prior_(prior), weights_(points.size(), 1.0), frame_(start) {
     estimate_.motion = start;
     for (const Wall& wall : reference.walls) lines_.push_back(wall.line);
   }
@@ -42,16 +43,18 @@ class Refinement {
       weigh();
       const std::vector<WallTerms> terms = fit_lines();
       const Reduced system = reduce(terms);
-      const Eigen::Matrix3d damped =
-          system.information + 1e-9 * system.information.trace() * Eigen::Matrix3d::Identity();
-      const Eigen::Vector3d step = damped.ldlt().solve(system.gradient);
+      const double variance = estimate_.scale * estimate_.scale;
+      const Eigen::Matrix3d information = system.information + variance * prior_.information;
+      const Eigen::Matrix3d damped = information + 1e-9 * information.trace() * Eigen::Matrix3d::Identity();
+      const Eigen::Vector3d step =
+          damped.ldlt().solve(system.gradient + variance * prior_.gradient(estimate_.motion));
       if (!step.allFinite()) break;
       estimate_.motion.x -= step(0);
       estimate_.motion.y -= step(1);
       estimate_.motion.yaw -= step(2);
       frame_ = Frame(estimate_.motion);
       estimate_.information = system.information - system.spurious;
-      estimate_.converged = step.dot(system.information * step) < kSettled * kSettled;
+      estimate_.converged = step.dot(information * step) < kSettled * kSettled;
     }
     return estimate_;
   }
@@ -148,6 +151,7 @@ class Refinement {
 
   const Walls& reference_;
   const std::vector<WallPoint>& points_;
+  const GuessPrior& prior_;
   std::vector<double> weights_;
   std::vector<FittedLine> lines_;
   JointEstimate estimate_;
@@ -156,10 +160,10 @@ class Refinement {
 
 }  // namespace
 
-JointEstimate refine_on_walls(const Walls& reference, const std::vector<WallPoint>& points,
-                              const Pose& start) {
+JointEstimate refine_on_walls(const Walls& reference, const std::vector<WallPoint>& points, const Pose& start,
+                              const GuessPrior& prior) {
   if (points.empty()) return {start};
-  return Refinement(reference, points, start).run();
+  return Refinement(reference, points, start, prior).run();
 }
 
 }  // namespace odomcalib::calib

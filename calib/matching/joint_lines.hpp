@@ -24,6 +24,16 @@ struct WallPoint {
   Eigen::Vector2d spread = Eigen::Vector2d::Zero();  ///< its beam times the deviation of the range, m
 };
 
+/// What is known of the motion beforehand.
+struct GuessPrior {
+  Pose guess;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  [[nodiscard]] Eigen::Vector3d gradient(const Pose& motion) const {
+    return information *
+           Eigen::Vector3d(motion.x - guess.x, motion.y - guess.y, wrap_angle(motion.yaw - guess.yaw));
+  }
+};
+
 struct JointEstimate {
   Pose motion;
   Eigen::Matrix3d information =
@@ -33,7 +43,8 @@ struct JointEstimate {
   bool converged = false;
 };
 
-JointEstimate refine_on_walls(const Walls& reference, const std::vector<WallPoint>& points,
-                              const Pose& start);
+/// @return the prior is part of the motion and no part of the information
+JointEstimate refine_on_walls(const Walls& reference, const std::vector<WallPoint>& points, const Pose& start,
+                              const GuessPrior& prior = {});
 
 }  // namespace odomcalib::calib

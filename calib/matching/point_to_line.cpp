@@ -143,6 +143,7 @@ void conclude(MatchResult& result, const Linearised& system, double scale, std::
   result.inliers = system.inliers;
   result.overlap = static_cast<double>(system.inliers) / static_cast<double>(lines);
   result.residual = scale;
+  result.information = system.information / std::max(1.0, scale * scale);
   const Observability translation = observability(system.information);
   result.eigenvalue_ratio = translation.ratio;
   result.weak_direction = translation.weak_direction;
@@ -190,6 +191,7 @@ namespace {
 /// State of the iteration on local lines.
 struct LocalMatch {
   Pose motion;
+  GuessPrior prior;
   Linearised system;
   double scale = 1.0;
   int iterations = 0;
@@ -211,9 +213,11 @@ bool iterate(const MatchReference& reference, const Surface& scan, const MatchOp
   const Frame frame(match.motion);
   match.scale = std::max(1.0, residual_scale(pairs, frame));
   match.system = linearise(pairs, frame, match.scale);
-  const Eigen::Matrix3d& information = match.system.information;
+  const double variance = match.scale * match.scale;
+  const Eigen::Matrix3d information = match.system.information + variance * match.prior.information;
   const Eigen::Matrix3d damped = information + 1e-9 * information.trace() * Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d step = damped.ldlt().solve(match.system.gradient);
+  const Eigen::Vector3d step =
+      damped.ldlt().solve(match.system.gradient + variance * match.prior.gradient(match.motion));
   if (!step.allFinite()) return false;
   // Late, correspondences that flip to and fro are averaged.
   const double length = i < kDampedFrom ? 1.0 : 0.5;
@@ -240,7 +244,7 @@ bool settle(const MatchReference& reference, const Surface& scan, const MatchOpt
 bool refine(const MatchReference& reference, const Surface& scan, const MatchOptions& options,
             LocalMatch& match) {
   const auto points = points_on_walls(reference, scan, match.motion, last_gate(options), options.range_noise);
-  const JointEstimate joint = refine_on_walls(reference.walls(), points, match.motion);
+  const JointEstimate joint = refine_on_walls(reference.walls(), points, match.motion, match.prior);
   if (!joint.converged || joint.inliers < kMinPoints || 2 * joint.inliers < match.system.inliers)
     return false;
   match.motion = joint.motion;
@@ -263,6 +267,7 @@ MatchResult match_point_to_line(const MatchReference& reference, const Surface& 
   }
   LocalMatch match;
   match.motion = guess;
+  match.prior = {guess, options.guess_information};
   result.status = MatchStatus::no_overlap;
   if (!settle(reference, scan, options, kSettled, match)) return result;
   if (!refine(reference, scan, options, match) && !settle(reference, scan, options, kSettledAlone, match))

@@ -27,12 +27,17 @@ struct MatchOptions {
   double min_overlap = 0.4;            ///< share of usable points that must find a partner
   double min_eigenvalue_ratio = 0.01;  ///< of the translation information; below: degenerate
   int max_iterations = 40;
+  /// Of the guess: x, y, yaw, in 1/m^2, 1/(m rad), 1/rad^2. Zero: the guess is a start and no prior. With it
+  /// a scan does not slide along a corridor.
+  Eigen::Matrix3d guess_information = Eigen::Matrix3d::Zero();
 };
 
 struct MatchResult {
   MatchStatus status = MatchStatus::not_converged;
   Pose motion;  ///< of the sensor, in the frame of the reference scan
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, yaw of `motion`; m^2, m rad, rad^2
+  /// Of the scans alone, free of the guess; not positive definite where a direction is not observable.
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   std::size_t inliers = 0;        ///< points of the scan that agree with lines of the reference
   double overlap = 0.0;           ///< share of usable points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest to largest eigenvalue of the translation information
@@ -60,8 +65,8 @@ class MatchReference {
   NearestTree tree_;
 };
 
-/// Motion from `reference` to `scan`, starting at `guess`. The guess is a start, not a prior: the result does
-/// not depend on it within the basin of convergence.
+/// Motion from `reference` to `scan`, starting at `guess`. Without `guess_information` the result does not
+/// depend on the guess within the basin of convergence.
 MatchResult match_point_to_line(const MatchReference& reference, const Surface& scan, const Pose& guess,
                                 const MatchOptions& options);
 

@@ -72,6 +72,27 @@ TEST(Matching, a_corridor_yields_no_pose_along_it) {
   }
 }
 
+TEST(Matching, along_a_corridor_a_known_guess_holds_the_scan_and_across_it_counts_nothing) {
+  constexpr double kNoise = 0.01;
+  const BeamMotion at_rest = [](double) { return Pose{}; };
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Pose motion{0.3, 0.1, 0.05}, guess{0.35, 0.08, 0.03};
+    MatchOptions options;
+    options.range_noise = kNoise;
+    options.guess_information = Eigen::Vector3d(400.0, 400.0, 400.0).asDiagonal();  // 5 cm, 3 degrees
+    const MatchReference reference(make_surface(scan_from(kCorridor, {}, kNoise, seed), at_rest, kNoise),
+                                   kNoise);
+    const MatchResult match = match_point_to_line(
+        reference, make_surface(scan_from(kCorridor, motion, kNoise, seed + 100), at_rest, kNoise), guess,
+        options);
+    EXPECT_EQ(match.status, MatchStatus::degenerate)
+        << "what the guess knows is no merit of the scans, seed " << seed;
+    EXPECT_NEAR(match.motion.x, guess.x, 0.02) << "seed " << seed;
+    EXPECT_NEAR(match.motion.y, motion.y, 0.01) << "seed " << seed;
+    EXPECT_NEAR(match.motion.yaw, motion.yaw, 0.005) << "seed " << seed;
+  }
+}
+
 TEST(Matching, a_corridor_with_a_door_frame_is_not_refused) {
   std::vector<RoomWall> walls = kCorridor;
   for (const double x : {-2.0, 1.5, 3.0}) {

@@ -8,6 +8,7 @@
 #include <random>
 #include <sstream>
 
+#include "calib/graph/odometry_correction.hpp"
 #include "calib/statistics/median.hpp"
 #include "proto/file_bytes.hpp"
 #include "tests/unit/calib/room_scans.hpp"
@@ -28,6 +29,42 @@ TEST(Keyframes, one_after_each_half_metre_or_half_radian) {
   EXPECT_NEAR(static_cast<double>(choose_keyframes(straight, {}).size()), 21.0, 1.0);
   EXPECT_NEAR(static_cast<double>(choose_keyframes(spin, {}).size()), 41.0, 1.0);
   EXPECT_TRUE(choose_keyframes({}, {}).empty());
+}
+
+/// Steps of up to a metre and half a turn, as wheels that are 4 % large and turn 0.06 rad a metre see them.
+Pose step_with(std::mt19937& engine, double noise, Pose& odometry) {
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::normal_distribution<double> normal(0.0, noise);
+  odometry = {uniform(engine), 0.02 * uniform(engine), 2.0 * (uniform(engine) - 0.5)};
+  return {0.96 * odometry.x + normal(engine), odometry.y + 0.08 * odometry.yaw + normal(engine),
+          odometry.yaw + 0.06 * odometry.x + normal(engine)};
+}
+
+TEST(OdometryCorrection, what_is_always_wrong_is_learnt_and_what_is_left_is_stated) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 engine(seed);
+    OdometryCorrection correction(0.1);
+    Pose odometry;
+    for (int k = 0; k < 60; ++k) {
+      const Pose measured = step_with(engine, 0.015, odometry);
+      correction.learn(odometry,
+                       k % 10 == 9 ? Pose{5.0, -3.0, 1.0} : measured);  // every tenth match is false
+    }
+    const Pose truth = step_with(engine, 0.0, odometry), found = correction.corrected(odometry);
+    EXPECT_LT(std::hypot(found.x - truth.x, found.y - truth.y), 0.02) << "seed " << seed;
+    EXPECT_NEAR(found.yaw, truth.yaw, 0.02) << "seed " << seed;
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_GT(correction.sigma()(i), 0.01) << "seed " << seed;
+      EXPECT_LT(correction.sigma()(i), 0.05) << "seed " << seed;
+    }
+  }
+}
+
+TEST(OdometryCorrection, with_nothing_learnt_odometry_stands) {
+  const Pose same = OdometryCorrection(0.1).corrected({0.5, -0.1, 0.3});
+  EXPECT_EQ(same.x, 0.5);
+  EXPECT_EQ(same.y, -0.1);
+  EXPECT_EQ(same.yaw, 0.3);
 }
 
 /// A ring of corridors about a block, with a niche that differs at each corner and two rooms that are the
@@ -150,8 +187,9 @@ Log read_intel() {
 
 // Relations checked by a person. Of the matchers compared on these pairs from guesses within 10 cm and 5
 // degrees, csm comes within 60 mm and 1 degree of 84 % of them with medians of 10.6 mm and 0.18 degrees. Here
-// the guess is the log's odometry and the pose that of the graph: 80 %, 11.2 mm, 0.17 degrees were measured,
-// so that csm's share and distance are not reached.
+// the guess is the log's odometry and the pose that of the graph: 83 %, 11.2 mm, 0.19 degrees were measured,
+// a little short of csm. A dozen relations are off by more than a degree themselves: single matches, the
+// graph and the poses published with the log agree there.
 TEST(ScanGraph, the_intel_lab_closes_and_agrees_with_the_relations_checked_by_hand) {
   ODOMCALIB_NEEDS_SHARED("scanmatch");
   const Log log = read_intel();
@@ -165,6 +203,7 @@ TEST(ScanGraph, the_intel_lab_closes_and_agrees_with_the_relations_checked_by_ha
   const ScanGraph made = build_scan_graph(surfaces, log.odometry, options);
   std::vector<double> distances, angles;
   std::size_t pairs = 0;
+  double farthest = 0.0;
   std::istringstream relations(
       read_file_bytes(testing::shared_data("scanmatch/intel.relations.txt")).value());
   for (std::string line; std::getline(relations, line);) {
@@ -177,18 +216,20 @@ TEST(ScanGraph, the_intel_lab_closes_and_agrees_with_the_relations_checked_by_ha
     const double distance = std::hypot(error.x, error.y),
                  angle = std::abs(wrap_angle(error.yaw)) * 180.0 / kPi;
     ++pairs;
+    farthest = std::max(farthest, distance);
     if (distance > 0.06 || angle > 1.0) continue;
     distances.push_back(distance);
     angles.push_back(angle);
   }
   ASSERT_EQ(pairs, 108U);
-  ASSERT_GE(distances.size(), 78U);
+  ASSERT_GE(distances.size(), 88U);
+  EXPECT_LT(farthest, 0.5) << "some part of the lab does not close";
   const double distance = median_of(distances), angle = median_of(angles);
   std::printf("%zu matches, %zu odometry, %zu loops; %zu of %zu pairs, median %.1f mm, %.2f degrees\n",
               made.count(EdgeSource::match), made.count(EdgeSource::odometry), made.count(EdgeSource::loop),
               distances.size(), pairs, 1e3 * distance, angle);
   for (const auto& [reason, count] : made.refused) std::printf("refused %zu: %s\n", count, reason.c_str());
-  EXPECT_GT(made.count(EdgeSource::loop), 100U);
+  EXPECT_GT(made.count(EdgeSource::loop), 250U);
   EXPECT_LE(distance, 13e-3);
   EXPECT_LE(angle, 0.2);
 }
