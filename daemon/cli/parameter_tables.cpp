@@ -70,4 +70,14 @@ Document describe_write_back(const ordered_json& result) {
   return document;
 }
 
+Document describe_checks(const ordered_json& checks) {
+  Section section{"", {}, {{"check", "outcome", "found", "remedy"}, {}}};
+  for (const auto& check : checks) {
+    std::vector<std::string> row;
+    for (const char* column : {"name", "outcome", "found", "remedy"}) row.push_back(check.value(column, ""));
+    section.table.rows.push_back(std::move(row));
+  }
+  return {"What is possible", {section}};
+}
+
 }  // namespace odomcalib::cli

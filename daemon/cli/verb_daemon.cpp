@@ -54,13 +54,7 @@ void print_status(const ordered_json& status, const Session& session) {
 }
 
 void print_checks(const ordered_json& checks, const Session& session) {
-  Document document{"What is possible", {}};
-  Section section{"", {}, {{"check", "outcome", "found", "remedy"}, {}}};
-  for (const auto& check : checks)
-    section.table.rows.push_back({text_of(check["name"]), text_of(check["outcome"]), text_of(check["found"]),
-                                  text_of(check["remedy"])});
-  document.sections.push_back(section);
-  std::cout << to_text(document, session.legend);
+  std::cout << to_text(describe_checks(checks), session.legend);
 }
 
 void print_parameters(const ordered_json& parameters, const Session& session) {
@@ -82,11 +76,11 @@ void add_question(CLI::App& app, Session& session, const char* verb, const char*
 
 int show_status(const Session& session) { return ask(session, "GetStatus", "{}", "status", print_status); }
 
+int show_checks(const Session& session) { return ask(session, "Check", "{}", "checks", print_checks); }
+
 void add_questions(CLI::App& app, Session& session) {
   add_question(app, session, "status", "What the daemon and its devices do (default)", "GetStatus", "status",
                print_status);
-  add_question(app, session, "check", "Whether everything needed for a calibration is there", "Check",
-               "checks", print_checks);
   add_question(app, session, "stop", "Stop the robot and whatever runs", "Stop", "",
                [](const ordered_json&, const Session&) { std::cout << "stopped\n"; });
   add_question(app, session, "history", "What was written to the controller", "History", "entries",

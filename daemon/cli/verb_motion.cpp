@@ -28,7 +28,7 @@ struct Options {
   ordered_json parameters = ordered_json::object();
   double distance = 1.0, turns = 1.0;
   std::string direction = "both", file, id;
-  bool dry_run = false, quick = false, one_drive = false;
+  bool dry_run = false, quick = false, one_drive = false, nudge = false;
   std::vector<std::string> assignments;
 };
 
@@ -146,6 +146,19 @@ int apply(const Session& session, const Options& options) {
   return print_result(session, run_method(session, options, "Apply", {{"calibration", body}}));
 }
 
+// A wire in the wrong place is a failure, one that could not be told is none.
+int check(const Session& session, const Options& options) {
+  if (!options.nudge) return show_checks(session);
+  const auto result = run_method(session, options, "Check", {{"nudge", true}});
+  if (!result || options.dry_run) return print_result(session, result);
+  const ordered_json& checks = result.value().value("checks", ordered_json::array());
+  if (session.json != JsonMode::off)
+    print_json(result.value().dump(), session.json);
+  else
+    std::cout << to_text(describe_checks(checks), session.legend);
+  return result.value()["wiring"].value("outcome", "") == "fail" ? kFailure : kDone;
+}
+
 // "NAME=VALUE", in m. Error: usage.
 Result<ordered_json> parsed_values(const std::vector<std::string>& assignments) {
   ordered_json values = ordered_json::object();
@@ -190,6 +203,9 @@ CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<Opti
 
 void add_motions(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
+  add_action(app, session, options, "check", "Whether everything needed for a calibration is there", check)
+      ->add_flag("--nudge", options->nudge,
+                 "move by 5 cm and 15 degrees and back: are wheels, counts and lidar wired as configured?");
   add_action(app, session, options, "straight", "Drive straight and back, odometry against lidar",
              [](const Session& s, const Options& o) {
                return print_result(s, run_method(s, o, "Straight", {{"distance", o.distance}}));

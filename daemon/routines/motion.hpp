@@ -55,6 +55,8 @@ struct Move {
   double pace = 0.0;       ///< m/s or rad/s
   double late_pace = 0.0;  ///< pace of the second half, 0: the same
   double settle = 0.8;     ///< s at rest afterwards
+  /// The amount is that of the commands, whatever the odometry says: for wheels whose counts may be wrong.
+  bool open_loop = false;
   /// Turn on the spot to this heading of the odometry frame, on the shorter way; direction and amount are
   /// found at the start of the move.
   std::optional<double> heading = std::nullopt;

@@ -27,7 +27,7 @@ void begin_move(const Plan& plan, RunState& state, const Pose& pose, double now)
   state.start = pose;
   state.turned = 0.0;
   state.last_yaw = pose.yaw;
-  state.pace = 0.0;
+  state.pace = state.commanded = 0.0;
   state.last_time = now;
   state.since = now;
   state.phase = Phase::moving;
@@ -58,9 +58,10 @@ Twist drive(const Plan& plan, RunState& state, const Pose& pose, double now) {
   const Move& move = plan.moves[state.move];
   state.turned += wrapped(pose.yaw - state.last_yaw);
   state.last_yaw = pose.yaw;
-  const double done = progress(state, pose);
   const double dt = std::clamp(now - state.last_time, 0.0, kLongestStep);
   state.last_time = now;
+  state.commanded += state.pace * dt;
+  const double done = move.open_loop ? state.commanded : progress(state, pose);
   // The command issued now acts for about one step: stop where that step would pass the goal by half of it.
   if (state.amount - done <= 0.5 * state.pace * std::max(dt, kShortestStep)) {
     settle(state, now);

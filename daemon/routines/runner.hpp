@@ -21,12 +21,13 @@ enum class Phase { beginning, moving, settling, done };
 struct RunState {
   std::size_t move = 0;
   Phase phase = Phase::beginning;
-  Pose start;             ///< where the move began
-  Twist direction;        ///< of the move in progress
-  double amount = 0.0;    ///< of the move in progress
-  double turned = 0.0;    ///< rad since the move began, continuous over full turns
-  double last_yaw = 0.0;  ///< of the last step
-  double pace = 0.0;      ///< commanded
+  Pose start;              ///< where the move began
+  Twist direction;         ///< of the move in progress
+  double amount = 0.0;     ///< of the move in progress
+  double turned = 0.0;     ///< rad since the move began, continuous over full turns
+  double last_yaw = 0.0;   ///< of the last step
+  double pace = 0.0;       ///< commanded
+  double commanded = 0.0;  ///< m or rad since the move began
   double last_time = 0.0;
   double since = 0.0;  ///< when the phase began
 };

@@ -90,6 +90,7 @@ void MotionRun::note_legs(const routines::RunState& before, const Situation& sit
     leg.move = options_.plan.moves[after.move];
     leg.begin = situation.now;
     leg.before = situation.odometry;
+    leg.ticks_before = situation.ticks;
     leg.scan_before = scan_;
     legs_.push_back(std::move(leg));
   }
@@ -97,6 +98,7 @@ void MotionRun::note_legs(const routines::RunState& before, const Situation& sit
   if (ends && !legs_.empty()) {
     legs_.back().end = situation.now;
     legs_.back().after = situation.odometry;
+    legs_.back().ticks_after = situation.ticks;
     legs_.back().scan_after = scan_;
   }
 }

@@ -19,6 +19,7 @@ struct Leg {
   routines::Move move;
   double begin = 0.0, end = 0.0;  ///< s
   routines::Pose before, after;   ///< odometry
+  TickSample ticks_before, ticks_after;
   std::optional<Scan> scan_before, scan_after;
 };
 
@@ -26,6 +27,7 @@ struct Leg {
 struct Situation {
   double now = 0.0;
   routines::Pose odometry;
+  TickSample ticks;
   std::optional<std::string> lapsed = "there is no lease";  ///< why the client does not count as present
   std::optional<std::string> stale;                         ///< why sensors block motion
   std::optional<std::string> disagreement;                  ///< between odometry and lidar

@@ -92,6 +92,7 @@ void Service::Impl::serve_base() {
   for (const TickSample& sample : samples) {
     ++tick_count;
     encoders.seen(sample, now);
+    newest_ticks = sample;
     odometry.add(sample, description);
     telemetry.emit(stamp(sample.t).utime, "TICKS", messages::encode(stamp(sample.t), sample));
     telemetry.publisher.send("ODOM",
@@ -132,6 +133,7 @@ void Service::Impl::serve_motion() {
   Situation situation;
   situation.now = now;
   situation.odometry = odometry.pose();
+  situation.ticks = newest_ticks;
   situation.lapsed = lapsed();
   situation.stale = encoders.stale(now) ? encoders.stale(now) : scans.stale(now);
   situation.disagreement = disagreement;

@@ -32,15 +32,6 @@ Error out_of_range(const std::string& what) {
   return {ErrorCode::usage, what, "parameters", "see odomcalibctl(1)"};
 }
 
-PendingCall pending_of(const IncomingCall& incoming, const ordered_json& parameters) {
-  PendingCall pending;
-  pending.client = incoming.client;
-  pending.method = incoming.call.name();
-  pending.more = incoming.call.more;
-  pending.lease = text(parameters, "lease", "");
-  return pending;
-}
-
 // NaN (no number at all) fails every comparison and is out of range.
 bool within(double value, double least, double most) { return value >= least && value <= most; }
 
@@ -81,6 +72,15 @@ Result<std::vector<std::filesystem::path>> earlier_recordings(const ordered_json
 }
 
 }  // namespace
+
+PendingCall pending_of(const IncomingCall& incoming, const ordered_json& parameters) {
+  PendingCall pending;
+  pending.client = incoming.client;
+  pending.method = incoming.call.name();
+  pending.more = incoming.call.more;
+  pending.lease = text(parameters, "lease", "");
+  return pending;
+}
 
 void Service::Impl::answer(ClientId client, const ordered_json& parameters) {
   server.reply(
@@ -129,7 +129,7 @@ void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& p
   const ClientId client = incoming.client;
   if (method == "GetStatus") return answer(client, {{"status", status()}});
   if (method == "Describe") return answer(client, {{"description", describe()}});
-  if (method == "Check") return answer(client, {{"checks", checks()}});
+  if (method == "Check" && !flag(parameters, "nudge")) return answer(client, {{"checks", checks()}});
   if (method == "GetParameters") return answer(client, {{"parameters", this->parameters(active)}});
   if (method == "History") return call_history(incoming, parameters);
   if (method == "Monitor") {
@@ -160,6 +160,7 @@ void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& p
   }
   if (pending)
     return refuse(client, {ErrorCode::refused, "busy: " + activity(), "", "wait for its end, or stop it"});
+  if (method == "Check") return call_check(incoming, parameters);
   if (method == "Straight") return call_straight(incoming, parameters);
   if (method == "Spin") return call_spin(incoming, parameters);
   if (method == "Calibrate") return call_calibrate(incoming, parameters);

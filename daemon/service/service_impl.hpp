@@ -79,12 +79,17 @@ struct Service::Impl {
   void answer(ClientId client, const ordered_json& parameters);
   void refuse(ClientId client, const Error& error);
 
+  // service_check.cpp
+  void call_check(const IncomingCall& incoming, const ordered_json& parameters);
+  ordered_json nudge_report(const std::vector<Leg>& legs) const;
+
   // service_motion.cpp: guided motions
   std::optional<Error> motion_forbidden(const routines::Plan& plan) const;
   void start_motion(const IncomingCall& incoming, const routines::Plan& plan, const ordered_json& parameters,
                     PendingCall pending);
   void motion_ended();
-  void recording_written(const Result<std::filesystem::path>& path, const ordered_json& legs);
+  ordered_json motion_report() const;
+  void recording_written(const Result<std::filesystem::path>& path, ordered_json report);
   ordered_json leg_report(const Leg& leg) const;
   void watch_agreement(const Scan& scan);
   void watch_loop();
@@ -137,6 +142,7 @@ struct Service::Impl {
   std::optional<Calibrator::Odometry> corrected;
   std::optional<Calibration> active;  ///< applied calibration
   std::vector<drivers::StoredParameter> in_force;
+  TickSample newest_ticks;
   std::optional<Scan> newest_scan;
   std::vector<safety::Point> newest_points;
   std::optional<Scan> agreement_scan;  ///< reference of the comparison of odometry and lidar
@@ -161,5 +167,8 @@ struct Service::Impl {
 };
 
 std::string name_of(drivers::ControllerState state);
+
+/// The call as something that is waited for.
+PendingCall pending_of(const IncomingCall& incoming, const ordered_json& parameters);
 
 }  // namespace odomcalib

@@ -155,11 +155,18 @@ ordered_json Service::Impl::leg_report(const Leg& leg) const {
   return body;
 }
 
+// What came of the motion, beside its recording.
+ordered_json Service::Impl::motion_report() const {
+  if (run->error() || !pending || pending->method == "Calibrate") return ordered_json::object();
+  if (pending->method == "Check") return nudge_report(run->legs());
+  ordered_json legs = ordered_json::array();
+  for (const Leg& leg : run->legs()) legs.push_back(leg_report(leg));
+  return {{"moves", legs}};
+}
+
 void Service::Impl::motion_ended() {
   const auto error = run->error();
-  ordered_json legs = ordered_json::array();
-  if (!error && pending && pending->method != "Calibrate")
-    for (const Leg& leg : run->legs()) legs.push_back(leg_report(leg));
+  const ordered_json report = motion_report();
   run.reset();
   encoders.commanded(0.0, 0.0, now);
   if (error) {
@@ -170,14 +177,16 @@ void Service::Impl::motion_ended() {
   }
   // The disk takes its time; whoever asked gets the answer when the recording is whole.
   telemetry.recorder.finish(
-      [this, legs](const Result<std::filesystem::path>& path) { recording_written(path, legs); });
+      [this, report](const Result<std::filesystem::path>& path) { recording_written(path, report); });
   event(messages::Severity::info, "motion", "motion finished");
 }
 
-void Service::Impl::recording_written(const Result<std::filesystem::path>& path, const ordered_json& legs) {
+void Service::Impl::recording_written(const Result<std::filesystem::path>& path, ordered_json report) {
   if (!path) return fail_pending(path.error());
-  if (!pending || pending->method != "Calibrate")
-    return finish_pending({{"recording", path.value().string()}, {"moves", legs}});
+  if (!pending || pending->method != "Calibrate") {
+    report["recording"] = path.value().string();
+    return finish_pending(report);
+  }
   auto recordings = pending->earlier;
   recordings.push_back(path.value());
   const auto kept = config.state_dir / "calibrations" / (path.value().stem().string() + ".json");

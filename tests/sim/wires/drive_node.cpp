@@ -240,7 +240,9 @@ MotorOrder DriveNode::order() const {
   for (std::size_t side = 0; side < 2; ++side) {
     const auto target =
         static_cast<std::int32_t>(dictionary_.value({0x60FF, static_cast<std::uint8_t>(side + 1)}));
-    order.rate[side] = std::clamp(0.01 * target * 2.0 * kPi / 60.0, -kRatedSpeed, kRatedSpeed);
+    const std::size_t motor = faults.swap_motors ? 1 - side : side;
+    const double rate = std::clamp(0.01 * target * 2.0 * kPi / 60.0, -kRatedSpeed, kRatedSpeed);
+    order.rate[motor] = faults.motor_inverted[motor] ? -rate : rate;
   }
   return order;
 }

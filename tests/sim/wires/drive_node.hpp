@@ -61,13 +61,15 @@ struct DriveNodeOptions {
 /// Switches for tests; all off by default.
 struct NodeFaults {
   bool heartbeat_stopped = false;
-  bool pdo_silent = false;     ///< no TPDO is sent
-  bool pdo_frozen = false;     ///< TPDOs go on with the content of the last one
-  double pdo_delay = 0.0;      ///< s, every TPDO leaves later
-  bool pdo_reordered = false;  ///< of each two TPDOs with one identifier the second leaves first
-  bool store_fails = false;    ///< 1010h is answered with a hardware error
-  bool store_is_lost = false;  ///< 1010h is answered well, and nothing is stored
-  bool swap_sides = false;     ///< positions and actual speeds of left and right exchanged
+  bool pdo_silent = false;               ///< no TPDO is sent
+  bool pdo_frozen = false;               ///< TPDOs go on with the content of the last one
+  double pdo_delay = 0.0;                ///< s, every TPDO leaves later
+  bool pdo_reordered = false;            ///< of each two TPDOs with one identifier the second leaves first
+  bool store_fails = false;              ///< 1010h is answered with a hardware error
+  bool store_is_lost = false;            ///< 1010h is answered well, and nothing is stored
+  bool swap_sides = false;               ///< positions and actual speeds of left and right exchanged
+  bool swap_motors = false;              ///< cables of left and right exchanged
+  std::array<bool, 2> motor_inverted{};  ///< two wires of the left, right motor exchanged
 };
 
 class DriveNode {

@@ -44,6 +44,13 @@ const std::map<std::string, Action>& fixed_commands() {
       {"hold right", simply([](SimRobot& r) { r.hold_encoder(kRight, true); })},
       {"release left", simply([](SimRobot& r) { r.hold_encoder(kLeft, false); })},
       {"release right", simply([](SimRobot& r) { r.hold_encoder(kRight, false); })},
+      {"swap counts", simply([](SimRobot& r) { r.node().faults.swap_sides ^= true; })},
+      {"swap motors", simply([](SimRobot& r) { r.node().faults.swap_motors ^= true; })},
+      {"invert left motor", simply([](SimRobot& r) { r.node().faults.motor_inverted[kLeft] ^= true; })},
+      {"invert right motor", simply([](SimRobot& r) { r.node().faults.motor_inverted[kRight] ^= true; })},
+      {"invert left counts", simply([](SimRobot& r) { r.scale_encoder(kLeft, -1.0); })},
+      {"invert right counts", simply([](SimRobot& r) { r.scale_encoder(kRight, -1.0); })},
+      {"mirror lidar", simply([](SimRobot& r) { r.lidar_faults().mirrored ^= true; })},
       {"clear", simply([](SimRobot& r) { r.node().sdo_faults().abort_on_write.clear(); })},
   };
   return commands;
