@@ -1,6 +1,8 @@
 #include "calib/tracing/law_shape.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/proof.hpp"
@@ -23,6 +25,34 @@ std::vector<BaseIndex> lengths_of(Carrier carrier) {
       return {};
   }
 }
+
+/// Relative changes of one length, each with the motion that it acted on.
+class Changes {
+ public:
+  void add(double change, double motion) {
+    if (!(motion > 0.0)) return;
+    all_.emplace_back(change, motion);
+    total_ += motion;
+  }
+  /// The least of the changes' sizes that all but a tenth of the motion exceed on one side of zero.
+  [[nodiscard]] double least() {
+    constexpr double kShare = 0.1;
+    std::sort(all_.begin(), all_.end());
+    const double low = quantile(kShare), high = quantile(1.0 - kShare);
+    return low * high > 0.0 ? std::min(std::abs(low), std::abs(high)) : 0.0;
+  }
+
+ private:
+  [[nodiscard]] double quantile(double share) const {
+    double sum = 0.0;
+    for (const auto& [change, motion] : all_)
+      if ((sum += motion) >= share * total_) return change;
+    return 0.0;
+  }
+
+  std::vector<std::pair<double, double>> all_;
+  double total_ = 0.0;
+};
 
 FoldFlags all_folds() {
   FoldFlags flags;
@@ -61,6 +91,28 @@ Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, con
   const Eigen::VectorXd own = model.fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
   const double spread = spread_of(curve, as_span(own), task.models());
   for (const auto k : lengths_of(curve.law.carrier)) doubt(k) = spread * model.fit.parameters(k);
+  return doubt;
+}
+
+Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model, std::size_t index) {
+  const Effect& effect = *model.effects[index];
+  Eigen::VectorXd doubt = Eigen::VectorXd::Zero(kBaseCount);
+  if (effect.storage() != Storage::host) return doubt;
+  const auto first = static_cast<std::size_t>(first_parameter(model.effects, index));
+  const auto own = as_span(model.fit.parameters).subspan(first, effect.parameters().size());
+  Changes left, right, track;
+  for (const DriveModel* drive : task.models())
+    for (const StepContext& c : drive->context()) {
+      WheelStep<double> step{c.left_delta, c.right_delta};
+      effect.apply(c, own, step);
+      left.add(step.left / c.left_delta - 1.0, std::abs(c.left_delta));
+      right.add(step.right / c.right_delta - 1.0, std::abs(c.right_delta));
+      track.add(step.track - 1.0, std::abs(c.turn_rate) * c.dt);
+    }
+  // A law that ends where the data end, instead of going on to zero, is two deviations off.
+  doubt(kLeftRadius) = 0.5 * left.least() * model.fit.parameters(kLeftRadius);
+  doubt(kRightRadius) = 0.5 * right.least() * model.fit.parameters(kRightRadius);
+  doubt(kTrackWidth) = 0.5 * track.least() * model.fit.parameters(kTrackWidth);
   return doubt;
 }
 

@@ -22,4 +22,10 @@ bool is_better(const FitTask& task, const FittedModel& given, const FittedModel&
 /// knows. By how much that may move the base parameters.
 Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, const Curve& curve);
 
+/// The base parameters are those of a robot without the effect. Where this drive shows it at work everywhere,
+/// as a law of speed does down to the slowest speed, they are extrapolated: by what it does where it does
+/// least. Zero where it is absent, or of either sign, in a tenth of the drive.
+/// @param index of the effect in the model
+Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model, std::size_t index);
+
 }  // namespace odomcalib::calib

@@ -50,6 +50,8 @@ class Search {
       progress_(static_cast<double>(step) / kMaxSteps);
       if (!advance()) break;
     }
+    for (std::size_t e = 0; e < result_.model.effects.size(); ++e)
+      result_.doubts.push_back(doubt_of_extrapolation(task_, result_.model, e));
     return std::move(result_);
   }
 

@@ -43,8 +43,8 @@ struct SearchResult {
   std::vector<Finding> findings;
   std::vector<AddedCurve> curves;
   std::vector<Considered> considered;  ///< in the order tried
-  /// What nobody knows about a curve's law is unknown of the base parameters too: by how much they move with
-  /// another shape, and with another zero.
+  /// What nobody knows about a law is unknown of the base parameters too: by how much they move with another
+  /// shape of a curve, with another zero, and by extrapolation to where no effect is.
   std::vector<Eigen::VectorXd> doubts;
 
   [[nodiscard]] bool has_unnamed() const;

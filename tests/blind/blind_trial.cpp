@@ -24,13 +24,18 @@ Relative relative(const A& from, const A& to) {
   return {c * dx + s * dy, c * dy - s * dx, std::remainder(to.yaw - from.yaw, 2.0 * std::numbers::pi)};
 }
 
-/// The true pose at the time of the k-th tick sample: paths are sampled with the ticks.
-std::size_t nearest(const std::vector<sim::TruthSample>& path, double t) {
+/// The true pose at a time between two samples of the path.
+sim::Pose true_pose(const std::vector<sim::TruthSample>& path, double t) {
   const auto after = std::lower_bound(path.begin(), path.end(), t,
                                       [](const sim::TruthSample& s, double time) { return s.t < time; });
-  if (after == path.end()) return path.size() - 1;
-  if (after == path.begin()) return 0;
-  return static_cast<std::size_t>((after - path.begin()) - (t - (after - 1)->t < after->t - t ? 1 : 0));
+  if (after == path.end()) return path.back().pose;
+  if (after == path.begin()) return path.front().pose;
+  const auto before = after - 1;
+  const double share = (t - before->t) / (after->t - before->t);
+  const auto mix = [share](double a, double b) { return a + share * (b - a); };
+  const double turn = std::remainder(after->pose.yaw - before->pose.yaw, 2.0 * std::numbers::pi);
+  return {mix(before->pose.x, after->pose.x), mix(before->pose.y, after->pose.y),
+          before->pose.yaw + share * turn};
 }
 
 /// Delay that the calibration reports, s; a scan stamped t was taken at encoder time t - delay.
@@ -60,9 +65,8 @@ DriveError error_on(const sim::SimulatedRun& run, const Calibration& calibration
     next = predicted[begin].t + kStride;
     while (end < predicted.size() && predicted[end].t < predicted[begin].t + kHorizon) ++end;
     if (end == predicted.size()) break;
-    const auto& path = run.path;
-    const Relative truth = relative(path[nearest(path, predicted[begin].t + delay)].pose,
-                                    path[nearest(path, predicted[end].t + delay)].pose);
+    const Relative truth = relative(true_pose(run.path, predicted[begin].t + delay),
+                                    true_pose(run.path, predicted[end].t + delay));
     const Relative odometry = relative(predicted[begin], predicted[end]);
     sum.position += std::pow(odometry.x - truth.x, 2) + std::pow(odometry.y - truth.y, 2);
     sum.heading += std::pow(std::remainder(odometry.yaw - truth.yaw, 2.0 * std::numbers::pi), 2);

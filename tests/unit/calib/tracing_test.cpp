@@ -6,6 +6,7 @@
 
 #include "calib/effects/catalogue.hpp"
 #include "calib/tracing/curve.hpp"
+#include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/score.hpp"
 #include "calib/tracing/search.hpp"
@@ -169,6 +170,24 @@ TEST(Tracing, a_narrow_peak_gets_more_knots_and_the_wheel_a_wider_deviation) {
   const double deviation =
       std::hypot(doubt, std::sqrt(result.model.fit.covariance(kLeftRadius, kLeftRadius)));
   EXPECT_NEAR(result.model.fit.parameters(kLeftRadius), kBase.left_radius, 3.0 * deviation);
+}
+
+TEST(Tracing, lengths_are_extrapolated_to_where_no_effect_is) {
+  const DriveModel model = lively_model();
+  const DriveModel fast = lively_model(3.0);
+  const auto doubt = [](const DriveModel& drive, const char* name, const std::vector<double>& values) {
+    const FitData data = measured(drive, {}, {});
+    FittedModel found{{find_effect(name)}, {}};
+    found.fit.parameters = to_vector(kBase, values.size());
+    std::copy(values.begin(), values.end(), found.fit.parameters.data() + kBaseCount);
+    return doubt_of_extrapolation({{&data, 1}, std::vector<bool>(kBaseCount, false)}, found, 0);
+  };
+  const double slow = doubt(model, "speed_dependent_radius", {0.02})(kLeftRadius) / kBase.left_radius;
+  EXPECT_GT(slow, 1e-5);
+  EXPECT_NEAR(doubt(fast, "speed_dependent_radius", {0.02})(kLeftRadius) / kBase.left_radius, 3.0 * slow,
+              0.3 * slow);
+  EXPECT_EQ(doubt(model, "wheel_eccentricity", {0.01, 0.0})(kLeftRadius), 0.0) << "of either sign";
+  EXPECT_EQ(doubt(model, "turn_direction_asymmetry", {0.01})(kTrackWidth), 0.0) << "absent in half of it";
 }
 
 TEST(Tracing, how_long_a_robot_remembers_is_found_out) {
