@@ -188,7 +188,7 @@ Log read_intel() {
 // Relations checked by a person. Of the matchers compared on these pairs from guesses within 10 cm and 5
 // degrees, csm comes within 60 mm and 1 degree of 84 % of them with medians of 10.6 mm and 0.18 degrees. Here
 // the guess is the log's odometry and the pose that of the graph: 83 %, 11.2 mm, 0.19 degrees were measured,
-// a little short of csm. A dozen relations are off by more than a degree themselves: single matches, the
+// a little short of csm. Ten relations are off by more than a degree themselves: single matches, the
 // graph and the poses published with the log agree there.
 TEST(ScanGraph, the_intel_lab_closes_and_agrees_with_the_relations_checked_by_hand) {
   ODOMCALIB_NEEDS_SHARED("scanmatch");
