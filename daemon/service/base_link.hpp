@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "daemon/service/clock.hpp"
 #include "drivers/base/controller.hpp"
 #include "drivers/can/transport.hpp"
 #include "drivers/serial/port.hpp"
 
-#include "daemon/service/clock.hpp"
 namespace odomcalib {
 
 class BaseLink {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "daemon/service/clock.hpp"
 #include "drivers/byte_stream.hpp"
 #include "drivers/lidar/lidar.hpp"
 #include "drivers/serial/port.hpp"
 
-#include "daemon/service/clock.hpp"
 namespace odomcalib {
 
 class LidarLink {
