@@ -22,7 +22,7 @@ struct Disk {
   std::atomic<bool> stalls = false;
   std::atomic<int> fails_at = -1;  ///< item; 0 also: the file cannot be made
   std::vector<RecordedItem> written;
-  bool whole = false;
+  std::atomic<bool> whole = false;
 
   void wait() const {
     while (stalls) std::this_thread::sleep_for(std::chrono::milliseconds(1));
