@@ -19,6 +19,7 @@ struct Miswired {
   double configured_yaw = 0.0;                  ///< rad, while the lidar looks ahead
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for this name
 void PrintTo(const Miswired& one, std::ostream* out) { *out << one.name; }
 
 class Nudged : public ServiceLoop {

@@ -55,7 +55,7 @@ TEST(EncoderFreshness, a_turning_wheel_must_count_and_a_standing_one_need_not) {
   for (int i = 0; i < 60 && !stale; ++i) {
     const double now = 0.02 * i;
     freshness.commanded(1.0, 0.0, now);
-    freshness.seen({now, 10 * i, 0, 0}, now);
+    freshness.seen({now, std::int64_t{10} * i, 0, 0}, now);
     stale = freshness.stale(now);
   }
   EXPECT_FALSE(stale.has_value());
@@ -163,83 +163,83 @@ TEST(PointsOf, turns_the_scan_into_the_base_frame_and_drops_no_readings) {
 class AskedLease : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto given = lease.acquire(1, 0.0);
+    const auto given = lease_.acquire(1, 0.0);
     ASSERT_TRUE(given.ok());
-    id = given.value();
+    id_ = given.value();
   }
   // The daemon looks every 10 ms, and the last time at `end`.
   void look(double begin, double end) {
-    for (double t = begin; t < end; t += 0.010) lease.looked(t);
-    lease.looked(end);
+    for (double t = begin; t < end; t += 0.010) lease_.looked(t);
+    lease_.looked(end);
   }
-  Lease lease;
-  std::string id;
+  Lease lease_;
+  std::string id_;
 };
 
 TEST_F(AskedLease, lapses_without_renewal_and_cannot_be_revived) {
   look(0.0, 0.1);
-  EXPECT_TRUE(lease.renew(id, 0.1).ok());
+  EXPECT_TRUE(lease_.renew(id_, 0.1).ok());
   look(0.1, 0.1 + kLeaseTime - 0.001);
-  EXPECT_TRUE(lease.holds(id));
+  EXPECT_TRUE(lease_.holds(id_));
   look(0.1 + kLeaseTime - 0.001, 0.1 + kLeaseTime + 0.001);
-  EXPECT_FALSE(lease.holds(id));
-  EXPECT_FALSE(lease.renew(id, 0.5).ok());
+  EXPECT_FALSE(lease_.holds(id_));
+  EXPECT_FALSE(lease_.renew(id_, 0.5).ok());
 }
 
 TEST_F(AskedLease, belongs_to_one_client_and_ends_with_its_connection) {
-  EXPECT_FALSE(lease.acquire(2, 0.1).ok());
-  EXPECT_FALSE(lease.renew("wrong", 0.1).ok());
-  lease.lost(2);
-  EXPECT_TRUE(lease.active());
-  lease.lost(1);
-  EXPECT_FALSE(lease.active());
-  EXPECT_TRUE(lease.acquire(2, 0.1).ok());
+  EXPECT_FALSE(lease_.acquire(2, 0.1).ok());
+  EXPECT_FALSE(lease_.renew("wrong", 0.1).ok());
+  lease_.lost(2);
+  EXPECT_TRUE(lease_.active());
+  lease_.lost(1);
+  EXPECT_FALSE(lease_.active());
+  EXPECT_TRUE(lease_.acquire(2, 0.1).ok());
 }
 
 TEST_F(AskedLease, outlives_a_daemon_that_reads_late_what_had_arrived) {
   look(0.0, 0.05);
-  ASSERT_TRUE(lease.renew(id, 0.25, 0.23).ok());
-  lease.looked(0.25);
-  EXPECT_TRUE(lease.holds(id));
-  EXPECT_NEAR(lease.age(0.25), 0.02, 1e-9);
+  ASSERT_TRUE(lease_.renew(id_, 0.25, 0.23).ok());
+  lease_.looked(0.25);
+  EXPECT_TRUE(lease_.holds(id_));
+  EXPECT_NEAR(lease_.age(0.25), 0.02, 1e-9);
   look(0.25, 0.34);
-  EXPECT_TRUE(lease.holds(id)) << "110 ms after it was sent";
+  EXPECT_TRUE(lease_.holds(id_)) << "110 ms after it was sent";
   look(0.34, 0.36);
-  EXPECT_FALSE(lease.holds(id)) << "130 ms after it was sent, however late it was read";
+  EXPECT_FALSE(lease_.holds(id_)) << "130 ms after it was sent, however late it was read";
 }
 
 // A pause of the whole machine: the daemon wakes first, and nothing has been sent meanwhile.
 TEST_F(AskedLease, gives_a_client_that_was_held_up_with_the_daemon_time_to_speak) {
   look(0.0, 0.05);
-  lease.looked(0.05 + 0.15);
-  EXPECT_TRUE(lease.holds(id));
+  lease_.looked(0.05 + 0.15);
+  EXPECT_TRUE(lease_.holds(id_));
   look(0.20, 0.20 + kSecondChance - 0.001);
-  EXPECT_TRUE(lease.renew(id, 0.259).ok());
+  EXPECT_TRUE(lease_.renew(id_, 0.259).ok());
   look(0.26, 0.35);
-  EXPECT_TRUE(lease.holds(id));
+  EXPECT_TRUE(lease_.holds(id_));
 }
 
 TEST_F(AskedLease, is_not_kept_by_the_daemons_own_delay_for_long) {
   look(0.0, 0.05);
-  lease.looked(0.20);
+  lease_.looked(0.20);
   look(0.20, 0.20 + kSecondChance + 0.001);
-  EXPECT_FALSE(lease.holds(id));
+  EXPECT_FALSE(lease_.holds(id_));
 }
 
 TEST_F(AskedLease, does_not_outlive_the_longest_silence_however_often_the_daemon_is_late) {
   double t = 0.0;
-  for (; t <= kLongestSilence; t += 0.05) lease.looked(t);
-  lease.looked(t);
-  EXPECT_FALSE(lease.holds(id));
+  for (; t <= kLongestSilence; t += 0.05) lease_.looked(t);
+  lease_.looked(t);
+  EXPECT_FALSE(lease_.holds(id_));
 }
 
 TEST_F(AskedLease, takes_no_time_of_sending_that_cannot_be) {
-  ASSERT_TRUE(lease.renew(id, 0.1, 1e9).ok());
-  EXPECT_NEAR(lease.age(0.1), 0.0, 1e-9);
-  ASSERT_TRUE(lease.renew(id, 0.12, -1e9).ok());
-  EXPECT_NEAR(lease.age(0.12), 0.02, 1e-9);
-  ASSERT_TRUE(lease.renew(id, 0.13, std::nan("")).ok());
-  EXPECT_NEAR(lease.age(0.13), 0.0, 1e-9);
+  ASSERT_TRUE(lease_.renew(id_, 0.1, 1e9).ok());
+  EXPECT_NEAR(lease_.age(0.1), 0.0, 1e-9);
+  ASSERT_TRUE(lease_.renew(id_, 0.12, -1e9).ok());
+  EXPECT_NEAR(lease_.age(0.12), 0.02, 1e-9);
+  ASSERT_TRUE(lease_.renew(id_, 0.13, std::nan("")).ok());
+  EXPECT_NEAR(lease_.age(0.13), 0.0, 1e-9);
 }
 
 TEST(StopGuard, stops_once_on_every_way_out) {
