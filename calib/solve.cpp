@@ -11,6 +11,7 @@
 #include "calib/report.hpp"
 #include "calib/session/lidar_evidence.hpp"
 #include "calib/session/location.hpp"
+#include "calib/session/placed_pairs.hpp"
 #include "calib/session/start_values.hpp"
 #include "calib/tracing/search.hpp"
 #include "calib/validation/held_out.hpp"
@@ -208,18 +209,33 @@ class Solver {
     return settle();
   }
 
-  /// From here on effects of the floor know the place. Those that were asked for are fitted once more.
+  /// From here on effects of the floor know the place, and matches that slide are replaced. What depends on
+  /// either is fitted once more.
   Result<FitResult> locate(Result<FitResult> fit) {
     place_every_scan();
     std::vector<std::vector<Fix>> fixes;
     for (std::size_t i = 0; i < recordings_.size(); ++i)
       fixes.push_back(paths_.empty() ? fixes_of(recordings_[i]) : fixes_of(paths_[i], mount()));
     session_->locate(fixes, parameters_, effects_);
-    if (!std::any_of(effects_.begin(), effects_.end(), [](const auto& e) { return acts_in_places(*e); }))
-      return fit;
+    const bool in_places =
+        std::any_of(effects_.begin(), effects_.end(), [](const auto& e) { return acts_in_places(*e); });
+    if (!measure_by_places() && !in_places) return fit;
     auto better = fit_now();
     if (better) parameters_ = better.value().parameters;
     return better;
+  }
+
+  /// Matches that slide in a loose room look like a carpet; places in the map take their part then.
+  bool measure_by_places() {
+    constexpr double kSliding = 6.0;  // deviations; rooms with walls enough stay below 3
+    bool any = false;
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      const auto& pairs = session_->data()[i].pairs;
+      if (drift_of_matches(pairs, paths_[i]) < kSliding) continue;
+      session_->set_pairs(i, pairs_of_places(pairs, paths_[i]));
+      any = true;
+    }
+    return any;
   }
 
   [[nodiscard]] Pose mount() const { return to_base(as_span(parameters_)).mount; }

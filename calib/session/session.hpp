@@ -6,6 +6,7 @@
 #include <deque>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/estimators/joint.hpp"
@@ -32,6 +33,11 @@ class Session {
 
   /// Measures the pairs of all recordings anew with these parameters as guess and for de-skewing.
   void measure(const Eigen::VectorXd& parameters, const EffectList& effects, const PairOptions& options);
+
+  /// Other measurements of the pairs of one recording.
+  void set_pairs(std::size_t recording, std::vector<SensorPair> pairs) {
+    data_[recording].pairs = std::move(pairs);
+  }
 
   /// Tells the models where the base was (see DriveModel::locate).
   /// @param fixes per recording

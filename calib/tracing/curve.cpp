@@ -106,6 +106,8 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   /// Relative; rad per m; m per rad.
   [[nodiscard]] double typical_size() const {
     if (curve_.law.carrier == Carrier::yaw_path || concerns_sensor(curve_)) return 0.02;
+    // What a scan matcher's own bias in one room amounts to is a part of this.
+    if (curve_.law.variable == Variable::heading || curve_.law.variable == Variable::position) return 0.015;
     // An error of the encoder's angle shows in its rate, n times as large for the n-th harmonic.
     if (curve_.harmonic > 0) return 5e-3 * curve_.harmonic;
     return curve_.law.carrier == Carrier::turn_path ? 1e-3 : 5e-3;

@@ -1,0 +1,68 @@
+#include "calib/session/placed_pairs.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kSameTime = 1e-6;  // s
+
+const PlacedScan* place_at(const ScanPath& path, double time) {
+  const auto found = std::lower_bound(path.scans.begin(), path.scans.end(), time - kSameTime,
+                                      [](const PlacedScan& scan, double t) { return scan.time < t; });
+  return found != path.scans.end() && found->time < time + kSameTime ? &*found : nullptr;
+}
+
+Eigen::Matrix3d turned(double yaw) {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  rotation.topLeftCorner<2, 2>() << std::cos(yaw), -std::sin(yaw), std::sin(yaw), std::cos(yaw);
+  return rotation;
+}
+
+/// First order; the two places err independently.
+Eigen::Matrix3d covariance_of(const PlacedScan& begin, const PlacedScan& end, const Pose& motion) {
+  const Eigen::Matrix3d into_begin = turned(-begin.pose.yaw);
+  Eigen::Matrix3d by_begin = -into_begin;
+  by_begin(0, 2) = motion.y;
+  by_begin(1, 2) = -motion.x;
+  return by_begin * begin.covariance * by_begin.transpose() +
+         into_begin * end.covariance * into_begin.transpose();
+}
+
+}  // namespace
+
+double drift_of_matches(const std::vector<SensorPair>& pairs, const ScanPath& path) {
+  Eigen::Vector3d drift = Eigen::Vector3d::Zero(), variance = Eigen::Vector3d::Zero();
+  for (const SensorPair& pair : pairs) {
+    const PlacedScan* begin = place_at(path, pair.interval.begin);
+    const PlacedScan* end = place_at(path, pair.interval.end);
+    if (begin == nullptr || end == nullptr) continue;
+    const Pose placed = between(begin->pose, end->pose);
+    const Eigen::Matrix3d into_map = turned(begin->pose.yaw);
+    const Eigen::Vector3d error(pair.motion.x - placed.x, pair.motion.y - placed.y,
+                                wrap_angle(pair.motion.yaw - placed.yaw));
+    drift += into_map * error;
+    variance += (into_map * pair.covariance * into_map.transpose()).diagonal();
+  }
+  if (!(variance.minCoeff() > 0.0)) return 0.0;
+  return drift.cwiseQuotient(variance.cwiseSqrt()).cwiseAbs().maxCoeff();
+}
+
+std::vector<SensorPair> pairs_of_places(const std::vector<SensorPair>& pairs, const ScanPath& path) {
+  std::vector<SensorPair> out;
+  double last_end = -1e300;
+  for (const SensorPair& pair : pairs) {
+    const PlacedScan* begin = place_at(path, pair.interval.begin);
+    const PlacedScan* end = place_at(path, pair.interval.end);
+    if (begin == nullptr || end == nullptr) continue;
+    const Pose motion = between(begin->pose, end->pose);
+    const bool follows = std::abs(pair.interval.begin - last_end) < kSameTime;
+    out.push_back({pair.interval, motion, covariance_of(*begin, *end, motion), follows});
+    last_end = pair.interval.end;
+  }
+  return out;
+}
+
+}  // namespace odomcalib::calib
