@@ -71,12 +71,10 @@ class Filler {
   [[nodiscard]] std::vector<bool> fixed() const { return fixed_with(found_.session.fixed(0), effects()); }
 
   /// Matches of keyframes are not free of bias; neither is a model with a law that was found to fit, whose
-  /// true shape nobody knows. Places in a map are, as far as simulated drives tell.
+  /// true shape nobody knows (a delay may be a filter). Places in a map are, as far as simulated drives tell.
   [[nodiscard]] bool lengths_may_be_scaled() const {
     if (!found_.session.reference_is_scans()) return false;
-    const bool only_delay = std::all_of(effects().begin(), effects().end(),
-                                        [](const auto& e) { return e->name() == "time_offset"; });
-    return !found_.every_scan_placed || !only_delay || !found_.lidar.empty();
+    return !found_.every_scan_placed || !effects().empty() || !found_.lidar.empty();
   }
 
   /// The six base parameters alone, on the same pairs: what the effects are measured against.

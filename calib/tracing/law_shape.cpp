@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/effects/reference_effect.hpp"
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/proof.hpp"
 
@@ -97,7 +98,7 @@ Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, con
 Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model, std::size_t index) {
   const Effect& effect = *model.effects[index];
   Eigen::VectorXd doubt = Eigen::VectorXd::Zero(kBaseCount);
-  if (effect.storage() != Storage::host) return doubt;
+  if (concerns_reference(effect)) return doubt;
   const auto first = static_cast<std::size_t>(first_parameter(model.effects, index));
   const auto own = as_span(model.fit.parameters).subspan(first, effect.parameters().size());
   Changes left, right, track;
