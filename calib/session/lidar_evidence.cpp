@@ -39,6 +39,7 @@ std::vector<Recording> corrected(std::span<const Recording> recordings,
 
 void refine(std::vector<LidarFinding>& findings, const std::vector<HeadingPair>& pairs) {
   std::vector<LidarEffectPtr> effects;
+  effects.reserve(findings.size());
   for (const LidarFinding& finding : findings) effects.push_back(finding.effect);
   const std::vector<LidarFinding> rest = fit_lidar(pairs, effects);
   for (std::size_t k = 0; k < rest.size(); ++k)

@@ -83,6 +83,7 @@ std::optional<HorizonError> horizon_error(std::span<const FitData> data, const E
       const auto windows = windows_of(data[d], first, folds, trusted, fold);
       first += data[d].pairs.size();
       std::vector<Interval> intervals;
+      intervals.reserve(windows.size());
       for (const Window& w : windows) intervals.push_back(w.interval);
       const auto predicted = data[d].model->predict(
           {parameters.data(), static_cast<std::size_t>(parameters.size())}, effects, intervals);
@@ -126,6 +127,7 @@ Improvement compare(const HorizonError& before, const HorizonError& after) {
     by_block[before.block[k]].after += combined_square(after, k);
   }
   std::vector<Sums> blocks;
+  blocks.reserve(by_block.size());
   for (const auto& [block, sums] : by_block) blocks.push_back(sums);
   const auto ratio = [](const Sums& s) { return std::sqrt(s.after / std::max(s.before, 1e-300)); };
   Sums total;
