@@ -44,7 +44,7 @@ class Filler {
 
   void run() {
     const FitResult& fit = found_.outcome.model.fit;
-    const std::span<const double> p(fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size()));
+    const std::span<const double> p = as_span(fit.parameters);
     Eigen::MatrixXd covariance =
         lengths_may_be_scaled() ? with_matcher_scale(fit.covariance, to_base(p)) : fit.covariance;
     for (const Eigen::VectorXd& doubt : found_.outcome.doubts)

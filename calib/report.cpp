@@ -159,7 +159,7 @@ std::vector<MethodResult> classical_methods(const Session& session, double delay
 MethodResult joint_method(const FitResult& fit) {
   MethodResult result;
   result.name = "joint";
-  const std::span<const double> p(fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size()));
+  const std::span<const double> p = as_span(fit.parameters);
   result.parameters = base_quantities(to_base(p), fit.covariance);
   result.rms = {fit.rms(0), fit.rms(1), fit.rms(2)};
   result.used = fit.used;

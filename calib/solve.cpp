@@ -89,18 +89,18 @@ class Solver {
     return std::nullopt;
   }
 
-  [[nodiscard]] bool has_offset() const {
-    return std::any_of(effects_.begin(), effects_.end(),
-                       [](const auto& e) { return e->name() == "time_offset"; });
+  /// Among the effects; as many as there are when it is none of them.
+  [[nodiscard]] std::size_t place_of_offset() const {
+    const auto offset = std::find_if(effects_.begin(), effects_.end(),
+                                     [](const auto& e) { return e->name() == "time_offset"; });
+    return static_cast<std::size_t>(offset - effects_.begin());
   }
+
+  [[nodiscard]] bool has_offset() const { return place_of_offset() < effects_.size(); }
 
   [[nodiscard]] double delay() const { return has_offset() ? parameters_(offset_index()) : 0.0; }
 
-  [[nodiscard]] Eigen::Index offset_index() const {
-    const auto offset = std::find_if(effects_.begin(), effects_.end(),
-                                     [](const auto& e) { return e->name() == "time_offset"; });
-    return first_parameter(effects_, static_cast<std::size_t>(offset - effects_.begin()));
-  }
+  [[nodiscard]] Eigen::Index offset_index() const { return first_parameter(effects_, place_of_offset()); }
 
   /// First matches with nominal values; then the clocks' delay and what the recording does not state.
   void start() {
@@ -260,11 +260,8 @@ class Solver {
   void retire_idle_offset() {
     if (outcome_.findings.empty() && outcome_.curves.empty()) return;
     if (!has_offset() || !is_idle(outcome_.model.fit, offset_index())) return;
-    const auto offset = std::find_if(effects_.begin(), effects_.end(),
-                                     [](const auto& e) { return e->name() == "time_offset"; });
     const FitTask task{session_->data(), session_->fixed(0)};
-    if (auto fewer =
-            without_effect(task, outcome_.model, static_cast<std::size_t>(offset - effects_.begin())))
+    if (auto fewer = without_effect(task, outcome_.model, place_of_offset()))
       outcome_.model = std::move(*fewer);
     effects_ = outcome_.model.effects;
     parameters_ = outcome_.model.fit.parameters;

@@ -12,7 +12,7 @@ constexpr std::size_t kMostPairs = 120;  // of all recordings together
 std::vector<HeadingPair> heading_pairs(const Session& session, const Eigen::VectorXd& parameters,
                                        const EffectList& effects) {
   std::vector<HeadingPair> all;
-  const std::span<const double> p(parameters.data(), static_cast<std::size_t>(parameters.size()));
+  const std::span<const double> p = as_span(parameters);
   for (std::size_t i = 0; i < session.recordings().size(); ++i) {
     const ScanSurfaces scans(session.recordings()[i], *session.data()[i].model, p, effects,
                              session.pair_sets()[i].range_noise);

@@ -3,6 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "calib/geometry/vector2.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -15,15 +18,19 @@ const PlacedScan* place_at(const ScanPath& path, double time) {
   return found != path.scans.end() && found->time < time + kSameTime ? &*found : nullptr;
 }
 
-Eigen::Matrix3d turned(double yaw) {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  rotation.topLeftCorner<2, 2>() << std::cos(yaw), -std::sin(yaw), std::sin(yaw), std::cos(yaw);
-  return rotation;
+/// The places of a pair's scans, where both have one.
+struct Places {
+  const PlacedScan* begin = nullptr;
+  const PlacedScan* end = nullptr;
+};
+std::optional<Places> places_of(const SensorPair& pair, const ScanPath& path) {
+  const Places places{place_at(path, pair.interval.begin), place_at(path, pair.interval.end)};
+  return places.begin != nullptr && places.end != nullptr ? std::optional(places) : std::nullopt;
 }
 
 /// First order; the two places err independently.
 Eigen::Matrix3d covariance_of(const PlacedScan& begin, const PlacedScan& end, const Pose& motion) {
-  const Eigen::Matrix3d into_begin = turned(-begin.pose.yaw);
+  const Eigen::Matrix3d into_begin = rotation_about_z(-begin.pose.yaw);
   Eigen::Matrix3d by_begin = -into_begin;
   by_begin(0, 2) = motion.y;
   by_begin(1, 2) = -motion.x;
@@ -36,11 +43,10 @@ Eigen::Matrix3d covariance_of(const PlacedScan& begin, const PlacedScan& end, co
 double drift_of_matches(const std::vector<SensorPair>& pairs, const ScanPath& path) {
   Eigen::Vector3d drift = Eigen::Vector3d::Zero(), variance = Eigen::Vector3d::Zero();
   for (const SensorPair& pair : pairs) {
-    const PlacedScan* begin = place_at(path, pair.interval.begin);
-    const PlacedScan* end = place_at(path, pair.interval.end);
-    if (begin == nullptr || end == nullptr) continue;
-    const Pose placed = between(begin->pose, end->pose);
-    const Eigen::Matrix3d into_map = turned(begin->pose.yaw);
+    const auto places = places_of(pair, path);
+    if (!places) continue;
+    const Pose placed = between(places->begin->pose, places->end->pose);
+    const Eigen::Matrix3d into_map = rotation_about_z(places->begin->pose.yaw);
     const Eigen::Vector3d error(pair.motion.x - placed.x, pair.motion.y - placed.y,
                                 wrap_angle(pair.motion.yaw - placed.yaw));
     drift += into_map * error;
@@ -54,12 +60,11 @@ std::vector<SensorPair> pairs_of_places(const std::vector<SensorPair>& pairs, co
   std::vector<SensorPair> out;
   double last_end = -1e300;
   for (const SensorPair& pair : pairs) {
-    const PlacedScan* begin = place_at(path, pair.interval.begin);
-    const PlacedScan* end = place_at(path, pair.interval.end);
-    if (begin == nullptr || end == nullptr) continue;
-    const Pose motion = between(begin->pose, end->pose);
+    const auto places = places_of(pair, path);
+    if (!places) continue;
+    const Pose motion = between(places->begin->pose, places->end->pose);
     const bool follows = std::abs(pair.interval.begin - last_end) < kSameTime;
-    out.push_back({pair.interval, motion, covariance_of(*begin, *end, motion), follows});
+    out.push_back({pair.interval, motion, covariance_of(*places->begin, *places->end, motion), follows});
     last_end = pair.interval.end;
   }
   return out;

@@ -85,7 +85,7 @@ void Session::measure(const Eigen::VectorXd& parameters, const EffectList& effec
                       const PairOptions& options) {
   data_.clear();
   sets_.clear();
-  const std::span<const double> p(parameters.data(), static_cast<std::size_t>(parameters.size()));
+  const std::span<const double> p = as_span(parameters);
   for (std::size_t i = 0; i < recordings_.size(); ++i) {
     sets_.push_back(build_pairs(recordings_[i], models_[i], p, effects, options));
     data_.push_back({&models_[i], sets_.back().pairs});

@@ -85,8 +85,7 @@ std::optional<HorizonError> horizon_error(std::span<const FitData> data, const E
       std::vector<Interval> intervals;
       intervals.reserve(windows.size());
       for (const Window& w : windows) intervals.push_back(w.interval);
-      const auto predicted = data[d].model->predict(
-          {parameters.data(), static_cast<std::size_t>(parameters.size())}, effects, intervals);
+      const auto predicted = data[d].model->predict(as_span(parameters), effects, intervals);
       for (std::size_t k = 0; k < windows.size(); ++k) {
         error.position.push_back(
             std::hypot(predicted[k].x - windows[k].measured.x, predicted[k].y - windows[k].measured.y));

@@ -53,8 +53,7 @@ void accumulate(const FitData& part, const Eigen::VectorXd& parameters, const Ef
                 const NoiseModel& noise, Sums& sums) {
   std::vector<Interval> intervals;
   for (const SensorPair& pair : part.pairs) intervals.push_back(pair.interval);
-  const auto predicted = part.model->predict({parameters.data(), static_cast<std::size_t>(parameters.size())},
-                                             effects, intervals);
+  const auto predicted = part.model->predict(as_span(parameters), effects, intervals);
   for (std::size_t k = 0; k < part.pairs.size(); ++k) {
     const Pose& m = part.pairs[k].motion;
     const Eigen::Vector3d e(m.x - predicted[k].x, m.y - predicted[k].y, wrap_angle(m.yaw - predicted[k].yaw));

@@ -173,7 +173,7 @@ class Finder {
 
 std::vector<Stretch> find_stretches(StretchKind kind, std::span<const FitData> data,
                                     const std::vector<std::size_t>& folds, const FitResult& fit) {
-  const Pose mount = to_base({fit.parameters.data(), static_cast<std::size_t>(fit.parameters.size())}).mount;
+  const Pose mount = to_base(as_span(fit.parameters)).mount;
   std::vector<Stretch> all;
   std::size_t first = 0;
   for (std::size_t d = 0; d < data.size(); ++d) {
