@@ -280,10 +280,19 @@ class Solver {
     }
   }
 
+  void place_again() {
+    if (!paths_.empty()) report("placing every scan", 0.5);
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      paths_[i] = place_scans_again(paths_[i], session_->recordings()[i], *session_->data()[i].model,
+                                    as_span(parameters_), effects_, session_->pair_sets()[i].range_noise);
+      if (!paths_[i].is_usable()) return paths_.clear();
+    }
+  }
+
   /// The same parameters from every scan instead of keyframes.
   void fit_whole_path() {
     const bool is_new = parameters_.size() != placed_with_.size() || parameters_ != placed_with_;
-    if (is_new) place_every_scan();
+    if (is_new) place_again();
     if (paths_.empty()) return;
     std::vector<PathData> data;
     for (std::size_t i = 0; i < paths_.size(); ++i)

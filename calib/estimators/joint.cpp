@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "calib/estimators/stack.hpp"
 #include "calib/noise/noise_estimate.hpp"
 #include "calib/statistics/cluster_robust.hpp"
 
@@ -14,86 +15,6 @@ namespace {
 constexpr double kOutlier = 5.0;  ///< sigma of a standardised residual vector
 constexpr int kNoiseRounds = 3;   ///< noise and weights are settled over this many outer rounds
 constexpr double kMinRelativePivot = 1e-12;
-
-/// Stacked residuals and Jacobians of all recordings, before weighting.
-struct Stack {
-  Eigen::MatrixXd residual;        ///< 3 n x 1
-  Eigen::MatrixXd jacobian;        ///< 3 n x parameters
-  std::vector<std::size_t> first;  ///< first pair of each recording, and the total
-  std::vector<PairState> states;   ///< what each pair's noise depends on
-};
-
-std::vector<Interval> intervals_of(const std::vector<SensorPair>& pairs) {
-  std::vector<Interval> intervals;
-  intervals.reserve(pairs.size());
-  for (const SensorPair& pair : pairs) intervals.push_back(pair.interval);
-  return intervals;
-}
-
-Eigen::Vector3d difference(const Pose& measured, const Pose& predicted) {
-  return {measured.x - predicted.x, measured.y - predicted.y, wrap_angle(measured.yaw - predicted.yaw)};
-}
-
-PairState state_of(const Trajectory& trajectory, const Pose& mount, const SensorPair& pair) {
-  return {trajectory.at(pair.interval.begin).yaw + mount.yaw,
-          sensor_velocity(trajectory, mount, pair.interval.begin),
-          sensor_velocity(trajectory, mount, pair.interval.end)};
-}
-
-Stack make_stack(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& p,
-                 bool derivatives) {
-  Stack stack;
-  std::size_t total = 0;
-  for (const FitData& d : data) total += d.pairs.size();
-  stack.residual.resize(static_cast<Eigen::Index>(3 * total), 1);
-  if (derivatives) stack.jacobian.resize(stack.residual.rows(), p.size());
-  std::size_t row = 0;
-  for (const FitData& d : data) {
-    stack.first.push_back(row);
-    const auto intervals = intervals_of(d.pairs);
-    Eigen::MatrixXd jacobian;
-    const auto predicted = derivatives ? d.model->predict(as_span(p), effects, intervals, jacobian)
-                                       : d.model->predict(as_span(p), effects, intervals);
-    if (derivatives)
-      stack.jacobian.middleRows(static_cast<Eigen::Index>(3 * row), jacobian.rows()) = jacobian;
-    const Trajectory trajectory = d.model->trajectory(as_span(p), effects);
-    const Pose mount = to_base(as_span(p)).mount;
-    for (std::size_t k = 0; k < d.pairs.size(); ++k) {
-      stack.residual.block<3, 1>(static_cast<Eigen::Index>(3 * (row + k)), 0) =
-          difference(d.pairs[k].motion, predicted[k]);
-      stack.states.push_back(state_of(trajectory, mount, d.pairs[k]));
-    }
-    row += d.pairs.size();
-  }
-  stack.first.push_back(row);
-  return stack;
-}
-
-std::vector<Eigen::Vector3d> residuals_of(const Stack& stack, std::size_t d) {
-  std::vector<Eigen::Vector3d> residuals;
-  for (std::size_t k = stack.first[d]; k < stack.first[d + 1]; ++k)
-    residuals.emplace_back(stack.residual.block<3, 1>(static_cast<Eigen::Index>(3 * k), 0));
-  return residuals;
-}
-
-std::span<const PairState> states_of(const Stack& stack, std::size_t d) {
-  return std::span(stack.states).subspan(stack.first[d], stack.first[d + 1] - stack.first[d]);
-}
-
-Eigen::MatrixXd whitened(std::span<const FitData> data, const Stack& stack,
-                         const std::vector<NoiseModel>& noise, const std::vector<double>& weights,
-                         Eigen::MatrixXd rows) {
-  for (std::size_t d = 0; d < data.size(); ++d) {
-    const std::size_t count = data[d].pairs.size();
-    const Whitener whitener(data[d].pairs, states_of(stack, d), noise[d],
-                            std::span(weights).subspan(stack.first[d], count));
-    const auto first = static_cast<Eigen::Index>(3 * stack.first[d]);
-    Eigen::MatrixXd block = rows.middleRows(first, static_cast<Eigen::Index>(3 * count));
-    whitener.apply(block);
-    rows.middleRows(first, block.rows()) = block;
-  }
-  return rows;
-}
 
 /// All recordings of one call come from one robot and one lidar; with few pairs each, they share a noise
 /// model.
@@ -338,27 +259,6 @@ FitResult with_weights(std::span<const FitData> data, const EffectList& effects,
   fit.whitened_residual = whitened(data, stack, fit.noise, fit.weights, stack.residual);
   fit.whitened_jacobian = whitened(data, stack, fit.noise, fit.weights, stack.jacobian);
   return fit;
-}
-
-Eigen::MatrixXd whitened_columns(std::span<const FitData> data, const EffectList& effects,
-                                 const FitResult& fit, const EffectList& candidates) {
-  EffectList all = effects;
-  all.insert(all.end(), candidates.begin(), candidates.end());
-  Eigen::VectorXd parameters =
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kBaseCount + count_parameters(all)));
-  parameters.head(fit.parameters.size()) = fit.parameters;
-  const std::vector<double> starts = start_of(candidates);
-  parameters.tail(static_cast<Eigen::Index>(starts.size())) =
-      Eigen::Map<const Eigen::VectorXd>(starts.data(), static_cast<Eigen::Index>(starts.size()));
-  const Stack stack = make_stack(data, effects, fit.parameters, false);
-  Eigen::MatrixXd columns(stack.residual.rows(), static_cast<Eigen::Index>(count_parameters(candidates)));
-  for (std::size_t d = 0; d < data.size(); ++d) {
-    Eigen::MatrixXd part;
-    static_cast<void>(data[d].model->predict(as_span(parameters), all, intervals_of(data[d].pairs), part,
-                                             static_cast<std::size_t>(fit.parameters.size())));
-    columns.middleRows(static_cast<Eigen::Index>(3 * stack.first[d]), part.rows()) = part;
-  }
-  return whitened(data, stack, fit.noise, fit.weights, std::move(columns));
 }
 
 }  // namespace odomcalib::calib

@@ -55,10 +55,4 @@ Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& eff
 FitResult with_weights(std::span<const FitData> data, const EffectList& effects, FitResult fit,
                        const std::vector<double>& weights);
 
-/// Whitened derivatives of the prediction by the parameters of `candidates`, which act on top of `effects`
-/// at their start (where they change nothing), at the fit and with its weights: 3 n x parameters of the
-/// candidates.
-Eigen::MatrixXd whitened_columns(std::span<const FitData> data, const EffectList& effects,
-                                 const FitResult& fit, const EffectList& candidates);
-
 }  // namespace odomcalib::calib

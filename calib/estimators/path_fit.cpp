@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calib/geometry/vector2.hpp"
+#include "calib/model/sensitivity.hpp"
 #include "calib/noise/noise_estimate.hpp"
 #include "calib/reference/scan_surfaces.hpp"
 #include "calib/statistics/cluster_robust.hpp"
@@ -109,7 +110,9 @@ Part make_part(const PathData& data, const EffectList& effects, const Eigen::Vec
 }
 
 void linearise(const PathData& data, const EffectList& effects, const Eigen::VectorXd& p, Part& part) {
-  const auto predicted = data.model->predict(as_span(p), effects, part.intervals, part.jacobian);
+  const Trajectory trajectory = data.model->trajectory(as_span(p), effects);
+  const auto predicted = trajectory.sensor_motions(part.intervals);
+  part.jacobian = Sensitivity(*data.model, trajectory, part.intervals).by_all();
   part.residual.resize(part.jacobian.rows(), 1);
   for (std::size_t k = 0; k < part.links.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(3 * k);

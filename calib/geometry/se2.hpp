@@ -72,12 +72,13 @@ Pose2<T> exp_se2(const T& dx, const T& dy, const T& dyaw) {
   using std::sin;
   T sine_ratio{1.0};
   T cosine_ratio{0.0};
-  if (abs(dyaw) > T(1e-6)) {
+  if (abs(dyaw) > T(0.05)) {
     sine_ratio = sin(dyaw) / dyaw;
     cosine_ratio = (1.0 - cos(dyaw)) / dyaw;
-  } else {  // Taylor, good to 1e-19 at the threshold
-    sine_ratio = 1.0 - dyaw * dyaw / 6.0;
-    cosine_ratio = dyaw / 2.0;
+  } else {  // Taylor, good to 1e-16 at the threshold; the ratio of cosines would lose digits
+    const T square = dyaw * dyaw;
+    sine_ratio = 1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0));
+    cosine_ratio = dyaw / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)));
   }
   return {sine_ratio * dx - cosine_ratio * dy, cosine_ratio * dx + sine_ratio * dy, dyaw};
 }

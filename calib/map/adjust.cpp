@@ -32,8 +32,9 @@ class Adjustment {
                 const PlaceOptions& options, bool anchored) {
     ScanTerms terms;
     std::vector<Eigen::Index> slot(map.walls().size(), -1);
+    const Frame sensor(place.pose);
     for (const Strike& strike : map.strikes(beams, place.pose)) {
-      const RangeTerm term = map.term(beams[strike.beam], strike.wall, place.pose, options.range_noise);
+      const RangeTerm term = map.term(beams[strike.beam], strike.wall, sensor, options.range_noise);
       const double weight = weight_of(term, place.scale);
       if (weight > 0.0) enter(term, strike.wall, weight, slot, terms);
     }

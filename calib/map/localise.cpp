@@ -23,8 +23,9 @@ std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>&
   const std::vector<Strike> struck = map.strikes(beams, pose);
   strikes = struck.size();
   terms.reserve(struck.size());
+  const Frame frame(pose);
   for (const Strike& strike : struck) {
-    const RangeTerm term = map.term(beams[strike.beam], strike.wall, pose, options.range_noise);
+    const RangeTerm term = map.term(beams[strike.beam], strike.wall, frame, options.range_noise);
     if (std::abs(term.residual) < gate) terms.push_back(term);
   }
   return terms;

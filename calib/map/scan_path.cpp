@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "calib/matching/point_to_line.hpp"
+#include "calib/reference/sweep_motion.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -36,22 +37,33 @@ class Mapper {
   ScanPath run() {
     if (chosen_.size() < kFewestScans) return {};
     explore();
+    return settle();
+  }
+
+  ScanPath run_from(const ScanPath& known) {
+    path_.map = known.map;
+    auto placed = known.scans.begin();
+    for (std::size_t k = 0; k < chosen_.size(); ++k) {
+      const bool is_known = placed != known.scans.end() && placed->time == time(k);
+      poses_.push_back(is_known ? (placed++)->pose : poses_.empty() ? Pose{} : predicted(k));
+    }
+    return settle();
+  }
+
+ private:
+  ScanPath settle() {
     if (path_.map.walls().empty() || path_.map.walls().size() > kMostWalls) return {};
     adjust();
     place_all();
     return std::move(path_);
   }
 
- private:
   [[nodiscard]] const Scan& scan(std::size_t k) const { return recording_.scans[chosen_[k]]; }
   [[nodiscard]] double time(std::size_t k) const { return scan(k).t + reference_time(scan(k)); }
   [[nodiscard]] Pose sensor_at(double t) const { return compose(trajectory_.at(t), mount_); }
 
   [[nodiscard]] BeamMotion motion_of(std::size_t k) const {
-    const double begin = scan(k).t;
-    if (!(reference_time(scan(k)) > 0.0)) return [](double) { return Pose{}; };
-    const Pose middle = sensor_at(time(k));
-    return [this, begin, middle](double seconds) { return between(middle, sensor_at(begin + seconds)); };
+    return motion_in_sweep(trajectory_, mount_, scan(k));
   }
 
   [[nodiscard]] Surface surface(std::size_t k) const {
@@ -138,6 +150,12 @@ bool ScanPath::is_usable() const {
 ScanPath place_scans(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
                      const EffectList& effects, double range_noise) {
   return Mapper(recording, model, parameters, effects, range_noise).run();
+}
+
+ScanPath place_scans_again(const ScanPath& known, const Recording& recording, const DriveModel& model,
+                           std::span<const double> parameters, const EffectList& effects,
+                           double range_noise) {
+  return Mapper(recording, model, parameters, effects, range_noise).run_from(known);
 }
 
 }  // namespace odomcalib::calib

@@ -31,4 +31,8 @@ struct ScanPath {
 ScanPath place_scans(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
                      const EffectList& effects, double range_noise);
 
+/// The same scans with other parameters, which change little but how they are de-skewed: the map is known.
+ScanPath place_scans_again(const ScanPath& known, const Recording& recording, const DriveModel& model,
+                           std::span<const double> parameters, const EffectList& effects, double range_noise);
+
 }  // namespace odomcalib::calib

@@ -113,18 +113,17 @@ std::vector<Strike> WallMap::strikes(const std::vector<Beam>& beams, const Pose&
   return found;
 }
 
-RangeTerm WallMap::term(const Beam& beam, std::size_t index, const Pose& sensor, double range_noise) const {
-  const Frame frame(sensor);
+RangeTerm WallMap::term(const Beam& beam, std::size_t index, const Frame& sensor, double range_noise) const {
   const MapWall& wall = walls_[index];
-  const Eigen::Vector2d from = frame.origin() + frame.rotate(beam.origin);
-  const Eigen::Vector2d direction = frame.rotate(beam.direction);
+  const Eigen::Vector2d from = sensor.origin() + sensor.rotate(beam.origin);
+  const Eigen::Vector2d direction = sensor.rotate(beam.direction);
   const double towards = wall.normal.dot(direction);
   const double expected = wall.normal.dot(wall.centre - from) / towards;
   const Eigen::Vector2d point = from + expected * direction;
   RangeTerm term;
   term.residual = beam.range - expected;
   term.variance = distance_variance(towards, range_noise) / (towards * towards);
-  term.by_pose << wall.normal / towards, wall.normal.dot(quarter_turn(point - frame.origin())) / towards;
+  term.by_pose << wall.normal / towards, wall.normal.dot(quarter_turn(point - sensor.origin())) / towards;
   term.by_wall << -1.0 / towards, wall.direction().dot(point - wall.centre) / towards;
   return term;
 }

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "calib/geometry/se2.hpp"
+#include "calib/geometry/vector2.hpp"
 #include "calib/map/beams.hpp"
 #include "calib/matching/walls.hpp"
 
@@ -49,7 +49,8 @@ class WallMap {
   /// since they may as well miss it, and so are those that strike too flat.
   [[nodiscard]] std::vector<Strike> strikes(const std::vector<Beam>& beams, const Pose& sensor) const;
 
-  [[nodiscard]] RangeTerm term(const Beam& beam, std::size_t wall, const Pose& sensor,
+  /// @param sensor pose in the map
+  [[nodiscard]] RangeTerm term(const Beam& beam, std::size_t wall, const Frame& sensor,
                                double range_noise) const;
 
  private:

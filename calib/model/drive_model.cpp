@@ -1,10 +1,20 @@
 #include "calib/model/drive_model.hpp"
 
-#include "calib/model/sensitivity.hpp"
+#include <cmath>
+#include <complex>
+
 #include "calib/model/step_twist.hpp"
 
 namespace odomcalib::calib {
 namespace {
+
+/// exp(i angle). Most steps turn by little, and this is asked for each of them in each iteration of each fit.
+std::complex<double> unit_turn(double angle) {
+  if (std::abs(angle) > 0.05) return std::polar(1.0, angle);
+  const double square = angle * angle;  // Taylor, good to 1e-16 at the threshold
+  return {1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))),
+          angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))};
+}
 
 /// Base poses at the samples and the constant twist of each interval: enough to evaluate any time.
 struct Integrated {
@@ -18,10 +28,15 @@ Integrated integrate(const std::vector<StepContext>& context, std::span<const do
   Integrated result;
   result.poses.resize(context.size() + 1);
   result.twists.reserve(context.size());
+  std::complex<double> heading = 1.0;
   for (std::size_t k = 0; k < context.size(); ++k) {
     result.twists.push_back(twist_of(context[k], parameters, placed));
     const Pose& w = result.twists.back();
-    result.poses[k + 1] = compose(result.poses[k], exp_se2(w.x, w.y, w.yaw));
+    const Pose step = exp_se2(w.x, w.y, w.yaw);
+    const std::complex<double> way = heading * std::complex<double>(step.x, step.y);
+    const Pose& here = result.poses[k];
+    result.poses[k + 1] = {here.x + way.real(), here.y + way.imag(), here.yaw + step.yaw};
+    heading *= unit_turn(step.yaw);
   }
   return result;
 }
@@ -32,23 +47,6 @@ Pose pose_at(const WheelTrack& track, const std::vector<Pose>& poses, const std:
   const double share = (time - track.t[k]) / (track.t[k + 1] - track.t[k]);
   const Pose& w = twists[k];
   return compose(poses[k], exp_se2(share * w.x, share * w.y, share * w.yaw));
-}
-
-std::vector<Pose> motions_of(const WheelTrack& track, const Integrated& integrated,
-                             std::span<const double> parameters, const EffectList& effects,
-                             std::span<const Interval> intervals) {
-  const Pose mount = to_base(parameters).mount;
-  const double middle = middle_of(track);
-  const PlacedEffects placed(effects, kBaseCount);
-  const auto at = [&](double time) {
-    const double delay = placed.delay(time - middle, parameters);
-    return pose_at(track, integrated.poses, integrated.twists, time - delay);
-  };
-  std::vector<Pose> motions;
-  motions.reserve(intervals.size());
-  for (const Interval& interval : intervals)
-    motions.push_back(conjugate(between(at(interval.begin), at(interval.end)), mount));
-  return motions;
 }
 
 }  // namespace
@@ -115,18 +113,18 @@ Trajectory DriveModel::trajectory(std::span<const double> parameters, const Effe
   return trajectory;
 }
 
-std::vector<Pose> DriveModel::predict(std::span<const double> parameters, const EffectList& effects,
-                                      std::span<const Interval> intervals) const {
-  return motions_of(track_, integrate(context_, parameters, effects), parameters, effects, intervals);
+std::vector<Pose> Trajectory::sensor_motions(std::span<const Interval> intervals) const {
+  const Pose mount = to_base(parameters_).mount;
+  std::vector<Pose> motions;
+  motions.reserve(intervals.size());
+  for (const Interval& interval : intervals)
+    motions.push_back(conjugate(between(at(interval.begin), at(interval.end)), mount));
+  return motions;
 }
 
 std::vector<Pose> DriveModel::predict(std::span<const double> parameters, const EffectList& effects,
-                                      std::span<const Interval> intervals, Eigen::MatrixXd& jacobian,
-                                      std::size_t first) const {
-  const Integrated integrated = integrate(context_, parameters, effects);
-  const Linearisation at{track_, context_, integrated.poses, integrated.twists};
-  jacobian = sensitivity(at, parameters, effects, intervals, first);
-  return motions_of(track_, integrated, parameters, effects, intervals);
+                                      std::span<const Interval> intervals) const {
+  return trajectory(parameters, effects).sensor_motions(intervals);
 }
 
 }  // namespace odomcalib::calib

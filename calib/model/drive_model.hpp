@@ -42,9 +42,16 @@ class Trajectory {
  public:
   /// Base pose at each sample, starting at the origin.
   [[nodiscard]] const std::vector<Pose>& poses() const { return poses_; }
+  /// Of each interval between samples.
+  [[nodiscard]] const std::vector<Pose>& twists() const { return twists_; }
+  /// What it was made with.
+  [[nodiscard]] std::span<const double> parameters() const { return parameters_; }
+  [[nodiscard]] const PlacedEffects& effects() const { return effects_; }
   /// Base pose at the encoder time that belongs to a time on the sensor's clock.
   [[nodiscard]] Pose at(double sensor_time) const;
   [[nodiscard]] double encoder_time(double sensor_time) const;
+  /// Motion of the sensor in each interval, in its frame at the interval's begin.
+  [[nodiscard]] std::vector<Pose> sensor_motions(std::span<const Interval> intervals) const;
 
  private:
   friend class DriveModel;
@@ -75,15 +82,9 @@ class DriveModel {
   /// Dead reckoning with these parameters, to be asked for poses.
   [[nodiscard]] Trajectory trajectory(std::span<const double> parameters, const EffectList& effects) const;
 
-  /// Motion of the sensor in each interval, in its frame at the interval's begin.
+  /// Trajectory::sensor_motions() with these parameters.
   [[nodiscard]] std::vector<Pose> predict(std::span<const double> parameters, const EffectList& effects,
                                           std::span<const Interval> intervals) const;
-
-  /// As predict(); `jacobian` becomes 3 n x (parameters - first): derivatives (rows x, y, yaw per interval)
-  /// by the parameters from `first` on.
-  std::vector<Pose> predict(std::span<const double> parameters, const EffectList& effects,
-                            std::span<const Interval> intervals, Eigen::MatrixXd& jacobian,
-                            std::size_t first = 0) const;
 
  private:
   WheelTrack track_;

@@ -35,6 +35,8 @@ class PlacedEffects {
     return sum;
   }
 
+  [[nodiscard]] const EffectList& list() const { return effects_; }
+
  private:
   struct Place {
     const Effect* effect;

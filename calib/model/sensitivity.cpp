@@ -42,14 +42,15 @@ struct End {
   Eigen::Vector3d velocity;  ///< by encoder time, in room axes
 };
 
-End end_at(const Linearisation& at, double time) {
+End end_at(const WheelTrack& track, const Trajectory& along, double sensor_time) {
   using J = SmallJet<1>;
+  const double time = along.encoder_time(sensor_time);
   End end;
-  end.step = at.track.interval_at(time);
-  const double begin = at.track.t[end.step];
-  const J share = (J(time, 0) - begin) / (at.track.t[end.step + 1] - begin);
-  const Pose& w = at.twists[end.step];
-  const Pose& p = at.poses[end.step];
+  end.step = track.interval_at(time);
+  const double begin = track.t[end.step];
+  const J share = (J(time, 0) - begin) / (track.t[end.step + 1] - begin);
+  const Pose& w = along.twists()[end.step];
+  const Pose& p = along.poses()[end.step];
   const auto pose =
       compose<J>({J(p.x), J(p.y), J(p.yaw)}, exp_se2<J>(share * w.x, share * w.y, share * w.yaw));
   end.share = share.a;
@@ -75,11 +76,11 @@ Eigen::Matrix3d twist_to_motion(const Pose& begin, const Pose& from, const Pose&
 }
 
 /// Twist derivatives of every step by the parameters [first, first + kJetSize).
-std::vector<Chunk> twist_derivatives(const Linearisation& at, const std::vector<Jet>& jets,
+std::vector<Chunk> twist_derivatives(const std::vector<StepContext>& steps, const std::vector<Jet>& jets,
                                      const PlacedEffects& effects) {
   std::vector<Chunk> all;
-  all.reserve(at.context.size());
-  for (const StepContext& context : at.context)
+  all.reserve(steps.size());
+  for (const StepContext& context : steps)
     all.push_back(derivatives_of<kJetSize>(twist_of<Jet>(context, jets, effects)));
   return all;
 }
@@ -95,71 +96,79 @@ std::vector<Jet> seed(std::span<const double> parameters, std::size_t first) {
   return jets;
 }
 
+}  // namespace
+
 /// One interval with all that does not depend on which parameters are asked for.
-struct Path {
+struct Sensitivity::Path {
   End begin, end;
   Eigen::Matrix<double, 3, 6> to_sensor;  ///< by base motion, then by mount
   std::vector<Eigen::Matrix3d> by_twist;  ///< base motion by the twist of each step from begin.step on
   Eigen::Vector3d by_begin, by_end;       ///< base motion by the encoder times of the ends
+
+  Path(const Trajectory& along, const Pose& mount, const End& from, const End& to,
+       const std::vector<Eigen::Matrix3d>& whole_steps);
+  /// What delays of both ends do.
+  [[nodiscard]] Chunk by_delays(const Jet& at_begin, const Jet& at_end) const {
+    return -by_begin * at_begin.v.transpose() - by_end * at_end.v.transpose();
+  }
 };
 
-Path path_of(const Linearisation& at, const Pose& mount, double begin, double end,
-             const std::vector<Eigen::Matrix3d>& whole_steps) {
-  Path path{end_at(at, begin), end_at(at, end), {}, {}, {}, {}};
-  const Pose &b = path.begin.pose, &e = path.end.pose;
-  path.to_sensor = conjugate_derivative(between(b, e), mount);
-  path.by_end = rotation_about_z(-b.yaw) * path.end.velocity;
-  path.by_begin = -carried(b, b, e) * path.begin.velocity;
-  for (std::size_t k = path.begin.step; k <= path.end.step; ++k) {
-    const bool first = k == path.begin.step, last = k == path.end.step;
-    const double from = first ? path.begin.share : 0.0, to = last ? path.end.share : 1.0;
-    const Eigen::Matrix3d& whole = whole_steps[k];
-    const Eigen::Matrix3d part = first || last ? exp_derivative(at.twists[k], to - from) : whole;
-    path.by_twist.push_back(twist_to_motion(b, first ? b : at.poses[k], last ? e : at.poses[k + 1], e, part));
+Sensitivity::Path::Path(const Trajectory& along, const Pose& mount, const End& from, const End& to,
+                        const std::vector<Eigen::Matrix3d>& whole_steps)
+    : begin(from), end(to) {
+  const Pose &b = begin.pose, &e = end.pose;
+  to_sensor = conjugate_derivative(between(b, e), mount);
+  by_end = rotation_about_z(-b.yaw) * end.velocity;
+  by_begin = -carried(b, b, e) * begin.velocity;
+  for (std::size_t k = begin.step; k <= end.step; ++k) {
+    const bool first = k == begin.step, last = k == end.step;
+    const double low = first ? begin.share : 0.0, high = last ? end.share : 1.0;
+    const Eigen::Matrix3d part =
+        first || last ? exp_derivative(along.twists()[k], high - low) : whole_steps[k];
+    by_twist.push_back(
+        twist_to_motion(b, first ? b : along.poses()[k], last ? e : along.poses()[k + 1], e, part));
   }
-  return path;
 }
 
-Chunk delay_rows(const Path& path, const Interval& interval, double middle, const std::vector<Jet>& jets,
-                 const PlacedEffects& effects) {
-  const Jet begin = effects.delay<Jet>(interval.begin - middle, jets);
-  const Jet end = effects.delay<Jet>(interval.end - middle, jets);
-  return -path.by_begin * begin.v.transpose() - path.by_end * end.v.transpose();
-}
-
-std::vector<Path> paths_of(const Linearisation& at, std::span<const double> parameters,
-                           const PlacedEffects& effects, std::span<const Interval> intervals) {
+Sensitivity::Sensitivity(const DriveModel& model, const Trajectory& along,
+                         std::span<const Interval> intervals)
+    : model_(model), along_(along), intervals_(intervals.begin(), intervals.end()) {
   std::vector<Eigen::Matrix3d> whole_steps;
-  whole_steps.reserve(at.twists.size());
-  for (const Pose& w : at.twists) whole_steps.push_back(exp_derivative(w, 1.0));
-  const double middle = middle_of(at.track);
-  const Pose mount = to_base(parameters).mount;
-  std::vector<Path> paths;
-  paths.reserve(intervals.size());
+  whole_steps.reserve(along.twists().size());
+  for (const Pose& w : along.twists()) whole_steps.push_back(exp_derivative(w, 1.0));
+  const Pose mount = to_base(along.parameters()).mount;
+  paths_.reserve(intervals.size());
   for (const Interval& i : intervals)
-    paths.push_back(path_of(at, mount, i.begin - effects.delay(i.begin - middle, parameters),
-                            i.end - effects.delay(i.end - middle, parameters), whole_steps));
-  return paths;
+    paths_.emplace_back(along, mount, end_at(model.track(), along, i.begin),
+                        end_at(model.track(), along, i.end), whole_steps);
 }
 
-}  // namespace
+Sensitivity::~Sensitivity() = default;
 
-Eigen::MatrixXd sensitivity(const Linearisation& at, std::span<const double> parameters,
-                            const EffectList& effects, std::span<const Interval> intervals,
-                            std::size_t first) {
-  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(3 * intervals.size()),
+Eigen::MatrixXd Sensitivity::by_all() const { return by(along_.parameters(), along_.effects(), 0); }
+
+Eigen::MatrixXd Sensitivity::by_more(const EffectList& effects, std::span<const double> parameters) const {
+  EffectList all = along_.effects().list();
+  all.insert(all.end(), effects.begin(), effects.end());
+  std::vector<double> values(along_.parameters().begin(), along_.parameters().end());
+  values.insert(values.end(), parameters.begin(), parameters.end());
+  return by(values, PlacedEffects(all, kBaseCount), along_.parameters().size());
+}
+
+Eigen::MatrixXd Sensitivity::by(std::span<const double> parameters, const PlacedEffects& effects,
+                                std::size_t first) const {
+  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(3 * paths_.size()),
                            static_cast<Eigen::Index>(parameters.size() - first));
-  if (intervals.empty()) return jacobian;
-  const PlacedEffects placed(effects, kBaseCount);
-  const std::vector<Path> paths = paths_of(at, parameters, placed, intervals);
-  const double middle = middle_of(at.track);
+  if (paths_.empty()) return jacobian;
+  const double middle = middle_of(model_.track());
   for (std::size_t chunk = first; chunk < parameters.size(); chunk += kJetSize) {
     const auto count = static_cast<Eigen::Index>(std::min<std::size_t>(kJetSize, parameters.size() - chunk));
     const std::vector<Jet> jets = seed(parameters, chunk);
-    const std::vector<Chunk> twists = twist_derivatives(at, jets, placed);
-    for (std::size_t i = 0; i < intervals.size(); ++i) {
-      const Path& path = paths[i];
-      Chunk base = delay_rows(path, intervals[i], middle, jets, placed);
+    const std::vector<Chunk> twists = twist_derivatives(model_.context(), jets, effects);
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      const Path& path = paths_[i];
+      Chunk base = path.by_delays(effects.delay<Jet>(intervals_[i].begin - middle, jets),
+                                  effects.delay<Jet>(intervals_[i].end - middle, jets));
       for (std::size_t k = 0; k < path.by_twist.size(); ++k)
         base.noalias() += path.by_twist[k] * twists[path.begin.step + k];
       Chunk rows = path.to_sensor.leftCols<3>() * base;

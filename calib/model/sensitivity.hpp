@@ -4,23 +4,35 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "calib/model/drive_model.hpp"
 
 namespace odomcalib::calib {
 
-/// The trajectory that sensitivities are taken along.
-struct Linearisation {
-  const WheelTrack& track;
-  const std::vector<StepContext>& context;
-  std::span<const Pose> poses;   ///< base at each sample
-  std::span<const Pose> twists;  ///< of each interval between samples
-};
+class Sensitivity {
+ public:
+  /// @param along must outlive this, as must its model
+  Sensitivity(const DriveModel& model, const Trajectory& along, std::span<const Interval> intervals);
+  ~Sensitivity();
+  Sensitivity(const Sensitivity&) = delete;
+  Sensitivity& operator=(const Sensitivity&) = delete;
 
-/// 3 n x (parameters - first): rows x, y, yaw of each interval's sensor motion, in m and rad. The parameters
-/// are those of the linearisation.
-Eigen::MatrixXd sensitivity(const Linearisation& at, std::span<const double> parameters,
-                            const EffectList& effects, std::span<const Interval> intervals,
-                            std::size_t first);
+  /// 3 n x parameters: rows x, y, yaw of each interval's sensor motion, in m and rad, by the parameters of
+  /// the trajectory.
+  [[nodiscard]] Eigen::MatrixXd by_all() const;
+  /// The same by the parameters of more effects at values that leave the trajectory as it is.
+  [[nodiscard]] Eigen::MatrixXd by_more(const EffectList& effects, std::span<const double> parameters) const;
+
+ private:
+  struct Path;
+  [[nodiscard]] Eigen::MatrixXd by(std::span<const double> parameters, const PlacedEffects& effects,
+                                   std::size_t first) const;
+
+  const DriveModel& model_;
+  const Trajectory& along_;
+  std::vector<Interval> intervals_;
+  std::vector<Path> paths_;
+};
 
 }  // namespace odomcalib::calib

@@ -1,6 +1,6 @@
 #include "calib/reference/scan_surfaces.hpp"
 
-#include <cmath>
+#include "calib/reference/sweep_motion.hpp"
 
 namespace odomcalib::calib {
 
@@ -30,7 +30,7 @@ ScanSurfaces::ScanSurfaces(const Recording& recording, const DriveModel& model,
 
 Surface ScanSurfaces::surface(std::size_t index) const {
   const Scan& scan = recording_.scans[index];
-  return make_surface(scan, beam_motion(scan), range_noise_);
+  return make_surface(scan, motion_in_sweep(trajectory_, mount_, scan), range_noise_);
 }
 
 Pose ScanSurfaces::guess(std::size_t from, std::size_t to) const {
@@ -40,21 +40,6 @@ Pose ScanSurfaces::guess(std::size_t from, std::size_t to) const {
 const char* ScanSurfaces::gap_between(std::size_t from, std::size_t to) const {
   if (has_gap(times_, from, to)) return "reference interrupted";
   return model_.track().covers(times_[from], times_[to]) ? nullptr : "no ticks";
-}
-
-/// Sensor motion inside the sweep from its middle, interpolated between three odometry poses.
-BeamMotion ScanSurfaces::beam_motion(const Scan& scan) const {
-  const double middle = reference_time(scan);
-  if (!(middle > 0.0)) return [](double) { return Pose{}; };
-  const Pose base = trajectory_.at(scan.t + middle);
-  const Pose before = log_se2(conjugate(between(base, trajectory_.at(scan.t)), mount_));
-  const Pose after = log_se2(conjugate(between(base, trajectory_.at(scan.t + 2.0 * middle)), mount_));
-  return [=](double seconds) {
-    const double share = (seconds - middle) / middle;
-    const Pose& w = share < 0.0 ? before : after;
-    const double f = std::abs(share);
-    return exp_se2(f * w.x, f * w.y, f * w.yaw);
-  };
 }
 
 }  // namespace odomcalib::calib

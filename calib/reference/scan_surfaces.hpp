@@ -29,8 +29,6 @@ class ScanSurfaces {
   [[nodiscard]] const char* gap_between(std::size_t from, std::size_t to) const;
 
  private:
-  [[nodiscard]] BeamMotion beam_motion(const Scan& scan) const;
-
   const Recording& recording_;
   const DriveModel& model_;
   Pose mount_;

@@ -7,6 +7,8 @@
 #include <map>
 #include <random>
 
+#include "calib/tracing/candidate_columns.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -42,30 +44,6 @@ Blocks blocks_of(std::span<const FitData> data) {
   }
   blocks.borders.push_back(static_cast<Eigen::Index>(3 * k));
   return blocks;
-}
-
-/// Columns of each candidate, made for as many at a time as one sweep of automatic derivatives carries.
-std::vector<Eigen::MatrixXd> candidate_columns(std::span<const FitData> data, const EffectList& effects,
-                                               const FitResult& fit, const EffectList& candidates) {
-  std::vector<Eigen::MatrixXd> columns;
-  for (std::size_t first = 0; first < candidates.size();) {
-    EffectList sweep;
-    std::size_t parameters = 0;
-    for (std::size_t k = first; k < candidates.size(); ++k) {
-      parameters += candidates[k]->parameters().size();
-      if (parameters > kJetSize && !sweep.empty()) break;
-      sweep.push_back(candidates[k]);
-    }
-    const Eigen::MatrixXd all = whitened_columns(data, effects, fit, sweep);
-    Eigen::Index column = 0;
-    for (const auto& candidate : sweep) {
-      const auto size = static_cast<Eigen::Index>(candidate->parameters().size());
-      columns.emplace_back(all.middleCols(column, size));
-      column += size;
-    }
-    first += sweep.size();
-  }
-  return columns;
 }
 
 /// Orthonormal basis of the candidate's columns after projection; rank-deficient directions are left out.

@@ -40,7 +40,7 @@ TEST(WallMap, a_beam_strikes_the_nearest_wall_and_no_wall_behind_it) {
   const auto strikes = map.strikes(beams, pose);
   EXPECT_GT(strikes.size(), beams.size() / 2);
   for (const Strike& strike : strikes)
-    EXPECT_LT(std::abs(map.term(beams[strike.beam], strike.wall, pose, kNoise).residual), 0.05);
+    EXPECT_LT(std::abs(map.term(beams[strike.beam], strike.wall, Frame(pose), kNoise).residual), 0.05);
 }
 
 TEST(WallMap, derivatives_agree_with_central_differences) {
@@ -50,11 +50,11 @@ TEST(WallMap, derivatives_agree_with_central_differences) {
   const auto beams = make_beams(scan_from(kRoom, pose, kNoise, 1), kAtRest);
   for (const Strike& strike : map.strikes(beams, pose)) {
     const Beam& beam = beams[strike.beam];
-    const RangeTerm term = map.term(beam, strike.wall, pose, kNoise);
+    const RangeTerm term = map.term(beam, strike.wall, Frame(pose), kNoise);
     for (int k = 0; k < 3; ++k) {
       const auto at = [&](double step) {
         const Pose moved{pose.x + (k == 0) * step, pose.y + (k == 1) * step, pose.yaw + (k == 2) * step};
-        return map.term(beam, strike.wall, moved, kNoise).residual;
+        return map.term(beam, strike.wall, Frame(moved), kNoise).residual;
       };
       EXPECT_NEAR((at(kStep) - at(-kStep)) / (2.0 * kStep), term.by_pose(k),
                   1e-4 * (1.0 + std::abs(term.by_pose(k))));
@@ -64,7 +64,7 @@ TEST(WallMap, derivatives_agree_with_central_differences) {
       MapWall& moved = map.walls()[strike.wall];
       moved.centre = wall.centre + step(0) * wall.normal;
       moved.normal = Eigen::Rotation2Dd(step(1)) * wall.normal;
-      const double residual = map.term(beam, strike.wall, pose, kNoise).residual;
+      const double residual = map.term(beam, strike.wall, Frame(pose), kNoise).residual;
       moved = wall;
       return residual;
     };

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/model/sensitivity.hpp"
 #include "tests/unit/calib/synthetic.hpp"
 
 namespace odomcalib::calib {
@@ -89,8 +90,8 @@ TEST_P(JacobianOf, agrees_with_central_differences) {
       steps.push_back(4e-4 * typical);
     }
   const auto intervals = some_intervals();
-  Eigen::MatrixXd jacobian;
-  static_cast<void>(model.predict(as_span(p), effects, intervals, jacobian));
+  const Trajectory trajectory = model.trajectory(as_span(p), effects);
+  const Eigen::MatrixXd jacobian = Sensitivity(model, trajectory, intervals).by_all();
   for (Eigen::Index k = 0; k < p.size(); ++k) {
     const double step = steps[static_cast<std::size_t>(k)];
     Eigen::VectorXd plus = p;

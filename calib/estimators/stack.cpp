@@ -1,0 +1,85 @@
+#include "calib/estimators/stack.hpp"
+
+#include "calib/model/sensitivity.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+Eigen::Vector3d difference(const Pose& measured, const Pose& predicted) {
+  return {measured.x - predicted.x, measured.y - predicted.y, wrap_angle(measured.yaw - predicted.yaw)};
+}
+
+PairState state_of(const Trajectory& trajectory, const Pose& mount, const SensorPair& pair) {
+  return {trajectory.at(pair.interval.begin).yaw + mount.yaw,
+          sensor_velocity(trajectory, mount, pair.interval.begin),
+          sensor_velocity(trajectory, mount, pair.interval.end)};
+}
+
+}  // namespace
+
+std::vector<Interval> intervals_of(const std::vector<SensorPair>& pairs) {
+  std::vector<Interval> intervals;
+  intervals.reserve(pairs.size());
+  for (const SensorPair& pair : pairs) intervals.push_back(pair.interval);
+  return intervals;
+}
+
+Stack make_stack(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& p,
+                 bool derivatives) {
+  Stack stack;
+  std::size_t total = 0;
+  for (const FitData& d : data) total += d.pairs.size();
+  stack.residual.resize(static_cast<Eigen::Index>(3 * total), 1);
+  if (derivatives) stack.jacobian.resize(stack.residual.rows(), p.size());
+  std::size_t row = 0;
+  for (const FitData& d : data) {
+    stack.first.push_back(row);
+    const auto intervals = intervals_of(d.pairs);
+    const Trajectory trajectory = d.model->trajectory(as_span(p), effects);
+    const auto predicted = trajectory.sensor_motions(intervals);
+    if (derivatives)
+      stack.jacobian.middleRows(static_cast<Eigen::Index>(3 * row),
+                                static_cast<Eigen::Index>(3 * intervals.size())) =
+          Sensitivity(*d.model, trajectory, intervals).by_all();
+    const Pose mount = to_base(as_span(p)).mount;
+    for (std::size_t k = 0; k < d.pairs.size(); ++k) {
+      stack.residual.block<3, 1>(static_cast<Eigen::Index>(3 * (row + k)), 0) =
+          difference(d.pairs[k].motion, predicted[k]);
+      stack.states.push_back(state_of(trajectory, mount, d.pairs[k]));
+    }
+    row += d.pairs.size();
+  }
+  stack.first.push_back(row);
+  return stack;
+}
+
+std::vector<Eigen::Vector3d> residuals_of(const Stack& stack, std::size_t d) {
+  std::vector<Eigen::Vector3d> residuals;
+  for (std::size_t k = stack.first[d]; k < stack.first[d + 1]; ++k)
+    residuals.emplace_back(stack.residual.block<3, 1>(static_cast<Eigen::Index>(3 * k), 0));
+  return residuals;
+}
+
+std::span<const PairState> states_of(const Stack& stack, std::size_t d) {
+  return std::span(stack.states).subspan(stack.first[d], stack.first[d + 1] - stack.first[d]);
+}
+
+Whitener whitener_of(std::span<const FitData> data, const Stack& stack, const NoiseModel& noise,
+                     const std::vector<double>& weights, std::size_t d) {
+  return {data[d].pairs, states_of(stack, d), noise,
+          std::span(weights).subspan(stack.first[d], data[d].pairs.size())};
+}
+
+Eigen::MatrixXd whitened(std::span<const FitData> data, const Stack& stack,
+                         const std::vector<NoiseModel>& noise, const std::vector<double>& weights,
+                         Eigen::MatrixXd rows) {
+  for (std::size_t d = 0; d < data.size(); ++d) {
+    const auto first = static_cast<Eigen::Index>(3 * stack.first[d]);
+    Eigen::MatrixXd block = rows.middleRows(first, static_cast<Eigen::Index>(3 * data[d].pairs.size()));
+    whitener_of(data, stack, noise[d], weights, d).apply(block);
+    rows.middleRows(first, block.rows()) = block;
+  }
+  return rows;
+}
+
+}  // namespace odomcalib::calib
