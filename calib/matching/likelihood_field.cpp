@@ -79,15 +79,17 @@ void LikelihoodField::add_levels(int highest) {
 }
 
 /// Maximum of four cells half a window apart. A row's end may see the beginning of the next, which only
-/// raises a bound; the last rows are margin, where nothing scores.
+/// raises a bound. Rows from which no window reaches the map are zero.
 void LikelihoodField::make_coarser(int level) {
   const auto along = std::size_t{1} << (level - 1), across = along * static_cast<std::size_t>(width_);
   const std::uint8_t* const fine = scores(level - 1);
   std::uint8_t* const coarse = scores_.get() + static_cast<std::size_t>(level) * cells();
-  const std::size_t whole = cells() - across - along;
-  for (std::size_t i = 0; i < whole; ++i)
+  const auto begin = static_cast<std::size_t>(offset(-pad_, 1 - (1 << level))),
+             end = static_cast<std::size_t>(offset(-pad_, height_ - 2 * pad_));
+  std::fill_n(coarse, begin, std::uint8_t{0});
+  for (std::size_t i = begin; i < end; ++i)
     coarse[i] = larger(larger(fine[i], fine[i + along]), larger(fine[i + across], fine[i + across + along]));
-  std::copy(fine + whole, fine + cells(), coarse + whole);
+  std::fill(coarse + end, coarse + cells(), std::uint8_t{0});
 }
 
 Eigen::Vector2i LikelihoodField::cell_of(const Eigen::Vector2d& position) const {

@@ -24,7 +24,9 @@ struct CellBox {
   unsigned width = 0, height = 0;
   [[nodiscard]] bool has(int at_x, int at_y) const {
     // Differences below 0 turn into large numbers.
-    return static_cast<unsigned>(at_x - x) < width && static_cast<unsigned>(at_y - y) < height;
+    const bool in_x = static_cast<unsigned>(at_x - x) < width,
+               in_y = static_cast<unsigned>(at_y - y) < height;
+    return in_x & in_y;
   }
 };
 

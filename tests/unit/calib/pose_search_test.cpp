@@ -57,6 +57,31 @@ TEST(PoseSearch, branch_and_bound_finds_the_optimum_of_brute_force_with_a_twenti
   EXPECT_GT(brute_work, 20 * bound_work);
 }
 
+/// Windows of every size, down to a single pose, some beyond the edge of the map or far outside, lattices
+/// from fine to coarse, readings far beyond what the reference saw.
+Case odd_case(unsigned seed) {
+  Case c = random_case(seed);
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  c.points = thinned(c.points, 5 + static_cast<std::size_t>(30.0 * uniform(engine)));
+  c.window.half_width = std::max(1.5 * uniform(engine) - 0.2, 0.0);
+  c.window.half_angle = std::max(uniform(engine) - 0.1, 0.0);
+  c.window.angle_step = std::pow(10.0, -2.0 * uniform(engine));
+  if (seed % 10 == 0) c.window.centre.x += 20.0 * (uniform(engine) - 0.5);
+  if (seed % 50 == 0) c.window.centre.y = 1e9;
+  if (seed % 3 == 0) c.points.emplace_back(40.0 * uniform(engine), 1000.0 * uniform(engine));
+  return c;
+}
+
+TEST(PoseSearch, in_a_thousand_odd_windows_the_optimum_is_that_of_brute_force) {
+  for (unsigned seed = 1; seed <= 1000; ++seed) {
+    Case c = odd_case(seed);
+    const SearchResult brute = search_brute_force(c.field, c.points, c.window);
+    const SearchResult bound = search_branch_and_bound(c.field, c.points, c.window);
+    ASSERT_EQ(bound.score, brute.score) << "seed " << seed;
+  }
+}
+
 TEST(PoseSearch, the_optimum_is_next_to_the_truth) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Case c = random_case(seed);
