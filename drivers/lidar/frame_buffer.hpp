@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "drivers/bytes.hpp"
@@ -30,7 +32,7 @@ class FrameBuffer {
   /// @param rejections every name that reject() and Verdict::reject() will use, so that all are shown from
   /// the start
   FrameBuffer(std::initializer_list<const char*> rejections) {
-    for (const char* name : rejections) rejected_[name] = 0;
+    for (const char* name : rejections) rejected_.emplace_back(name, 0);
   }
 
   /// Asks `look(rest)` for a verdict on the front of the buffer until it wants to wait. `rest` reaches to the
@@ -51,7 +53,7 @@ class FrameBuffer {
   }
 
   /// Counts a rejection of something that is not a frame, such as a turn that is too short.
-  void reject(const char* why, std::uint64_t times = 1) { rejected_[why] += times; }
+  void reject(const char* why, std::uint64_t times = 1) { count_of(why) += times; }
 
   /// What is buffered will never be completed.
   void reset() {
@@ -59,13 +61,13 @@ class FrameBuffer {
     buffer_.clear();
   }
 
-  [[nodiscard]] const Counters& rejected() const { return rejected_; }
+  [[nodiscard]] Counters rejected() const { return {rejected_.begin(), rejected_.end()}; }
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] std::size_t buffered() const { return buffer_.size(); }
 
   /// bytes_in, good, skipped, buffered, packets, and every rejection.
   [[nodiscard]] Counters counters() const {
-    Counters all = rejected_;
+    Counters all = rejected();
     all["bytes_in"] = bytes_in_;
     all["good"] = good_;
     all["skipped"] = skipped_;
@@ -79,12 +81,19 @@ class FrameBuffer {
     const bool good = verdict.kind == Verdict::Kind::good;
     (good ? good_ : skipped_) += verdict.bytes;
     frames_ += good ? 1 : 0;
-    if (verdict.rejection != nullptr) ++rejected_[verdict.rejection];
+    if (verdict.rejection != nullptr) reject(verdict.rejection);
+  }
+
+  std::uint64_t& count_of(std::string_view why) {
+    for (auto& [name, times] : rejected_)
+      if (name == why) return times;
+    return rejected_.emplace_back(why, 0).second;
   }
 
   std::vector<std::uint8_t> buffer_;
   std::uint64_t bytes_in_ = 0, good_ = 0, skipped_ = 0, frames_ = 0;
-  Counters rejected_;
+  // A few names that live as long as the program: noise is counted without taking memory.
+  std::vector<std::pair<std::string_view, std::uint64_t>> rejected_;
 };
 
 }  // namespace odomcalib::drivers

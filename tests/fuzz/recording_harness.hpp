@@ -5,16 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 #include "proto/recording.hpp"
+#include "tests/fuzz/share.hpp"
 
 namespace odomcalib::fuzz {
-
-inline void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 template <typename Sample>
 void check_times(const std::vector<Sample>& samples) {
