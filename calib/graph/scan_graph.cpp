@@ -8,6 +8,7 @@
 #include "calib/geometry/vector2.hpp"
 #include "calib/graph/odometry_correction.hpp"
 #include "calib/graph/optimize.hpp"
+#include "calib/graph/robust_weights.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -22,9 +23,10 @@ constexpr double kAgreement = 0.15;    ///< m, and with half the number rad, bet
 constexpr double kWidest = 3.0;        ///< m, of the search
 constexpr double kWidestAngle = 0.8;   ///< rad
 constexpr double kMostChi2 = 30.0;     ///< of a new loop after settling; three degrees of freedom
-constexpr double kMotionFloor =
-    5e-3;  ///< m; neighbouring matches err together, which their covariance ignores
-constexpr double kRotationFloor = 3e-3;  ///< rad
+/// m; neighbouring matches err together, which their covariance ignores. This and the next are what most
+/// edges of the Intel lab's graph leave; the few that leave more lose weight.
+constexpr double kMotionFloor = 2e-3;
+constexpr double kRotationFloor = 1.5e-3;  ///< rad
 constexpr double kNeighbourOverlap =
     0.25;  ///< share of lines; doors and corners hide much from one step to the next
 constexpr double kMostFromOdometry = 0.5;  ///< m and rad between a match of neighbours and odometry
@@ -71,6 +73,7 @@ class Builder {
       for (const std::size_t j : places_seen_before(k)) look(j, k);
     }
     for (const Loop& loop : waiting_) refuse(loop, "not confirmed");
+    settle_robustly(out_.graph);
     return std::move(out_);
   }
 

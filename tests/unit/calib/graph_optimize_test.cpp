@@ -5,6 +5,7 @@
 
 #include "calib/graph/connectivity.hpp"
 #include "calib/graph/loops.hpp"
+#include "calib/graph/robust_weights.hpp"
 #include "tests/unit/calib/graph_support.hpp"
 
 namespace odomcalib::calib {
@@ -222,6 +223,47 @@ TEST(GraphOptimize, anisotropic_information_neither_crawls_nor_traps) {
     EXPECT_LE(summary.chi2_after, best.chi2_after * (1.0 + 1e-6)) << "seed " << seed;
     EXPECT_LT(summary.iterations.size(), 30U) << "seed " << seed;
   }
+}
+
+/// Mean distance between the vertices of two graphs, m.
+double mean_distance(const PoseGraph& a, const PoseGraph& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.vertices.size(); ++i)
+    sum += std::hypot(a.vertices[i].x - b.vertices[i].x, a.vertices[i].y - b.vertices[i].y);
+  return sum / static_cast<double>(a.vertices.size());
+}
+
+TEST(RobustWeights, edges_that_are_off_by_far_more_than_they_say_hardly_count) {
+  double plain_distance = 0.0, robust_distance = 0.0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    PoseGraph sound = testing::WorldMaker({.poses = 200}, seed).make().graph;
+    PoseGraph plain = sound;
+    for (std::size_t e = 0, loop = 0; e < plain.edges.size(); ++e)
+      if (plain.edges[e].to != plain.edges[e].from + 1 && loop++ % 10 == 0) plain.edges[e].motion[1] += 0.5;
+    ASSERT_TRUE(optimize_graph(sound).is_usable() && optimize_graph(plain).is_usable());
+    PoseGraph robust = plain;
+    ASSERT_TRUE(settle_robustly(robust));
+    plain_distance += mean_distance(plain, sound);
+    robust_distance += mean_distance(robust, sound);
+  }
+  std::printf("20 worlds, from the graph without false edges: %.3f m, robustly %.3f m\n",
+              plain_distance / 20.0, robust_distance / 20.0);
+  EXPECT_LT(robust_distance, 0.5 * plain_distance);
+}
+
+TEST(RobustWeights, settling_again_moves_nothing_and_what_cannot_be_settled_stays) {
+  PoseGraph graph = testing::WorldMaker({.poses = 100}, 3).make().graph;
+  ASSERT_TRUE(optimize_graph(graph).is_usable() && settle_robustly(graph));
+  PoseGraph again = graph;
+  ASSERT_TRUE(optimize_graph(again).is_usable());
+  for (std::size_t i = 0; i < graph.vertices.size(); ++i) {
+    EXPECT_NEAR(again.vertices[i].x, graph.vertices[i].x, 1e-6);
+    EXPECT_NEAR(again.vertices[i].yaw, graph.vertices[i].yaw, 1e-6);
+  }
+  graph.vertices.front().fixed = false;  // no gauge
+  const std::string before = to_g2o(graph);
+  EXPECT_FALSE(settle_robustly(graph));
+  EXPECT_EQ(to_g2o(graph), before);
 }
 
 TEST(GraphOptimize, the_same_input_gives_the_same_bits) {
