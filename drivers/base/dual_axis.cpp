@@ -29,8 +29,8 @@ DualAxis::DualAxis(Profile profile)
     : profile_(std::move(profile)),
       sdo_(profile_.node),
       job_(profile_),
-      left_(ticks_per_s(profile_)),
-      right_(ticks_per_s(profile_)) {}
+      left_(ticks_per_s(profile_), profile_.ticks_per_rev),
+      right_(ticks_per_s(profile_), profile_.ticks_per_rev) {}
 
 /// A stop event also stops the axes right here: the daemon's protective stop is the second line, not the
 /// first.
@@ -92,17 +92,23 @@ void DualAxis::on_life_sign(const CanFrame& frame) {
   ++heartbeats_;
   heard_at_ = now_;
   node_state_ = frame.data[0] & 0x7F;  // bit 7 is the toggle of node guarding
-  if (node_state_ == 0) {
-    ++boot_ups_;
-    const bool expected = phase_ == Phase::absent || phase_ == Phase::identifying;
-    if (!expected)
-      lose("unexpected_boot", "the controller restarted: its RAM parameters and PDO mapping are gone");
-    look_after_ = now_;
-    return;
-  }
+  if (node_state_ == 0) return on_boot_up();
   if (phase_ == Phase::ready && node_state_ != kOperational)
     lose("left_operational",
          "the controller left operational: it is " + canopen::nmt_state_text(node_state_));
+}
+
+/// Most controllers boot for longer than their life signs may be missing: then the stop was before.
+void DualAxis::on_boot_up() {
+  ++boot_ups_;
+  const bool expected = phase_ == Phase::absent || phase_ == Phase::identifying;
+  const char* const text = "the controller restarted: its RAM parameters and PDO mapping are gone";
+  if (!expected)
+    lose("unexpected_boot", text);
+  else if (fell_silent_)
+    event("unexpected_boot", text, false);
+  fell_silent_ = false;
+  look_after_ = now_;
 }
 
 void DualAxis::on_other_master(const CanFrame& frame) {
@@ -119,7 +125,9 @@ void DualAxis::on_other_master(const CanFrame& frame) {
 void DualAxis::check_life() {
   if (phase_ != Phase::ready || job_.storing() || !heard_at_) return;
   const double longest = kMissedHeartbeats * 1e-3 * profile_.heartbeat_ms;
-  if (now_ - *heard_at_ > longest) lose("heartbeat_lost", "three heartbeats of the controller are missing");
+  if (now_ - *heard_at_ <= longest) return;
+  lose("heartbeat_lost", "three heartbeats of the controller are missing");
+  fell_silent_ = true;
 }
 
 /// The node is no longer what was configured: stop, forget, look again.
@@ -149,6 +157,7 @@ void DualAxis::forget_node() {
 void DualAxis::restart_to_verify() {
   event("restarted_to_verify", "the controller is reset to see what it stored", false);
   restarted_at_ = now_;
+  fell_silent_ = false;
   send_nmt(kNmtResetNode);
   forget_node();
   look_after_ = now_ + kBoot_s;  // a boot-up message makes it sooner

@@ -12,6 +12,7 @@
 #include "drivers/base/controller.hpp"
 #include "drivers/base/parameter_job.hpp"
 #include "drivers/base/profile.hpp"
+#include "drivers/base/stuck_watch.hpp"
 #include "drivers/base/tick_unwrap.hpp"
 #include "drivers/base/timer_dates.hpp"
 
@@ -64,6 +65,7 @@ class DualAxis final : public Controller {
   void on_other_master(const CanFrame& frame);
   void check_life();
   void lose(const std::string& code, const std::string& text);
+  void on_boot_up();
   void send_own_heartbeat();
   void send_nmt(std::uint8_t command);
   void send_sync();
@@ -99,11 +101,10 @@ class DualAxis final : public Controller {
   Result<void> job_allowed(double now);
 
   struct Wheel {
-    explicit Wheel(double ticks_per_s) : unwrap(ticks_per_s) {}
+    Wheel(double ticks_per_s, double ticks_per_rev) : unwrap(ticks_per_s), watch(ticks_per_rev) {}
     TickUnwrap unwrap;
-    std::int64_t total = 0;
-    double changed_at = -1.0;     // s, last count that differed
-    double expected_since = 0.0;  // rad commanded since then
+    StuckWatch watch;
+    std::optional<std::int64_t> total;
   };
 
   const Profile profile_;
@@ -118,6 +119,7 @@ class DualAxis final : public Controller {
   bool watchdog_armed_ = false;
 
   std::optional<double> heard_at_;  // s, last life sign
+  bool fell_silent_ = false;        // was lost for want of life signs and has not booted since
   std::uint8_t node_state_ = 0;
   double own_heartbeat_due_ = 0.0;
   double sync_due_ = 0.0;

@@ -18,10 +18,8 @@ constexpr double kCommandLives_s = 0.1;
 constexpr double kPositionsLive_s = 0.1;
 constexpr double kStep_s = 1.0;  // longest wait for the next drive state
 constexpr double kRest_s = 0.1;
-constexpr double kEnding_s = 3.0;         // longest ramp to standstill before torque is taken away anyway
-constexpr unsigned kResetCycles = 4;      // half a period of the fault reset's edge
-constexpr double kStuckAngle_rad = 0.15;  // commanded without any count
-constexpr double kStuckTime_s = 0.3;
+constexpr double kEnding_s = 3.0;     // longest ramp to standstill before torque is taken away anyway
+constexpr unsigned kResetCycles = 4;  // half a period of the fault reset's edge
 constexpr std::size_t kMostQueued = 4096;
 constexpr std::uint8_t kMostSyncs = 240;  // transmission types 1..240: every n-th SYNC
 constexpr std::uint8_t kOnEvent = 254;    // 254, 255: on change or timer
@@ -82,15 +80,13 @@ void DualAxis::on_positions(std::int32_t left, std::int32_t right, double t) {
           std::string(l.jumped ? "left" : "right") + " count jumped: reset, or a broken encoder line",
           motion_ != Motion::off);
   }
-  const auto follow = [&](Wheel& wheel, std::int64_t total) {
-    if (total == wheel.total && wheel.changed_at >= 0.0) return;
+  const auto follow = [&](Wheel& wheel, std::int64_t total, int sign) {
+    wheel.watch.counted(sign * total, t, now_);
+    if (wheel.total != total) moved_at_ = now_;
     wheel.total = total;
-    wheel.changed_at = now_;
-    wheel.expected_since = 0.0;
-    moved_at_ = now_;
   };
-  follow(left_, l.total);
-  follow(right_, r.total);
+  follow(left_, l.total, profile_.left_sign);
+  follow(right_, r.total, profile_.right_sign);
   if (ticks_.size() >= kMostQueued) {
     ++dropped_;
     return;
@@ -224,8 +220,8 @@ void DualAxis::step_enabling() {
     motion_ = Motion::on;
     command_left_ = command_right_ = 0.0;
     command_at_ = now_;
-    left_.changed_at = right_.changed_at = now_;
-    left_.expected_since = right_.expected_since = 0.0;
+    left_.watch.begin(now_);
+    right_.watch.begin(now_);
   } else if (now_ - motion_since_ > kStep_s) {
     const std::string states = canopen::to_text(axes_[0]) + ", " + canopen::to_text(axes_[1]);
     event("enable_failed",
@@ -261,15 +257,11 @@ void DualAxis::check_motion() {
   if (motion_ == Motion::on) check_encoders();
 }
 
-/// Counts that stand still although the wheel was told to turn: a broken encoder would let the robot run
-/// away.
 void DualAxis::check_encoders() {
-  const auto stuck = [&](Wheel& wheel, double command_rad_s) {
-    if (now_ >= cycle_due_) wheel.expected_since += std::abs(command_rad_s) * kCycle_s;
-    return wheel.expected_since > kStuckAngle_rad && now_ - wheel.changed_at > kStuckTime_s;
-  };
-  const bool left = stuck(left_, command_left_);
-  const bool right = stuck(right_, command_right_);
+  left_.watch.commanded(command_left_, now_);
+  right_.watch.commanded(command_right_, now_);
+  const bool left = left_.watch.stuck(now_);
+  const bool right = right_.watch.stuck(now_);
   if (left || right)
     event("encoder_stuck",
           std::string(left ? "left" : "right") + " count stands still although the wheel is commanded", true);

@@ -65,8 +65,8 @@ struct Profile {
   unsigned bitrate = 500'000;
   std::uint32_t vendor = 0, product = 0;  ///< 0: not compared
   // Life signs
-  std::uint16_t heartbeat_ms = 100;  ///< of the drive
-  double heartbeat_unit_ms = 1.0;    ///< of 1017h
+  std::uint16_t heartbeat_ms = 30;  ///< of the drive
+  double heartbeat_unit_ms = 1.0;   ///< of 1017h
   std::uint8_t host_node = 0x7F;
   ProfileWatchdog watchdog;
   std::vector<ProfileWrite> init;  ///< written after the identity was checked

@@ -54,7 +54,7 @@ void read_identity(ProfileTable table, Profile& profile) {
 }
 
 void read_heartbeat(ProfileTable table, Profile& profile) {
-  profile.heartbeat_ms = static_cast<std::uint16_t>(table.integer("period_ms", 100, 10, 1000));
+  profile.heartbeat_ms = static_cast<std::uint16_t>(table.integer("period_ms", 30, 10, 1000));
   profile.heartbeat_unit_ms = table.number("unit_ms", 1.0, 1e-3, 1000.0);
   profile.host_node = static_cast<std::uint8_t>(table.integer("host_node", 0x7F, 1, 127));
   table.finish();

@@ -18,9 +18,7 @@ using sim::SimRobot;
 constexpr double kTurn = 0.100;
 // Detection plus 100 ms until the zero command has reached the drive.
 constexpr double kEncoder = 0.100 + 0.100, kLidar = 0.250 + 0.100;
-constexpr double kHeartbeat = 3 * 0.100 + 0.100;  // three periods of the profile must be missing
-constexpr double kStuck = 0.300 + 0.100;          // a wheel that breaks away may stand as long
-constexpr double kOwnWatchdog = 0.200 + 0.100;    // no command passes: the drive's watch of our heartbeat
+constexpr double kOwnWatchdog = 0.200 + 0.100;  // no command passes: the drive's watch of our heartbeat
 
 struct Fault {
   const char* name;
@@ -100,7 +98,7 @@ void nothing(SimRobot& /*robot*/) {}
 
 const Fault kStopping[] = {
     {"F1_cable_out", [](SimRobot& r) { r.cut_can(true); }, [](SimRobot& r) { r.cut_can(false); },
-     "pdo_frozen", kOwnWatchdog},
+     "heartbeat_lost", kOwnWatchdog},
     {"F1_adapter_out", [](SimRobot& r) { r.unplug_can(); },
      [](SimRobot& r) { ASSERT_TRUE(r.plug_can().ok()); }, "", kOwnWatchdog},
     {"F2_bus_off", [](SimRobot& r) { r.inject_can_bytes("sb255000\r"); }, nothing, "bus_off", 0.1},
@@ -118,19 +116,19 @@ const Fault kStopping[] = {
      "left_operational", 0.1},
     {"F6_controller_reset", [](SimRobot& r) { r.reset_drive(); }, nothing, "", kEncoder},
     {"F7_heartbeat_lost", [](SimRobot& r) { r.node().faults.heartbeat_stopped = true; },
-     [](SimRobot& r) { r.node().faults.heartbeat_stopped = false; }, "heartbeat_lost", kHeartbeat},
+     [](SimRobot& r) { r.node().faults.heartbeat_stopped = false; }, "heartbeat_lost", kEncoder},
     {"F8_emergency", [](SimRobot& r) { r.emergency(0x2310); }, nothing, "emcy", 0.1, 5.0, "fault"},
     {"F12_no_process_data", [](SimRobot& r) { r.node().faults.pdo_silent = true; },
      [](SimRobot& r) { r.node().faults.pdo_silent = false; }, "pdo_frozen", kEncoder},
     {"F12_frozen_process_data", [](SimRobot& r) { r.node().faults.pdo_frozen = true; },
-     [](SimRobot& r) { r.node().faults.pdo_frozen = false; }, "encoder_stuck", kStuck},
+     [](SimRobot& r) { r.node().faults.pdo_frozen = false; }, "encoder_stuck", kEncoder},
     {"F13_process_data_late_by_200_ms", [](SimRobot& r) { r.node().faults.pdo_delay = 0.2; },
      [](SimRobot& r) { r.node().faults.pdo_delay = 0.0; }, "pdo_frozen", kEncoder},
     {"F17_counts_jump", [](SimRobot& r) { r.shift_counts(1'000'000, 0); }, nothing, "tick_jump", kEncoder},
     {"F18_left_encoder_stuck", [](SimRobot& r) { r.hold_encoder(sim::kLeft, true); },
-     [](SimRobot& r) { r.hold_encoder(sim::kLeft, false); }, "left count stands still", kStuck},
+     [](SimRobot& r) { r.hold_encoder(sim::kLeft, false); }, "left count stands still", kEncoder},
     {"F18_right_encoder_stuck", [](SimRobot& r) { r.hold_encoder(sim::kRight, true); },
-     [](SimRobot& r) { r.hold_encoder(sim::kRight, false); }, "right count stands still", kStuck},
+     [](SimRobot& r) { r.hold_encoder(sim::kRight, false); }, "right count stands still", kEncoder},
     {"F22_lidar_out", [](SimRobot& r) { r.unplug_lidar(); },
      [](SimRobot& r) { ASSERT_TRUE(r.plug_lidar().ok()); }, "no scan", kLidar, 2.0},
     {"F23_half_frames", [](SimRobot& r) { r.lidar_faults().half_packets = true; },

@@ -182,7 +182,7 @@ TEST_F(RobotOnVcan, F6_controller_reset) {
 TEST_F(RobotOnVcan, F7_heartbeat_lost) {
   const double begin = monotonic();
   both_->robot->tell("silence heartbeat");
-  expect_stop(begin, "heartbeat_lost", 0.3 + kToRest);  // three heartbeats of 100 ms must be missing first
+  expect_stop(begin, "heartbeat_lost", 0.1 + kToRest);  // three heartbeats of 30 ms must be missing first
   both_->robot->tell("speak heartbeat");
   expect_ready_and_at_rest(8.0);
 }

@@ -13,8 +13,6 @@ constexpr double kCommandLives_s = 0.1;
 constexpr double kStep_s = 1.0;  // longest wait until the device says it is enabled
 constexpr double kRest_s = 0.15;
 constexpr double kEnding_s = 3.0;  // longest ramp to standstill before torque is taken away anyway
-constexpr double kStuckAngle_rad = 0.15;
-constexpr double kStuckTime_s = 0.3;
 constexpr std::size_t kMostQueued = 4096;
 
 std::size_t index(Side side) { return static_cast<std::size_t>(side); }
@@ -23,11 +21,14 @@ const char* name_of(Side side) { return side == Side::left ? "left" : "right"; }
 
 }  // namespace
 
+SpeedBase::Wheel SpeedBase::wheel_of(const Profile& profile) {
+  return {TickUnwrap(ticks_per_s(profile), profile.count_bits), StuckWatch(profile.ticks_per_rev), {}};
+}
+
 SpeedBase::SpeedBase(Profile profile, std::unique_ptr<SpeedProtocol> protocol)
     : profile_(std::move(profile)),
       protocol_(std::move(protocol)),
-      wheels_{Wheel{TickUnwrap(ticks_per_s(profile_), profile_.count_bits)},
-              Wheel{TickUnwrap(ticks_per_s(profile_), profile_.count_bits)}} {}
+      wheels_{wheel_of(profile_), wheel_of(profile_)} {}
 
 /// A stop event also stops the wheels right here: the daemon's protective stop is the second line.
 void SpeedBase::event(const std::string& code, const std::string& text, bool stop) {
@@ -64,11 +65,10 @@ void SpeedBase::on_count(const SideCount& count) {
   const TickUnwrap::Reading reading = wheel.unwrap.on_count(count.raw, count.t);
   counted_at_[index(count.side)] = now_;
   if (reading.jumped) on_jump(count.side);
-  if (reading.total != wheel.total || wheel.changed_at < 0.0) {
-    wheel.total = reading.total;
-    wheel.changed_at = moved_at_ = now_;
-    wheel.expected_since = 0.0;
-  }
+  const int sign = count.side == Side::left ? profile_.left_sign : profile_.right_sign;
+  wheel.watch.counted(sign * reading.total, count.t, now_);
+  if (reading.total != wheel.total) moved_at_ = now_;
+  wheel.total = reading.total;
   const auto pair = pairing_.add(count.side, count.t, reading.total);
   if (!pair) return;
   if (ticks_.size() >= kMostQueued) {
@@ -125,14 +125,11 @@ void SpeedBase::check_device() {
     event("axis_not_enabled", "the controller no longer follows commands", true);
 }
 
-/// Counts that stand still although the wheel was told to turn: a broken encoder would let the robot run
-/// away.
 void SpeedBase::check_encoders() {
   for (const Side side : {Side::left, Side::right}) {
-    Wheel& wheel = wheels_[index(side)];
-    if (now_ >= cycle_due_) wheel.expected_since += std::abs(command_[index(side)]) * kCycle_s;
-    const double patience = std::max(kStuckAngle_rad, 3.0 * 2.0 * std::numbers::pi / profile_.ticks_per_rev);
-    if (wheel.expected_since <= patience || now_ - wheel.changed_at <= kStuckTime_s) continue;
+    StuckWatch& watch = wheels_[index(side)].watch;
+    watch.commanded(command_[index(side)], now_);
+    if (!watch.stuck(now_)) continue;
     return event("encoder_stuck",
                  std::string(name_of(side)) + " count stands still although the wheel is commanded", true);
   }
@@ -165,10 +162,7 @@ void SpeedBase::step_enabling() {
     motion_ = Motion::on;
     command_ = {};
     command_at_ = now_;
-    for (Wheel& wheel : wheels_) {
-      wheel.changed_at = now_;
-      wheel.expected_since = 0.0;
-    }
+    for (Wheel& wheel : wheels_) wheel.watch.begin(now_);
     return protocol_->command(0.0, 0.0);
   }
   if (now_ - motion_since_ <= kStep_s) return protocol_->engage();

@@ -11,6 +11,7 @@
 #include "drivers/base/controller.hpp"
 #include "drivers/base/profile.hpp"
 #include "drivers/base/speed/speed_protocol.hpp"
+#include "drivers/base/stuck_watch.hpp"
 #include "drivers/base/tick_unwrap.hpp"
 
 namespace odomcalib::drivers {
@@ -51,11 +52,11 @@ class SpeedBase final : public Controller {
   enum class Motion { off, enabling, on, disabling, stopping };
   struct Wheel {
     TickUnwrap unwrap;
-    std::int64_t total = 0;
-    double changed_at = -1.0;     ///< s
-    double expected_since = 0.0;  ///< rad commanded since then
+    StuckWatch watch;
+    std::optional<std::int64_t> total;
   };
 
+  static Wheel wheel_of(const Profile& profile);
   void event(const std::string& code, const std::string& text, bool stop);
   void take_news();
   void on_count(const SideCount& count);

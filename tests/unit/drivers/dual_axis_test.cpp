@@ -238,7 +238,9 @@ TEST(DualAxis, a_lost_heartbeat_is_a_stop_event_and_heals) {
   Bench bench;
   ASSERT_TRUE(bench.ready());
   bench.node.faults.heartbeat_stopped = true;
+  const double start = bench.now;
   ASSERT_TRUE(bench.run_until([&] { return bench.find("heartbeat_lost") != nullptr; }, 0.5));
+  EXPECT_LT(bench.now - start, 0.1);
   EXPECT_TRUE(bench.find("heartbeat_lost")->stop);
   EXPECT_EQ(bench.controller->state(), ControllerState::absent);
   bench.node.faults.heartbeat_stopped = false;
@@ -265,6 +267,33 @@ TEST(DualAxis, counts_that_stand_still_under_command_stop) {
   bench.drive(2.0, 2.0, 1.0);
   ASSERT_NE(bench.find("encoder_stuck"), nullptr);
   EXPECT_TRUE(bench.find("encoder_stuck")->stop);
+}
+
+TEST(DualAxis, counts_that_freeze_in_motion_stop_within_a_tenth_of_a_second) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(2.0, 2.0, 0.5);
+  EXPECT_EQ(bench.find("encoder_stuck"), nullptr);
+  const double start = bench.now;
+  bench.wheels_turn = false;
+  bench.drive(2.0, 2.0, 0.2);
+  ASSERT_NE(bench.find("encoder_stuck"), nullptr);
+  EXPECT_LT(bench.find("encoder_stuck")->t - start, 0.1);
+  EXPECT_FALSE(bench.node.order().torque && bench.node.order().rate[0] != 0.0);
+}
+
+TEST(DualAxis, a_wheel_that_breaks_away_late_or_stalls_for_a_moment_is_no_stuck_encoder) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.wheels_turn = false;
+  bench.drive(2.0, 2.0, 0.25);
+  bench.wheels_turn = true;
+  bench.drive(2.0, 2.0, 0.5);
+  bench.wheels_turn = false;
+  bench.drive(2.0, 2.0, 0.06);
+  bench.wheels_turn = true;
+  bench.drive(2.0, 2.0, 0.5);
+  EXPECT_EQ(bench.find("encoder_stuck"), nullptr);
 }
 
 TEST(DualAxis, standing_still_on_command_is_no_stuck_encoder) {
