@@ -27,6 +27,12 @@ class Frame {
       top_ = std::max(top_, vertex.y);
     }
   }
+  void include(const Eigen::Vector2d& position) {
+    left_ = std::min(left_, position.x());
+    right_ = std::max(right_, position.x());
+    bottom_ = std::min(bottom_, position.y());
+    top_ = std::max(top_, position.y());
+  }
   [[nodiscard]] double scale() const {
     const double side = std::max(right_ - left_, top_ - bottom_);
     return side > 0.0 ? kSize / side : 1.0;
@@ -35,6 +41,9 @@ class Frame {
   [[nodiscard]] double height() const { return (top_ - bottom_) * scale() + 2.0 * kMargin; }
   [[nodiscard]] double x(const GraphVertex& vertex) const { return kMargin + (vertex.x - left_) * scale(); }
   [[nodiscard]] double y(const GraphVertex& vertex) const { return kMargin + (top_ - vertex.y) * scale(); }
+  [[nodiscard]] Eigen::Vector2d at(const Eigen::Vector2d& position) const {
+    return {kMargin + (position.x() - left_) * scale(), kMargin + (top_ - position.y()) * scale()};
+  }
 
  private:
   double left_, right_, bottom_, top_;
@@ -70,6 +79,18 @@ std::string points(const PoseGraph& graph, const Frame& frame) {
   return out + "</g>\n";
 }
 
+/// A small square for every cell.
+std::string cells(const PictureMap& map, const Frame& frame) {
+  const double side = std::max(map.cell * frame.scale(), 0.7);  // a thinner one would fade
+  std::string out = "<path id=\"map\" fill=\"#222\" d=\"";
+  for (const Eigen::Vector2d& centre : map.occupied) {
+    const Eigen::Vector2d corner = frame.at(centre) - Eigen::Vector2d::Constant(0.5 * side);
+    fmt::format_to(std::back_inserter(out), "M{:.1f} {:.1f}h{:.1f}v{:.1f}h{:.1f}z", corner.x(), corner.y(),
+                   side, side, -side);
+  }
+  return out + "\"/>\n";
+}
+
 std::string legend(const Frame& frame) {
   return fmt::format(
       "<text x=\"{:.0f}\" y=\"{:.0f}\" font-family=\"sans-serif\" font-size=\"14\">"
@@ -80,12 +101,14 @@ std::string legend(const Frame& frame) {
 
 }  // namespace
 
-std::string graph_picture(const PoseGraph& before, const PoseGraph& after) {
+std::string graph_picture(const PoseGraph& before, const PoseGraph& after, const PictureMap& map) {
   Frame frame(after.vertices.front());
   frame.include(before);
   frame.include(after);
+  for (const Eigen::Vector2d& centre : map.occupied) frame.include(centre);
   return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\">\n",
                      frame.width(), frame.height() + kLegend) +
+         (map.occupied.empty() ? "" : cells(map, frame)) +
          trajectory(before, frame, "before", "stroke=\"#888\" stroke-dasharray=\"3 2\"") +
          loop_edges(after, frame) +
          trajectory(after, frame, "after", "stroke=\"#2166ac\" stroke-width=\"1.5\"") + points(after, frame) +

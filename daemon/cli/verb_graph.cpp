@@ -1,12 +1,14 @@
-// Pose graphs: optimise one, or tell what it holds.
+// Pose graphs: optimise one, tell what it holds, or make one of a recording.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/graph_map.hpp"
 #include "daemon/cli/graph_picture.hpp"
 #include "daemon/cli/graph_run.hpp"
+#include "daemon/cli/recordings.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/file_bytes.hpp"
 
@@ -23,6 +25,11 @@ Result<PoseGraph> read_files(const std::vector<std::string>& files) {
   const std::vector<std::filesystem::path> paths(files.begin(), files.end());
   return read_pose_graph(paths);
 }
+
+struct BuildOptions {
+  std::string recording, robot, out, picture;
+  calib::ScanGraphOptions graph;
+};
 
 template <typename... Described>
 void print(const Session& session, const Described&... described) {
@@ -68,6 +75,25 @@ int tell(const Options& options, const Session& session) {
   return kDone;
 }
 
+Result<void> write_results(const BuildOptions& options, const calib::RecordingMap& map) {
+  if (!options.out.empty())
+    if (auto written = replace_file(options.out, to_g2o(map.made.graph)); !written) return written;
+  if (options.picture.empty()) return {};
+  return replace_file(options.picture,
+                      graph_picture(map.by_odometry, map.made.graph, {map.occupied, map.cell}));
+}
+
+int build(const BuildOptions& options, const Session& session) {
+  const auto recordings = read_recordings({options.recording}, options.robot);
+  if (!recordings) return report_error(recordings.error(), session.json);
+  const auto map = calib::map_recording(recordings.value().front(), options.graph);
+  if (!map) return report_error(map.error(), session.json);
+  if (auto written = write_results(options, map.value()); !written)
+    return report_error(written.error(), session.json);
+  print(session, map.value());
+  return kDone;
+}
+
 void add_optimize(CLI::App& parent, Session& session) {
   auto* verb = parent.add_subcommand("optimize", "Move the vertices to where they agree best with the edges");
   auto options = std::make_shared<Options>();
@@ -94,14 +120,32 @@ void add_info(CLI::App& parent, Session& session) {
       [&session, options] { session.run = [&session, options] { return tell(*options, session); }; });
 }
 
+void add_build(CLI::App& parent, Session& session) {
+  auto* verb = parent.add_subcommand("build", "Make a graph and a map of the scans and ticks of a recording");
+  auto options = std::make_shared<BuildOptions>();
+  verb->add_option("RECORDING", options->recording)->required();
+  verb->add_option("--out", options->out, "g2o file to write: poses of the lidar at keyframes");
+  verb->add_option("--svg", options->picture, "picture to write: map, trajectory before and after, loops");
+  verb->add_option("--robot", options->robot, "nominal values (TOML) instead of those of the recording");
+  verb->add_option("--distance", options->graph.spacing.distance, "m of travel from keyframe to keyframe")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  verb->add_option("--rotation", options->graph.spacing.rotation, "rad turned from keyframe to keyframe")
+      ->check(CLI::Range(0.01, 6.0))
+      ->capture_default_str();
+  verb->callback(
+      [&session, options] { session.run = [&session, options] { return build(*options, session); }; });
+}
+
 }  // namespace
 
 void add_graph(CLI::App& app, Session& session) {
-  auto* verb = app.add_subcommand("graph", "Pose graphs in g2o text");
+  auto* verb = app.add_subcommand("graph", "Pose graphs: made of recordings, optimised, inspected");
   verb->require_subcommand(1);
   verb->fallthrough();
   add_optimize(*verb, session);
   add_info(*verb, session);
+  add_build(*verb, session);
 }
 
 }  // namespace odomcalib::cli

@@ -18,7 +18,7 @@ using testing::ray_distance;
 using testing::RoomWall;
 using testing::scan_from;
 
-TEST(Matching, recovers_a_known_motion_from_noise_free_scans) {
+TEST(Matching, S2_04_recovers_a_known_motion_from_noise_free_scans) {
   const Pose a{0.2, -0.1, 0.1};
   const Pose b = compose(a, Pose{0.08, 0.03, 0.15});
   const ScanMatch match = match_scans(scan_from(kRoom, a, 0.0, 1), scan_from(kRoom, b, 0.0, 2), {0, 0, 0});
@@ -28,7 +28,7 @@ TEST(Matching, recovers_a_known_motion_from_noise_free_scans) {
   EXPECT_NEAR(match.pose[2], 0.15, 1e-4);
 }
 
-TEST(Matching, errors_agree_with_the_reported_covariance) {
+TEST(Matching, S2_40_errors_agree_with_the_reported_covariance) {
   constexpr unsigned kRuns = 100;
   double squared = 0.0;
   for (unsigned run = 0; run < kRuns; ++run) {

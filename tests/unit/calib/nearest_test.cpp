@@ -17,7 +17,7 @@ std::vector<Eigen::Vector2d> random_points(std::size_t count, unsigned seed) {
   return points;
 }
 
-TEST(Nearest, the_tree_finds_what_comparing_with_every_point_finds) {
+TEST(Nearest, S2_02_the_tree_finds_what_comparing_with_every_point_finds) {
   for (const std::size_t count : {1U, 2U, 9U, 700U}) {
     const auto points = random_points(count, 1);
     const NearestTree tree(points);
@@ -30,7 +30,7 @@ TEST(Nearest, the_tree_finds_what_comparing_with_every_point_finds) {
   }
 }
 
-TEST(PointToPoint, recovers_a_known_motion_of_the_same_points) {
+TEST(PointToPoint, S2_04_recovers_a_known_motion_of_the_same_points) {
   const auto points = random_points(300, 3);
   const Pose motion{0.05, -0.03, 0.02};
   std::vector<Eigen::Vector2d> moved;  // the same points as the moved sensor sees them
@@ -46,7 +46,7 @@ TEST(PointToPoint, recovers_a_known_motion_of_the_same_points) {
   EXPECT_LT(result.rms, 1e-6);
 }
 
-TEST(PointToPoint, failure_is_no_success) {
+TEST(PointToPoint, S2_04_failure_is_no_success) {
   const auto points = random_points(300, 4);
   std::vector<Eigen::Vector2d> elsewhere;
   for (const Eigen::Vector2d& p : points) elsewhere.emplace_back(p.x() + 100.0, p.y());

@@ -42,7 +42,7 @@ Case random_case(unsigned seed) {
           points_of(scan_from(kRoom, compose(a, truth), 0.02, seed + 1), 12), window, truth};
 }
 
-TEST(PoseSearch, branch_and_bound_finds_the_optimum_of_brute_force_with_a_twentieth_of_the_work) {
+TEST(PoseSearch, S2_40_branch_and_bound_finds_the_optimum_of_brute_force_with_a_twentieth_of_the_work) {
   std::size_t brute_work = 0;
   std::size_t bound_work = 0;
   for (unsigned seed = 1; seed <= 25; ++seed) {
@@ -73,7 +73,7 @@ Case odd_case(unsigned seed) {
   return c;
 }
 
-TEST(PoseSearch, in_a_thousand_odd_windows_the_optimum_is_that_of_brute_force) {
+TEST(PoseSearch, S2_40_in_a_thousand_odd_windows_the_optimum_is_that_of_brute_force) {
   for (unsigned seed = 1; seed <= 1000; ++seed) {
     Case c = odd_case(seed);
     const SearchResult brute = search_brute_force(c.field, c.points, c.window);
@@ -82,7 +82,7 @@ TEST(PoseSearch, in_a_thousand_odd_windows_the_optimum_is_that_of_brute_force) {
   }
 }
 
-TEST(PoseSearch, the_optimum_is_next_to_the_truth) {
+TEST(PoseSearch, S2_02_the_optimum_is_next_to_the_truth) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Case c = random_case(seed);
     const SearchResult found = search_branch_and_bound(c.field, c.points, c.window);
@@ -92,7 +92,7 @@ TEST(PoseSearch, the_optimum_is_next_to_the_truth) {
   }
 }
 
-TEST(PoseSearch, a_hill_climb_never_beats_brute_force_by_more_than_the_lattice_and_never_loses_its_start) {
+TEST(PoseSearch, S2_03_a_hill_climb_never_beats_brute_force_and_never_loses_its_start) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const Case c = random_case(seed);
     const SearchResult climb = search_hill_climb(c.field, c.points, c.window.centre, {});
@@ -103,7 +103,7 @@ TEST(PoseSearch, a_hill_climb_never_beats_brute_force_by_more_than_the_lattice_a
   }
 }
 
-TEST(PoseSearch, a_hill_climb_reaches_the_summit_from_nearby) {
+TEST(PoseSearch, S2_02_a_hill_climb_reaches_the_summit_from_nearby) {
   const Pose a{0.3, 0.2, 0.4};
   const LikelihoodField field(points_of(scan_from(kRoom, a, 0.0, 1), 1), {.cell = 0.02, .cap = 0.5});
   const auto points = points_of(scan_from(kRoom, compose(a, Pose{0.1, -0.05, 0.05}), 0.0, 2), 5);
@@ -114,7 +114,7 @@ TEST(PoseSearch, a_hill_climb_reaches_the_summit_from_nearby) {
 }
 
 // LaserSLAM's search window covered -4 to +0.52 m.
-TEST(PoseSearch, the_window_is_symmetric) {
+TEST(PoseSearch, S2_41_the_window_is_symmetric) {
   const Scan scan = scan_from(kRoom, {}, 0.0, 1);
   for (const double sign : {-1.0, 1.0}) {
     LikelihoodField field(points_of(scan, 1), {});
@@ -126,7 +126,7 @@ TEST(PoseSearch, the_window_is_symmetric) {
 }
 
 // LaserSLAM scored points outside of its map as perfect ones.
-TEST(PoseSearch, leaving_the_map_is_not_rewarded) {
+TEST(PoseSearch, S2_41_leaving_the_map_is_not_rewarded) {
   const auto points = points_of(scan_from(kRoom, {}, 0.0, 1), 1);
   const LikelihoodField field(points, {});
   EXPECT_GT(field.fit(points, {}), 0.99);

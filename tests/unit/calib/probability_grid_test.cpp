@@ -9,7 +9,7 @@ namespace {
 
 const std::vector<Eigen::Vector2d> kBeam = {{2.02, 0.02}};
 
-TEST(ProbabilityGrid, one_beam_frees_its_path_and_occupies_its_end) {
+TEST(ProbabilityGrid, S2_40_one_beam_frees_its_path_and_occupies_its_end) {
   ProbabilityGrid grid({});
   grid.insert({}, kBeam);
   EXPECT_NEAR(grid.probability({2.02, 0.02}), 0.7, 1e-6);

@@ -20,7 +20,7 @@ namespace {
 const BeamMotion kAtRest = [](double) { return Pose{}; };
 constexpr double kNoise = 0.01;
 
-TEST(Keyframes, one_after_each_half_metre_or_half_radian) {
+TEST(Keyframes, S2_22_one_after_each_half_metre_or_half_radian) {
   std::vector<Pose> straight, spin;
   for (int k = 0; k <= 1000; ++k) {
     straight.push_back({0.01 * k, 0.0, 0.0});  // 10 m
@@ -123,7 +123,7 @@ Tour make_tour(unsigned seed) {
   return tour;
 }
 
-TEST(ScanGraph, in_a_hundred_tours_every_loop_is_true_and_every_tour_is_closed) {
+TEST(ScanGraph, S2_24_in_a_hundred_tours_every_loop_is_true_and_every_tour_is_closed) {
   constexpr unsigned kRuns = 100;
   std::size_t loops = 0, false_loops = 0, open_tours = 0;
   double before = 0.0, after = 0.0;
@@ -190,7 +190,7 @@ Log read_intel() {
 // the guess is the log's odometry and the pose that of the graph: 82 %, 10.4 mm, 0.17 degrees were measured.
 // Ten relations are off by more than a degree themselves: single matches, the graph and the poses published
 // with the log agree there.
-TEST(ScanGraph, the_intel_lab_closes_and_agrees_with_the_relations_checked_by_hand) {
+TEST(ScanGraph, S2_24_the_intel_lab_closes_and_agrees_with_the_relations_checked_by_hand) {
   ODOMCALIB_NEEDS_SHARED("scanmatch");
   const Log log = read_intel();
   ASSERT_EQ(log.scans.size(), 910U);

@@ -1,0 +1,147 @@
+#include "calib/graph/recording_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "calib/geometry/vector2.hpp"
+#include "calib/matching/probability_grid.hpp"
+#include "calib/reference/scan_surfaces.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kFinestCell = 0.05;      ///< m
+constexpr double kMostCells = 2000.0;     ///< from the origin to the map's edge: 64 MB
+constexpr double kOccupied = 0.6;         ///< probability; one beam that ended there says 0.7
+constexpr double kFarthestReading = 1e3;  ///< m from the origin; beyond it no map is drawn
+
+BaseParameters nominal_of(const RobotDescription& robot) {
+  BaseParameters base;
+  base.left_radius = robot.left_wheel_diameter / 2.0;
+  base.right_radius = robot.right_wheel_diameter / 2.0;
+  base.track_width = robot.track_width;
+  if (robot.lidar_pose) {
+    const auto& [x, y, yaw] = *robot.lidar_pose;
+    base.mount = {x, y, yaw};
+  }
+  return base;
+}
+
+/// Scans of the first sensor during which the wheels are known, with the lidar's pose by odometry.
+struct Instants {
+  std::vector<std::size_t> scans;
+  std::vector<Pose> poses;
+};
+
+Instants instants_of(const Recording& recording, const ScanSurfaces& surfaces, const WheelTrack& track,
+                     const Pose& mount) {
+  Instants found;
+  for (std::size_t k = 0; k < recording.scans.size(); ++k) {
+    const double t = surfaces.times()[k];
+    if (recording.scans[k].sensor != recording.scans.front().sensor || !track.covers(t, t)) continue;
+    found.scans.push_back(k);
+    found.poses.push_back(compose(surfaces.odometry()[k], mount));
+  }
+  return found;
+}
+
+Instants keyframes_of(const Instants& all, const KeyframeSpacing& spacing) {
+  Instants chosen;
+  for (const std::size_t k : choose_keyframes(all.poses, spacing)) {
+    chosen.scans.push_back(all.scans[k]);
+    chosen.poses.push_back(all.poses[k]);
+  }
+  return chosen;
+}
+
+/// The vertices of a graph at other poses, told from the first.
+PoseGraph placed_at(PoseGraph graph, const std::vector<Pose>& poses) {
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Pose pose = between(poses.front(), poses[k]);
+    graph.vertices[k].x = pose.x;
+    graph.vertices[k].y = pose.y;
+    graph.vertices[k].yaw = wrap_angle(pose.yaw);
+  }
+  return graph;
+}
+
+Pose pose_of(const GraphVertex& vertex) { return {vertex.x, vertex.y, vertex.yaw}; }
+
+std::vector<Eigen::Vector2d> seen_in_map(const std::vector<Surface>& surfaces, const PoseGraph& graph) {
+  std::vector<Eigen::Vector2d> seen;
+  for (std::size_t k = 0; k < surfaces.size(); ++k) {
+    const Frame frame(pose_of(graph.vertices[k]));
+    for (const SurfacePoint& point : surfaces[k].points) seen.push_back(frame.transform(point.position));
+  }
+  std::erase_if(seen, [](const auto& p) { return !(p.cwiseAbs().maxCoeff() < kFarthestReading); });
+  return seen;
+}
+
+GridOptions grid_about(const std::vector<Eigen::Vector2d>& seen) {
+  GridOptions options;
+  options.half_size = kFinestCell;
+  for (const Eigen::Vector2d& p : seen)
+    options.half_size = std::max(options.half_size, p.cwiseAbs().maxCoeff() + kFinestCell);
+  options.cell = std::max(kFinestCell, options.half_size / kMostCells);
+  return options;
+}
+
+/// Centres of the cells in which something was seen, each once.
+std::vector<Eigen::Vector2d> cells_seen(const std::vector<Eigen::Vector2d>& seen, double cell) {
+  std::vector<std::pair<double, double>> cells;
+  cells.reserve(seen.size());
+  for (const Eigen::Vector2d& p : seen)
+    cells.emplace_back(std::floor(p.x() / cell), std::floor(p.y() / cell));
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  std::vector<Eigen::Vector2d> centres;
+  for (const auto& [x, y] : cells) centres.emplace_back((x + 0.5) * cell, (y + 0.5) * cell);
+  return centres;
+}
+
+void draw_map(const std::vector<Surface>& surfaces, RecordingMap& map) {
+  const auto seen = seen_in_map(surfaces, map.made.graph);
+  const GridOptions options = grid_about(seen);
+  ProbabilityGrid grid(options);
+  for (std::size_t k = 0; k < surfaces.size(); ++k)
+    grid.insert(pose_of(map.made.graph.vertices[k]), positions(surfaces[k]));
+  map.cell = options.cell;
+  map.occupied = cells_seen(seen, options.cell);
+  std::erase_if(map.occupied, [&grid](const auto& centre) { return grid.probability(centre) < kOccupied; });
+}
+
+}  // namespace
+
+Result<RecordingMap> map_recording(const Recording& recording, ScanGraphOptions options) {
+  const RobotDescription& robot = recording.robot;
+  if (!(robot.ticks_per_rev > 0.0 && robot.left_wheel_diameter > 0.0 && robot.right_wheel_diameter > 0.0 &&
+        robot.track_width > 0.0))
+    return Error{ErrorCode::missing_units, "the robot's dimensions are missing", recording.name,
+                 "add them to the robot line or name a robot file"};
+  const WheelTrack track = wheel_track_from_ticks(recording);
+  if (track.empty())
+    return Error{ErrorCode::empty, "no tick samples", recording.name, "a map begins with odometry"};
+  if (recording.scans.empty()) return Error{ErrorCode::empty, "no scans", recording.name, ""};
+  const BaseParameters nominal = nominal_of(robot);
+  const DriveModel model(track, make_context(track, nominal));
+  const Eigen::VectorXd parameters = to_vector(nominal);
+  RecordingMap map;
+  map.range_noise = options.loop.range_noise = estimate_range_noise(recording.scans);
+  const ScanSurfaces scans(recording, model, as_span(parameters), {}, map.range_noise);
+  const Instants keyframes =
+      keyframes_of(instants_of(recording, scans, track, nominal.mount), options.spacing);
+  if (keyframes.scans.size() < 2)
+    return Error{ErrorCode::empty, "fewer than two keyframes", recording.name,
+                 "the robot has to move while scans and ticks are recorded"};
+  std::vector<Surface> surfaces;
+  for (const std::size_t scan : keyframes.scans) surfaces.push_back(scans.surface(scan));
+  options.spacing = {0.0, 0.0};  // they are chosen already
+  map.made = build_scan_graph(surfaces, keyframes.poses, options);
+  map.made.scans = keyframes.scans;
+  map.by_odometry = placed_at(map.made.graph, keyframes.poses);
+  draw_map(surfaces, map);
+  return map;
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,14 @@
+// A map made of a recording, as it is told.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "calib/graph/recording_map.hpp"
+#include "daemon/cli/document.hpp"
+
+namespace odomcalib::cli {
+
+nlohmann::ordered_json to_json(const calib::RecordingMap& map);
+Document describe(const calib::RecordingMap& map);
+
+}  // namespace odomcalib::cli
