@@ -46,7 +46,14 @@ Place place_of(const Effect& effect) {
 std::shared_ptr<const Effect> effect_of(const EffectResult& result) {
   if (result.parameters.empty()) return nullptr;
   const auto effect = find_effect(result.name, result.parameters.front().first);
-  return effect && result.parameters.size() == effect->parameters().size() ? effect : nullptr;
+  return effect && result.parameters.size() <= effect->parameters().size() ? effect : nullptr;
+}
+
+/// Parameters that the file does not state, as those of another program may not, stay where a fit begins.
+std::vector<double> values_of(const EffectResult& result, const std::shared_ptr<const Effect>& effect) {
+  std::vector<double> values = start_of({effect});
+  for (std::size_t k = 0; k < result.parameters.size(); ++k) values[k] = result.parameters[k].second.value;
+  return values;
 }
 
 std::vector<FittedCurve> curves_of(const Calibration& calibration) {
@@ -68,7 +75,8 @@ Correction correction_of(const Calibration& calibration) {
     const auto effect = effect_of(result);
     if (!effect || place_of(*effect) != Place::odometry) continue;
     correction.effects.push_back(effect);
-    for (const auto& [name, quantity] : result.parameters) values.push_back(quantity.value);
+    const std::vector<double> own = values_of(result, effect);
+    values.insert(values.end(), own.begin(), own.end());
   }
   for (const auto& [curve, coefficients, law_of] : curves_of(calibration)) {
     if (place_of(*make_curve_effect(curve)) != Place::odometry) continue;

@@ -1,13 +1,18 @@
 #include "calib/effects/factories.hpp"
+#include "calib/effects/step_effect.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
-class TimeOffset final : public Effect {
+// A scan stamped t was taken at encoder time t - offset. Late encoders are seldom a pure delay: a first-order
+// filter that is late by tau reads phi(t - tau) + tau^2 / 2 phi'' + ..., two half as long in a row add half
+// of that. So dL' = dL - smoothing (aL(end) - aL(begin)), and dR' likewise; zero for a pure delay.
+class TimeOffset final : public StepEffect<TimeOffset> {
  public:
   [[nodiscard]] std::string name() const override { return "time_offset"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"offset", "s", 0.02, -1.0, 1.0}};
+    return {{"offset", "s", 0.02, -1.0, 1.0},
+            {"smoothing", "s^2", kTypicalSmoothing, -0.02, 0.02, 0.0, kTypicalSmoothing}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"encoder_lag", "acceleration_slip"};
@@ -25,6 +30,15 @@ class TimeOffset final : public Effect {
   [[nodiscard]] Jet delay(double /*time*/, std::span<const Jet> parameters) const override {
     return parameters[0];
   }
+
+  template <typename T>
+  static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
+    step.left -= p[1] * c.left_acceleration_change;
+    step.right -= p[1] * c.right_acceleration_change;
+  }
+
+ private:
+  static constexpr double kTypicalSmoothing = 1e-3;  ///< a filter that is late by 45 ms
 };
 
 }  // namespace

@@ -30,11 +30,12 @@ struct StepContext {
   double left_delta = 0.0, right_delta = 0.0;                ///< wheel rotation in the interval, rad
   double left_speed = 0.0, right_speed = 0.0;                ///< wheel rim speed, m/s
   double left_acceleration = 0.0, right_acceleration = 0.0;  ///< m/s^2
-  double speed = 0.0;                                        ///< forward, m/s
-  double turn_rate = 0.0;                                    ///< rad/s
-  double turn_acceleration_before = 0.0, turn_acceleration_after = 0.0;  ///< rad/s^2, at begin and end
-  double heading = 0.0;                                                  ///< rad, from the plain model
-  double x = 0.0, y = 0.0;                                               ///< m, from the plain model
+  double left_acceleration_change = 0.0, right_acceleration_change = 0.0;  ///< over the interval, m/s^2
+  double speed = 0.0;                                                      ///< forward, m/s
+  double turn_rate = 0.0;                                                  ///< rad/s
+  double turn_acceleration_before = 0.0, turn_acceleration_after = 0.0;    ///< rad/s^2, at begin and end
+  double heading = 0.0;                                                    ///< rad, from the plain model
+  double x = 0.0, y = 0.0;                                                 ///< m, from the plain model
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;

@@ -148,11 +148,47 @@ Sensitivity::~Sensitivity() = default;
 Eigen::MatrixXd Sensitivity::by_all() const { return by(along_.parameters(), along_.effects(), 0); }
 
 Eigen::MatrixXd Sensitivity::by_more(const EffectList& effects, std::span<const double> parameters) const {
+  const More more = with(effects, parameters);
+  return by(more.parameters, more.effects, along_.parameters().size());
+}
+
+Sensitivity::More Sensitivity::with(const EffectList& effects, std::span<const double> parameters) const {
   EffectList all = along_.effects().list();
   all.insert(all.end(), effects.begin(), effects.end());
   std::vector<double> values(along_.parameters().begin(), along_.parameters().end());
   values.insert(values.end(), parameters.begin(), parameters.end());
-  return by(values, PlacedEffects(all, kBaseCount), along_.parameters().size());
+  return {PlacedEffects(all, kBaseCount), std::move(values)};
+}
+
+std::vector<StepResponse> Sensitivity::by_steps(const EffectList& effects,
+                                                std::span<const double> parameters) const {
+  const More more = with(effects, parameters);
+  const std::vector<Jet> jets = seed(more.parameters, along_.parameters().size());
+  const std::vector<Chunk> twists = twist_derivatives(model_.context(), jets, more.effects);
+  std::vector<std::size_t> first;
+  for (const Path& path : paths_) first.push_back(path.begin.step);
+  std::vector<StepResponse> responses;
+  for (Eigen::Index p = 0; p < static_cast<Eigen::Index>(parameters.size()); ++p) {
+    std::vector<Eigen::Matrix3Xd> rows;
+    rows.reserve(paths_.size());
+    for (const Path& path : paths_) {
+      Eigen::Matrix3Xd row(3, static_cast<Eigen::Index>(path.by_twist.size()));
+      for (std::size_t k = 0; k < path.by_twist.size(); ++k)
+        row.col(static_cast<Eigen::Index>(k)) =
+            path.to_sensor.leftCols<3>() * (path.by_twist[k] * twists[path.begin.step + k].col(p));
+      rows.push_back(std::move(row));
+    }
+    responses.emplace_back(first, std::move(rows));
+  }
+  return responses;
+}
+
+Eigen::MatrixXd StepResponse::by_coefficients(const Eigen::MatrixXd& functions) const {
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(3 * rows_.size()), functions.cols());
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() =
+        rows_[i].lazyProduct(functions.middleRows(static_cast<Eigen::Index>(first_[i]), rows_[i].cols()));
+  return all;
 }
 
 Eigen::MatrixXd Sensitivity::by(std::span<const double> parameters, const PlacedEffects& effects,

@@ -10,6 +10,24 @@
 
 namespace odomcalib::calib {
 
+/// What an effect of one parameter does to each motion, tick interval by tick interval.
+class StepResponse {
+ public:
+  /// @param first tick interval of each motion
+  /// @param rows of each motion: by the parameter as it acts in the first interval, the second, ...
+  StepResponse(std::vector<std::size_t> first, std::vector<Eigen::Matrix3Xd> rows)
+      : first_(std::move(first)), rows_(std::move(rows)) {}
+
+  /// Derivatives of the motions by coefficients of functions that the parameter is the sum of.
+  /// @param functions tick intervals x coefficients
+  /// @return 3 n x coefficients
+  [[nodiscard]] Eigen::MatrixXd by_coefficients(const Eigen::MatrixXd& functions) const;
+
+ private:
+  std::vector<std::size_t> first_;
+  std::vector<Eigen::Matrix3Xd> rows_;
+};
+
 class Sensitivity {
  public:
   /// @param along must outlive this, as must its model
@@ -23,9 +41,18 @@ class Sensitivity {
   [[nodiscard]] Eigen::MatrixXd by_all() const;
   /// The same by the parameters of more effects at values that leave the trajectory as it is.
   [[nodiscard]] Eigen::MatrixXd by_more(const EffectList& effects, std::span<const double> parameters) const;
+  /// For each parameter of more effects (kJetSize of them at most) at values that leave the trajectory as it
+  /// is.
+  [[nodiscard]] std::vector<StepResponse> by_steps(const EffectList& effects,
+                                                   std::span<const double> parameters) const;
 
  private:
   struct Path;
+  struct More {
+    PlacedEffects effects;
+    std::vector<double> parameters;
+  };
+  [[nodiscard]] More with(const EffectList& effects, std::span<const double> parameters) const;
   [[nodiscard]] Eigen::MatrixXd by(std::span<const double> parameters, const PlacedEffects& effects,
                                    std::size_t first) const;
 

@@ -72,13 +72,15 @@ void fill_speeds(StepContext& c, const WheelTrack& track, Window window, double 
 }
 
 /// At the samples between two intervals, from the smoothed accelerations in their middles.
-void fill_turn_accelerations(std::vector<StepContext>& contexts, double track_width) {
+void fill_accelerations_at_ends(std::vector<StepContext>& contexts, double track_width) {
   const auto in_middle = [&](const StepContext& c) {
     return (c.right_acceleration - c.left_acceleration) / track_width;
   };
   for (std::size_t k = 0; k < contexts.size(); ++k) {
     const StepContext& before = contexts[k > 0 ? k - 1 : k];
     const StepContext& after = contexts[k + 1 < contexts.size() ? k + 1 : k];
+    contexts[k].left_acceleration_change = 0.5 * (after.left_acceleration - before.left_acceleration);
+    contexts[k].right_acceleration_change = 0.5 * (after.right_acceleration - before.right_acceleration);
     contexts[k].turn_acceleration_before = 0.5 * (in_middle(before) + in_middle(contexts[k]));
     contexts[k].turn_acceleration_after = 0.5 * (in_middle(contexts[k]) + in_middle(after));
   }
@@ -167,7 +169,7 @@ std::vector<StepContext> make_context(const WheelTrack& track, const BaseParamet
     history.advance(c);
     contexts.push_back(c);
   }
-  fill_turn_accelerations(contexts, nominal.track_width);
+  fill_accelerations_at_ends(contexts, nominal.track_width);
   return contexts;
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/tracing/wave_curves.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -16,7 +17,8 @@ constexpr double kUseful = 0.97;  ///< the same for any other curve that odometr
 std::string key_of(const Effect& effect) { return effect.name() + "/" + effect.parameters().front().name; }
 
 std::string key_of(const Effect& effect, const Curve& curve) {
-  return effect.name() + "/" + std::to_string(curve.period) + "/" + std::to_string(curve.harmonic);
+  return effect.name() + "/" + std::to_string(curve.period) + "/" + std::to_string(curve.harmonic) + "/" +
+         std::to_string(curve.wave[0]) + "/" + std::to_string(curve.wave[1]);
 }
 
 bool belongs_to_one_recording(const Effect& effect) {
@@ -51,6 +53,15 @@ std::vector<Candidate> all_candidates(const EffectList& present, std::span<const
   std::vector<Candidate> candidates;
   add_names(present, models.size() == 1, candidates);
   add_curves(models, candidates);
+  return candidates;
+}
+
+std::vector<Candidate> floor_waves(std::span<const DriveModel* const> models) {
+  std::vector<Candidate> candidates;
+  for (const Curve& wave : wave_curves(models)) {
+    const auto effect = make_curve_effect(wave);
+    candidates.push_back({effect, wave, key_of(*effect, wave)});
+  }
   return candidates;
 }
 

@@ -23,6 +23,9 @@ struct Candidate {
 /// The catalogue without what the model has already, and the curves that these drives can show.
 std::vector<Candidate> all_candidates(const EffectList& present, std::span<const DriveModel* const> models);
 
+/// Floors that repeat themselves: tiles, planks, joints. Many, so that they are tried when all else is told.
+std::vector<Candidate> floor_waves(std::span<const DriveModel* const> models);
+
 bool contains(const std::vector<Law>& laws, const Law& law);
 std::vector<Law> laws_of(const Candidate& candidate);
 

@@ -1,73 +1,143 @@
 #include "calib/tracing/candidate_columns.hpp"
 
+#include <functional>
 #include <memory>
+#include <utility>
 
+#include "calib/effects/step_effect.hpp"
 #include "calib/estimators/stack.hpp"
 #include "calib/model/sensitivity.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
-/// The fit along which all candidates are tried.
-class Columns {
+constexpr std::size_t kCarriers = static_cast<std::size_t>(kLastCarrier) + 1;
+static_assert(kCarriers <= kJetSize);
+
+/// A constant defect on every carrier, of size zero: what curves are linear in.
+class Defects final : public StepEffect<Defects> {
  public:
-  Columns(std::span<const FitData> data, const EffectList& effects, const FitResult& fit)
-      : stack_(make_stack(data, effects, fit.parameters, false)) {
-    for (const FitData& d : data)
-      trajectories_.push_back(d.model->trajectory(as_span(fit.parameters), effects));
-    for (std::size_t d = 0; d < data.size(); ++d) {
-      sensitivities_.push_back(
-          std::make_unique<Sensitivity>(*data[d].model, trajectories_[d], intervals_of(data[d].pairs)));
-      whiteners_.push_back(whitener_of(data, stack_, fit.noise[d], fit.weights, d));
+  [[nodiscard]] std::string name() const override { return "defects"; }
+  [[nodiscard]] std::vector<EffectParameter> parameters() const override {
+    std::vector<EffectParameter> list;
+    for (std::size_t k = 0; k < kCarriers; ++k)
+      list.push_back({to_string(static_cast<Carrier>(k)), "1", 1.0, -1.0, 1.0});
+    return list;
+  }
+  template <typename T>
+  static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
+    for (std::size_t k = 0; k < kCarriers; ++k) carry(static_cast<Carrier>(k), c, p[k], step);
+  }
+};
+
+/// One recording at the fit along which all candidates are tried.
+class Tried {
+ public:
+  Tried(const FitData& data, const EffectList& effects, const FitResult& fit, Whitener whitener)
+      : model_(*data.model),
+        trajectory_(model_.trajectory(as_span(fit.parameters), effects)),
+        sensitivity_(model_, trajectory_, intervals_of(data.pairs)),
+        responses_(sensitivity_.by_steps({std::make_shared<Defects>()}, std::vector<double>(kCarriers, 0.0))),
+        whitener_(std::move(whitener)) {}
+
+  [[nodiscard]] Eigen::MatrixXd by_curve(const Curve& curve) const {
+    const auto steps = static_cast<Eigen::Index>(model_.context().size());
+    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(basis_size(curve)));
+    for (Eigen::Index k = 0; k < steps; ++k) {
+      const BasisValues values = functions_in(curve, model_.context()[static_cast<std::size_t>(k)]);
+      for (Eigen::Index j = 0; j < functions.cols(); ++j)
+        functions(k, j) = values[static_cast<std::size_t>(j)];
     }
+    return whitened(responses_[static_cast<std::size_t>(curve.law.carrier)].by_coefficients(functions));
   }
 
-  [[nodiscard]] Eigen::MatrixXd of(const EffectList& candidates) const {
-    const std::vector<double> starts = start_of(candidates);
-    Eigen::MatrixXd columns(stack_.residual.rows(), static_cast<Eigen::Index>(starts.size()));
-    for (std::size_t d = 0; d < sensitivities_.size(); ++d) {
-      Eigen::MatrixXd rows = sensitivities_[d]->by_more(candidates, starts);
-      whiteners_[d].apply(rows);
-      columns.middleRows(static_cast<Eigen::Index>(3 * stack_.first[d]), rows.rows()) = rows;
-    }
-    return columns;
+  [[nodiscard]] Eigen::MatrixXd by_effects(const EffectList& effects) const {
+    return whitened(sensitivity_.by_more(effects, start_of(effects)));
   }
 
  private:
-  Stack stack_;
-  std::vector<Trajectory> trajectories_;
-  std::vector<std::unique_ptr<Sensitivity>> sensitivities_;
-  std::vector<Whitener> whiteners_;
+  [[nodiscard]] Eigen::MatrixXd whitened(Eigen::MatrixXd rows) const {
+    whitener_.apply(rows);
+    return rows;
+  }
+
+  const DriveModel& model_;
+  Trajectory trajectory_;
+  Sensitivity sensitivity_;
+  std::vector<StepResponse> responses_;  ///< one per carrier
+  Whitener whitener_;
 };
 
-/// As many candidates from `first` on as one sweep of automatic derivatives carries, and one at least.
-EffectList sweep_from(const EffectList& candidates, std::size_t first) {
-  EffectList sweep;
+using AllTried = std::vector<std::unique_ptr<Tried>>;
+
+AllTried try_along(std::span<const FitData> data, const EffectList& effects, const FitResult& fit) {
+  const Stack stack = make_stack(data, effects, fit.parameters, false);
+  AllTried all;
+  for (std::size_t d = 0; d < data.size(); ++d)
+    all.push_back(std::make_unique<Tried>(data[d], effects, fit,
+                                          whitener_of(data, stack, fit.noise[d], fit.weights, d)));
+  return all;
+}
+
+/// Rows of all recordings below each other.
+Eigen::MatrixXd stacked(const AllTried& recordings,
+                        const std::function<Eigen::MatrixXd(const Tried&)>& make) {
+  std::vector<Eigen::MatrixXd> parts;
+  Eigen::Index rows = 0;
+  for (const auto& recording : recordings) {
+    parts.push_back(make(*recording));
+    rows += parts.back().rows();
+  }
+  Eigen::MatrixXd all(rows, parts.empty() ? 0 : parts.front().cols());
+  Eigen::Index first = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    all.middleRows(first, part.rows()) = part;
+    first += part.rows();
+  }
+  return all;
+}
+
+/// As many names among the candidates from `first` on as one sweep of automatic derivatives carries, and one
+/// at least; curves are passed over.
+std::vector<std::size_t> sweep_from(const std::vector<Candidate>& candidates, std::size_t first) {
+  std::vector<std::size_t> sweep;
   std::size_t parameters = 0;
   for (std::size_t k = first; k < candidates.size(); ++k) {
-    parameters += candidates[k]->parameters().size();
+    if (candidates[k].curve) continue;
+    parameters += candidates[k].effect->parameters().size();
     if (parameters > kJetSize && !sweep.empty()) break;
-    sweep.push_back(candidates[k]);
+    sweep.push_back(k);
   }
   return sweep;
+}
+
+void fill_names(const AllTried& recordings, const std::vector<Candidate>& candidates,
+                std::vector<Eigen::MatrixXd>& columns) {
+  for (auto sweep = sweep_from(candidates, 0); !sweep.empty();
+       sweep = sweep_from(candidates, sweep.back() + 1)) {
+    EffectList effects;
+    for (const std::size_t k : sweep) effects.push_back(candidates[k].effect);
+    const Eigen::MatrixXd all = stacked(recordings, [&](const Tried& t) { return t.by_effects(effects); });
+    Eigen::Index first = 0;
+    for (const std::size_t k : sweep) {
+      const auto size = static_cast<Eigen::Index>(candidates[k].effect->parameters().size());
+      columns[k] = all.middleCols(first, size);
+      first += size;
+    }
+  }
 }
 
 }  // namespace
 
 std::vector<Eigen::MatrixXd> candidate_columns(std::span<const FitData> data, const EffectList& effects,
-                                               const FitResult& fit, const EffectList& candidates) {
-  const Columns fitted(data, effects, fit);
-  std::vector<Eigen::MatrixXd> columns;
-  while (columns.size() < candidates.size()) {
-    const EffectList sweep = sweep_from(candidates, columns.size());
-    const Eigen::MatrixXd all = fitted.of(sweep);
-    Eigen::Index first = 0;
-    for (const auto& candidate : sweep) {
-      const auto size = static_cast<Eigen::Index>(candidate->parameters().size());
-      columns.emplace_back(all.middleCols(first, size));
-      first += size;
-    }
-  }
+                                               const FitResult& fit,
+                                               const std::vector<Candidate>& candidates) {
+  const AllTried recordings = try_along(data, effects, fit);
+  std::vector<Eigen::MatrixXd> columns(candidates.size());
+  fill_names(recordings, candidates, columns);
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    if (candidates[k].curve)
+      columns[k] = stacked(recordings, [&](const Tried& t) { return t.by_curve(*candidates[k].curve); });
   return columns;
 }
 

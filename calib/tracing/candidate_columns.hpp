@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/estimators/joint.hpp"
+#include "calib/tracing/candidate.hpp"
 
 namespace odomcalib::calib {
 
@@ -13,6 +14,7 @@ namespace odomcalib::calib {
 /// at its start (where it changes nothing), at the fit and with its weights: 3 n x parameters, one matrix per
 /// candidate.
 std::vector<Eigen::MatrixXd> candidate_columns(std::span<const FitData> data, const EffectList& effects,
-                                               const FitResult& fit, const EffectList& candidates);
+                                               const FitResult& fit,
+                                               const std::vector<Candidate>& candidates);
 
 }  // namespace odomcalib::calib

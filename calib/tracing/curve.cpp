@@ -96,7 +96,7 @@ class CurveEffect final : public StepEffect<CurveEffect> {
 
   template <typename T>
   void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) const {
-    const BasisValues functions = concerns_sensor(curve_) ? growth(curve_, c) : basis(curve_, c);
+    const BasisValues functions = functions_in(curve_, c);
     T f(0.0);
     for (std::size_t k = 0; k < functions.size(); ++k) f += p[k] * functions[k];
     carry(curve_.law.carrier, c, f, step);
@@ -233,6 +233,13 @@ void add_harmonics(const Curve& curve, int first, int last, std::vector<Curve>& 
   }
 }
 
+/// A level that comes and goes, and a slope that lengthens one way and shortens the other.
+BasisValues wave_functions(const Curve& curve, const StepContext& c) {
+  const std::complex<double> here = std::polar(1.0, 2.0 * kPi * (curve.wave[0] * c.x + curve.wave[1] * c.y));
+  const double across = std::cos(c.heading - std::atan2(curve.wave[1], curve.wave[0]));
+  return {here.real(), here.imag(), across * here.real(), across * here.imag()};
+}
+
 /// How much motion of the carrier an interval holds.
 double amount(Carrier carrier, const StepContext& c) {
   switch (carrier) {
@@ -259,6 +266,7 @@ BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   if (is_distance_since(variable)) return fading(variable, z);
   if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);
   if (variable == Variable::time) return legendre(scaled(curve, z));
+  if (curve.is_wave()) return wave_functions(curve, c);
   if (variable == Variable::position) {
     const double x = scaled(curve, c.x), y = scaled(curve, c.y);
     return {x, y, x * x, x * y, y * y};
@@ -272,6 +280,10 @@ BasisValues basis(const Curve& curve, const StepContext& c) {
   BasisValues functions = raw_basis(curve, c);
   for (std::size_t k = 0; k < curve.mean.size(); ++k) functions[k] -= curve.mean[k];
   return functions;
+}
+
+BasisValues functions_in(const Curve& curve, const StepContext& c) {
+  return concerns_sensor(curve) ? growth(curve, c) : basis(curve, c);
 }
 
 bool concerns_sensor(const Curve& curve) { return curve.law.carrier == Carrier::sensor_yaw; }

@@ -16,7 +16,9 @@ namespace odomcalib::calib {
 /// - angles: harmonics 1 to 3, or one alone;
 /// - distances since an event: piecewise linear in its logarithm, zero far away;
 /// - time with a period: one cosine and one sine;
-/// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both;
+/// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both; or, of a floor
+///   that repeats itself, one wave: its cosine and sine, and both times the cosine of the angle between the
+///   heading and the way across the crests;
 /// - speeds and turn rate: piecewise linear in the magnitude (at four or eight knots), a step with the
 /// direction, and the
 ///   magnitude times the direction;
@@ -34,6 +36,8 @@ struct Curve {
   std::vector<double> mean = {};
   int knots = 4;                      ///< of speeds only
   std::size_t memory = kUsualMemory;  ///< of what happened before only: span over which it fades
+  std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
+  [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
 };
 
 /// At most sixteen functions' values. They are asked for each tick interval of each fit, so they stay off the
@@ -58,6 +62,9 @@ class BasisValues {
 
 BasisValues basis(const Curve& curve, const StepContext& context);
 std::size_t basis_size(const Curve& curve);
+
+/// What the coefficients are multiplied by in an interval: the basis, or on the sensor's yaw its growth.
+BasisValues functions_in(const Curve& curve, const StepContext& context);
 
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve);
 

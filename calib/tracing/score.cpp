@@ -124,7 +124,7 @@ double significance(double statistic, Eigen::Index degrees) {
 }
 
 ScoreTable::ScoreTable(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,
-                       const std::vector<bool>& fixed, const EffectList& candidates)
+                       const std::vector<bool>& fixed, const std::vector<Candidate>& candidates)
     : residual_(fit.whitened_residual.cwiseMax(-kClip).cwiseMin(kClip)) {
   variance_ = residual_.squaredNorm() / std::max(static_cast<double>(residual_.size()), 1.0);
   Blocks blocks = blocks_of(data);

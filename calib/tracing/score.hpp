@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib/estimators/joint.hpp"
+#include "calib/tracing/candidate.hpp"
 #include "calib/tracing/horizon.hpp"
 
 namespace odomcalib::calib {
@@ -33,7 +34,7 @@ double significance(double statistic, Eigen::Index degrees);
 class ScoreTable {
  public:
   ScoreTable(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,
-             const std::vector<bool>& fixed, const EffectList& candidates);
+             const std::vector<bool>& fixed, const std::vector<Candidate>& candidates);
 
   [[nodiscard]] const std::vector<Score>& scores() const { return scores_; }  ///< in the candidates' order
   /// Largest canonical correlation of two candidates' projected signatures.

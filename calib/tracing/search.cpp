@@ -46,16 +46,23 @@ class Search {
   }
 
   SearchResult run() {
-    for (int step = 0; step < kMaxSteps; ++step) {
-      progress_(static_cast<double>(step) / kMaxSteps);
-      if (!advance()) break;
-    }
+    go_on(0.0);
+    ask_the_floor();
+    go_on(0.5);
     for (std::size_t e = 0; e < result_.model.effects.size(); ++e)
       result_.doubts.push_back(doubt_of_extrapolation(task_, result_.model, e));
     return std::move(result_);
   }
 
  private:
+  /// @param done share of the whole search
+  void go_on(double done) {
+    for (int step = 0; step < kMaxSteps; ++step) {
+      progress_(done + 0.5 * step / kMaxSteps);
+      if (!advance()) break;
+    }
+  }
+
   /// One step; false when nothing more is justified.
   bool advance() {
     if (has_changed_) look_again();
@@ -67,13 +74,17 @@ class Search {
     return curve && accept_curve(*table_, *curve);
   }
 
+  /// What repeats itself along the floor, when nothing else is left to say.
+  void ask_the_floor() {
+    candidates_ = floor_waves(task_.models());
+    has_changed_ = true;
+  }
+
   /// Scores of all that is left, on the model as it is now.
   void look_again() {
     basis_ = {result_.model.effects, widened_where_outlying(task_, result_.model)};
     std::erase_if(candidates_, [](const Candidate& c) { return c.struck; });
-    EffectList effects;
-    for (const Candidate& c : candidates_) effects.push_back(c.effect);
-    table_.emplace(task_.data, basis_.effects, basis_.fit, task_.fixed(basis_.effects), effects);
+    table_.emplace(task_.data, basis_.effects, basis_.fit, task_.fixed(basis_.effects), candidates_);
     trials_.clear();
     has_changed_ = false;
   }
@@ -346,7 +357,7 @@ class Search {
   std::vector<Candidate> candidates_;
   std::optional<ScoreTable> table_;
   std::vector<Trial> trials_;  ///< refits on the model that the table belongs to
-  bool has_changed_ = true;    ///< the model, since the table was made
+  bool has_changed_ = true;    ///< the model or the candidates, since the table was made
   SearchResult result_;
   FittedModel basis_;  ///< that candidates are tested on
 };

@@ -23,6 +23,7 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
               entry.value("knots", 4)};
   const auto coefficients = entry.value("coefficients", std::vector<double>{});
   curve.memory = entry.value("memory", kUsualMemory);
+  curve.wave = entry.value("wave", curve.wave);
   if (!(curve.high > curve.low) || curve.memory >= kMemorySpans.size() ||
       (curve.knots != 4 && curve.knots != 8) || coefficients.size() != basis_size(curve))
     return std::nullopt;
@@ -55,6 +56,7 @@ std::string curves_to_json(const std::vector<FittedCurve>& curves) {
                     {"harmonic", curve.harmonic},
                     {"knots", curve.knots},
                     {"memory", curve.memory},
+                    {"wave", curve.wave},
                     {"coefficients", coefficients},
                     {"law_of", law_of}});
   return list.dump();

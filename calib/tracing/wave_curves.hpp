@@ -1,0 +1,16 @@
+// Floors that repeat themselves: which waves a drive could show.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "calib/tracing/curve.hpp"
+
+namespace odomcalib::calib {
+
+/// Waves of 0.2 to 1.25 m in all directions of the plane, as far apart as the place that was driven on can
+/// tell them (its Fourier transform's resolution). None where wheels are asked about more than one recording,
+/// whose places have no common origin.
+std::vector<Curve> wave_curves(std::span<const DriveModel* const> models);
+
+}  // namespace odomcalib::calib
