@@ -71,6 +71,20 @@ std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel
   return FittedModel{std::move(effects), std::move(*fit)};
 }
 
+std::optional<FittedModel> with_effect(const FitTask& task, const FittedModel& model,
+                                       const std::shared_ptr<const Effect>& effect,
+                                       const std::vector<NoiseModel>& noise) {
+  EffectList effects = model.effects;
+  effects.push_back(effect);
+  const std::vector<double> own = start_of({effect});
+  Eigen::VectorXd start(model.fit.parameters.size() + static_cast<Eigen::Index>(own.size()));
+  start << model.fit.parameters,
+      Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
+  auto fit = task.fit(effects, start, noise);
+  if (!fit) return std::nullopt;
+  return FittedModel{std::move(effects), std::move(*fit)};
+}
+
 FitResult widened_where_outlying(const FitTask& task, const FittedModel& model) {
   constexpr double kTolerated = 1.3;
   const double excess = excess_of_outliers(model.fit);

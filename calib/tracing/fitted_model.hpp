@@ -31,6 +31,12 @@ struct FitTask {
 /// Position of an effect's first parameter in the parameter vector.
 Eigen::Index first_parameter(const EffectList& effects, std::size_t index);
 
+/// Fitted with one more effect, the last then; nullopt if that does not settle.
+/// @param noise per recording; empty: estimated anew
+std::optional<FittedModel> with_effect(const FitTask& task, const FittedModel& model,
+                                       const std::shared_ptr<const Effect>& effect,
+                                       const std::vector<NoiseModel>& noise);
+
 /// Fitted without one of the effects; nullopt if that does not settle.
 std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel& model, std::size_t index);
 

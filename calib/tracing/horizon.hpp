@@ -38,6 +38,11 @@ std::optional<HorizonError> horizon_error(std::span<const FitData> data, const E
 
 /// Whether a candidate would have been chosen without the data of each fold.
 using FoldFlags = std::array<bool, kFolds>;
+inline FoldFlags all_folds() {
+  FoldFlags flags;
+  flags.fill(true);
+  return flags;
+}
 
 /// `after` in the folds whose training data select the candidate, `before` in the others: so the choice
 /// itself is held out too.

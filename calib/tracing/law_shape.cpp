@@ -55,12 +55,6 @@ class Changes {
   double total_ = 0.0;
 };
 
-FoldFlags all_folds() {
-  FoldFlags flags;
-  flags.fill(true);
-  return flags;
-}
-
 }  // namespace
 
 std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, const Curve& curve) {

@@ -168,16 +168,10 @@ class Search {
   /// @param noise per recording; empty: estimated anew
   std::optional<Trial> refit(std::size_t index, const std::vector<NoiseModel>& noise) {
     const auto& effect = candidates_[index].effect;
-    EffectList effects = basis_.effects;
-    effects.push_back(effect);
-    Eigen::VectorXd start(static_cast<Eigen::Index>(kBaseCount + count_parameters(effects)));
-    const std::vector<double> own = start_of({effect});
-    start << basis_.fit.parameters,
-        Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
-    auto fit = task_.fit(effects, start, noise);
-    if (!fit) return std::nullopt;
-    const double gain = basis_.fit.cost - fit->cost - penalty(count_sizes(*effect));
-    return Trial{index, {std::move(effects), std::move(*fit)}, gain};
+    auto model = with_effect(task_, basis_, effect, noise);
+    if (!model) return std::nullopt;
+    const double gain = basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect));
+    return Trial{index, std::move(*model), gain};
   }
   std::optional<Trial> refit(std::size_t index) { return refit(index, basis_.fit.noise); }
 
@@ -250,9 +244,34 @@ class Search {
     const std::vector<Variable> alike = alike_of(table, index);
     const auto proof = trial ? accept(table, *trial) : std::nullopt;
     if (!trial) strike(candidate.key);
-    if (!proof) return true;
+    if (!proof) return law_of == nullptr || replace(law_of, candidate, table.scores()[index], alike);
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
     settle_shape_of_newest_curve();
+    return true;
+  }
+
+  /// A free law that cannot stand on the name's, but foretells held-out data better in its place: then the
+  /// name was the wrong one.
+  bool replace(const std::shared_ptr<const Effect>& name, const Candidate& candidate, const Score& score,
+               const std::vector<Variable>& alike) {
+    const auto& effects = result_.model.effects;
+    const auto place = std::find(effects.begin(), effects.end(), name);
+    const auto without =
+        without_effect(task_, result_.model, static_cast<std::size_t>(place - effects.begin()));
+    if (!without) return true;
+    const auto free = with_effect(task_, *without, candidate.effect, result_.model.fit.noise);
+    Proof proof;
+    proof.family_p_value = score.family_p_value;
+    if (!free || spoils_base(*candidate.effect, without->fit, free->fit) ||
+        !is_better(task_, result_.model, *free) ||
+        !objection(task_, *without, *free, all_folds(), largest_ratio(candidate), proof).empty())
+      return true;
+    std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
+    result_.model = *free;
+    result_.considered.back().outcome = "took the place of " + name->name();
+    result_.curves.push_back({candidate.effect, *candidate.curve, proof, nullptr, alike});
+    settle_shape_of_newest_curve();
+    has_changed_ = true;
     return true;
   }
 

@@ -100,6 +100,16 @@ SimulationConfig draw_config(Random& random, std::uint64_t seed) {
   return config;
 }
 
+/// What a tape would find: a wheel's diameter is the distance of a turn over pi.
+Geometry effective(const SimulationConfig& config) {
+  Geometry truth = config.truth;
+  for (const auto& disturbance : config.disturbances) {
+    truth.left_diameter *= disturbance->roundness(kLeft);
+    truth.right_diameter *= disturbance->roundness(kRight);
+  }
+  return truth;
+}
+
 struct Draw {
   SimulationConfig config;
   Drive drive;
@@ -117,7 +127,7 @@ Draw draw(std::uint64_t campaign, unsigned number, int attempt, const BlindOptio
   out.config = draw_config(random, random());
   out.drive = draw_drive(random, out.config.nominal, out.answer);
   out.config.disturbances = draw_effects(random, options, out.answer);
-  out.answer.truth = out.config.truth;
+  out.answer.truth = effective(out.config);
   return out;
 }
 

@@ -36,6 +36,11 @@ class FlatSpot : public Effect {
     const double from_middle = std::remainder(view.angle[side_] + phase_, 2.0 * kPi);
     if (std::abs(from_middle) < size_) motion.travel[side_] *= std::cos(size_) / std::cos(from_middle);
   }
+  /// Mean of the above over the turn.
+  [[nodiscard]] double roundness(std::size_t side) const override {
+    const double flat = std::cos(size_) * std::asinh(std::tan(size_));
+    return side == side_ ? 1.0 - (size_ - flat) / kPi : 1.0;
+  }
 
  private:
   std::size_t side_;

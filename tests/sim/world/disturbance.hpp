@@ -70,6 +70,8 @@ class Disturbance {
 
   [[nodiscard]] virtual std::string name() const = 0;
 
+  /// Distance that a wheel rolls in a whole turn, over that of the round wheel: what its diameter means then.
+  [[nodiscard]] virtual double roundness(std::size_t /*side*/) const { return 1.0; }
   virtual void on_step(const StepView& /*view*/, StepMotion& /*motion*/) {}
   /// What the encoder sees (rad per side); starts as the shaft angle at the end of the step.
   virtual void on_encoder(const StepView& /*view*/, PerSide& /*encoder_angle*/) {}
