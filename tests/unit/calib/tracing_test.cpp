@@ -5,6 +5,7 @@
 #include <random>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/tracing/candidate_columns.hpp"
 #include "calib/tracing/curve.hpp"
 #include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/plausibility.hpp"
@@ -190,6 +191,70 @@ TEST(Tracing, lengths_are_extrapolated_to_where_no_effect_is) {
   EXPECT_EQ(doubt(model, "turn_direction_asymmetry", {0.01})(kTrackWidth), 0.0) << "absent in half of it";
 }
 
+TEST(Tracing, tiles_are_flagged_as_a_matter_of_the_place) {
+  const DriveModel model = lively_model();
+  Curve tiles{{Variable::position, Carrier::both_travel}};
+  tiles.wave = {2.4, 1.8};  // every third of a metre
+  const SearchResult result = searched(measured(model, {make_curve_effect(tiles)}, {0.0, 0.0, 0.06, 0.0}));
+  ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
+  EXPECT_EQ(result.curves[0].curve.law, tiles.law);
+  EXPECT_NEAR(std::hypot(result.curves[0].curve.wave[0], result.curves[0].curve.wave[1]), 3.0, 0.3);
+  EXPECT_EQ(result.curves[0].effect->storage(), Storage::nowhere);
+}
+
+/// Wheels as a first-order low pass shows them.
+WheelTrack filtered(WheelTrack track, double lag) {
+  for (std::vector<double>* wheel : {&track.left, &track.right}) {
+    double state = wheel->front(), before = wheel->front();
+    for (std::size_t k = 1; k < wheel->size(); ++k) {
+      // Exact for an input that is linear between samples.
+      const double now = (*wheel)[k], step = track.t[k] - track.t[k - 1], decay = std::exp(-step / lag);
+      const double slope = (now - before) / step;
+      state = decay * (state - before + slope * lag) + now - slope * lag;
+      before = now;
+      (*wheel)[k] = state;
+    }
+  }
+  return track;
+}
+
+TEST(Tracing, a_filter_of_the_encoder_is_a_delay_that_smooths) {
+  constexpr double kLag = 0.06;  // s
+  const DriveModel model = jerky_model();
+  WheelTrack late = filtered(model.track(), kLag);
+  auto context = make_context(late, kBase);
+  const DriveModel seen(std::move(late), std::move(context));
+  FitData data = measured(model, {}, {});
+  data.model = &seen;
+  const EffectList offset = {find_effect("time_offset")};
+  const auto fitted = [&](bool pure_delay) {
+    FitOptions options;
+    options.fixed = std::vector<bool>(kBaseCount + 2, false);
+    options.fixed.back() = pure_delay;
+    return fit_joint({&data, 1}, offset, to_vector(kBase, 2), options);
+  };
+  const auto fit = fitted(false), delayed = fitted(true);
+  ASSERT_TRUE(fit && delayed) << "seed " << kSeed;
+  const auto& p = fit.value().parameters;
+  EXPECT_NEAR(p(kBaseCount), -kLag, 2e-3);
+  EXPECT_NEAR(p(kBaseCount + 1), kLag * kLag / 2.0, 0.3 * kLag * kLag / 2.0);
+  EXPECT_LT(fit.value().rms.norm(), 0.8 * delayed.value().rms.norm());
+}
+
+TEST(Tracing, columns_of_curves_are_their_derivatives) {
+  const DriveModel model = lively_model();
+  const FitData data = measured(model, {}, {});
+  const auto fit = fit_joint({&data, 1}, {}, to_vector(kBase));
+  ASSERT_TRUE(fit) << "seed " << kSeed;
+  const DriveModel* models[] = {&model};
+  for (const Curve& curve : candidate_curves(models)) {
+    const auto effect = make_curve_effect(curve);
+    const Candidate by_response{effect, curve, "a"}, by_jets{effect, std::nullopt, "b"};
+    const auto columns = candidate_columns({&data, 1}, {}, fit.value(), {by_response, by_jets});
+    EXPECT_LE((columns[0] - columns[1]).norm(), 1e-9 * columns[1].norm()) << effect->name();
+  }
+}
+
 TEST(Tracing, how_long_a_robot_remembers_is_found_out) {
   const DriveModel model = jerky_model();
   const Curve twist{{Variable::previous_turn, Carrier::left_travel}, -1.0, 1.0, 0.0, 0, {}, 4, 0};
@@ -313,8 +378,12 @@ TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
 
 TEST(Curve, survives_the_calibration_file) {
   const Curve curve{{Variable::time, Carrier::both_travel}, 0.0, 290.0, 61.5, 0};
-  const auto read = curves_from_json(curves_to_json({{curve, {0.01, -0.02}, "drift_with_time"}}));
-  ASSERT_EQ(read.size(), 1U);
+  Curve tiles{{Variable::position, Carrier::both_travel}};
+  tiles.wave = {3.0, -0.5};
+  const auto read = curves_from_json(
+      curves_to_json({{curve, {0.01, -0.02}, "drift_with_time"}, {tiles, {0.01, 0.0, 0.0, 0.0}, ""}}));
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[1].curve.wave, tiles.wave);
   EXPECT_EQ(read[0].curve.law, curve.law);
   EXPECT_EQ(read[0].curve.period, curve.period);
   EXPECT_EQ(read[0].coefficients, (std::vector<double>{0.01, -0.02}));
