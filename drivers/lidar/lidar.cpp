@@ -63,7 +63,7 @@ std::vector<Entry> make_entries() {
       entry<Rplidar>({"rplidar:standard", 115'200, 20'108, false, rplidar + ", uncompressed"},
                      Mode::standard),
       entry<Rplidar>({"rplidar:express", 115'200, 20'108, false, rplidar + ", oldest compressed mode"},
-                     Mode::express),
+                     Mode::express, rplidar::PacketType::express),
       entry<Rplidar>(
           {"rplidar:dense", 115'200, 20'108, false, "recordings of dense capsules that begin late"},
           Mode::automatic, rplidar::PacketType::dense),

@@ -39,6 +39,9 @@ struct Point {
   bool start = false;  ///< a new turn begins with this point
 };
 
+/// Check bits of a standard packet fit a random place with probability 1/4: this many in a row do not.
+constexpr std::size_t kStandardRun = 8;
+
 /// Whether the bytes can be such a packet, by its fixed bits alone. Never asks for more bytes than are there.
 bool may_begin(PacketType type, Bytes rest);
 /// Whether checksum or check bits of a whole packet are right.

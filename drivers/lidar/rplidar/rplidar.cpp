@@ -25,7 +25,7 @@ double forward(double from, double to) { return std::fmod(to - from + 720.0, 360
 
 }  // namespace
 
-Rplidar::Rplidar(const LidarOptions& options, Mode mode, rplidar::PacketType guessed)
+Rplidar::Rplidar(const LidarOptions& options, Mode mode, std::optional<rplidar::PacketType> guessed)
     : options_(options),
       stream_(options.device_time, guessed),
       startup_(mode),
@@ -174,6 +174,9 @@ std::optional<Error> Rplidar::problem() const {
   if (stream_.frames().rejected().at("unknown_packet_type") > 0)
     return Error{ErrorCode::format, "the lidar sends measurements in a form that this driver does not know",
                  "rplidar", "use lidar.type = \"rplidar:standard\""};
+  if (stream_.frames().rejected().at("ambiguous_capsule") > 0)
+    return Error{ErrorCode::format, "the recording does not say whether its capsules are express or dense",
+                 "rplidar", "name the type: rplidar:express or rplidar:dense"};
   return startup_.problem();
 }
 

@@ -15,16 +15,20 @@ namespace odomcalib::drivers {
 class Rplidar final : public Lidar {
  public:
   using Mode = rplidar::Startup::Mode;
-  /// @param guessed type of capsules of 84 bytes in a recording that begins without a descriptor
+  /// @param guessed type of capsules of 84 bytes in a recording that begins without a descriptor; none: their
+  /// distances tell
   explicit Rplidar(const LidarOptions& options, Mode mode = Mode::automatic,
-                   rplidar::PacketType guessed = rplidar::PacketType::express);
+                   std::optional<rplidar::PacketType> guessed = std::nullopt);
 
   void on_bytes(std::span<const std::uint8_t> bytes, double now) override;
   std::vector<LidarScan> take_scans() override { return sweep_.take_scans(); }
   std::vector<std::uint8_t> take_output() override { return startup_.take_output(); }
   [[nodiscard]] std::vector<std::uint8_t> stop_bytes() const override { return startup_.stop_bytes(); }
   void reset() override;
-  void finish() override { sweep_.interrupt(); }
+  void finish() override {
+    stream_.finish();
+    sweep_.interrupt();
+  }
   [[nodiscard]] Counters counters() const override;
   [[nodiscard]] Counters rejected() const override { return sweep_.rejected(stream_.frames().rejected()); }
   [[nodiscard]] std::string identity() const override { return startup_.identity(); }

@@ -1,6 +1,6 @@
 #include "drivers/lidar/rplidar/stream.hpp"
 
-#include <array>
+#include "drivers/lidar/rplidar/guess.hpp"
 
 namespace odomcalib::drivers::rplidar {
 namespace {
@@ -8,12 +8,6 @@ namespace {
 constexpr std::size_t kDescriptorBytes = 7;
 constexpr std::uint8_t kSync1 = 0xA5, kSync2 = 0x5A;
 constexpr std::size_t kMostAnswerBytes = 1024;
-// Check bits of a standard packet fit a random place with probability 1/4: this many in a row do not.
-constexpr std::size_t kStandardRun = 8;
-
-/// Types without a descriptor, tried in this order: the shorter ones need fewer bytes to be certain.
-constexpr std::array<PacketType, 3> kCapsules = {PacketType::express, PacketType::ultra,
-                                                 PacketType::ultra_dense};
 
 struct Descriptor {
   std::uint32_t length = 0;
@@ -52,6 +46,11 @@ void Stream::expect_descriptor() {
 }
 
 void Stream::reset() { expect_descriptor(); }
+
+void Stream::finish() {
+  if (layout_open_) frames_.reject("ambiguous_capsule");
+  layout_open_ = false;
+}
 
 Verdict Stream::take_descriptor(Bytes rest, std::vector<Item>& out) {
   if (rest.size() < kDescriptorBytes) return Verdict::wait();
@@ -104,27 +103,20 @@ Verdict Stream::take_packet(Bytes rest, std::vector<Item>& out) {
 
 /// Finds the type of a stream that began before we listened; consumes nothing once it is found.
 Verdict Stream::guess_format(Bytes rest) {
-  bool undecided = false;
-  const auto fits = [&](PacketType type) {
-    const std::size_t size = find_format(static_cast<unsigned>(type))->bytes;
-    if (!may_begin(type, rest)) return false;
-    undecided |= rest.size() < size;
-    return rest.size() >= size && is_intact(type, rest.first(size));
-  };
-  for (const PacketType type : kCapsules)
-    if (fits(type)) {
-      format_ = find_format(static_cast<unsigned>(type == PacketType::express ? guessed_ : type));
-      return Verdict::good(0);
-    }
-  if (fits(PacketType::hq)) {
-    format_ = find_format(static_cast<unsigned>(PacketType::hq));
-    return Verdict::good(0);
+  const Guess guess = guess_type(rest, guessed_);
+  layout_open_ = guess.kind == Guess::Kind::wait && guess.type == PacketType::express;
+  switch (guess.kind) {
+    case Guess::Kind::none:
+      return Verdict::noise();
+    case Guess::Kind::wait:
+      return Verdict::wait();
+    case Guess::Kind::ambiguous:
+      return Verdict::reject("ambiguous_capsule",
+                             find_format(static_cast<unsigned>(PacketType::express))->bytes);
+    case Guess::Kind::found:
+      break;
   }
-  if (undecided) return Verdict::wait();
-  if (!may_begin(PacketType::standard, rest)) return Verdict::noise();
-  if (rest.size() < 5 * kStandardRun) return Verdict::wait();
-  if (!run_fits(rest)) return Verdict::noise();
-  format_ = find_format(static_cast<unsigned>(PacketType::standard));
+  format_ = find_format(static_cast<unsigned>(guess.type));
   in_step_ = true;
   return Verdict::good(0);
 }

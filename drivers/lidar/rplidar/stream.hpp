@@ -22,13 +22,16 @@ class Stream {
  public:
   /// @param guess whether packets are accepted without a descriptor, as in a recording that begins in the
   /// middle
-  /// @param guessed type taken for packets of 84 bytes, of which two types exist that look alike
-  Stream(bool guess, PacketType guessed) : guess_(guess), guessed_(guessed) {}
+  /// @param guessed type taken for such packets of 84 bytes, of which two types exist that look alike; none:
+  /// the distances tell
+  Stream(bool guess, std::optional<PacketType> guessed) : guess_(guess), guessed_(guessed) {}
 
   std::vector<Item> on_bytes(Bytes bytes);
   /// The device was told to stop: whatever comes before the next descriptor is left over.
   void expect_descriptor();
   void reset();
+  /// The recording ends: what could not be told yet is not decoded, and counted.
+  void finish();
   [[nodiscard]] const FrameBuffer& frames() const { return frames_; }
   [[nodiscard]] FrameBuffer& frames() { return frames_; }
 
@@ -41,13 +44,14 @@ class Stream {
   Verdict lost_packet(Bytes rest);
 
   bool guess_;
-  PacketType guessed_;
+  std::optional<PacketType> guessed_;
+  bool layout_open_ = false;              // sound capsules wait for what tells their layout
   const PacketFormat* format_ = nullptr;  // of the measurement stream
   bool in_step_ = false;                  // standard packets only: the last one was right
   std::uint8_t answer_type_ = 0;
   std::optional<std::size_t> answer_bytes_;
-  FrameBuffer frames_{"bad_checksum", "bad_check_bits", "bad_descriptor", "unknown_packet_type",
-                      "bad_span",     "motor_stopped",  "lost_packets",   "angle_backwards"};
+  FrameBuffer frames_{"bad_checksum",  "bad_check_bits", "bad_descriptor",  "unknown_packet_type", "bad_span",
+                      "motor_stopped", "lost_packets",   "angle_backwards", "ambiguous_capsule"};
 };
 
 }  // namespace odomcalib::drivers::rplidar

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "drivers/decode.hpp"
@@ -236,6 +237,90 @@ TEST(Rplidar, an_unknown_form_of_measurements_is_named_and_never_decoded) {
   EXPECT_EQ(lidar->counters().at("unknown_packet_type"), 1U);
   ASSERT_TRUE(lidar->problem());
   EXPECT_NE(lidar->problem()->text().find("rplidar:standard"), std::string::npos);
+}
+
+/// The stream without its descriptors, from somewhere in the middle.
+std::string late(const std::string& bytes, std::size_t share) { return bytes.substr(bytes.size() / share); }
+
+std::vector<float> ranges_of(Lidar& lidar, const std::string& bytes) {
+  lidar.on_bytes(test::bytes_of(bytes), 0.0);
+  lidar.finish();
+  std::vector<float> out;
+  for (const LidarScan& given : lidar.take_scans())
+    out.insert(out.end(), given.scan.ranges.begin(), given.scan.ranges.end());
+  return out;
+}
+
+TEST(Rplidar, capsules_of_a_recording_that_begins_late_are_told_by_their_distances) {
+  for (const std::size_t share : {3U, 4U, 5U}) {
+    const std::string express = late(streams()[1].bytes, share), dense = late(streams()[2].bytes, share);
+    const auto any_express = offline("rplidar"), any_dense = offline("rplidar");
+    const auto told_express = offline("rplidar:express"), told_dense = offline("rplidar:dense");
+    const auto expected = ranges_of(*told_express, express);
+    EXPECT_GT(expected.size(), 200U);
+    EXPECT_EQ(ranges_of(*any_express, express), expected);
+    const auto expected_dense = ranges_of(*told_dense, dense);
+    EXPECT_GT(expected_dense.size(), 200U);
+    EXPECT_EQ(ranges_of(*any_dense, dense), expected_dense);
+    EXPECT_FALSE(any_express->problem() || any_dense->problem());
+  }
+}
+
+std::string capsule_of(const std::function<unsigned char(std::size_t)>& content, std::size_t size = 84) {
+  std::string capsule(size, '\0');
+  unsigned sum = 0;
+  for (std::size_t i = 2; i < size; ++i) {
+    const unsigned char byte = content(i);
+    capsule[i] = static_cast<char>(byte);
+    sum ^= byte;
+  }
+  capsule[0] = static_cast<char>(0xA0 | (sum & 15U));
+  capsule[1] = static_cast<char>(0x50 | sum >> 4U);
+  return capsule;
+}
+
+TEST(Rplidar, capsules_that_do_not_show_their_layout_are_named_and_never_decoded) {
+  auto random = test::seeded(23);
+  for (const std::size_t capsules : {3U, 40U}) {
+    std::string noise, nothing;
+    for (std::size_t k = 0; k < capsules; ++k) {
+      const auto angle = static_cast<unsigned char>(8 * k);
+      noise += capsule_of([&](std::size_t i) {
+        return i == 2 ? angle : i == 3 ? 0 : static_cast<unsigned char>(test::random_byte(random));
+      });
+      nothing += capsule_of([&](std::size_t i) { return i == 2 ? angle : 0; });
+    }
+    for (const std::string& bytes : {noise, nothing}) {
+      const auto lidar = offline("rplidar");
+      EXPECT_TRUE(ranges_of(*lidar, bytes).empty());
+      EXPECT_GE(lidar->counters().at("ambiguous_capsule"), 1U);
+      ASSERT_TRUE(lidar->problem());
+      EXPECT_NE(lidar->problem()->text().find("rplidar:dense"), std::string::npos);
+      EXPECT_FALSE(ranges_of(*offline("rplidar:dense"), bytes).empty());  // said by the user: as said
+    }
+  }
+}
+
+/// The first 84 bytes of a longer capsule have the right checksum of a shorter one by chance.
+TEST(Rplidar, a_checksum_that_fits_by_chance_does_not_tell_the_type) {
+  std::string bytes;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto content = [&](std::size_t i) {
+      return static_cast<unsigned char>(i == 2 ? 16 * k : i == 3 ? 4 : i * 3);
+    };
+    unsigned begin = 0, end = 0;
+    for (std::size_t i = 2; i < 84; ++i) begin ^= content(i);
+    for (std::size_t i = 84; i < 132; ++i) end ^= content(i);
+    // The last byte makes the rest cancel out: both checksums agree.
+    bytes += capsule_of(
+        [&](std::size_t i) { return i == 131 ? static_cast<unsigned char>(content(i) ^ end) : content(i); },
+        132);
+  }
+  const auto lidar = offline("rplidar");
+  std::string form;
+  lidar->set_listener([&](const LidarMessage& message) { form = message.name; });
+  (void)ranges_of(*lidar, bytes);
+  EXPECT_EQ(form, "rplidar_ultra");
 }
 
 TEST(Hokuyo, measurements_without_known_geometry_are_no_scans) {
