@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kKeptEvents = 100;
 constexpr int kMovingTimeout = 5;       // ms: control steps every 10 ms need a loop that turns faster
 constexpr double kControlStep = 0.010;  // s
-constexpr double kIdleStep = 0.005;     // s, between looks at a device or client that says nothing
+constexpr double kIdleStep = 0.020;     // s, between looks at a device or client that says nothing
 
 PoseSample pose_sample(double t, const routines::Pose& pose) {
   return {t, pose.x, pose.y, routines::wrapped(pose.yaw)};

@@ -103,7 +103,8 @@ void Service::Impl::fail_pending(const Error& error) {
 }
 
 void Service::Impl::serve_clients() {
-  if (!due(clients_woke, next_clients)) return;
+  // The last wait saw every client: where nothing woke it, nothing had arrived.
+  if (!due(clients_woke, next_clients)) return lease.looked(now);
   server.step();
   for (const ClientId gone : server.take_gone()) forget(gone);
   for (const IncomingCall& incoming : server.take_calls()) handle(incoming);
