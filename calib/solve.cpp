@@ -261,7 +261,7 @@ class Solver {
     if (outcome_.findings.empty() && outcome_.curves.empty()) return;
     if (!has_offset() || !is_idle(outcome_.model.fit, offset_index())) return;
     const FitTask task{session_->data(), session_->fixed(0)};
-    if (auto fewer = without_effect(task, outcome_.model, place_of_offset()))
+    if (auto fewer = without_effect(task, outcome_.model, place_of_offset(), {}))
       outcome_.model = std::move(*fewer);
     effects_ = outcome_.model.effects;
     parameters_ = outcome_.model.fit.parameters;

@@ -41,7 +41,8 @@ void add_names(const EffectList& given, bool one_recording, std::vector<Candidat
 /// Odometry does without what belongs to the place or the day: then the base must be that of the whole drive.
 void add_curves(std::span<const DriveModel* const> models, std::vector<Candidate>& candidates) {
   for (const Curve& free : candidate_curves(models)) {
-    const Curve curve = belongs_to_the_place(free.law.variable) ? centred(free, models) : free;
+    const Curve curve =
+        belongs_to_the_place(free.law.variable) && !free.constant ? centred(free, models) : free;
     const auto effect = make_curve_effect(curve);
     candidates.push_back({effect, curve, key_of(*effect, curve)});
   }

@@ -217,6 +217,19 @@ BasisValues zero_at_rest(const Curve& curve, double z) {
   return functions;
 }
 
+/// What an unsigned way adds to a signed one, a drive that goes only one way cannot tell from the wheels.
+bool goes_both_ways(std::span<const DriveModel* const> models) {
+  constexpr double kLeast = 0.2;  // of the way
+  double ahead = 0.0, back = 0.0;
+  for (const DriveModel* model : models)
+    for (const StepContext& c : model->context()) (c.speed > 0.0 ? ahead : back) += std::abs(c.speed) * c.dt;
+  return std::min(ahead, back) > kLeast * (ahead + back);
+}
+
+bool is_unsigned(Carrier carrier) {
+  return carrier == Carrier::both_path || carrier == Carrier::sideways_path || carrier == Carrier::yaw_path;
+}
+
 /// Periods closer than this many cycles per recording look alike.
 void add_periods(double duration, std::vector<Curve>& curves) {
   constexpr double kShortest = 8.0;  // s
@@ -231,6 +244,12 @@ void add_harmonics(const Curve& curve, int first, int last, std::vector<Curve>& 
     curves.push_back(curve);
     curves.back().harmonic = harmonic;
   }
+}
+
+BasisValues with_constant(const BasisValues& functions) {
+  BasisValues all{1.0};
+  for (const double f : functions) all.push_back(f);
+  return all;
 }
 
 /// A level that comes and goes, and a slope that lengthens one way and shortens the other.
@@ -261,6 +280,7 @@ BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   const Variable variable = curve.law.variable;
   const double z = value_of(variable, c, curve.memory);
   if (concerns_sensor(curve)) return sway_functions(curve, z);
+  if (curve.constant) return with_constant(harmonics(z, 1, kHarmonics));
   if (is_angle(variable))
     return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
   if (is_distance_since(variable)) return fading(variable, z);
@@ -345,14 +365,17 @@ double spread_of(const Curve& curve, std::span<const double> coefficients,
 
 std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
   std::vector<Curve> curves;
+  const bool both_ways = goes_both_ways(models);
   for (int v = 0; v <= static_cast<int>(kLastVariable); ++v) {
     const auto variable = static_cast<Variable>(v);
     if (models.size() > 1 && begins_with_the_recording(variable)) continue;
     const auto [low, high] = range_of(variable, models);
     if (!(high - low > 1e-6)) continue;
     for (const Carrier carrier : carriers_of(variable)) {
-      const Curve curve{{variable, carrier}, low, high, 0.0, 0};
+      Curve curve{{variable, carrier}, low, high, 0.0, 0};
+      curve.constant = variable == Variable::heading && is_unsigned(carrier) && both_ways;
       curves.push_back(curve);
+      curve.constant = false;
       if (variable == Variable::left_phase || variable == Variable::right_phase)
         add_harmonics(curve, kHarmonics + 1, kHighestHarmonic, curves);
       // A drive seldom shows all headings; one wave round the circle is what few of them can tell.

@@ -24,7 +24,8 @@ namespace odomcalib::calib {
 ///   magnitude times the direction;
 /// - on the sensor's yaw: the variable and its signed square;
 /// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
-/// A constant is a base parameter's, except on the turn path, where it is the first function.
+/// A constant is a base parameter's, except on carriers of the unsigned way in drives both ways, and on the
+/// turn path, where it is the first function.
 struct Curve {
   Law law;
   double low = -1.0;
@@ -37,6 +38,7 @@ struct Curve {
   int knots = 4;                      ///< of speeds only
   std::size_t memory = kUsualMemory;  ///< of what happened before only: span over which it fades
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
+  bool constant = false;              ///< of heading only: with a constant as the first function
   [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
 };
 

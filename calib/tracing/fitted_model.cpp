@@ -58,7 +58,8 @@ Eigen::Index first_parameter(const EffectList& effects, std::size_t index) {
   return first;
 }
 
-std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel& model, std::size_t index) {
+std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel& model, std::size_t index,
+                                          const std::vector<NoiseModel>& noise) {
   EffectList effects = model.effects;
   effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(index));
   const Eigen::VectorXd& all = model.fit.parameters;
@@ -66,7 +67,7 @@ std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel
   const Eigen::Index after = first_parameter(model.effects, index + 1);
   Eigen::VectorXd start(all.size() - (after - first));
   start << all.head(first), all.tail(all.size() - after);
-  auto fit = task.fit(effects, start, {});
+  auto fit = task.fit(effects, start, noise);
   if (!fit) return std::nullopt;
   return FittedModel{std::move(effects), std::move(*fit)};
 }

@@ -38,7 +38,8 @@ std::optional<FittedModel> with_effect(const FitTask& task, const FittedModel& m
                                        const std::vector<NoiseModel>& noise);
 
 /// Fitted without one of the effects; nullopt if that does not settle.
-std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel& model, std::size_t index);
+std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel& model, std::size_t index,
+                                          const std::vector<NoiseModel>& noise);
 
 /// The same model with wider noise where many pairs are far out: something systematic is there, and robust
 /// weights must not take it for failed matches.

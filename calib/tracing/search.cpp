@@ -247,6 +247,7 @@ class Search {
     if (!proof) return law_of == nullptr || replace(law_of, candidate, table.scores()[index], alike);
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
     settle_shape_of_newest_curve();
+    retire_superfluous();
     return true;
   }
 
@@ -257,7 +258,7 @@ class Search {
     const auto& effects = result_.model.effects;
     const auto place = std::find(effects.begin(), effects.end(), name);
     const auto without =
-        without_effect(task_, result_.model, static_cast<std::size_t>(place - effects.begin()));
+        without_effect(task_, result_.model, static_cast<std::size_t>(place - effects.begin()), {});
     if (!without) return true;
     const auto free = with_effect(task_, *without, candidate.effect, result_.model.fit.noise);
     Proof proof;
@@ -332,18 +333,21 @@ class Search {
       if (candidate.key == key) candidate.struck = true;
   }
 
-  /// What an earlier finding explained may belong to the one that was just added.
+  /// What an earlier finding explained may belong to what was just added.
   void retire_superfluous() {
     const FittedModel& model = result_.model;
     for (std::size_t e = 0; e < model.effects.size(); ++e) {
       const auto finding = std::find_if(result_.findings.begin(), result_.findings.end(),
                                         [&](const Finding& f) { return f.effect == model.effects[e]; });
       const auto first = static_cast<std::size_t>(first_parameter(model.effects, e));
-      if (finding == result_.findings.end() || !is_superfluous(*model.effects[e], first, model.fit)) continue;
-      auto fewer = without_effect(task_, model, e);
-      if (!fewer) continue;
+      if (finding == result_.findings.end()) continue;
+      auto fewer = without_effect(task_, model, e, model.fit.noise);
+      if (!fewer ||
+          !(is_superfluous(*model.effects[e], first, model.fit) || !is_better(task_, *fewer, model)))
+        continue;
       result_.model = std::move(*fewer);
       result_.findings.erase(finding);
+      has_changed_ = true;
       return;
     }
   }

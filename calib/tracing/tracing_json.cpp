@@ -24,6 +24,7 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   const auto coefficients = entry.value("coefficients", std::vector<double>{});
   curve.memory = entry.value("memory", kUsualMemory);
   curve.wave = entry.value("wave", curve.wave);
+  curve.constant = entry.value("constant", false);
   if (!(curve.high > curve.low) || curve.memory >= kMemorySpans.size() ||
       (curve.knots != 4 && curve.knots != 8) || coefficients.size() != basis_size(curve))
     return std::nullopt;
@@ -57,6 +58,7 @@ std::string curves_to_json(const std::vector<FittedCurve>& curves) {
                     {"knots", curve.knots},
                     {"memory", curve.memory},
                     {"wave", curve.wave},
+                    {"constant", curve.constant},
                     {"coefficients", coefficients},
                     {"law_of", law_of}});
   return list.dump();
