@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "calib/effects/factories.hpp"
 #include "calib/effects/step_effect.hpp"
 
@@ -8,7 +10,8 @@ namespace {
 // the distance s since the reversal falls off as exp(-s / length), with a length of two to four caster
 // trails. The side it swings to follows the direction of travel, the turn before (kappa_turn), or is always
 // the same (kappa_side). One that stands nearly straight has to fall over first: the push then grows with s
-// before it fades (order 2).
+// before it fades (order 2). After turns too, the push may follow the angle by which the caster points past
+// the way of its pivot, the length being its trail (order 0).
 class CasterKick final : public StepEffect<CasterKick> {
  public:
   CasterKick(double length, double order) : length_(length), order_(order) {}
@@ -18,7 +21,7 @@ class CasterKick final : public StepEffect<CasterKick> {
             {"kappa_turn", "rad", 0.01, -0.2, 0.2},
             {"kappa_side", "rad", 0.01, -0.2, 0.2},
             {"length", "m", 1e9, 0.005, 1.0, length_, 0.0, true},
-            {"order", "1", 1e9, 1.0, 2.0, order_, 0.0, true}};
+            {"order", "1", 1e9, 0.0, 2.0, order_, 0.0, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
   [[nodiscard]] std::string separating_motion() const override {
@@ -28,6 +31,7 @@ class CasterKick final : public StepEffect<CasterKick> {
     std::vector<std::shared_ptr<const Effect>> all;
     for (const double length : {0.04, 0.08, 0.15}) all.push_back(std::make_shared<CasterKick>(length, 1.0));
     for (const double length : {0.04, 0.08}) all.push_back(std::make_shared<CasterKick>(length, 2.0));
+    for (const double length : kCasterTrails) all.push_back(std::make_shared<CasterKick>(length, 0.0));
     return all;
   }
   [[nodiscard]] std::vector<Law> laws() const override {
@@ -37,6 +41,10 @@ class CasterKick final : public StepEffect<CasterKick> {
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
     using std::exp;
+    if (plain(p[4]) < 0.5) {
+      step.yaw += p[0] * c.caster[trail_nearest(plain(p[3]))] * (std::abs(c.speed) * c.dt) / p[3];
+      return;
+    }
     const T side = p[0] * c.direction + p[1] * c.previous_turn[kUsualMemory] + p[2];
     const T distance = c.since_reversal / p[3];
     const T rise = p[4] > 1.5 ? distance : T(1.0);
@@ -44,6 +52,13 @@ class CasterKick final : public StepEffect<CasterKick> {
   }
 
  private:
+  static std::size_t trail_nearest(double length) {
+    const auto nearest = std::min_element(
+        kCasterTrails.begin(), kCasterTrails.end(),
+        [length](double a, double b) { return std::abs(a - length) < std::abs(b - length); });
+    return static_cast<std::size_t>(nearest - kCasterTrails.begin());
+  }
+
   double length_;
   double order_;
 };

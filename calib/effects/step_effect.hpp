@@ -8,6 +8,10 @@
 
 namespace odomcalib::calib {
 
+/// A scalar without its derivatives.
+inline double plain(double value) { return value; }
+inline double plain(const Jet& value) { return value.a; }
+
 /// Derived supplies `template <typename T> void act(const StepContext&, std::span<const T> p,
 /// WheelStep<T>&)`, static or const.
 template <typename Derived>

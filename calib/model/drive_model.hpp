@@ -104,6 +104,7 @@ class DriveHistory {
     double since = 1e3;  ///< rad; the drive begins as if the last reversal lay far back
     double advance(double delta);
   };
+  void swing_caster(StepContext& context, const Pose& step);
   void remember_stop(StepContext& context);
   void remember_push(StepContext& context);
   void remember_turn(StepContext& context, double yaw);
@@ -116,6 +117,7 @@ class DriveHistory {
   double stood_ = 0.0;  ///< s
   double since_stop_ = 1e3;
   Memory previous_turn_{}, previous_push_{};
+  std::array<double, kCasterTrails.size()> caster_{};  ///< rad, direction in which each would roll, base axes
 };
 
 /// Observable variables of each tick interval, from smoothed wheel angles and nominal geometry.

@@ -21,6 +21,9 @@ inline constexpr std::array<double, 3> kMemorySpans = {1.0 / 3.0, 1.0, 3.0};
 inline constexpr std::size_t kUsualMemory = 1;
 using Memory = std::array<double, kMemorySpans.size()>;
 
+/// m; trails of casters are not known either.
+inline constexpr std::array<double, 3> kCasterTrails = {0.02, 0.04, 0.08};
+
 /// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
 /// are smoothed, since differences of raw ticks are mostly quantisation noise.
 struct StepContext {
@@ -42,7 +45,10 @@ struct StepContext {
   double since_stop = 0.0;  ///< mean way of the two rims since the robot last stood still, m
   Memory previous_turn{};   ///< which way it turned lately: mean of the turn's sign over a radian, -1 to 1
   Memory previous_push{};   ///< whether it was sped up or slowed down lately: the same over 0.1 m/s
-  double direction = 0.0;   ///< sign of the forward speed, kept while standing
+  /// Sine of the angle by which a caster behind the axle still points past the way its pivot moves, for each
+  /// of kCasterTrails: -1 to 1.
+  std::array<double, kCasterTrails.size()> caster{};
+  double direction = 0.0;  ///< sign of the forward speed, kept while standing
 };
 
 }  // namespace odomcalib::calib

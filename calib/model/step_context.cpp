@@ -114,6 +114,7 @@ void DriveHistory::advance(StepContext& c) {
   since_reversal_ += std::hypot(step.x, step.y);
   c.left_since_reversal = left_.advance(c.left_delta);
   c.right_since_reversal = right_.advance(c.right_delta);
+  swing_caster(c, step);
   remember_stop(c);
   remember_push(c);
   remember_turn(c, step.yaw);
@@ -121,6 +122,24 @@ void DriveHistory::advance(StepContext& c) {
   c.x = pose_.x;
   c.y = pose_.y;
   pose_ = compose(pose_, step);
+}
+
+/// A wheel that trails by t turns towards the way s of its pivot: tan(beta / 2) falls as exp(-s / t), beta
+/// the angle between both (Campion, Bastin and D'Andrea-Novel 1996, eq. 4: no slip across the wheel).
+void DriveHistory::swing_caster(StepContext& c, const Pose& step) {
+  constexpr double kBehind = 0.6;  // track widths; what matters is that a spin moves the pivot sideways
+  const double across = -kBehind * nominal_.track_width * step.yaw;
+  const double way = std::hypot(step.x, across);
+  const double towards = std::atan2(across, step.x);
+  for (std::size_t k = 0; k < caster_.size(); ++k) {
+    if (way > 0.0) {
+      const double before = wrap_angle(caster_[k] - towards);
+      const double after = 2.0 * std::atan(std::tan(before / 2.0) * std::exp(-way / kCasterTrails[k]));
+      c.caster[k] = 0.5 * (std::sin(before) + std::sin(after));
+      caster_[k] = towards + after;
+    }
+    caster_[k] -= step.yaw;
+  }
 }
 
 void DriveHistory::remember_stop(StepContext& c) {
