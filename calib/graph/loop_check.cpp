@@ -85,7 +85,7 @@ LoopMatch match_loop(const MatchReference& first, const Surface& second, const P
       intrusion(FreeSpace(second), reference_points, inverse(found.motion)) > options.max_intrusion)
     return refused("walls where the other scan saw free space");
   if (has_rival(field, few, best, options)) return refused("ambiguous");
-  return {true, "", found.motion, found.covariance};
+  return {true, "", found.motion, found.covariance, found.overlap};
 }
 
 }  // namespace odomcalib::calib

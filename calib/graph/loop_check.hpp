@@ -25,6 +25,7 @@ struct LoopMatch {
   std::string reason;  ///< why not
   Pose motion;         ///< of the second scan in the frame of the first
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double overlap = 0.0;  ///< share of the second scan's lines that found their partner
 };
 
 struct LoopCheckOptions {

@@ -83,14 +83,14 @@ std::optional<Obstacle> Problem::obstacle() const {
   return graph_.has_positions ? std::nullopt : pose_behind_points();
 }
 
-/// A fixed pose holds its part of the graph, and so do two fixed points.
+/// A fixed pose holds its part of the graph, and so do two fixed points. What has no edge needs no hold.
 std::optional<Obstacle> Problem::loose_part() const {
   const Parts parts = connected_parts(graph_, neighbours_);
   std::vector<int> held(parts.count, 0);
   for (std::size_t v = 0; v < graph_.vertices.size(); ++v)
     if (graph_.vertices[v].fixed) held[parts.of[v]] += graph_.vertices[v].kind == VertexKind::pose ? 2 : 1;
   for (std::size_t v = 0; v < graph_.vertices.size(); ++v) {
-    if (held[parts.of[v]] >= 2) continue;
+    if (held[parts.of[v]] >= 2 || neighbours_.edges_at(v).empty()) continue;
     const auto size = std::count(parts.of.begin(), parts.of.end(), parts.of[v]);
     const std::string id = std::to_string(graph_.vertices[v].id);
     return Obstacle{GraphState::not_connected,

@@ -110,11 +110,16 @@ class Builder {
     const StepMatch found = match_neighbour(k, guess);
     if (found.match.ok && agrees(guess, found.match.motion)) {
       if (!found.leans_on_odometry) correction_.learn(step, found.match.motion);
-      out_.sources.push_back(EdgeSource::match);
+      add_source(EdgeSource::match, found.match.overlap);
       return edge_of(k - 1, k, found.match.motion, found.match.covariance);
     }
-    out_.sources.push_back(EdgeSource::odometry);
+    add_source(EdgeSource::odometry, 0.0);
     return edge_of(k - 1, k, guess, odometry_covariance());
+  }
+
+  void add_source(EdgeSource source, double overlap) {
+    out_.sources.push_back(source);
+    out_.overlaps.push_back(overlap);
   }
 
   [[nodiscard]] Eigen::Matrix3d odometry_covariance() const {
@@ -140,9 +145,11 @@ class Builder {
     match.min_overlap = kNeighbourOverlap;
     match.guess_information = odometry_covariance().ldlt().solve(Eigen::Matrix3d::Identity());
     const MatchResult found = match_point_to_line(*references_[k - 1], surface(k), guess, match);
-    if (found.is_usable()) return {{true, "", found.motion, found.covariance}};
+    if (found.is_usable()) return {{true, "", found.motion, found.covariance, found.overlap}};
     if (found.status == MatchStatus::degenerate)
-      return {{true, "", found.motion, with_odometry(found.information, match.guess_information)}, true};
+      return {
+          {true, "", found.motion, with_odometry(found.information, match.guess_information), found.overlap},
+          true};
     LoopCheckOptions narrow = options_.loop;
     narrow.half_width = narrow.half_angle = kMostFromOdometry;
     narrow.min_overlap = kNeighbourOverlap;
@@ -260,7 +267,7 @@ class Builder {
       refuse(loop, "contradicts the graph");
       return false;
     }
-    out_.sources.push_back(EdgeSource::loop);
+    add_source(EdgeSource::loop, loop.match.overlap);
     closed_at_ = way_[loop.to];
     return true;
   }

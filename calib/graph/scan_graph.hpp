@@ -30,6 +30,7 @@ struct ScanGraph {
   PoseGraph graph;                             ///< vertices are keyframes, poses those of the sensor, settled
   std::vector<std::size_t> scans;              ///< of each vertex
   std::vector<EdgeSource> sources;             ///< of each edge
+  std::vector<double> overlaps;                ///< of each edge, as in MatchResult; 0 for odometry
   std::map<std::string, std::size_t> refused;  ///< reason -> candidates for loops
   [[nodiscard]] std::size_t count(EdgeSource source) const;
 };

@@ -314,6 +314,49 @@ TEST(GraphOptimize, vertices_without_edges_stay_and_are_mentioned) {
   EXPECT_NE(summary.notes[0].find("pose 7"), std::string::npos);
 }
 
+TEST(GraphOptimize, landmarks_that_nobody_saw_stay_and_are_mentioned) {
+  PoseGraph graph =
+      graph_of("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nVERTEX_XY 7 5 6\n" + along_x(0, 1, 1.0));
+  fix_first_pose(graph);
+  const auto summary = optimize_graph(graph);
+  EXPECT_EQ(summary.state, GraphState::converged) << summary.reason;
+  EXPECT_EQ(graph.vertices[2].x, 5.0);
+  ASSERT_EQ(summary.notes.size(), 1U);
+  EXPECT_NE(summary.notes[0].find("point 7"), std::string::npos);
+}
+
+/// Vertices anywhere within 100 m, to start from.
+PoseGraph scattered(PoseGraph graph, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (GraphVertex& vertex : graph.vertices) {
+    if (vertex.fixed) continue;
+    vertex.x = 100.0 * uniform(engine);
+    vertex.y = 100.0 * uniform(engine);
+    if (vertex.kind == VertexKind::pose) vertex.yaw = kPi * uniform(engine);
+  }
+  return graph;
+}
+
+TEST(GraphOptimize, S2_18_random_worlds_end_at_one_chi2_from_every_start) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const testing::WorldOptions options{
+        .poses = 300, .anisotropic = seed % 2 == 0, .points = seed % 3 == 0 ? 20 : 0};
+    const PoseGraph graph = scattered(testing::WorldMaker(options, seed).make().graph, seed);
+    PoseGraph first = graph;
+    const GraphSummary best = optimize_graph(first);
+    ASSERT_TRUE(best.is_usable()) << "seed " << seed << ": " << best.reason;
+    for (const GraphStart start :
+         {GraphStart::odometry, GraphStart::tree, GraphStart::rotations, GraphStart::file}) {
+      PoseGraph other = graph;
+      const GraphSummary summary = optimize_graph(other, {.start = start});
+      EXPECT_TRUE(summary.is_usable()) << "seed " << seed << ": " << summary.reason;
+      EXPECT_NEAR(summary.chi2_after, best.chi2_after, 1e-6 * best.chi2_after)
+          << "seed " << seed << ", start " << static_cast<int>(start);
+    }
+  }
+}
+
 TEST(GraphOptimize, a_fixed_landmark_alone_leaves_a_rotation) {
   PoseGraph graph = graph_of(seen_ahead(0, 1, 2.0) + "FIX 1\n" + along_x(0, 2, 1.0));
   EXPECT_EQ(optimize_graph(graph).state, GraphState::not_connected);

@@ -29,7 +29,7 @@ TEST(Matching, S2_04_recovers_a_known_motion_from_noise_free_scans) {
 }
 
 TEST(Matching, S2_40_errors_agree_with_the_reported_covariance) {
-  constexpr unsigned kRuns = 100;
+  constexpr unsigned kRuns = 300;
   double squared = 0.0;
   for (unsigned run = 0; run < kRuns; ++run) {
     const Pose motion{0.1, 0.02, -0.2};
@@ -46,7 +46,8 @@ TEST(Matching, S2_40_errors_agree_with_the_reported_covariance) {
                                 match.pose[2] - motion.yaw);
     squared += error.dot(covariance.inverse() * error);
   }
-  EXPECT_NEAR(squared / (3.0 * kRuns), 1.0, 0.4);
+  std::printf("%u matches: e' C^-1 e is %.3f times its expectation\n", kRuns, squared / (3.0 * kRuns));
+  EXPECT_NEAR(squared / (3.0 * kRuns), 1.0, 0.2);
 }
 
 TEST(Matching, the_result_does_not_depend_on_the_guess) {

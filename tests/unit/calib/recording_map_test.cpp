@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "calib/estimators/wheel_motion.hpp"
 #include "calib/geometry/vector2.hpp"
+#include "calib/graph/edge_error.hpp"
 #include "calib/graph/optimize.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
@@ -115,6 +117,21 @@ TEST(RecordingMap, S2_01_from_scans_and_ticks_to_a_closed_graph_and_a_map) {
   EXPECT_LT(settled, 0.01);
   // 42 m of way and six quarter turns, by wheels that claim 2 % too much of one and lack 1 % of the other.
   EXPECT_NEAR(static_cast<double>(map.made.scans.size()), 42.0 * 1.02 / 0.5 + 6.0 * kPi / 2.0 / 0.5, 15.0);
+}
+
+TEST(RecordingMap, S2_23_each_edge_tells_motion_information_score_and_how_it_came_about) {
+  const auto made = map_recording(round_the_block().recording, {});
+  ASSERT_TRUE(made.ok()) << made.error().text();
+  const ScanGraph& graph = made.value().made;
+  ASSERT_EQ(graph.sources.size(), graph.graph.edges.size());
+  ASSERT_EQ(graph.overlaps.size(), graph.graph.edges.size());
+  for (std::size_t e = 0; e < graph.sources.size(); ++e) {
+    const GraphEdge& edge = graph.graph.edges[e];
+    EXPECT_EQ(graph.sources[e] == EdgeSource::loop, edge.to != edge.from + 1) << "edge " << e;
+    EXPECT_EQ(graph.overlaps[e] > 0.2, graph.sources[e] != EdgeSource::odometry) << "edge " << e;
+    EXPECT_LE(graph.overlaps[e], 1.5) << "edge " << e;
+    EXPECT_TRUE(information_of(edge).llt().info() == Eigen::Success) << "edge " << e;
+  }
 }
 
 TEST(RecordingMap, S2_40_the_occupied_cells_are_the_walls) {

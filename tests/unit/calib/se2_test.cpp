@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <cmath>
 #include <random>
 
 namespace odomcalib::calib {
@@ -28,6 +30,24 @@ TEST_F(Se2, composes_associatively) {
     const Pose b = random_pose();
     const Pose c = random_pose();
     expect_same(compose(compose(a, b), c), compose(a, compose(b, c)), 1e-12);
+  }
+}
+
+/// Homogeneous matrix of a pose, and back: v2t and t2v of the literature.
+Eigen::Matrix3d to_matrix(const Pose& p) {
+  Eigen::Matrix3d m;
+  m << std::cos(p.yaw), -std::sin(p.yaw), p.x, std::sin(p.yaw), std::cos(p.yaw), p.y, 0.0, 0.0, 1.0;
+  return m;
+}
+Pose to_pose(const Eigen::Matrix3d& m) { return {m(0, 2), m(1, 2), std::atan2(m(1, 0), m(0, 0))}; }
+
+TEST_F(Se2, S2_26_poses_and_homogeneous_matrices_say_the_same) {
+  for (int i = 0; i < 1000; ++i) {
+    const Pose a = random_pose(), b = random_pose();
+    expect_same(to_pose(to_matrix(a)), a, 1e-12);
+    expect_same(to_pose(to_matrix(a) * to_matrix(b)), compose(a, b), 1e-12);
+    expect_same(to_pose(to_matrix(a).inverse()), inverse(a), 1e-12);
+    expect_same(to_pose(to_matrix(a).inverse() * to_matrix(b)), between(a, b), 1e-12);
   }
 }
 
