@@ -96,6 +96,7 @@ std::vector<Eigen::Vector2d> cells_seen(const std::vector<Eigen::Vector2d>& seen
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   std::vector<Eigen::Vector2d> centres;
+  centres.reserve(cells.size());
   for (const auto& [x, y] : cells) centres.emplace_back((x + 0.5) * cell, (y + 0.5) * cell);
   return centres;
 }
