@@ -153,8 +153,9 @@ class Filler {
     for (const EffectParameter& parameter : effect.parameters()) {
       const double value = found_.outcome.model.fit.parameters(index);
       const double deviation = std::sqrt(std::max(found_.outcome.model.fit.covariance(index, index), 0.0));
-      result.parameters.push_back(
-          {parameter.name, {value, parameter.fixed ? -1.0 : deviation, parameter.unit}});
+      // What the data do not speak of has no deviation, rather than none at all.
+      const bool is_estimated = !parameter.fixed && deviation > 0.0;
+      result.parameters.push_back({parameter.name, {value, is_estimated ? deviation : -1.0, parameter.unit}});
       if (deviation > 0.0 && parameter.start == 0.0) z = std::max(z, std::abs(value) / deviation);
       ++index;
     }
