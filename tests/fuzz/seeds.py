@@ -184,6 +184,15 @@ def rplidar():
     for name, (kind, size) in kinds.items():
         seed("rplidar", name, PIECE + descriptor(kind, size) + capsules(kind, size, 20))
         seed("rplidar", name + "_unannounced", PIECE + b"\x01\x02" + capsules(kind, size, 6))
+    # A recording that begins late (an odd first byte: the device's own times): the layout shows, or it does not.
+    def late(body_of, count):
+        return b"\xff" + b"".join(capsule(struct.pack("<H", int(64 * (k * 23.0 % 360))) + body_of(k)) for k in range(count))
+
+    seed("rplidar", "late_express", late(lambda k: struct.pack("<HHB", (1500 + 8 * k) << 2, (1504 + 8 * k) << 2, 0) * 16, 8))
+    seed("rplidar", "late_dense", late(lambda k: struct.pack("<40H", *(1800 + 10 * (40 * k + i) for i in range(40))), 8))
+    seed("rplidar", "late_empty", late(lambda k: bytes(80), 34))
+    seed("rplidar", "late_empty_and_cut", late(lambda k: bytes(80), 3) + bytes(90))
+    seed("rplidar", "late_short", late(lambda k: bytes(80), 2) + b"\xa5")
     hq = b"\xa5" + bytes(8) + b"".join(struct.pack("<HIBB", i * 170, 4000 + i, 40, 1 if i == 0 else 0) for i in range(96))
     hq += struct.pack("<I", zlib.crc32(hq + bytes(-len(hq) % 4)))
     seed("rplidar", "hq", PIECE + descriptor(0x83, 781) + hq + hq)
