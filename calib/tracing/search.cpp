@@ -333,6 +333,12 @@ class Search {
       if (candidate.key == key) candidate.struck = true;
   }
 
+  /// A law that was completed shares its ground with the curve, and keeps its name.
+  [[nodiscard]] bool is_completed(const Finding& finding) const {
+    return std::any_of(result_.curves.begin(), result_.curves.end(),
+                       [&](const AddedCurve& curve) { return curve.law_of == finding.effect; });
+  }
+
   /// What an earlier finding explained may belong to what was just added.
   void retire_superfluous() {
     const FittedModel& model = result_.model;
@@ -340,7 +346,7 @@ class Search {
       const auto finding = std::find_if(result_.findings.begin(), result_.findings.end(),
                                         [&](const Finding& f) { return f.effect == model.effects[e]; });
       const auto first = static_cast<std::size_t>(first_parameter(model.effects, e));
-      if (finding == result_.findings.end()) continue;
+      if (finding == result_.findings.end() || is_completed(*finding)) continue;
       auto fewer = without_effect(task_, model, e, model.fit.noise);
       if (!fewer ||
           !(is_superfluous(*model.effects[e], first, model.fit) || !is_better(task_, *fewer, model)))
