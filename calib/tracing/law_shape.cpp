@@ -82,7 +82,8 @@ bool is_better(const FitTask& task, const FittedModel& given, const FittedModel&
 
 Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, const Curve& curve) {
   Eigen::VectorXd doubt = Eigen::VectorXd::Zero(kBaseCount);
-  if (curve.mean.empty()) return doubt;
+  // What was kept of the past has no natural zero either: neither side of it is the robot as it was measured.
+  if (curve.mean.empty() && !is_memory(curve.law.variable)) return doubt;
   const Eigen::VectorXd own = model.fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
   const double spread = spread_of(curve, as_span(own), task.models());
   for (const auto k : lengths_of(curve.law.carrier)) doubt(k) = spread * model.fit.parameters(k);
