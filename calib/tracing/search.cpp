@@ -8,6 +8,7 @@
 
 #include "calib/tracing/candidate.hpp"
 #include "calib/tracing/law_shape.hpp"
+#include "calib/tracing/likeness.hpp"
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/score.hpp"
 
@@ -24,12 +25,10 @@ constexpr std::size_t kMaxCurves = 4;
 constexpr int kMaxSteps = 12;       ///< additions and failed proofs together
 constexpr std::size_t kRefits = 4;  ///< candidates refitted jointly per step
 constexpr double kAmbiguity = 6.0;  ///< units of BIC
-constexpr double kAlias = 0.9;      ///< canonical correlation that counts as indistinguishable
 constexpr double kSameLaw = 0.5;    ///< share of a curve's statistic that a name with that law must reach
 /// Family-wise level at which the data outside a fold must point to a candidate that all data together have
 /// chosen.
 constexpr double kFoldLevel = 0.05;
-constexpr double kTelling = 10.0;  ///< expected gap of -2 log L that tells two candidates apart
 
 struct Trial {
   std::size_t candidate = 0;
@@ -226,7 +225,7 @@ class Search {
 
   bool accept_name(const ScoreTable& table, const Trial& best) {
     const Candidate candidate = candidates_[best.candidate];
-    const std::vector<std::string> aliases = aliases_of(table, best);
+    const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, rivals_of(best));
     const auto proof = accept(table, best);
     if (!proof) return true;
     result_.findings.push_back({candidate.effect, aliases, *proof});
@@ -241,10 +240,14 @@ class Search {
       trial = refit_centred(index);
     const Candidate candidate = candidates_[index];
     const auto law_of = completed_by(candidate);
-    const std::vector<Variable> alike = alike_of(table, index);
-    const auto proof = trial ? accept(table, *trial) : std::nullopt;
-    if (!trial) strike(candidate.key);
-    if (!proof) return law_of == nullptr || replace(law_of, candidate, table.scores()[index], alike);
+    const std::vector<Variable> alike = variables_like(candidates_, table, index);
+    if (!trial) {
+      strike(candidate.key);
+      return true;
+    }
+    const auto proof = accept(table, *trial);
+    if (!proof && law_of) replace(law_of, candidate, table.scores()[index], alike);
+    if (!proof) return true;
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
     settle_shape_of_newest_curve();
     retire_superfluous();
@@ -253,27 +256,26 @@ class Search {
 
   /// A free law that cannot stand on the name's, but foretells held-out data better in its place: then the
   /// name was the wrong one.
-  bool replace(const std::shared_ptr<const Effect>& name, const Candidate& candidate, const Score& score,
+  void replace(const std::shared_ptr<const Effect>& name, const Candidate& candidate, const Score& score,
                const std::vector<Variable>& alike) {
     const auto& effects = result_.model.effects;
     const auto place = std::find(effects.begin(), effects.end(), name);
     const auto without =
         without_effect(task_, result_.model, static_cast<std::size_t>(place - effects.begin()), {});
-    if (!without) return true;
+    if (!without) return;
     const auto free = with_effect(task_, *without, candidate.effect, result_.model.fit.noise);
     Proof proof;
     proof.family_p_value = score.family_p_value;
     if (!free || spoils_base(*candidate.effect, without->fit, free->fit) ||
         !is_better(task_, result_.model, *free) ||
         !objection(task_, *without, *free, all_folds(), largest_ratio(candidate), proof).empty())
-      return true;
+      return;
     std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
     result_.model = *free;
     result_.considered.back().outcome = "took the place of " + name->name();
     result_.curves.push_back({candidate.effect, *candidate.curve, proof, nullptr, alike});
     settle_shape_of_newest_curve();
     has_changed_ = true;
-    return true;
   }
 
   /// A law with a narrow peak needs more knots than finding it did, one of the past another memory. What
@@ -290,23 +292,6 @@ class Search {
       newest.effect = result_.model.effects.back();
     }
     result_.doubts.push_back(doubt_of_zero(task_, result_.model, newest.curve));
-  }
-
-  /// Variables whose curves would have explained most of it too.
-  [[nodiscard]] std::vector<Variable> alike_of(const ScoreTable& table, std::size_t index) const {
-    constexpr double kMost = 0.6;  // of the statistic
-    const Variable own = candidates_[index].curve->law.variable;
-    std::vector<Variable> alike;
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      if (!is_open(k) || !candidates_[k].curve ||
-          table.scores()[k].statistic < kMost * table.scores()[index].statistic)
-        continue;
-      const Variable other = candidates_[k].curve->law.variable;
-      if (other != own && std::find(alike.begin(), alike.end(), other) == alike.end() &&
-          table.correlation(index, k) > kAlias)
-        alike.push_back(other);
-    }
-    return alike;
   }
 
   /// Where the drive cannot tell slow motion from the curve's mean, the curve is taken about its mean.
@@ -358,27 +343,16 @@ class Search {
     }
   }
 
-  std::vector<std::string> aliases_of(const ScoreTable& table, const Trial& best) const {
-    const Effect& effect = *candidates_[best.candidate].effect;
-    std::vector<std::string> aliases = effect.always_alike();
-    const auto add = [&](std::size_t k) {
-      const std::string name = candidates_[k].effect->name();
-      if (name != effect.name() && std::find(aliases.begin(), aliases.end(), name) == aliases.end())
-        aliases.push_back(name);
-    };
+  /// Names within a few units of BIC of the best.
+  [[nodiscard]] std::vector<std::size_t> rivals_of(const Trial& best) const {
+    std::vector<std::size_t> rivals;
     for (const Trial& trial : trials_)
-      if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity) add(trial.candidate);
+      if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity) rivals.push_back(trial.candidate);
     for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (is_open(k) && !candidates_[k].curve && table.scores()[k].family_p_value <= kNamedLevel &&
-          too_close(table, best.candidate, k))
-        add(k);
-    return aliases;
-  }
-
-  /// The expected gap between the true and the wrong one is T (1 - rho^2).
-  [[nodiscard]] bool too_close(const ScoreTable& table, std::size_t a, std::size_t b) const {
-    const double rho = table.correlation(a, b);
-    return rho > kAlias && table.scores()[a].statistic * (1.0 - rho * rho) < kTelling;
+      if (is_open(k) && !candidates_[k].curve && table_->scores()[k].family_p_value <= kNamedLevel &&
+          are_too_close(*table_, best.candidate, k))
+        rivals.push_back(k);
+    return rivals;
   }
 
   FitTask task_;
