@@ -254,8 +254,9 @@ BasisValues with_constant(const BasisValues& functions) {
 
 /// A level that comes and goes, and a slope that lengthens one way and shortens the other.
 BasisValues wave_functions(const Curve& curve, const StepContext& c) {
-  const std::complex<double> here = std::polar(1.0, 2.0 * kPi * (curve.wave[0] * c.x + curve.wave[1] * c.y));
-  const double across = std::cos(c.heading - std::atan2(curve.wave[1], curve.wave[0]));
+  const auto [a, b] = curve.wave;
+  const std::complex<double> here = std::polar(1.0, 2.0 * kPi * (a * c.x + b * c.y));
+  const double across = (a * std::cos(c.heading) + b * std::sin(c.heading)) / std::sqrt(a * a + b * b);
   return {here.real(), here.imag(), across * here.real(), across * here.imag()};
 }
 

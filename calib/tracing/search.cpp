@@ -76,12 +76,23 @@ class Search {
   /// What repeats itself along the floor, when nothing else is left to say.
   void ask_the_floor() {
     candidates_ = floor_waves(task_.models());
+    table_.reset();
     has_changed_ = true;
+  }
+
+  /// Waves are many, and what was nothing before one of them was found is not asked again.
+  void strike_hopeless_waves() {
+    constexpr double kHopeless = 0.05;  // family-wise
+    for (std::size_t k = 0; table_ && k < candidates_.size(); ++k)
+      if (candidates_[k].curve && candidates_[k].curve->is_wave() &&
+          table_->scores()[k].family_p_value > kHopeless)
+        candidates_[k].struck = true;
   }
 
   /// Scores of all that is left, on the model as it is now.
   void look_again() {
     basis_ = {result_.model.effects, widened_where_outlying(task_, result_.model)};
+    strike_hopeless_waves();
     std::erase_if(candidates_, [](const Candidate& c) { return c.struck; });
     table_.emplace(task_.data, basis_.effects, basis_.fit, task_.fixed(basis_.effects), candidates_);
     trials_.clear();
