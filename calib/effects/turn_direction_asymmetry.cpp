@@ -18,6 +18,7 @@ class TurnDirectionAsymmetry final : public StepEffect<TurnDirectionAsymmetry> {
   [[nodiscard]] std::string separating_motion() const override {
     return "turns both ways at two or more rates: skew grows with the rate, scrub does not";
   }
+  [[nodiscard]] bool has_two_states() const override { return true; }
   [[nodiscard]] std::vector<Law> laws() const override { return {{Variable::turn_rate, Carrier::track}}; }
 
   template <typename T>

@@ -53,6 +53,10 @@ class Effect {
   [[nodiscard]] virtual std::vector<Law> laws() const { return {}; }
   [[nodiscard]] virtual Storage storage() const { return Storage::host; }
 
+  /// Whether either of two states may be the undisturbed one: nothing tells which way of turning is the
+  /// normal one.
+  [[nodiscard]] virtual bool has_two_states() const { return false; }
+
   /// Changes the motion of one tick interval in place. Parameters at their start leave it unchanged.
   virtual void apply(const StepContext& context, std::span<const double> parameters,
                      WheelStep<double>& step) const {

@@ -35,11 +35,14 @@ class Changes {
     all_.emplace_back(change, motion);
     total_ += motion;
   }
-  /// The least of the changes' sizes that all but a tenth of the motion exceed on one side of zero.
-  [[nodiscard]] double least() {
+  /// What of the change the length itself may have taken over.
+  /// @param two_states the change from one to the other; otherwise the least of the changes' sizes that all
+  /// but a tenth of the motion exceed on one side of zero
+  [[nodiscard]] double unknown(bool two_states) {
     constexpr double kShare = 0.1;
     std::sort(all_.begin(), all_.end());
     const double low = quantile(kShare), high = quantile(1.0 - kShare);
+    if (two_states) return high - low;
     return low * high > 0.0 ? std::min(std::abs(low), std::abs(high)) : 0.0;
   }
 
@@ -106,9 +109,10 @@ Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& m
       track.add(step.track - 1.0, std::abs(c.turn_rate) * c.dt);
     }
   // A law that ends where the data end, instead of going on to zero, is two deviations off.
-  doubt(kLeftRadius) = 0.5 * left.least() * model.fit.parameters(kLeftRadius);
-  doubt(kRightRadius) = 0.5 * right.least() * model.fit.parameters(kRightRadius);
-  doubt(kTrackWidth) = 0.5 * track.least() * model.fit.parameters(kTrackWidth);
+  const auto share = [&](Changes& changes) { return 0.5 * changes.unknown(effect.has_two_states()); };
+  doubt(kLeftRadius) = share(left) * model.fit.parameters(kLeftRadius);
+  doubt(kRightRadius) = share(right) * model.fit.parameters(kRightRadius);
+  doubt(kTrackWidth) = share(track) * model.fit.parameters(kTrackWidth);
   return doubt;
 }
 
