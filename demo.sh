@@ -138,7 +138,7 @@ drive() { # FILE VERB...
   local file=$1 status=0
   shift
   printf '\n$ odomcalibctl %s\n' "$*"
-  for _ in 1 2 3; do
+  for _ in 1 2 3 4 5; do
     status=0
     "$bin/odomcalibctl" --socket "$dir/control" --json=short "$@" --yes > "$file" || status=$?
     case $status in 0) break ;; 4 | 5 | 6) echo "exit status $status; once more" ;; *) fail "exit status $status" ;; esac
@@ -158,7 +158,7 @@ PYTHON
 
 calibrate() {
   local status=0
-  for _ in 1 2 3; do
+  for _ in 1 2 3 4 5; do
     status=0
     run calibrate $plan --yes --out build/demo/calibration.json || status=$?
     case $status in 0) return ;; 3) fail "the calibration was refused" ;; 4 | 5 | 6) echo "exit status $status; once more" ;;
