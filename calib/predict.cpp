@@ -8,6 +8,7 @@
 #include "calib/lidar/lidar_effect.hpp"
 #include "calib/model/drive_model.hpp"
 #include "calib/tracing/tracing_json.hpp"
+#include "calib/wheels/nominal_base.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -88,10 +89,6 @@ Correction correction_of(const Calibration& calibration) {
   return correction;
 }
 
-BaseParameters nominal_of(const RobotDescription& robot) {
-  return {robot.left_wheel_diameter / 2.0, robot.right_wheel_diameter / 2.0, robot.track_width, {}};
-}
-
 }  // namespace
 
 std::vector<Placement> effect_placements(const Calibration& calibration) {
@@ -125,7 +122,7 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
   const WheelTrack track = wheel_track_from_ticks(recording);
   if (track.empty()) return poses;
   const Correction correction = correction_of(calibration);
-  std::vector<StepContext> context = make_context(track, nominal_of(recording.robot));
+  std::vector<StepContext> context = make_context(track, nominal_base(recording.robot));
   for (StepContext& c : context) c.t = correction.time;
   const DriveModel model(track, std::move(context));
   const std::vector<Pose> base = model.trajectory(as_span(correction.parameters), correction.effects).poses();
@@ -148,7 +145,7 @@ struct Odometry::State {
 
 Odometry::Odometry(const Calibration& calibration) : state_(std::make_unique<State>()) {
   state_->correction = correction_of(calibration);
-  state_->nominal = nominal_of(calibration.robot);
+  state_->nominal = nominal_base(calibration.robot);
   state_->ticks_per_rev = calibration.robot.ticks_per_rev;
   state_->drive = DriveHistory(state_->nominal);
 }

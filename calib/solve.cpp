@@ -267,24 +267,20 @@ class Solver {
     parameters_ = outcome_.model.fit.parameters;
   }
 
-  /// All or none: without walls enough to place nearly every scan of every recording there are no paths.
   void place_every_scan() {
     paths_.clear();
     placed_with_ = parameters_;
     if (!session_->reference_is_scans()) return;
-    report("placing every scan", 0.0);
-    for (std::size_t i = 0; i < recordings_.size(); ++i) {
-      paths_.push_back(place_scans(session_->recordings()[i], *session_->data()[i].model,
-                                   as_span(parameters_), effects_, session_->pair_sets()[i].range_noise));
-      if (!paths_.back().is_usable()) return paths_.clear();
-    }
+    paths_.resize(recordings_.size());
+    place_again(0.0);
   }
 
-  void place_again() {
-    if (!paths_.empty()) report("placing every scan", 0.5);
+  /// All or none: without walls enough to place nearly every scan of every recording there are no paths.
+  void place_again(double done) {
+    if (!paths_.empty()) report("placing every scan", done);
     for (std::size_t i = 0; i < paths_.size(); ++i) {
-      paths_[i] = place_scans_again(paths_[i], session_->recordings()[i], *session_->data()[i].model,
-                                    as_span(parameters_), effects_, session_->pair_sets()[i].range_noise);
+      paths_[i] = place_scans(session_->recordings()[i], *session_->data()[i].model, as_span(parameters_),
+                              effects_, session_->pair_sets()[i].range_noise, paths_[i]);
       if (!paths_[i].is_usable()) return paths_.clear();
     }
   }
@@ -292,7 +288,7 @@ class Solver {
   /// The same parameters from every scan instead of keyframes.
   void fit_whole_path() {
     const bool is_new = parameters_.size() != placed_with_.size() || parameters_ != placed_with_;
-    if (is_new) place_again();
+    if (is_new) place_again(0.5);
     if (paths_.empty()) return;
     std::vector<PathData> data;
     for (std::size_t i = 0; i < paths_.size(); ++i)

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "calib/geometry/vector2.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -107,14 +109,12 @@ Pose predict_base(const BaseParameters& p, const WheelMotion& sample) {
 Eigen::Vector3d rewritten_error(const BaseParameters& p, const WheelMotion& sample) {
   const Pose measured = compose(p.mount, sample.sensor_motion);
   const Pose predicted = compose(predict_base(p, sample), p.mount);
-  return {measured.x - predicted.x, measured.y - predicted.y, wrap_angle(measured.yaw - predicted.yaw)};
+  return difference(measured, predicted);
 }
 
 /// Prediction error of the sensor motion itself, in the sensor's frame.
 Eigen::Vector3d prediction_error(const BaseParameters& p, const WheelMotion& sample) {
-  const Pose predicted = conjugate(predict_base(p, sample), p.mount);
-  const Pose& s = sample.sensor_motion;
-  return {s.x - predicted.x, s.y - predicted.y, wrap_angle(s.yaw - predicted.yaw)};
+  return difference(sample.sensor_motion, conjugate(predict_base(p, sample), p.mount));
 }
 
 /// Value that a share of 1 - fraction of the samples does not exceed.

@@ -116,9 +116,7 @@ void linearise(const PathData& data, const EffectList& effects, const Eigen::Vec
   part.residual.resize(part.jacobian.rows(), 1);
   for (std::size_t k = 0; k < part.links.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(3 * k);
-    const Pose& m = part.links[k].measured;
-    const Eigen::Vector3d apart(m.x - predicted[k].x, m.y - predicted[k].y,
-                                wrap_angle(m.yaw - predicted[k].yaw));
+    const Eigen::Vector3d apart = difference(part.links[k].measured, predicted[k]);
     const Eigen::Matrix3d turn = rotation_about_z(part.links[k].heading);
     part.residual.block<3, 1>(row, 0) = turn * apart;
     part.jacobian.middleRows<3>(row) = (turn * part.jacobian.middleRows<3>(row)).eval();

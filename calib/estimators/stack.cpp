@@ -1,13 +1,10 @@
 #include "calib/estimators/stack.hpp"
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/model/sensitivity.hpp"
 
 namespace odomcalib::calib {
 namespace {
-
-Eigen::Vector3d difference(const Pose& measured, const Pose& predicted) {
-  return {measured.x - predicted.x, measured.y - predicted.y, wrap_angle(measured.yaw - predicted.yaw)};
-}
 
 PairState state_of(const Trajectory& trajectory, const Pose& mount, const SensorPair& pair) {
   return {trajectory.at(pair.interval.begin).yaw + mount.yaw,

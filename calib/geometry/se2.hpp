@@ -64,23 +64,31 @@ Pose2<T> conjugate(const Pose2<T>& motion, const Pose2<T>& mount) {
   return between(mount, compose(motion, mount));
 }
 
+/// sin(a) / a and (1 - cos(a)) / a.
+template <typename T>
+struct ArcRatios {
+  T sine{1.0};
+  T cosine{0.0};
+  explicit ArcRatios(const T& a) {
+    using std::abs;
+    using std::cos;
+    using std::sin;
+    if (abs(a) > T(0.05)) {
+      sine = sin(a) / a;
+      cosine = (1.0 - cos(a)) / a;
+    } else {  // Taylor, good to 1e-16 at the threshold; the ratio of cosines would lose digits
+      const T square = a * a;
+      sine = 1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0));
+      cosine = a / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)));
+    }
+  }
+};
+
 /// Group exponential: constant twist (dx, dy, dyaw) over unit time. Exact arc for dy = 0.
 template <typename T>
 Pose2<T> exp_se2(const T& dx, const T& dy, const T& dyaw) {
-  using std::abs;
-  using std::cos;
-  using std::sin;
-  T sine_ratio{1.0};
-  T cosine_ratio{0.0};
-  if (abs(dyaw) > T(0.05)) {
-    sine_ratio = sin(dyaw) / dyaw;
-    cosine_ratio = (1.0 - cos(dyaw)) / dyaw;
-  } else {  // Taylor, good to 1e-16 at the threshold; the ratio of cosines would lose digits
-    const T square = dyaw * dyaw;
-    sine_ratio = 1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0));
-    cosine_ratio = dyaw / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)));
-  }
-  return {sine_ratio * dx - cosine_ratio * dy, cosine_ratio * dx + sine_ratio * dy, dyaw};
+  const ArcRatios<T> ratio(dyaw);
+  return {ratio.sine * dx - ratio.cosine * dy, ratio.cosine * dx + ratio.sine * dy, dyaw};
 }
 
 /// Inverse of exp_se2 for |yaw| < pi.

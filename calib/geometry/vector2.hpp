@@ -37,6 +37,11 @@ class Frame {
 /// Turned by 90 degrees, counter-clockwise.
 inline Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
 
+/// x, y and yaw of a minus those of b, the yaw in (-pi, pi].
+inline Eigen::Vector3d difference(const Pose& a, const Pose& b) {
+  return {a.x - b.x, a.y - b.y, wrap_angle(a.yaw - b.yaw)};
+}
+
 /// Rotation of (x, y, yaw) in other axes: yaw stays what it is.
 inline Eigen::Matrix3d rotation_about_z(double yaw) {
   const double c = std::cos(yaw), s = std::sin(yaw);

@@ -7,6 +7,7 @@
 #include "calib/geometry/vector2.hpp"
 #include "calib/matching/probability_grid.hpp"
 #include "calib/reference/scan_surfaces.hpp"
+#include "calib/wheels/nominal_base.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -15,18 +16,6 @@ constexpr double kFinestCell = 0.05;      ///< m
 constexpr double kMostCells = 2000.0;     ///< from the origin to the map's edge: 64 MB
 constexpr double kOccupied = 0.6;         ///< probability; one beam that ended there says 0.7
 constexpr double kFarthestReading = 1e3;  ///< m from the origin; beyond it no map is drawn
-
-BaseParameters nominal_of(const RobotDescription& robot) {
-  BaseParameters base;
-  base.left_radius = robot.left_wheel_diameter / 2.0;
-  base.right_radius = robot.right_wheel_diameter / 2.0;
-  base.track_width = robot.track_width;
-  if (robot.lidar_pose) {
-    const auto& [x, y, yaw] = *robot.lidar_pose;
-    base.mount = {x, y, yaw};
-  }
-  return base;
-}
 
 /// Scans of the first sensor during which the wheels are known, with the lidar's pose by odometry.
 struct Instants {
@@ -124,7 +113,7 @@ Result<RecordingMap> map_recording(const Recording& recording, ScanGraphOptions 
   if (track.empty())
     return Error{ErrorCode::empty, "no tick samples", recording.name, "a map begins with odometry"};
   if (recording.scans.empty()) return Error{ErrorCode::empty, "no scans", recording.name, ""};
-  const BaseParameters nominal = nominal_of(robot);
+  const BaseParameters nominal = nominal_base(robot);
   const DriveModel model(track, make_context(track, nominal));
   const Eigen::VectorXd parameters = to_vector(nominal);
   RecordingMap map;

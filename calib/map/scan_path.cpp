@@ -34,28 +34,26 @@ class Mapper {
     }
   }
 
-  ScanPath run() {
+  ScanPath run(const ScanPath& known) {
     if (chosen_.size() < kFewestScans) return {};
-    explore();
-    return settle();
+    if (known.scans.empty())
+      explore();
+    else
+      begin_with(known);
+    if (path_.map.walls().empty() || path_.map.walls().size() > kMostWalls) return {};
+    adjust();
+    place_all();
+    return std::move(path_);
   }
 
-  ScanPath run_from(const ScanPath& known) {
+ private:
+  void begin_with(const ScanPath& known) {
     path_.map = known.map;
     auto placed = known.scans.begin();
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
       const bool is_known = placed != known.scans.end() && placed->time == time(k);
       poses_.push_back(is_known ? (placed++)->pose : poses_.empty() ? Pose{} : predicted(k));
     }
-    return settle();
-  }
-
- private:
-  ScanPath settle() {
-    if (path_.map.walls().empty() || path_.map.walls().size() > kMostWalls) return {};
-    adjust();
-    place_all();
-    return std::move(path_);
   }
 
   [[nodiscard]] const Scan& scan(std::size_t k) const { return recording_.scans[chosen_[k]]; }
@@ -148,14 +146,8 @@ bool ScanPath::is_usable() const {
 }
 
 ScanPath place_scans(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
-                     const EffectList& effects, double range_noise) {
-  return Mapper(recording, model, parameters, effects, range_noise).run();
-}
-
-ScanPath place_scans_again(const ScanPath& known, const Recording& recording, const DriveModel& model,
-                           std::span<const double> parameters, const EffectList& effects,
-                           double range_noise) {
-  return Mapper(recording, model, parameters, effects, range_noise).run_from(known);
+                     const EffectList& effects, double range_noise, const ScanPath& known) {
+  return Mapper(recording, model, parameters, effects, range_noise).run(known);
 }
 
 }  // namespace odomcalib::calib

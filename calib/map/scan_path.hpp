@@ -28,11 +28,9 @@ struct ScanPath {
 
 /// @param parameters, effects of the model, for guesses and for de-skewing
 /// @param range_noise m
+/// @param known the same scans placed with other parameters, which change little but how they are de-skewed;
+/// empty: nothing is known yet
 ScanPath place_scans(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
-                     const EffectList& effects, double range_noise);
-
-/// The same scans with other parameters, which change little but how they are de-skewed: the map is known.
-ScanPath place_scans_again(const ScanPath& known, const Recording& recording, const DriveModel& model,
-                           std::span<const double> parameters, const EffectList& effects, double range_noise);
+                     const EffectList& effects, double range_noise, const ScanPath& known = {});
 
 }  // namespace odomcalib::calib

@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "calib/geometry/se2.hpp"
+#include "calib/geometry/vector2.hpp"
 #include "calib/matching/walls.hpp"
 
 namespace odomcalib::calib {
@@ -29,8 +29,7 @@ struct GuessPrior {
   Pose guess;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   [[nodiscard]] Eigen::Vector3d gradient(const Pose& motion) const {
-    return information *
-           Eigen::Vector3d(motion.x - guess.x, motion.y - guess.y, wrap_angle(motion.yaw - guess.yaw));
+    return information * difference(motion, guess);
   }
 };
 

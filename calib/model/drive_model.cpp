@@ -2,44 +2,12 @@
 
 #include <cmath>
 #include <complex>
+#include <stdexcept>
 
 #include "calib/model/step_twist.hpp"
 
 namespace odomcalib::calib {
 namespace {
-
-/// exp(i angle). Most steps turn by little, and this is asked for each of them in each iteration of each fit.
-std::complex<double> unit_turn(double angle) {
-  if (std::abs(angle) > 0.05) return std::polar(1.0, angle);
-  const double square = angle * angle;  // Taylor, good to 1e-16 at the threshold
-  return {1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))),
-          angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))};
-}
-
-/// Base poses at the samples and the constant twist of each interval: enough to evaluate any time.
-struct Integrated {
-  std::vector<Pose> poses;
-  std::vector<Pose> twists;
-};
-
-Integrated integrate(const std::vector<StepContext>& context, std::span<const double> parameters,
-                     const EffectList& effects) {
-  const PlacedEffects placed(effects, kBaseCount);
-  Integrated result;
-  result.poses.resize(context.size() + 1);
-  result.twists.reserve(context.size());
-  std::complex<double> heading = 1.0;
-  for (std::size_t k = 0; k < context.size(); ++k) {
-    result.twists.push_back(twist_of(context[k], parameters, placed));
-    const Pose& w = result.twists.back();
-    const Pose step = exp_se2(w.x, w.y, w.yaw);
-    const std::complex<double> way = heading * std::complex<double>(step.x, step.y);
-    const Pose& here = result.poses[k];
-    result.poses[k + 1] = {here.x + way.real(), here.y + way.imag(), here.yaw + step.yaw};
-    heading *= unit_turn(step.yaw);
-  }
-  return result;
-}
 
 Pose pose_at(const WheelTrack& track, const std::vector<Pose>& poses, const std::vector<Pose>& twists,
              double time) {
@@ -103,13 +71,27 @@ Eigen::Vector3d sensor_velocity(const Trajectory& trajectory, const Pose& mount,
 }
 
 Trajectory DriveModel::trajectory(std::span<const double> parameters, const EffectList& effects) const {
-  Integrated integrated = integrate(context_, parameters, effects);
+  if (parameters.size() < kBaseCount + count_parameters(effects))
+    throw std::invalid_argument("a trajectory needs the parameters of the base and of each effect");
   Trajectory trajectory;
   trajectory.track_ = &track_;
-  trajectory.poses_ = std::move(integrated.poses);
-  trajectory.twists_ = std::move(integrated.twists);
   trajectory.parameters_.assign(parameters.begin(), parameters.end());
   trajectory.effects_ = PlacedEffects(effects, kBaseCount);
+  trajectory.poses_.resize(context_.size() + 1);
+  trajectory.twists_.reserve(context_.size());
+  // The heading is turned on by each step: an angle's sine and cosine, asked for every step of every fit,
+  // cost more than all the rest.
+  std::complex<double> heading = 1.0;
+  for (std::size_t k = 0; k < context_.size(); ++k) {
+    trajectory.twists_.push_back(twist_of(context_[k], parameters, trajectory.effects_));
+    const Pose& w = trajectory.twists_.back();
+    const ArcRatios<double> ratio(w.yaw);
+    const std::complex<double> chord(ratio.sine, ratio.cosine);
+    const std::complex<double> way = heading * (chord * std::complex<double>(w.x, w.y));
+    const Pose& here = trajectory.poses_[k];
+    trajectory.poses_[k + 1] = {here.x + way.real(), here.y + way.imag(), here.yaw + w.yaw};
+    heading *= std::complex<double>(1.0 - w.yaw * ratio.cosine, w.yaw * ratio.sine);
+  }
   return trajectory;
 }
 

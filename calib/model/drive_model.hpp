@@ -79,7 +79,8 @@ class DriveModel {
   /// make_context().
   void locate(std::span<const Fix> fixes, std::span<const double> parameters, const EffectList& effects);
 
-  /// Dead reckoning with these parameters, to be asked for poses.
+  /// Dead reckoning with these parameters, to be asked for poses. Throws std::invalid_argument if they are
+  /// too few.
   [[nodiscard]] Trajectory trajectory(std::span<const double> parameters, const EffectList& effects) const;
 
   /// Trajectory::sensor_motions() with these parameters.

@@ -28,6 +28,7 @@ class StepResponse {
   std::vector<Eigen::Matrix3Xd> rows_;
 };
 
+/// Derivatives of the sensor's motions along a trajectory.
 class Sensitivity {
  public:
   /// @param along must outlive this, as must its model

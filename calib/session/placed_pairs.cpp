@@ -47,9 +47,7 @@ double drift_of_matches(const std::vector<SensorPair>& pairs, const ScanPath& pa
     if (!places) continue;
     const Pose placed = between(places->begin->pose, places->end->pose);
     const Eigen::Matrix3d into_map = rotation_about_z(places->begin->pose.yaw);
-    const Eigen::Vector3d error(pair.motion.x - placed.x, pair.motion.y - placed.y,
-                                wrap_angle(pair.motion.yaw - placed.yaw));
-    drift += into_map * error;
+    drift += into_map * difference(pair.motion, placed);
     variance += (into_map * pair.covariance * into_map.transpose()).diagonal();
   }
   if (!(variance.minCoeff() > 0.0)) return 0.0;

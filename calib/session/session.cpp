@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "calib/wheels/nominal_base.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -10,12 +12,11 @@ namespace {
 constexpr double kUnknownRadius = 0.05;
 constexpr double kUnknownTrackWidth = 0.3;
 
-BaseParameters nominal_of(const RobotDescription& robot) {
-  BaseParameters base;
-  base.left_radius = robot.left_wheel_diameter > 0.0 ? robot.left_wheel_diameter / 2.0 : kUnknownRadius;
-  base.right_radius = robot.right_wheel_diameter > 0.0 ? robot.right_wheel_diameter / 2.0 : kUnknownRadius;
-  base.track_width = robot.track_width > 0.0 ? robot.track_width : kUnknownTrackWidth;
-  if (robot.lidar_pose) base.mount = {(*robot.lidar_pose)[0], (*robot.lidar_pose)[1], (*robot.lidar_pose)[2]};
+BaseParameters start_of(const RobotDescription& robot) {
+  BaseParameters base = nominal_base(robot);
+  if (!(base.left_radius > 0.0)) base.left_radius = kUnknownRadius;
+  if (!(base.right_radius > 0.0)) base.right_radius = kUnknownRadius;
+  if (!(base.track_width > 0.0)) base.track_width = kUnknownTrackWidth;
   return base;
 }
 
@@ -51,7 +52,7 @@ Result<Session> Session::open(std::span<const Recording> recordings) {
     return Error{ErrorCode::usage, "no recording given", "", "name at least one recording"};
   Session session;
   session.recordings_ = recordings;
-  session.nominal_ = nominal_of(recordings.front().robot);
+  session.nominal_ = start_of(recordings.front().robot);
   for (const Recording& recording : recordings) {
     if (auto error = check_streams(recording)) return *error;
     if (!same_robot(recording.robot, recordings.front().robot))

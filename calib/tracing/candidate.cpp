@@ -38,13 +38,17 @@ void add_names(const EffectList& given, bool one_recording, std::vector<Candidat
   }
 }
 
+Candidate candidate_of(const Curve& curve) {
+  const auto effect = make_curve_effect(curve);
+  return {effect, curve, key_of(*effect, curve)};
+}
+
 /// Odometry does without what belongs to the place or the day: then the base must be that of the whole drive.
 void add_curves(std::span<const DriveModel* const> models, std::vector<Candidate>& candidates) {
   for (const Curve& free : candidate_curves(models)) {
     const Curve curve =
         belongs_to_the_place(free.law.variable) && !free.constant ? centred(free, models) : free;
-    const auto effect = make_curve_effect(curve);
-    candidates.push_back({effect, curve, key_of(*effect, curve)});
+    candidates.push_back(candidate_of(curve));
   }
 }
 
@@ -59,10 +63,7 @@ std::vector<Candidate> all_candidates(const EffectList& present, std::span<const
 
 std::vector<Candidate> floor_waves(std::span<const DriveModel* const> models) {
   std::vector<Candidate> candidates;
-  for (const Curve& wave : wave_curves(models)) {
-    const auto effect = make_curve_effect(wave);
-    candidates.push_back({effect, wave, key_of(*effect, wave)});
-  }
+  for (const Curve& wave : wave_curves(models)) candidates.push_back(candidate_of(wave));
   return candidates;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/estimators/stack.hpp"
+#include "calib/geometry/vector2.hpp"
 #include "calib/validation/folds.hpp"
 
 namespace odomcalib::calib {
@@ -51,12 +53,9 @@ Eigen::Vector3d expected_variance(const SensorPair& pair, const NoiseModel& nois
 
 void accumulate(const FitData& part, const Eigen::VectorXd& parameters, const EffectList& effects,
                 const NoiseModel& noise, Sums& sums) {
-  std::vector<Interval> intervals;
-  for (const SensorPair& pair : part.pairs) intervals.push_back(pair.interval);
-  const auto predicted = part.model->predict(as_span(parameters), effects, intervals);
+  const auto predicted = part.model->predict(as_span(parameters), effects, intervals_of(part.pairs));
   for (std::size_t k = 0; k < part.pairs.size(); ++k) {
-    const Pose& m = part.pairs[k].motion;
-    const Eigen::Vector3d e(m.x - predicted[k].x, m.y - predicted[k].y, wrap_angle(m.yaw - predicted[k].yaw));
+    const Eigen::Vector3d e = difference(part.pairs[k].motion, predicted[k]);
     const Eigen::Vector3d v = expected_variance(part.pairs[k], noise);
     if ((e.cwiseAbs2().cwiseQuotient(v)).maxCoeff() > kGrossError * kGrossError) continue;
     sums.squares += e.cwiseAbs2();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "calib/estimators/stack.hpp"
+
 namespace odomcalib::calib {
 namespace {
 
@@ -121,8 +123,7 @@ Samples samples_of(std::span<const FitData> data, const EffectList& effects, con
   const Pose back = inverse(to_base(as_span(fit.parameters)).mount);
   std::size_t row = 0;
   for (const FitData& d : data) {
-    std::vector<Interval> intervals;
-    for (const SensorPair& pair : d.pairs) intervals.push_back(pair.interval);
+    const std::vector<Interval> intervals = intervals_of(d.pairs);
     const auto full = d.model->predict(as_span(fit.parameters), effects, intervals);
     const auto plain = d.model->predict(as_span(without), effects, intervals);
     for (std::size_t k = 0; k < d.pairs.size(); ++k, ++row) {
