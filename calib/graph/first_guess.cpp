@@ -36,7 +36,7 @@ ComplexBlock block_of(Complex number) {
 class HeadingSystem {
  public:
   HeadingSystem(const PoseGraph& graph, const std::vector<std::size_t>& places)
-      : graph_(graph), matrix_(unknown_headings(graph), links_of(graph), places) {
+      : matrix_(unknown_headings(graph), links_of(graph), places) {
     right_side_.setZero(matrix_.rows());
   }
   void add(const GraphEdge& edge, const Placement& at) {
@@ -65,7 +65,6 @@ class HeadingSystem {
     if (matrix_.size(there) == 0)
       right_side_[matrix_.row(here)] += weight * turn_here_from_there * std::polar(1.0, at[there].yaw);
   }
-  const PoseGraph& graph_;
   BlockMatrix<Complex> matrix_;
   BlockMatrix<Complex>::Vector right_side_;
 };

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "calib/effects/catalogue.hpp"
 
@@ -76,7 +77,7 @@ TEST(Joint, finds_a_delay_of_fifty_milliseconds_within_two) {
   Fixture f(1e-3, kSeed, 0.05);
   const std::vector<FitData> data = {{&f.model, f.pairs}};
   const EffectList effects = {find_effect("time_offset")};
-  const auto fit = fit_joint(data, effects, to_vector(kNominal, 1));
+  const auto fit = fit_joint(data, effects, to_vector(kNominal, count_parameters(effects)));
   ASSERT_TRUE(fit.ok());
   EXPECT_NEAR(fit.value().parameters(kBaseCount), 0.05, 0.002);
 }
@@ -122,6 +123,14 @@ TEST(Joint, straight_motion_alone_is_refused_and_names_what_is_missing) {
   ASSERT_FALSE(fit.ok());
   EXPECT_EQ(fit.error().code, ErrorCode::refused);
   EXPECT_NE(fit.error().what.find("does not determine"), std::string::npos);
+}
+
+TEST(Joint, parameters_that_are_too_few_are_refused) {
+  const Fixture f(1e-3, kSeed);
+  const std::vector<FitData> data = {{&f.model, f.pairs}};
+  const EffectList effects = {find_effect("time_offset")};
+  EXPECT_NO_THROW((void)fit_joint(data, effects, to_vector(kNominal, count_parameters(effects))));
+  EXPECT_THROW((void)fit_joint(data, effects, to_vector(kNominal)), std::invalid_argument);
 }
 
 TEST(Joint, no_pairs_is_an_error_of_its_own) {

@@ -135,7 +135,7 @@ TEST(Tracing, says_which_variable_when_it_has_no_name) {
 
 TEST(Tracing, a_clock_is_asked_before_what_happened_before) {
   const DriveModel model = lively_model();
-  const SearchResult result = searched(measured(model, {find_effect("time_offset")}, {0.03}));
+  const SearchResult result = searched(measured(model, {find_effect("time_offset")}, {0.03, 0.0}));
   ASSERT_EQ(result.findings.size(), 1U) << "seed " << kSeed;
   EXPECT_EQ(result.findings[0].effect->name(), "time_offset");
   EXPECT_TRUE(result.curves.empty());
@@ -231,9 +231,9 @@ TEST(Tracing, a_filter_of_the_encoder_is_a_delay_that_smooths) {
   const EffectList offset = {find_effect("time_offset")};
   const auto fitted = [&](bool pure_delay) {
     FitOptions options;
-    options.fixed = std::vector<bool>(kBaseCount + 2, false);
+    options.fixed = std::vector<bool>(kBaseCount + count_parameters(offset), false);
     options.fixed.back() = pure_delay;
-    return fit_joint({&data, 1}, offset, to_vector(kBase, 2), options);
+    return fit_joint({&data, 1}, offset, to_vector(kBase, count_parameters(offset)), options);
   };
   const auto fit = fitted(false), delayed = fitted(true);
   ASSERT_TRUE(fit && delayed) << "seed " << kSeed;
