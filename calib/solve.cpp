@@ -40,6 +40,7 @@ class Solver {
     start();
     auto fit = settle();
     if (fit) fit = correct_lidar(std::move(fit));
+    if (fit) fit = locate(std::move(fit));
     calibration_.data = data_use(*session_);
     calibration_.methods = classical_methods(*session_, delay(), calibration_);
     if (!fit) {
@@ -49,7 +50,6 @@ class Solver {
       calibration_.methods.push_back(joint);
       return refuse(fit.error());
     }
-    fit = locate(std::move(fit));
     if (automatic_ && recordings_.front().increments.empty())
       search(fit.value());
     else
@@ -168,20 +168,39 @@ class Solver {
                                      : fit_lidar(lidar_pairs(), asked_of_lidar_);
     if (std::none_of(lidar_.begin(), lidar_.end(), [](const auto& f) { return f.effect->is_correctable(); }))
       return fit;
-    const auto before = held_out_now(fit.value());
-    const auto uncorrected = std::pair(parameters_, effects_);
+    const State before = state(fit.value(), {});
     auto better = fit_corrected();
     if (better) refine(lidar_, lidar_pairs());
     if (better) better = fit_corrected();
-    if (better && !(asked_of_lidar_.empty() && is_worse(before, held_out_now(better.value())))) return better;
-    return without_correction(uncorrected);
+    return unless_worse(std::move(better), before);
+  }
+
+  /// What is gone back to when a correction of the lidar turns out to be none.
+  struct State {
+    Eigen::VectorXd parameters;
+    EffectList effects;
+    std::vector<LidarFinding> lidar;
+    std::optional<HeldOut> held_out;
+  };
+
+  [[nodiscard]] State state(const FitResult& fit, std::vector<LidarFinding> lidar) const {
+    return {parameters_, effects_, std::move(lidar), held_out_now(fit)};
+  }
+
+  /// A correction that was not asked for and that the wheels contradict is taken back.
+  Result<FitResult> unless_worse(Result<FitResult> better, const State& before) {
+    const bool asked = !asked_of_lidar_.empty();
+    if (better && (asked || !is_worse(before.held_out, held_out_now(better.value())))) return better;
+    parameters_ = before.parameters;
+    effects_ = before.effects;
+    lidar_ = before.lidar;
+    return fit_corrected();
   }
 
   [[nodiscard]] std::optional<HeldOut> held_out_now(const FitResult& fit) const {
     return held_out_residual(session_->data(), effects_, fit, fixed_with(session_->fixed(0), effects_));
   }
 
-  /// A correction of the lidar that the wheels contradict is none.
   static bool is_worse(const std::optional<HeldOut>& before, const std::optional<HeldOut>& after) {
     constexpr double kTolerated = 1.05;
     if (!before || !after) return !after && before;
@@ -190,29 +209,36 @@ class Solver {
     return false;
   }
 
-  Result<FitResult> without_correction(const std::pair<Eigen::VectorXd, EffectList>& uncorrected) {
-    lidar_.clear();
-    std::tie(parameters_, effects_) = uncorrected;
-    return fit_on(recordings_);
-  }
-
   Result<FitResult> fit_corrected() {
     corrected_ = corrected(recordings_, lidar_);
-    return fit_on(corrected_);
-  }
-
-  Result<FitResult> fit_on(std::span<const Recording> recordings) {
-    auto session = Session::open(recordings);
+    auto session = Session::open(corrected_);
     if (!session) return session.error();
     session_ = std::make_unique<Session>(std::move(session).value());
     session_->measure(parameters_, effects_, PairOptions{});
     return settle();
   }
 
+  /// Errors of the ranges that pairs of scans leave open and a map shows. Without them everything is
+  /// measured, fitted and placed anew.
+  Result<FitResult> correct_ranges(Result<FitResult> fit) {
+    const std::vector<LidarFinding> found = common_findings(paths_);
+    if (!automatic_ || found.empty()) return fit;
+    const State before = state(fit.value(), lidar_);
+    std::erase_if(lidar_, [](const LidarFinding& f) { return !f.effect->is_correctable(); });
+    add_findings(found, lidar_);
+    if (std::none_of(found.begin(), found.end(), [](const auto& f) { return f.effect->is_correctable(); }))
+      return fit;
+    auto better = unless_worse(fit_corrected(), before);
+    if (better) place_every_scan();
+    return better;
+  }
+
   /// From here on effects of the floor know the place, and matches that slide are replaced. What depends on
   /// either is fitted once more.
   Result<FitResult> locate(Result<FitResult> fit) {
     place_every_scan();
+    fit = correct_ranges(std::move(fit));
+    if (!fit) return fit;
     std::vector<std::vector<Fix>> fixes;
     for (std::size_t i = 0; i < recordings_.size(); ++i)
       fixes.push_back(paths_.empty() ? fixes_of(recordings_[i]) : fixes_of(paths_[i], mount()));

@@ -76,7 +76,6 @@ class OfRange final : public UnnamedError {
   }
 };
 
-/// The spot on a slanted surface is drawn out, more the farther: an even and an odd part.
 class OfIncidence final : public UnnamedError {
  public:
   OfIncidence() : UnnamedError("incidence", true, 4) {}
@@ -84,16 +83,23 @@ class OfIncidence final : public UnnamedError {
 
  private:
   [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
-    const double slant = std::clamp(std::tan(s.incidence), -3.0, 3.0);
-    return {std::abs(slant), slant, std::abs(slant) * s.range, slant * s.range};
+    const auto values = slants(s);
+    return {values.begin(), values.end()};
   }
 };
 
 }  // namespace
 
+std::array<double, 4> slants(const Sighting& s) {
+  const double slant = std::clamp(std::tan(s.incidence), -3.0, 3.0);
+  return {std::abs(slant), slant, std::abs(slant) * s.range, slant * s.range};
+}
+
+LidarEffectPtr make_incidence_error() { return std::make_shared<OfIncidence>(); }
+
 std::vector<LidarEffectPtr> lidar_curves() {
   return {std::make_shared<OfBearing>(true), std::make_shared<OfBearing>(false), std::make_shared<OfRange>(),
-          std::make_shared<OfIncidence>()};
+          make_incidence_error()};
 }
 
 }  // namespace odomcalib::calib

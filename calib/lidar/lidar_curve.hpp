@@ -1,11 +1,19 @@
 // Dependences of a lidar's error that no named effect stands for.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "calib/lidar/lidar_effect.hpp"
 
 namespace odomcalib::calib {
+
+/// How an error of the range may depend on the incidence: the spot on a slanted surface is drawn out, more
+/// the farther; even and odd parts of both.
+std::array<double, 4> slants(const Sighting& sighting);
+
+/// Range error that depends on the incidence; its coefficients are those of slants().
+LidarEffectPtr make_incidence_error();
 
 /// One for each variable and direction of the displacement: "bearing", "range", "incidence".
 std::vector<LidarEffectPtr> lidar_curves();

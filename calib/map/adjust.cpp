@@ -1,6 +1,7 @@
 #include "calib/map/adjust.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "calib/geometry/vector2.hpp"
@@ -12,70 +13,88 @@ namespace {
 constexpr int kRounds = 3;
 constexpr double kPrior = 1e-6;  ///< relative to the largest, for walls that nobody strikes
 
-/// What one scan says about its pose and the walls it strikes.
+/// What one scan says about its pose and about what all scans share: shift and turn of each wall, and the
+/// error of the ranges.
 struct ScanTerms {
   Eigen::Matrix3d pose = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Index> walls;
-  std::vector<Eigen::Matrix<double, 3, 2>> mixed;
+  Eigen::Matrix3Xd mixed;  ///< pose by shared
 };
 
 class Adjustment {
  public:
   explicit Adjustment(std::size_t walls)
-      : size_(2 * static_cast<Eigen::Index>(walls)),
-        matrix_(Eigen::MatrixXd::Zero(size_, size_)),
-        right_side_(Eigen::VectorXd::Zero(size_)) {}
+      : of_walls_(2 * static_cast<Eigen::Index>(walls)),
+        matrix_(Eigen::MatrixXd::Zero(size(), size())),
+        right_side_(Eigen::VectorXd::Zero(size())) {}
 
   /// @param anchored the pose stays, which ties the frame of the map
   ScanTerms add(const WallMap& map, const std::vector<Beam>& beams, const Place& place,
                 const PlaceOptions& options, bool anchored) {
     ScanTerms terms;
-    std::vector<Eigen::Index> slot(map.walls().size(), -1);
+    terms.mixed.setZero(3, size());
     const Frame sensor(place.pose);
     for (const Strike& strike : map.strikes(beams, place.pose)) {
-      const RangeTerm term = map.term(beams[strike.beam], strike.wall, sensor, options.range_noise);
+      const RangeTerm term = range_term(map, beams[strike.beam], strike.wall, sensor, options);
       const double weight = weight_of(term, place.scale);
-      if (weight > 0.0) enter(term, strike.wall, weight, slot, terms);
+      if (weight > 0.0) enter(term, strike.wall, weight, terms);
     }
     if (!anchored) eliminate(terms);
     return terms;
   }
 
+  /// Step of the walls, the ranges' error being what it is.
   [[nodiscard]] Eigen::VectorXd solve() const {
-    Eigen::MatrixXd damped = matrix_;
-    damped.diagonal().array() += kPrior * matrix_.diagonal().maxCoeff();
-    return damped.ldlt().solve(right_side_);
+    return factors(of_walls_).solve(right_side_.head(of_walls_));
+  }
+
+  [[nodiscard]] RangeEvidence evidence() const {
+    const Eigen::MatrixXd last = Eigen::MatrixXd::Identity(size(), size()).rightCols<kRangeCoefficients>();
+    const auto all = factors(size()), alone = factors(of_walls_ + 1);
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(of_walls_ + 1, of_walls_);
+    RangeEvidence evidence;
+    evidence.values = -all.solve(right_side_).tail<kRangeCoefficients>();
+    evidence.covariance = all.solve(last).bottomRows<kRangeCoefficients>();
+    evidence.offset_alone = -alone.solve(right_side_.head(of_walls_ + 1))(of_walls_);
+    evidence.offset_alone_deviation = std::sqrt(std::max(alone.solve(unit)(of_walls_), 0.0));
+    return evidence;
   }
 
  private:
-  void enter(const RangeTerm& term, std::size_t wall, double weight, std::vector<Eigen::Index>& slot,
-             ScanTerms& terms) {
-    const auto at = 2 * static_cast<Eigen::Index>(wall);
-    if (slot[wall] < 0) {
-      slot[wall] = static_cast<Eigen::Index>(terms.walls.size());
-      terms.walls.push_back(at);
-      terms.mixed.emplace_back(Eigen::Matrix<double, 3, 2>::Zero());
-    }
-    terms.pose += weight * term.by_pose * term.by_pose.transpose();
-    terms.gradient += weight * term.residual * term.by_pose;
-    terms.mixed[static_cast<std::size_t>(slot[wall])] += weight * term.by_pose * term.by_wall.transpose();
-    matrix_.block<2, 2>(at, at) += weight * term.by_wall * term.by_wall.transpose();
+  [[nodiscard]] Eigen::Index size() const { return of_walls_ + kRangeCoefficients; }
+
+  /// Of the first unknowns alone.
+  [[nodiscard]] Eigen::LDLT<Eigen::MatrixXd> factors(Eigen::Index count) const {
+    Eigen::MatrixXd damped = matrix_.topLeftCorner(count, count);
+    damped.diagonal().head(of_walls_).array() += kPrior * matrix_.diagonal().head(of_walls_).maxCoeff();
+    return damped.ldlt();
+  }
+
+  void enter(const RangeTerm& term, std::size_t wall, double weight, ScanTerms& terms) {
+    const Eigen::Index at = 2 * static_cast<Eigen::Index>(wall);
+    const RangeLaw by_range = -by_coefficient(term.sighting);
+    const Eigen::Vector3d pose = weight * term.by_pose;
+    terms.pose += pose * term.by_pose.transpose();
+    terms.gradient += pose * term.residual;
+    terms.mixed.middleCols<2>(at) += pose * term.by_wall.transpose();
+    terms.mixed.rightCols<kRangeCoefficients>() += pose * by_range.transpose();
     right_side_.segment<2>(at) += weight * term.residual * term.by_wall;
+    right_side_.tail<kRangeCoefficients>() += weight * term.residual * by_range;
+    matrix_.block<2, 2>(at, at) += weight * term.by_wall * term.by_wall.transpose();
+    const Eigen::Matrix<double, 2, kRangeCoefficients> both = weight * term.by_wall * by_range.transpose();
+    matrix_.block<2, kRangeCoefficients>(at, of_walls_) += both;
+    matrix_.block<kRangeCoefficients, 2>(of_walls_, at) += both.transpose();
+    matrix_.bottomRightCorner<kRangeCoefficients, kRangeCoefficients>() +=
+        weight * by_range * by_range.transpose();
   }
 
   void eliminate(const ScanTerms& terms) {
     const Eigen::LDLT<Eigen::Matrix3d> pose(terms.pose);
-    const Eigen::Vector3d settled = pose.solve(terms.gradient);
-    for (std::size_t i = 0; i < terms.walls.size(); ++i) {
-      const Eigen::Matrix<double, 3, 2> inner = pose.solve(terms.mixed[i]);
-      right_side_.segment<2>(terms.walls[i]) -= terms.mixed[i].transpose() * settled;
-      for (std::size_t j = 0; j < terms.walls.size(); ++j)
-        matrix_.block<2, 2>(terms.walls[j], terms.walls[i]) -= terms.mixed[j].transpose() * inner;
-    }
+    right_side_ -= terms.mixed.transpose() * pose.solve(terms.gradient);
+    matrix_ -= terms.mixed.transpose() * pose.solve(terms.mixed);
   }
 
-  Eigen::Index size_;
+  Eigen::Index of_walls_;  ///< unknowns; those of the ranges' error come after them
   Eigen::MatrixXd matrix_;
   Eigen::VectorXd right_side_;
 };
@@ -87,45 +106,40 @@ void move(MapWall& wall, const Eigen::Vector2d& step) {
 
 /// Poses follow the walls.
 void follow(const ScanTerms& terms, const Eigen::VectorXd& step, Pose& pose) {
-  Eigen::Vector3d gradient = terms.gradient;
-  for (std::size_t i = 0; i < terms.walls.size(); ++i)
-    gradient -= terms.mixed[i] * step.segment<2>(terms.walls[i]);
-  const Eigen::Vector3d own = terms.pose.ldlt().solve(gradient);
+  const Eigen::Vector3d own =
+      terms.pose.ldlt().solve(terms.gradient - terms.mixed.leftCols(step.size()) * step);
   pose.x -= own(0);
   pose.y -= own(1);
   pose.yaw -= own(2);
 }
 
-void adjust_once(const std::vector<std::vector<Beam>>& scans, const PlaceOptions& options, WallMap& map,
-                 std::vector<Place>& places) {
+RangeEvidence adjust_once(const std::vector<std::vector<Beam>>& scans, const PlaceOptions& options,
+                          WallMap& map, std::vector<Place>& places) {
   Adjustment adjustment(map.walls().size());
   std::vector<ScanTerms> all(scans.size());
-  bool anchored = false;
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    if (!places[k].is_usable()) continue;
-    all[k] = adjustment.add(map, scans[k], places[k], options, !anchored);
-    if (!anchored) all[k].gradient.setZero();
-    anchored = true;
-  }
+  const auto first = static_cast<std::size_t>(
+      std::find_if(places.begin(), places.end(), [](const Place& p) { return p.is_usable(); }) -
+      places.begin());
+  for (std::size_t k = first; k < scans.size(); ++k)
+    if (places[k].is_usable()) all[k] = adjustment.add(map, scans[k], places[k], options, k == first);
   const Eigen::VectorXd step = adjustment.solve();
-  if (!step.allFinite()) return;
+  if (!step.allFinite()) return {};
   for (std::size_t w = 0; w < map.walls().size(); ++w)
     move(map.walls()[w], step.segment<2>(2 * static_cast<Eigen::Index>(w)));
-  bool first = true;
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    if (!places[k].is_usable()) continue;
-    if (!first) follow(all[k], step, places[k].pose);
-    first = false;
-  }
+  for (std::size_t k = first + 1; k < scans.size(); ++k)
+    if (places[k].is_usable()) follow(all[k], step, places[k].pose);
+  return adjustment.evidence();
 }
 
 }  // namespace
 
-void adjust_map(const std::vector<std::vector<Beam>>& scans, const PlaceOptions& options, WallMap& map,
-                std::vector<Place>& places) {
-  for (int round = 0; round < kRounds; ++round) adjust_once(scans, options, map, places);
+RangeEvidence adjust_map(const std::vector<std::vector<Beam>>& scans, const PlaceOptions& options,
+                         WallMap& map, std::vector<Place>& places) {
+  RangeEvidence evidence;
+  for (int round = 0; round < kRounds; ++round) evidence = adjust_once(scans, options, map, places);
   for (std::size_t k = 0; k < scans.size(); ++k)
     if (places[k].is_usable()) places[k] = place_scan(map, scans[k], places[k].pose, options);
+  return evidence;
 }
 
 }  // namespace odomcalib::calib

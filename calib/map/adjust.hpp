@@ -11,7 +11,8 @@ namespace odomcalib::calib {
 /// Gauss-Newton on shift and turn of each wall and on all poses; the first pose stays where it is.
 /// @param scans beams of each scan
 /// @param places where they were taken; updated
-void adjust_map(const std::vector<std::vector<Beam>>& scans, const PlaceOptions& options, WallMap& map,
-                std::vector<Place>& places);
+/// @return what the ranges would have to be wrong by, beyond `options.range_error`, to fit better still
+RangeEvidence adjust_map(const std::vector<std::vector<Beam>>& scans, const PlaceOptions& options,
+                         WallMap& map, std::vector<Place>& places);
 
 }  // namespace odomcalib::calib

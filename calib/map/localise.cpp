@@ -25,11 +25,13 @@ std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>&
   terms.reserve(struck.size());
   const Frame frame(pose);
   for (const Strike& strike : struck) {
-    const RangeTerm term = map.term(beams[strike.beam], strike.wall, frame, options.range_noise);
+    const RangeTerm term = range_term(map, beams[strike.beam], strike.wall, frame, options);
     if (std::abs(term.residual) < gate) terms.push_back(term);
   }
   return terms;
 }
+
+double last_gate(const PlaceOptions& options) { return std::max(0.05, 6.0 * options.range_noise); }
 
 double robust_scale(const std::vector<RangeTerm>& terms) {
   std::vector<double> sizes;
@@ -61,6 +63,19 @@ double improve(const std::vector<RangeTerm>& terms, double share, Place& place) 
 
 }  // namespace
 
+RangeTerm range_term(const WallMap& map, const Beam& beam, std::size_t wall, const Frame& sensor,
+                     const PlaceOptions& options) {
+  RangeTerm term = map.term(beam, wall, sensor, options.range_noise);
+  if (!options.range_error.isZero()) term.residual -= options.range_error.dot(by_coefficient(term.sighting));
+  return term;
+}
+
+std::vector<RangeTerm> fitting_terms(const WallMap& map, const std::vector<Beam>& beams, const Pose& sensor,
+                                     const PlaceOptions& options) {
+  std::size_t strikes = 0;
+  return terms_within(map, beams, sensor, options, last_gate(options), strikes);
+}
+
 double weight_of(const RangeTerm& term, double scale) {
   return tukey_weight(term.residual / (std::sqrt(term.variance) * scale) / kTukeyCut) / term.variance;
 }
@@ -75,15 +90,15 @@ Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const Pose&
                  const PlaceOptions& options) {
   Place place;
   place.pose = guess;
-  const double last_gate = std::max(0.05, 6.0 * options.range_noise);
+  const double last = last_gate(options);
   for (int i = 0; i < options.iterations && !place.converged; ++i) {
-    const double gate = std::max(options.gate * std::pow(0.4, i), last_gate);
+    const double gate = std::max(options.gate * std::pow(0.4, i), last);
     const auto terms = terms_within(map, beams, place.pose, options, gate, place.strikes);
     if (terms.size() < kMinInliers) return place;
     place.scale = robust_scale(terms);
     // Beams next to the end of a wall may strike it and miss it in turn; half steps settle between.
     const double step = improve(terms, i < kWholeSteps ? 1.0 : 0.5, place);
-    place.converged = gate <= last_gate && step < kSettled * place.scale;
+    place.converged = gate <= last && step < kSettled * place.scale;
   }
   return place;
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "calib/map/range_law.hpp"
 #include "calib/map/wall_map.hpp"
 
 namespace odomcalib::calib {
@@ -12,6 +13,7 @@ struct PlaceOptions {
   double range_noise = 0.01;  ///< m
   double gate = 0.3;          ///< m, largest difference of a range from what the map expects
   int iterations = 12;
+  RangeLaw range_error = RangeLaw::Zero();  ///< taken out of every reading
 };
 
 struct Place {
@@ -27,6 +29,14 @@ struct Place {
 
 Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const Pose& guess,
                  const PlaceOptions& options);
+
+/// What a reading says once the ranges' error is taken out.
+RangeTerm range_term(const WallMap& map, const Beam& beam, std::size_t wall, const Frame& sensor,
+                     const PlaceOptions& options);
+
+/// Readings of a scan that is in its place, as far as they fit the map.
+std::vector<RangeTerm> fitting_terms(const WallMap& map, const std::vector<Beam>& beams, const Pose& sensor,
+                                     const PlaceOptions& options);
 
 /// What a reading counts, 1/m^2: less the farther out it lies, nothing beyond a few robust sigmas.
 double weight_of(const RangeTerm& term, double scale);

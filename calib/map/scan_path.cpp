@@ -1,10 +1,12 @@
 #include "calib/map/scan_path.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 
+#include "calib/map/range_trace.hpp"
 #include "calib/matching/point_to_line.hpp"
 #include "calib/reference/sweep_motion.hpp"
 
@@ -41,7 +43,7 @@ class Mapper {
     else
       begin_with(known);
     if (path_.map.walls().empty() || path_.map.walls().size() > kMostWalls) return {};
-    adjust();
+    adjust(known.scans.empty());
     place_all();
     return std::move(path_);
   }
@@ -104,15 +106,24 @@ class Mapper {
   }
 
   /// Every few scans show all walls; more would only take longer.
-  void adjust() {
-    std::vector<std::vector<Beam>> beams;
-    std::vector<Place> places;
-    const std::size_t stride = chosen_.size() / kAdjusted + 1;
-    for (std::size_t k = 0; k < chosen_.size(); k += stride) {
-      beams.push_back(make_beams(scan(k), motion_of(k)));
-      places.push_back(place_scan(path_.map, beams.back(), poses_[k], options_));
+  void adjust(bool trace_lidar) {
+    const std::size_t stride = std::max<std::size_t>(2, chosen_.size() / kAdjusted + 1);
+    PlacedBeams used = sample(0, stride);
+    const RangeEvidence evidence = adjust_map(used.beams, options_, path_.map, used.places);
+    if (!trace_lidar || !(shows_offset(evidence) || shows_slant(evidence))) return;
+    RangeTrace trace = trace_ranges(evidence, used, sample(stride / 2, stride), options_, path_.map);
+    path_.map = std::move(trace.map);
+    path_.lidar = std::move(trace.findings);
+    options_.range_error(0) = trace.offset;
+  }
+
+  [[nodiscard]] PlacedBeams sample(std::size_t first, std::size_t stride) const {
+    PlacedBeams sample;
+    for (std::size_t k = first; k < chosen_.size(); k += stride) {
+      sample.beams.push_back(make_beams(scan(k), motion_of(k)));
+      sample.places.push_back(place_scan(path_.map, sample.beams.back(), poses_[k], options_));
     }
-    adjust_map(beams, options_, path_.map, places);
+    return sample;
   }
 
   void place_all() {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "calib/lidar/lidar_trace.hpp"
 #include "calib/map/adjust.hpp"
 #include "calib/model/drive_model.hpp"
 #include "proto/recording.hpp"
@@ -22,6 +23,7 @@ struct ScanPath {
   std::vector<PlacedScan> scans;  ///< in time order
   std::size_t lost = 0;           ///< scans that could not be placed
   WallMap map;
+  std::vector<LidarFinding> lidar;  ///< errors of the ranges; an offset is already taken out of the places
   /// Lost scans are few enough for the others to be trusted.
   [[nodiscard]] bool is_usable() const;
 };

@@ -122,6 +122,8 @@ RangeTerm WallMap::term(const Beam& beam, std::size_t index, const Frame& sensor
   const Eigen::Vector2d point = from + expected * direction;
   RangeTerm term;
   term.residual = beam.range - expected;
+  term.sighting.range = expected;
+  term.sighting.incidence = std::atan2(-wall.direction().dot(direction), -towards);
   term.variance = distance_variance(towards, range_noise) / (towards * towards);
   term.by_pose << wall.normal / towards, wall.normal.dot(quarter_turn(point - sensor.origin())) / towards;
   term.by_wall << -1.0 / towards, wall.direction().dot(point - wall.centre) / towards;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/geometry/vector2.hpp"
+#include "calib/lidar/lidar_effect.hpp"
 #include "calib/map/beams.hpp"
 #include "calib/matching/walls.hpp"
 
@@ -32,6 +33,7 @@ struct Strike {
 struct RangeTerm {
   double residual = 0.0;    ///< m
   double variance = 0.0;    ///< m^2
+  Sighting sighting;        ///< range and incidence where the beam meets the wall; no bearing
   Eigen::Vector3d by_pose;  ///< of the residual by x, y (map axes) and yaw of the sensor
   Eigen::Vector2d by_wall;  ///< by the shift of the wall along its normal and its turn about its centre
 };

@@ -1,11 +1,34 @@
 #include "calib/session/lidar_evidence.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string>
 
 namespace odomcalib::calib {
 namespace {
 
 constexpr std::size_t kMostPairs = 120;  // of all recordings together
+
+const LidarFinding* finding_of(const ScanPath& path, const std::string& name) {
+  const auto found = std::find_if(path.lidar.begin(), path.lidar.end(), [&](const LidarFinding& finding) {
+    return finding.effect->name() == name;
+  });
+  return found == path.lidar.end() ? nullptr : &*found;
+}
+
+/// The first path's finding with the mean values of all paths; none where a path lacks it.
+std::optional<LidarFinding> mean_of(const LidarFinding& first, std::span<const ScanPath> paths) {
+  LidarFinding mean = first;
+  for (const ScanPath& path : paths.subspan(1)) {
+    const LidarFinding* other = finding_of(path, first.effect->name());
+    if (other == nullptr) return std::nullopt;
+    for (std::size_t k = 0; k < mean.values.size(); ++k) mean.values[k] += other->values[k];
+  }
+  for (double& value : mean.values) value /= static_cast<double>(paths.size());
+  return mean;
+}
 
 }  // namespace
 
@@ -35,6 +58,27 @@ std::vector<Recording> corrected(std::span<const Recording> recordings,
   for (Recording& recording : out)
     for (Scan& scan : recording.scans) scan = corrected(scan, findings);
   return out;
+}
+
+std::vector<LidarFinding> common_findings(std::span<const ScanPath> paths) {
+  std::vector<LidarFinding> common;
+  if (paths.empty()) return common;
+  for (const LidarFinding& finding : paths.front().lidar)
+    if (auto mean = mean_of(finding, paths)) common.push_back(std::move(*mean));
+  return common;
+}
+
+void add_findings(const std::vector<LidarFinding>& more, std::vector<LidarFinding>& findings) {
+  for (const LidarFinding& finding : more) {
+    const auto known = std::find_if(findings.begin(), findings.end(), [&](const LidarFinding& other) {
+      return other.effect->name() == finding.effect->name();
+    });
+    if (known == findings.end())
+      findings.push_back(finding);
+    else
+      std::transform(known->values.begin(), known->values.end(), finding.values.begin(),
+                     known->values.begin(), std::plus<>());
+  }
 }
 
 void refine(std::vector<LidarFinding>& findings, const std::vector<HeadingPair>& pairs) {

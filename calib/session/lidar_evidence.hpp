@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/lidar/lidar_trace.hpp"
+#include "calib/map/scan_path.hpp"
 #include "calib/session/session.hpp"
 
 namespace odomcalib::calib {
@@ -19,6 +20,12 @@ bool sees_all_round(const Session& session);
 
 std::vector<Recording> corrected(std::span<const Recording> recordings,
                                  const std::vector<LidarFinding>& findings);
+
+/// Errors of the ranges that the maps of all recordings show, their values the means.
+std::vector<LidarFinding> common_findings(std::span<const ScanPath> paths);
+
+/// What is found again, in scans that it was taken out of, adds to its values.
+void add_findings(const std::vector<LidarFinding>& more, std::vector<LidarFinding>& findings);
 
 /// Adds what scans still show after a first correction.
 void refine(std::vector<LidarFinding>& findings, const std::vector<HeadingPair>& pairs);

@@ -67,9 +67,13 @@ INSTANTIATE_TEST_SUITE_P(Simulated, NamesTheEffect,
                                            Injected{"turn_drag", 0.006, "turn_direction_asymmetry"},
                                            Injected{"gear_play", 0.05, "backlash"},
                                            Injected{"cover_glass", 0.03, "range_bias"},
+                                           Injected{"cover_glass", 0.012, "range_bias"},
+                                           Injected{"slanted_echo", 0.01, "incidence"},
                                            Injected{"leaning_head", 0.07, "lidar_tilt"},
                                            Injected{"head_disc_off_centre", 0.02, "bearing"}),
-                         [](const auto& tested) { return std::string(tested.param.name); });
+                         [](const auto& tested) {
+                           return std::string(tested.param.name) + "_" + std::to_string(tested.index);
+                         });
 
 }  // namespace
 }  // namespace odomcalib

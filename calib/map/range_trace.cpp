@@ -1,0 +1,126 @@
+#include "calib/map/range_trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/lidar/lidar_curve.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr int kPasses = 4;         // readings that no longer seem outliers show some more of the error
+constexpr double kSettled = 1e-4;  // m
+constexpr double kHeldOutZ = 2.5;  // of the mean gain of scans that were not used
+
+/// A map, and the error of the ranges that it was adjusted with.
+struct Adjusted {
+  WallMap map;
+  PlaceOptions options;
+  RangeEvidence evidence;  ///< what is left
+  RangeLaw deviations = RangeLaw::Zero();
+};
+
+using Step = RangeLaw (*)(const RangeEvidence&);
+
+RangeLaw offset_step(const RangeEvidence& evidence) { return evidence.offset_alone * RangeLaw::Unit(0); }
+
+/// The offset stays what it is: it was asked first.
+RangeLaw slant_step(const RangeEvidence& evidence) {
+  RangeLaw step = evidence.values;
+  step(0) = 0.0;
+  return step;
+}
+
+Adjusted adjusted_with(Step step, Adjusted state, PlacedBeams used) {
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const RangeLaw change = step(state.evidence);
+    state.options.range_error += change;
+    state.evidence = adjust_map(used.beams, state.options, state.map, used.places);
+    if (change.cwiseAbs().maxCoeff() < kSettled) break;
+  }
+  state.deviations = state.evidence.covariance.diagonal().cwiseSqrt();
+  return state;
+}
+
+struct Misfit {
+  double squares = 0.0;  ///< m^2
+  double readings = 0.0;
+};
+
+/// Of one scan, placed anew.
+Misfit misfit_of(const Adjusted& state, const std::vector<Beam>& beams, const Pose& guess) {
+  const Place place = place_scan(state.map, beams, guess, state.options);
+  Misfit misfit;
+  if (!place.is_usable()) return misfit;
+  for (const RangeTerm& term : fitting_terms(state.map, beams, place.pose, state.options)) {
+    misfit.squares += term.residual * term.residual;
+    misfit.readings += 1.0;
+  }
+  return misfit;
+}
+
+struct Proof {
+  double before = 0.0, after = 0.0;  ///< m, RMS of the readings against the map
+  double z = 0.0;                    ///< mean gain per scan in its standard deviations
+};
+
+Proof prove(const Adjusted& before, const Adjusted& after, const PlacedBeams& others) {
+  Misfit all_before, all_after;
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < others.beams.size(); ++k) {
+    const Misfit a = misfit_of(before, others.beams[k], others.places[k].pose);
+    const Misfit b = misfit_of(after, others.beams[k], others.places[k].pose);
+    if (a.readings == 0.0 || b.readings == 0.0) continue;
+    all_before = {all_before.squares + a.squares, all_before.readings + a.readings};
+    all_after = {all_after.squares + b.squares, all_after.readings + b.readings};
+    const double gain = a.squares / a.readings - b.squares / b.readings;
+    sum += gain;
+    squares += gain * gain;
+    count += 1.0;
+  }
+  if (count < 2.0) return {};
+  const double variance = squares / count - std::pow(sum / count, 2);
+  return {std::sqrt(all_before.squares / all_before.readings),
+          std::sqrt(all_after.squares / all_after.readings),
+          sum / count / std::sqrt(std::max(variance, std::numeric_limits<double>::min()) / count)};
+}
+
+LidarFinding finding_of(LidarEffectPtr effect, double p_value, const Proof& proof,
+                        const Eigen::VectorXd& values, const Eigen::VectorXd& deviations) {
+  return {std::move(effect),
+          {values.begin(), values.end()},
+          {deviations.begin(), deviations.end()},
+          p_value,
+          proof.before,
+          proof.after};
+}
+
+}  // namespace
+
+RangeTrace trace_ranges(const RangeEvidence& evidence, const PlacedBeams& used, const PlacedBeams& others,
+                        const PlaceOptions& options, const WallMap& map) {
+  Adjusted state{map, options, evidence, {}};
+  RangeTrace trace{{}, 0.0, map};
+  if (shows_offset(evidence)) {
+    Adjusted better = adjusted_with(offset_step, state, used);
+    const Proof proof = prove(state, better, others);
+    if (proof.z < kHeldOutZ) return trace;
+    trace = {{}, better.options.range_error(0), better.map};
+    trace.findings.push_back(finding_of(
+        make_range_bias(), p_value_of_offset(evidence), proof, better.options.range_error.head<1>(),
+        Eigen::VectorXd::Constant(1, better.evidence.offset_alone_deviation)));
+    state = std::move(better);
+  }
+  if (shows_slant(state.evidence)) {
+    const Adjusted better = adjusted_with(slant_step, state, used);
+    const Proof proof = prove(state, better, others);
+    if (proof.z < kHeldOutZ) return trace;
+    trace.findings.push_back(finding_of(make_incidence_error(), p_value_of_slant(state.evidence), proof,
+                                        better.options.range_error.tail<kRangeCoefficients - 1>(),
+                                        better.deviations.tail<kRangeCoefficients - 1>()));
+  }
+  return trace;
+}
+
+}  // namespace odomcalib::calib

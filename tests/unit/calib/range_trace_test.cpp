@@ -1,0 +1,110 @@
+#include "calib/map/range_trace.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "calib/lidar/lidar_curve.hpp"
+#include "tests/unit/calib/room_scans.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+using testing::kRoom;
+
+constexpr double kNoise = 0.01;
+const BeamMotion kAtRest = [](double) { return Pose{}; };
+
+/// Error of a reading, m.
+using RangeError = std::function<double(double range, double tangent_of_incidence)>;
+
+/// The tangent of the incidence is the change of the range with the angle, over the range.
+Scan wrong_scan(const Pose& pose, unsigned seed, const RangeError& error) {
+  constexpr double kStep = 1e-6;
+  Scan scan = testing::scan_from(kRoom, pose, kNoise, seed);
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    if (scan.ranges[i] <= 0.0F) continue;
+    const auto range_at = [&](double step) {
+      return testing::ray_distance(kRoom, pose.x, pose.y, pose.yaw + scan.angle(i) + step);
+    };
+    const double range = range_at(0.0);
+    const double tangent = std::abs(range_at(kStep) - range_at(-kStep)) / (2.0 * kStep * range);
+    scan.ranges[i] += static_cast<float>(error(range, std::min(tangent, 3.0)));
+  }
+  return scan;
+}
+
+Pose pose_of(unsigned k) { return {1.2 * std::sin(0.7 * k) - 0.3, 0.7 * std::cos(0.3 * k), 0.9 * k}; }
+
+struct Traced {
+  RangeEvidence evidence;
+  RangeTrace trace;
+};
+
+/// Of two hundred scans from all over the room, every second of which makes the map.
+Traced traced(const RangeError& error) {
+  const PlaceOptions options{kNoise, 0.15};
+  WallMap map;
+  PlacedBeams used, others;
+  for (unsigned k = 0; k < 200; ++k) {
+    const Scan scan = wrong_scan(pose_of(k), 1000 + k, error);
+    if (k % 10 == 0) map.insert(find_walls(make_surface(scan, kAtRest, kNoise), kNoise), pose_of(k));
+    PlacedBeams& half = k % 2 == 0 ? used : others;
+    half.beams.push_back(make_beams(scan, kAtRest));
+  }
+  for (PlacedBeams* half : {&used, &others})
+    for (std::size_t k = 0; k < half->beams.size(); ++k)
+      half->places.push_back(place_scan(map, half->beams[k],
+                                        pose_of(2 * static_cast<unsigned>(k) + (half == &others)), options));
+  const RangeEvidence evidence = adjust_map(used.beams, options, map, used.places);
+  return {evidence, trace_ranges(evidence, used, others, options, map)};
+}
+
+TEST(RangeTrace, right_ranges_show_nothing) {
+  const Traced found = traced([](double, double) { return 0.0; });
+  EXPECT_LT(std::abs(found.evidence.values(0)), 3e-3);
+  EXPECT_TRUE(found.trace.findings.empty());
+  EXPECT_EQ(found.trace.offset, 0.0);
+}
+
+TEST(RangeTrace, an_offset_is_named_and_measured_to_a_millimetre) {
+  for (const double offset : {0.01, -0.025}) {
+    const Traced found = traced([&](double, double) { return offset; });
+    ASSERT_EQ(found.trace.findings.size(), 1U);
+    const LidarFinding& finding = found.trace.findings[0];
+    EXPECT_EQ(finding.effect->name(), "range_bias");
+    EXPECT_NEAR(found.trace.offset, offset, 1e-3);
+    EXPECT_LT(std::abs(finding.values[0] - offset), 4.0 * finding.deviations[0]);
+    EXPECT_LT(finding.after, finding.before);
+  }
+}
+
+TEST(RangeTrace, an_error_of_slanted_beams_is_not_called_an_offset) {
+  for (const double size : {-2e-3, 3e-3}) {
+    const Traced found = traced([&](double range, double tangent) { return size * range * tangent; });
+    ASSERT_EQ(found.trace.findings.size(), 1U);
+    EXPECT_EQ(found.trace.findings[0].effect->name(), "incidence");
+    EXPECT_EQ(found.trace.offset, 0.0);
+    EXPECT_GT(std::abs(found.evidence.offset_alone), 5e-3);  // as which it would pass, were it alone
+  }
+}
+
+TEST(RangeTrace, both_are_told_apart) {
+  const Traced found = traced([](double range, double tangent) { return 0.02 - 1e-3 * range * tangent; });
+  EXPECT_NEAR(found.evidence.values(0), 0.02, 4e-3);
+  EXPECT_NEAR(found.evidence.values(1) + 4.0 * found.evidence.values(3), -4e-3, 2e-3);
+}
+
+TEST(RangeTrace, errors_below_three_millimetres_are_not_claimed) {
+  EXPECT_TRUE(traced([](double, double) { return 0.002; }).trace.findings.empty());
+  EXPECT_TRUE(traced([](double range, double t) { return 5e-4 * range * t; }).trace.findings.empty());
+}
+
+TEST(RangeTrace, no_scans_are_no_evidence) {
+  const RangeTrace trace = trace_ranges({}, {}, {}, {}, {});
+  EXPECT_TRUE(trace.findings.empty());
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
