@@ -24,6 +24,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/bench/bare_relay.hpp"
 #include "tests/bench/lcm_listener.hpp"
 #include "tests/bench/wire_player.hpp"
 
@@ -34,6 +35,7 @@ using namespace odomcalib::bench;
 constexpr const char* kUrl = "udpm://239.255.76.67:7667?ttl=0";
 constexpr double kStartUp = 30.0;  // s until reports must have come
 constexpr double kSettle = 3.0;    // s
+constexpr double kBound = 30.0;    // s, at most, for the bound before and after the measurement
 
 struct Bars {
   double latency_ms = 1.0, cpu_percent = 5.0, memory_mb = 40.0;
@@ -250,6 +252,13 @@ int report(const Arguments& arguments, const WirePlayer& player, const LcmListen
   return good ? 0 : 1;
 }
 
+void show_bound(const Arguments& arguments, const char* when) {
+  RelayRun run = run_bare_relay(kUrl, std::min(kBound, arguments.seconds / 2.0));
+  std::printf("bound %s: no more than reading and sending takes %.3f %% of one core\n", when,
+              100.0 * run.cpu_share);
+  show("frame to LCM, bound", latency_of(std::move(run.latencies_ms)));
+}
+
 /// Inherited by every thread and by the daemon: on a busy machine the figures are those of an idle one.
 void take_priority() {
   const sched_param first{.sched_priority = 10};
@@ -259,9 +268,10 @@ void take_priority() {
 
 int measure(const Arguments& arguments) {
   if (arguments.priority) take_priority();
-  WirePlayer player(arguments.seconds + kStartUp + 30.0);
   LcmListener listener(kUrl);
   if (!listener.usable()) return std::fprintf(stderr, "bench_daemon: LCM has no multicast here\n"), 2;
+  show_bound(arguments, "before");
+  WirePlayer player(arguments.seconds + kStartUp + 30.0);
   const Workplace workplace(player);
   Interval interval;
   Usage usage;
@@ -279,8 +289,9 @@ int measure(const Arguments& arguments) {
     usage.memory_mb = daemon.memory();
     pause(0.2);
     usage.dropped = dropped_here();
-    listener.end();
   }
+  show_bound(arguments, "after");
+  listener.end();
   return report(arguments, player, listener, interval, usage);
 }
 
