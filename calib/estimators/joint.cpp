@@ -15,6 +15,8 @@ namespace {
 constexpr double kOutlier = 5.0;  ///< sigma of a standardised residual vector
 constexpr int kNoiseRounds = 3;   ///< noise and weights are settled over this many outer rounds
 constexpr double kMinRelativePivot = 1e-12;
+/// Sigma. Gauss-Newton's next step after one of this length is shorter by orders of magnitude.
+constexpr double kSettled = 1e-2;
 
 /// All recordings of one call come from one robot and one lidar; with few pairs each, they share a noise
 /// model.
@@ -155,8 +157,7 @@ Result<bool> descend(std::span<const FitData> data, const EffectList& effects,
       }
       p = candidate;
       damping = std::max(damping * 0.1, 1e-12);
-      // In units of standard deviations: a step of 1e-4 sigma cannot matter to anyone.
-      if (std::sqrt(std::max(step.dot((jacobian.transpose() * jacobian) * step), 0.0)) < 1e-4) return true;
+      if ((jacobian * step).norm() < kSettled) return true;
     }
     if (!improved) return true;
   }

@@ -255,9 +255,13 @@ BasisValues with_constant(const BasisValues& functions) {
 /// A level that comes and goes, and a slope that lengthens one way and shortens the other.
 BasisValues wave_functions(const Curve& curve, const StepContext& c) {
   const auto [a, b] = curve.wave;
-  const std::complex<double> here = std::polar(1.0, 2.0 * kPi * (a * c.x + b * c.y));
+  const double waves = a * c.x + b * c.y;
+  // More than a thousand waves are asked at every step; single precision of a turn is a ten millionth of one.
+  const std::complex<float> here =
+      std::polar(1.0F, static_cast<float>(2.0 * kPi * (waves - std::floor(waves))));
   const double across = (a * std::cos(c.heading) + b * std::sin(c.heading)) / std::sqrt(a * a + b * b);
-  return {here.real(), here.imag(), across * here.real(), across * here.imag()};
+  const double cosine = static_cast<double>(here.real()), sine = static_cast<double>(here.imag());
+  return {cosine, sine, across * cosine, across * sine};
 }
 
 /// How much motion of the carrier an interval holds.
