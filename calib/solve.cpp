@@ -222,21 +222,21 @@ class Solver {
   /// measured, fitted and placed anew.
   Result<FitResult> correct_ranges(Result<FitResult> fit) {
     const std::vector<LidarFinding> found = common_findings(paths_);
-    if (!automatic_ || found.empty()) return fit;
+    if (found.empty()) return fit;
     const State before = state(fit.value(), lidar_);
     std::erase_if(lidar_, [](const LidarFinding& f) { return !f.effect->is_correctable(); });
     add_findings(found, lidar_);
     if (std::none_of(found.begin(), found.end(), [](const auto& f) { return f.effect->is_correctable(); }))
       return fit;
     auto better = unless_worse(fit_corrected(), before);
-    if (better) place_every_scan();
+    if (better) place_every_scan(false);
     return better;
   }
 
   /// From here on effects of the floor know the place, and matches that slide are replaced. What depends on
   /// either is fitted once more.
   Result<FitResult> locate(Result<FitResult> fit) {
-    place_every_scan();
+    place_every_scan(automatic_);
     fit = correct_ranges(std::move(fit));
     if (!fit) return fit;
     std::vector<std::vector<Fix>> fixes;
@@ -293,20 +293,21 @@ class Solver {
     parameters_ = outcome_.model.fit.parameters;
   }
 
-  void place_every_scan() {
+  void place_every_scan(bool trace_ranges) {
     paths_.clear();
     placed_with_ = parameters_;
     if (!session_->reference_is_scans()) return;
     paths_.resize(recordings_.size());
-    place_again(0.0);
+    place_again(0.0, trace_ranges);
   }
 
   /// All or none: without walls enough to place nearly every scan of every recording there are no paths.
-  void place_again(double done) {
+  void place_again(double done, bool trace_ranges = false) {
     if (!paths_.empty()) report("placing every scan", done);
     for (std::size_t i = 0; i < paths_.size(); ++i) {
+      const PathOptions options{session_->pair_sets()[i].range_noise, trace_ranges};
       paths_[i] = place_scans(session_->recordings()[i], *session_->data()[i].model, as_span(parameters_),
-                              effects_, session_->pair_sets()[i].range_noise, paths_[i]);
+                              effects_, options, paths_[i]);
       if (!paths_[i].is_usable()) return paths_.clear();
     }
   }

@@ -24,11 +24,12 @@ constexpr double kFirstGate = 0.15;  ///< m, for a scan placed from the one befo
 class Mapper {
  public:
   Mapper(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
-         const EffectList& effects, double range_noise)
+         const EffectList& effects, const PathOptions& options)
       : recording_(recording),
         mount_(to_base(parameters).mount),
         trajectory_(model.trajectory(parameters, effects)),
-        options_{range_noise, kFirstGate} {
+        options_{options.range_noise, kFirstGate},
+        trace_ranges_(options.trace_ranges) {
     for (std::size_t k = 0; k < recording.scans.size(); ++k) {
       const Scan& scan = recording.scans[k];
       const double end = scan.t + 2.0 * reference_time(scan);
@@ -43,7 +44,7 @@ class Mapper {
     else
       begin_with(known);
     if (path_.map.walls().empty() || path_.map.walls().size() > kMostWalls) return {};
-    adjust(known.scans.empty());
+    adjust();
     place_all();
     return std::move(path_);
   }
@@ -106,11 +107,11 @@ class Mapper {
   }
 
   /// Every few scans show all walls; more would only take longer.
-  void adjust(bool trace_lidar) {
+  void adjust() {
     const std::size_t stride = std::max<std::size_t>(2, chosen_.size() / kAdjusted + 1);
     PlacedBeams used = sample(0, stride);
     const RangeEvidence evidence = adjust_map(used.beams, options_, path_.map, used.places);
-    if (!trace_lidar || !(shows_offset(evidence) || shows_slant(evidence))) return;
+    if (!trace_ranges_ || !(shows_offset(evidence) || shows_slant(evidence))) return;
     RangeTrace trace = trace_ranges(evidence, used, sample(stride / 2, stride), options_, path_.map);
     path_.map = std::move(trace.map);
     path_.lidar = std::move(trace.findings);
@@ -142,6 +143,7 @@ class Mapper {
   Pose mount_;
   Trajectory trajectory_;
   PlaceOptions options_;
+  bool trace_ranges_;
   std::vector<std::size_t> chosen_;  ///< scans that the ticks cover
   std::vector<Pose> poses_;          ///< of those, while the map grows
   std::unique_ptr<MatchReference> key_;
@@ -157,8 +159,8 @@ bool ScanPath::is_usable() const {
 }
 
 ScanPath place_scans(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
-                     const EffectList& effects, double range_noise, const ScanPath& known) {
-  return Mapper(recording, model, parameters, effects, range_noise).run(known);
+                     const EffectList& effects, const PathOptions& options, const ScanPath& known) {
+  return Mapper(recording, model, parameters, effects, options).run(known);
 }
 
 }  // namespace odomcalib::calib

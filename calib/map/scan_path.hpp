@@ -23,16 +23,21 @@ struct ScanPath {
   std::vector<PlacedScan> scans;  ///< in time order
   std::size_t lost = 0;           ///< scans that could not be placed
   WallMap map;
-  std::vector<LidarFinding> lidar;  ///< errors of the ranges; an offset is already taken out of the places
+  std::vector<LidarFinding> lidar;  ///< errors of the ranges, if asked for
   /// Lost scans are few enough for the others to be trusted.
   [[nodiscard]] bool is_usable() const;
 };
 
+struct PathOptions {
+  double range_noise = 0.01;  ///< m
+  /// Look for errors of the ranges; an offset that is found is taken out before scans are placed.
+  bool trace_ranges = false;
+};
+
 /// @param parameters, effects of the model, for guesses and for de-skewing
-/// @param range_noise m
 /// @param known the same scans placed with other parameters, which change little but how they are de-skewed;
 /// empty: nothing is known yet
 ScanPath place_scans(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
-                     const EffectList& effects, double range_noise, const ScanPath& known = {});
+                     const EffectList& effects, const PathOptions& options, const ScanPath& known = {});
 
 }  // namespace odomcalib::calib

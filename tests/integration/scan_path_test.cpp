@@ -32,7 +32,7 @@ class ScanPaths : public ::testing::Test {
   }
 
   [[nodiscard]] ScanPath placed(const Eigen::VectorXd& p) const {
-    return place_scans(run_.recording, *model_, as_span(p), {}, kRangeNoise);
+    return place_scans(run_.recording, *model_, as_span(p), {}, {kRangeNoise});
   }
 
   [[nodiscard]] Pose true_sensor(double t) const {
@@ -69,7 +69,7 @@ TEST_F(ScanPaths, a_known_map_gives_the_same_places) {
   Eigen::VectorXd other = truth_;
   other.head<3>() *= 1.005;
   const ScanPath fresh = placed(other);
-  const ScanPath again = place_scans(run_.recording, *model_, as_span(other), {}, kRangeNoise, path);
+  const ScanPath again = place_scans(run_.recording, *model_, as_span(other), {}, {kRangeNoise}, path);
   std::size_t both = 0;
   for (const PlacedScan& scan : again.scans) {
     const auto same = std::find_if(fresh.scans.begin(), fresh.scans.end(),
