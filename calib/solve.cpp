@@ -159,19 +159,35 @@ class Solver {
     return heading_pairs(*session_, parameters_, effects_);
   }
 
-  /// Errors of the lidar show between scans, before any wheel is asked. They are taken out of the scans, and
-  /// everything is measured and fitted anew; a second look settles their values.
+  /// Errors of the lidar show between scans, before any wheel is asked: those of the ranges in a map of
+  /// walls, the others, and these too where there is no map, in pairs of scans. They are taken out of the
+  /// scans.
   Result<FitResult> correct_lidar(Result<FitResult> fit) {
     if (!may_trace_lidar()) return fit;
+    place_every_scan(asked_of_lidar_.empty());
+    fit = take_out(common_findings(paths_), std::move(fit), false);
+    if (!fit) return fit;
     report("tracing the lidar", 0.0);
-    lidar_ = asked_of_lidar_.empty() ? trace_lidar(lidar_pairs(), sees_all_round(*session_))
-                                     : fit_lidar(lidar_pairs(), asked_of_lidar_);
-    if (std::none_of(lidar_.begin(), lidar_.end(), [](const auto& f) { return f.effect->is_correctable(); }))
+    const auto found = asked_of_lidar_.empty()
+                           ? trace_lidar(lidar_pairs(), sees_all_round(*session_), !paths_.empty())
+                           : fit_lidar(lidar_pairs(), asked_of_lidar_);
+    return take_out(found, std::move(fit), true);
+  }
+
+  /// Without the errors found everything is measured and fitted anew, and scans have to be placed again.
+  /// @param refined by a second look, at pairs of the corrected scans
+  Result<FitResult> take_out(const std::vector<LidarFinding>& found, Result<FitResult> fit, bool refined) {
+    const std::size_t first = lidar_.size();
+    lidar_.insert(lidar_.end(), found.begin(), found.end());
+    if (std::none_of(found.begin(), found.end(), [](const auto& f) { return f.effect->is_correctable(); }))
       return fit;
-    const State before = state(fit.value(), {});
+    const State before = state(fit.value(), first);
+    placed_with_.resize(0);
     auto better = fit_corrected();
-    if (better) refine(lidar_, lidar_pairs());
-    if (better) better = fit_corrected();
+    if (better && refined) {
+      refine(std::span(lidar_).subspan(first), lidar_pairs());
+      better = fit_corrected();
+    }
     return unless_worse(std::move(better), before);
   }
 
@@ -183,8 +199,12 @@ class Solver {
     std::optional<HeldOut> held_out;
   };
 
-  [[nodiscard]] State state(const FitResult& fit, std::vector<LidarFinding> lidar) const {
-    return {parameters_, effects_, std::move(lidar), held_out_now(fit)};
+  /// @param known of the lidar's findings, those that stay
+  [[nodiscard]] State state(const FitResult& fit, std::size_t known) const {
+    return {parameters_,
+            effects_,
+            {lidar_.begin(), lidar_.begin() + static_cast<std::ptrdiff_t>(known)},
+            held_out_now(fit)};
   }
 
   /// A correction that was not asked for and that the wheels contradict is taken back.
@@ -218,27 +238,10 @@ class Solver {
     return settle();
   }
 
-  /// Errors of the ranges that pairs of scans leave open and a map shows. Without them everything is
-  /// measured, fitted and placed anew.
-  Result<FitResult> correct_ranges(Result<FitResult> fit) {
-    const std::vector<LidarFinding> found = common_findings(paths_);
-    if (found.empty()) return fit;
-    const State before = state(fit.value(), lidar_);
-    std::erase_if(lidar_, [](const LidarFinding& f) { return !f.effect->is_correctable(); });
-    add_findings(found, lidar_);
-    if (std::none_of(found.begin(), found.end(), [](const auto& f) { return f.effect->is_correctable(); }))
-      return fit;
-    auto better = unless_worse(fit_corrected(), before);
-    if (better) place_every_scan(false);
-    return better;
-  }
-
   /// From here on effects of the floor know the place, and matches that slide are replaced. What depends on
   /// either is fitted once more.
   Result<FitResult> locate(Result<FitResult> fit) {
-    place_every_scan(automatic_);
-    fit = correct_ranges(std::move(fit));
-    if (!fit) return fit;
+    if (placed_with_.size() == 0) place_every_scan(false);
     std::vector<std::vector<Fix>> fixes;
     for (std::size_t i = 0; i < recordings_.size(); ++i)
       fixes.push_back(paths_.empty() ? fixes_of(recordings_[i]) : fixes_of(paths_[i], mount()));
@@ -360,7 +363,7 @@ class Solver {
   SearchResult outcome_;
   Eigen::VectorXd parameters_;
   std::vector<ScanPath> paths_;  ///< one per recording, or none
-  Eigen::VectorXd placed_with_;  ///< parameters that the paths were made with
+  Eigen::VectorXd placed_with_;  ///< parameters that the paths were made with; empty: they are to be made
   std::vector<LidarEffectPtr> asked_of_lidar_;
   std::vector<LidarFinding> lidar_;
   std::vector<Recording> corrected_;  ///< without the lidar's errors; what the session measures then

@@ -146,10 +146,15 @@ bool sees_all_round(const Scan& scan) {
   return std::abs(swept) * n / (n - 1.0) > kAllRound;
 }
 
-std::vector<LidarFinding> trace_lidar(const std::vector<HeadingPair>& pairs, bool all_round) {
+std::vector<LidarFinding> trace_lidar(const std::vector<HeadingPair>& pairs, bool all_round,
+                                      bool ranges_are_judged) {
   if (pairs.size() < kFewestPairs) return {};
   std::vector<LidarEffectPtr> candidates = lidar_catalogue(all_round);
   for (const auto& curve : lidar_curves()) candidates.push_back(curve);
+  const auto is_judged = [](const LidarEffectPtr& effect) {
+    return effect->name() == make_range_bias()->name() || effect->name() == make_incidence_error()->name();
+  };
+  if (ranges_are_judged) std::erase_if(candidates, is_judged);
   return Trace(pairs, candidates).run();
 }
 

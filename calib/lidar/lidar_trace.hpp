@@ -23,7 +23,10 @@ bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all
 /// Stepwise: the best candidate is added while it is beyond chance, larger than negligible and lessens the
 /// disagreement of scans it was not fitted to.
 /// @param all_round whether the head sees all directions
-std::vector<LidarFinding> trace_lidar(const std::vector<HeadingPair>& pairs, bool all_round);
+/// @param ranges_are_judged a map, which sees them better, has shown what there is of an offset or of
+/// incidence
+std::vector<LidarFinding> trace_lidar(const std::vector<HeadingPair>& pairs, bool all_round,
+                                      bool ranges_are_judged = false);
 
 /// Values of given effects, whether they are significant or not.
 std::vector<LidarFinding> fit_lidar(const std::vector<HeadingPair>& pairs,

@@ -1,7 +1,6 @@
 #include "calib/session/lidar_evidence.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -68,20 +67,7 @@ std::vector<LidarFinding> common_findings(std::span<const ScanPath> paths) {
   return common;
 }
 
-void add_findings(const std::vector<LidarFinding>& more, std::vector<LidarFinding>& findings) {
-  for (const LidarFinding& finding : more) {
-    const auto known = std::find_if(findings.begin(), findings.end(), [&](const LidarFinding& other) {
-      return other.effect->name() == finding.effect->name();
-    });
-    if (known == findings.end())
-      findings.push_back(finding);
-    else
-      std::transform(known->values.begin(), known->values.end(), finding.values.begin(),
-                     known->values.begin(), std::plus<>());
-  }
-}
-
-void refine(std::vector<LidarFinding>& findings, const std::vector<HeadingPair>& pairs) {
+void refine(std::span<LidarFinding> findings, const std::vector<HeadingPair>& pairs) {
   std::vector<LidarEffectPtr> effects;
   effects.reserve(findings.size());
   for (const LidarFinding& finding : findings) effects.push_back(finding.effect);

@@ -24,10 +24,7 @@ std::vector<Recording> corrected(std::span<const Recording> recordings,
 /// Errors of the ranges that the maps of all recordings show, their values the means.
 std::vector<LidarFinding> common_findings(std::span<const ScanPath> paths);
 
-/// What is found again, in scans that it was taken out of, adds to its values.
-void add_findings(const std::vector<LidarFinding>& more, std::vector<LidarFinding>& findings);
-
 /// Adds what scans still show after a first correction.
-void refine(std::vector<LidarFinding>& findings, const std::vector<HeadingPair>& pairs);
+void refine(std::span<LidarFinding> findings, const std::vector<HeadingPair>& pairs);
 
 }  // namespace odomcalib::calib
