@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "calib/lidar/lidar_curve.hpp"
 
@@ -18,7 +19,6 @@ struct Adjusted {
   WallMap map;
   PlaceOptions options;
   RangeEvidence evidence;  ///< what is left
-  RangeLaw deviations = RangeLaw::Zero();
 };
 
 using Step = RangeLaw (*)(const RangeEvidence&);
@@ -39,7 +39,6 @@ Adjusted adjusted_with(Step step, Adjusted state, PlacedBeams used) {
     state.evidence = adjust_map(used.beams, state.options, state.map, used.places);
     if (change.cwiseAbs().maxCoeff() < kSettled) break;
   }
-  state.deviations = state.evidence.covariance.diagonal().cwiseSqrt();
   return state;
 }
 
@@ -96,31 +95,67 @@ LidarFinding finding_of(LidarEffectPtr effect, double p_value, const Proof& proo
           proof.after};
 }
 
+/// What allowing for the incidence would change counts as unknown too.
+double deviation_of_offset(const RangeEvidence& left) {
+  return std::hypot(left.offset_alone_deviation, left.values(0) - left.offset_alone);
+}
+
+class Trace {
+ public:
+  Trace(Adjusted state, const PlacedBeams& used, const PlacedBeams& others)
+      : state_(std::move(state)), used_(used), others_(others) {}
+
+  RangeTrace run() {
+    RangeTrace trace;
+    if (shows_offset(state_.evidence)) trace.findings = offset();
+    trace.offset = state_.options.range_error(0);
+    trace.map = state_.map;
+    if (shows_slant(state_.evidence)) {
+      const auto more = slant();
+      trace.findings.insert(trace.findings.end(), more.begin(), more.end());
+    }
+    return trace;
+  }
+
+ private:
+  /// None where scans that were not used do not confirm it.
+  std::vector<LidarFinding> offset() {
+    const double p_value = p_value_of_offset(state_.evidence);
+    const auto proof = advance(offset_step);
+    if (!proof) return {};
+    const double deviation = deviation_of_offset(state_.evidence);
+    return {finding_of(make_range_bias(), p_value, *proof, state_.options.range_error.head<1>(),
+                       Eigen::VectorXd::Constant(1, deviation))};
+  }
+
+  std::vector<LidarFinding> slant() {
+    const double p_value = p_value_of_slant(state_.evidence);
+    const auto proof = advance(slant_step);
+    if (!proof) return {};
+    const RangeLaw deviations = state_.evidence.covariance.diagonal().cwiseSqrt();
+    return {finding_of(make_incidence_error(), p_value, *proof,
+                       state_.options.range_error.tail<kRangeCoefficients - 1>(),
+                       deviations.tail<kRangeCoefficients - 1>())};
+  }
+
+  std::optional<Proof> advance(Step step) {
+    Adjusted better = adjusted_with(step, state_, used_);
+    const Proof proof = prove(state_, better, others_);
+    if (proof.z < kHeldOutZ) return std::nullopt;
+    state_ = std::move(better);
+    return proof;
+  }
+
+  Adjusted state_;
+  const PlacedBeams& used_;
+  const PlacedBeams& others_;
+};
+
 }  // namespace
 
 RangeTrace trace_ranges(const RangeEvidence& evidence, const PlacedBeams& used, const PlacedBeams& others,
                         const PlaceOptions& options, const WallMap& map) {
-  Adjusted state{map, options, evidence, {}};
-  RangeTrace trace{{}, 0.0, map};
-  if (shows_offset(evidence)) {
-    Adjusted better = adjusted_with(offset_step, state, used);
-    const Proof proof = prove(state, better, others);
-    if (proof.z < kHeldOutZ) return trace;
-    trace = {{}, better.options.range_error(0), better.map};
-    trace.findings.push_back(finding_of(
-        make_range_bias(), p_value_of_offset(evidence), proof, better.options.range_error.head<1>(),
-        Eigen::VectorXd::Constant(1, better.evidence.offset_alone_deviation)));
-    state = std::move(better);
-  }
-  if (shows_slant(state.evidence)) {
-    const Adjusted better = adjusted_with(slant_step, state, used);
-    const Proof proof = prove(state, better, others);
-    if (proof.z < kHeldOutZ) return trace;
-    trace.findings.push_back(finding_of(make_incidence_error(), p_value_of_slant(state.evidence), proof,
-                                        better.options.range_error.tail<kRangeCoefficients - 1>(),
-                                        better.deviations.tail<kRangeCoefficients - 1>()));
-  }
-  return trace;
+  return Trace({map, options, evidence}, used, others).run();
 }
 
 }  // namespace odomcalib::calib
