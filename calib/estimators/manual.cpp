@@ -27,9 +27,11 @@ struct Comparison {
 /// ratio.
 Ratio robust_slope(const std::vector<Comparison>& all) {
   std::vector<double> ratios;
+  ratios.reserve(all.size());
   for (const Comparison& c : all) ratios.push_back(c.seen / c.claimed);
   const double centre = median_of(ratios);
   std::vector<double> deviations;
+  deviations.reserve(all.size());
   for (const Comparison& c : all) deviations.push_back(std::abs(c.seen - centre * c.claimed));
   const double limit = kOutlier * kMadToSigma * std::max(median_of(deviations), 1e-9);
   Ratio result;

@@ -85,7 +85,8 @@ double rotation_information(const GraphEdge& edge) {
   return tt - (yy * xt * xt - 2.0 * xy * xt * yt + xx * yt * yt) / determinant;
 }
 
-Placement rotations_first(const PoseGraph& graph, const std::vector<std::size_t>& places, Placement at) {
+Placement rotations_first(const PoseGraph& graph, const std::vector<std::size_t>& places,
+                          const Placement& at) {
   return PositionSolver(graph, places).solve(with_headings(graph, places, at));
 }
 

@@ -14,7 +14,8 @@ namespace odomcalib::calib {
 /// Needs a fixed pose in every part, and poses that are connected without points in between; poses that are
 /// not keep the heading of `at`.
 /// @param places order of elimination
-Placement rotations_first(const PoseGraph& graph, const std::vector<std::size_t>& places, Placement at);
+Placement rotations_first(const PoseGraph& graph, const std::vector<std::size_t>& places,
+                          const Placement& at);
 
 /// What an edge tells about rotation when its translation is unknown: Schur complement, [1/rad^2].
 double rotation_information(const GraphEdge& edge);

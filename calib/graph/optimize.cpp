@@ -115,7 +115,7 @@ std::optional<Obstacle> Problem::pose_behind_points() const {
 }
 
 Placement Problem::guess(GraphStart start) const {
-  const Placement given = placement_of(graph_);
+  Placement given = placement_of(graph_);
   if (start == GraphStart::file) return given;
   const auto kind = start == GraphStart::odometry ? TreeKind::odometry : TreeKind::breadth_first;
   const Placement tree = placed_along(graph_, spanning_tree(graph_, neighbours_, kind), given);

@@ -57,6 +57,23 @@ bool is_distance_since(Variable variable) {
          variable == Variable::right_since_reversal || variable == Variable::since_stop;
 }
 
+std::size_t memories_of(Variable variable) {
+  switch (variable) {
+    case Variable::previous_turn:
+      return kMemorySpans.size();
+    case Variable::previous_push:
+      return kMemorySpans.size() + kPushes.size();
+    case Variable::since_stop:
+      return kStops.size();
+    default:
+      return kUsualMemory + 1;
+  }
+}
+
+bool is_relay(Variable variable, std::size_t memory) {
+  return variable == Variable::previous_push && memory >= kMemorySpans.size();
+}
+
 double value_of(Variable variable, const StepContext& c, std::size_t memory) {
   switch (variable) {
     case Variable::left_speed:
@@ -92,7 +109,7 @@ double value_of(Variable variable, const StepContext& c, std::size_t memory) {
     case Variable::right_since_reversal:
       return c.right_since_reversal;
     case Variable::since_stop:
-      return c.since_stop;
+      return c.since_stop[memory];
     case Variable::previous_turn:
       return c.previous_turn[memory];
     case Variable::previous_push:

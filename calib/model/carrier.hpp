@@ -42,8 +42,14 @@ bool is_memory(Variable variable);
 /// A distance or angle since an event: the defect fades with it.
 bool is_distance_since(Variable variable);
 
+/// In how many ways the variable can be understood; all but the usual one are tried once it is found.
+std::size_t memories_of(Variable variable);
+/// Its sign stays until the opposite happens, instead of fading.
+bool is_relay(Variable variable, std::size_t memory);
+
 /// Value in an interval; of the position, x.
-/// @param memory index of the span over which what happened before fades
+/// @param memory index of the span over which what happened before fades, of the strength that a push must
+/// have (kPushes, after the spans), of the time for which it must have stood still
 double value_of(Variable variable, const StepContext& context, std::size_t memory = kUsualMemory);
 
 /// `travel` is signed and reverses with the motion, `path` is unsigned. Left, right, both: relative to the

@@ -95,14 +95,16 @@ class DriveModel {
 /// What accumulates over a drive: pose by the plain model, and how far back the last reversals lie.
 class DriveHistory {
  public:
-  explicit DriveHistory(const BaseParameters& nominal) : nominal_(nominal) {}
+  explicit DriveHistory(const BaseParameters& nominal) : nominal_(nominal) { since_stop_.fill(kFarBack); }
   /// Fills the fields of `context` that depend on the drive so far, then takes the interval in.
   void advance(StepContext& context);
 
  private:
+  /// m or rad: the drive begins as if the last reversal and the last stop lay so far back.
+  static constexpr double kFarBack = 1e3;
   struct Wheel {
     double direction = 0.0;
-    double since = 1e3;  ///< rad; the drive begins as if the last reversal lay far back
+    double since = kFarBack;
     double advance(double delta);
   };
   void swing_caster(StepContext& context, const Pose& step);
@@ -114,10 +116,11 @@ class DriveHistory {
   Pose pose_;
   Wheel left_, right_;
   double direction_ = 0.0;
-  double since_reversal_ = 1e3;
+  double since_reversal_ = kFarBack;
   double stood_ = 0.0;  ///< s
-  double since_stop_ = 1e3;
-  Memory previous_turn_{}, previous_push_{};
+  std::array<double, kStops.size()> since_stop_;
+  Memory previous_turn_{};
+  PushMemory previous_push_{};
   std::array<double, kCasterTrails.size()> caster_{};  ///< rad, direction in which each would roll, base axes
 };
 

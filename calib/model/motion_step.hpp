@@ -21,6 +21,15 @@ inline constexpr std::array<double, 3> kMemorySpans = {1.0 / 3.0, 1.0, 3.0};
 inline constexpr std::size_t kUsualMemory = 1;
 using Memory = std::array<double, kMemorySpans.size()>;
 
+/// m/s^2; what a push of such strength moved stays until one the other way (the relay of Krasnosel'skii and
+/// Pokrovskii, Systems with Hysteresis, 1989, section 28, its thresholds symmetrical).
+inline constexpr std::array<double, 5> kPushes = {0.1, 0.17, 0.3, 0.5, 0.9};
+/// Means as in Memory, then relays.
+using PushMemory = std::array<double, kMemorySpans.size() + kPushes.size()>;
+
+/// s; how long a robot has to stand until something sticks is not known either.
+inline constexpr std::array<double, 3> kStops = {0.1, 0.2, 0.4};
+
 /// m; trails of casters are not known either.
 inline constexpr std::array<double, 3> kCasterTrails = {0.02, 0.04, 0.08};
 
@@ -42,9 +51,10 @@ struct StepContext {
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;
-  double since_stop = 0.0;  ///< mean way of the two rims since the robot last stood still, m
-  Memory previous_turn{};   ///< which way it turned lately: mean of the turn's sign over a radian, -1 to 1
-  Memory previous_push{};   ///< whether it was sped up or slowed down lately: the same over 0.1 m/s
+  /// Mean way of the two rims since the robot last stood still for each of kStops, m.
+  std::array<double, kStops.size()> since_stop{};
+  Memory previous_turn{};      ///< which way it turned lately: mean of the turn's sign over a radian, -1 to 1
+  PushMemory previous_push{};  ///< whether it was sped up or slowed down lately: the same over 0.1 m/s
   /// Sine of the angle by which a caster behind the axle still points past the way its pivot moves, for each
   /// of kCasterTrails: -1 to 1.
   std::array<double, kCasterTrails.size()> caster{};

@@ -87,8 +87,8 @@ void fill_accelerations_at_ends(std::vector<StepContext>& contexts, double track
 }
 
 /// Means of a motion's sign move on by the motion, in units of the usual span.
-void remember(Memory& memory, double motion) {
-  for (std::size_t k = 0; k < memory.size(); ++k)
+void remember(std::span<double> memory, double motion) {
+  for (std::size_t k = 0; k < kMemorySpans.size(); ++k)
     memory[k] -= std::expm1(-std::abs(motion) / kMemorySpans[k]) * (std::copysign(1.0, motion) - memory[k]);
 }
 
@@ -143,13 +143,14 @@ void DriveHistory::swing_caster(StepContext& c, const Pose& step) {
 }
 
 void DriveHistory::remember_stop(StepContext& c) {
-  constexpr double kStop = 0.1;  // s without a tick
   const bool standing = c.left_delta == 0.0 && c.right_delta == 0.0;
   stood_ = standing ? stood_ + c.dt : 0.0;
-  if (stood_ > kStop) since_stop_ = 0.0;
+  for (std::size_t k = 0; k < kStops.size(); ++k)
+    if (stood_ > kStops[k]) since_stop_[k] = 0.0;
   c.since_stop = since_stop_;
-  since_stop_ +=
-      0.5 * (nominal_.left_radius * std::abs(c.left_delta) + nominal_.right_radius * std::abs(c.right_delta));
+  for (double& since : since_stop_)
+    since += 0.5 * (nominal_.left_radius * std::abs(c.left_delta) +
+                    nominal_.right_radius * std::abs(c.right_delta));
 }
 
 /// Noise of the acceleration at steady speed must not wash the memory out.
@@ -160,6 +161,9 @@ void DriveHistory::remember_push(StepContext& c) {
   const double acceleration = 0.5 * (c.left_acceleration + c.right_acceleration);
   if (std::abs(acceleration) < kLeast) return;
   remember(previous_push_, acceleration * c.dt / kMemory);
+  for (std::size_t k = 0; k < kPushes.size(); ++k)
+    if (std::abs(acceleration) > kPushes[k])
+      previous_push_[kMemorySpans.size() + k] = std::copysign(1.0, acceleration);
 }
 
 void DriveHistory::remember_turn(StepContext& c, double yaw) {

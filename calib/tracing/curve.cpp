@@ -289,6 +289,7 @@ BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   if (is_angle(variable))
     return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
   if (is_distance_since(variable)) return fading(variable, z);
+  if (is_relay(variable, curve.memory)) return {z};
   if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);
   if (variable == Variable::time) return legendre(scaled(curve, z));
   if (curve.is_wave()) return wave_functions(curve, c);
@@ -321,7 +322,8 @@ std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* 
     shapes.push_back(curve);
     shapes.back().knots *= 2;
   }
-  for (std::size_t memory = 0; is_memory(curve.law.variable) && memory < kMemorySpans.size(); ++memory) {
+  const std::size_t memories = memories_of(curve.law.variable);
+  for (std::size_t memory = 0; memories > kUsualMemory + 1 && memory < memories; ++memory) {
     if (memory == curve.memory) continue;
     shapes.push_back(curve);
     shapes.back().memory = memory;

@@ -19,6 +19,7 @@ namespace odomcalib::calib {
 /// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both; or, of a floor
 ///   that repeats itself, one wave: its cosine and sine, and both times the cosine of the angle between the
 ///   heading and the way across the crests;
+/// - a push that stays until the opposite one: its sign;
 /// - speeds and turn rate: piecewise linear in the magnitude (at four or eight knots), a step with the
 /// direction, and the
 ///   magnitude times the direction;
@@ -36,7 +37,7 @@ struct Curve {
   /// meaning of slow motion; functions without a mean leave them that of the drive they were fitted to.
   std::vector<double> mean = {};
   int knots = 4;                      ///< of speeds only
-  std::size_t memory = kUsualMemory;  ///< of what happened before only: span over which it fades
+  std::size_t memory = kUsualMemory;  ///< of what happened before only: which way to understand it
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
   bool constant = false;              ///< of heading only: with a constant as the first function
   [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
@@ -77,7 +78,7 @@ Curve centred(Curve curve, std::span<const DriveModel* const> models);
 double spread_of(const Curve& curve, std::span<const double> coefficients,
                  std::span<const DriveModel* const> models);
 
-/// The same law in other shapes: twice the knots, other spans of memory.
+/// The same law in other shapes: twice the knots, other ways to understand what happened before.
 std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models);
 
 /// A dependence of the sensor's place on the base: none of odometry's.

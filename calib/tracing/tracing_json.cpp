@@ -25,7 +25,7 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   curve.memory = entry.value("memory", kUsualMemory);
   curve.wave = entry.value("wave", curve.wave);
   curve.constant = entry.value("constant", false);
-  if (!(curve.high > curve.low) || curve.memory >= kMemorySpans.size() ||
+  if (!(curve.high > curve.low) || curve.memory >= memories_of(*variable) ||
       (curve.knots != 4 && curve.knots != 8) || coefficients.size() != basis_size(curve))
     return std::nullopt;
   curve.mean = entry.value("mean", std::vector<double>{});

@@ -60,7 +60,7 @@ constexpr std::array kVariables = {
     Variable{"distance since reversal", "m", Variable::mean,
              [](const StepContext& c) { return c.direction * std::min(c.since_reversal, 0.5); }},
     Variable{"distance since a stop", "m", Variable::mean,
-             [](const StepContext& c) { return std::min(c.since_stop, 0.5); }},
+             [](const StepContext& c) { return std::min(c.since_stop[kUsualMemory], 0.5); }},
     Variable{"last turn", "", Variable::mean,
              [](const StepContext& c) { return c.previous_turn[kUsualMemory]; }},
     Variable{"last push", "", Variable::mean,

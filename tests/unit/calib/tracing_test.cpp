@@ -266,6 +266,17 @@ TEST(Tracing, how_long_a_robot_remembers_is_found_out) {
   EXPECT_EQ(result.curves[0].curve.memory, 0U);
 }
 
+TEST(Tracing, a_seat_that_only_the_opposite_push_changes_is_no_fading_memory) {
+  const DriveModel model = lively_model(3.0);
+  const std::size_t hard = kMemorySpans.size() + 2;
+  const Curve seat{{Variable::previous_push, Carrier::track}, -1.0, 1.0, 0.0, 0, {}, 4, hard};
+  const SearchResult result = searched(measured(model, {make_curve_effect(seat)}, {0.01}));
+  ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
+  EXPECT_EQ(result.curves[0].curve.law, seat.law);
+  EXPECT_EQ(result.curves[0].curve.memory, hard);
+  EXPECT_NEAR(result.model.fit.parameters(kBaseCount), 0.01, 5e-4);
+}
+
 TEST(Tracing, several_recordings_share_no_zero_of_time_heading_or_phase) {
   const DriveModel model = lively_model();
   const std::vector<const DriveModel*> one = {&model}, two = {&model, &model};
@@ -344,6 +355,31 @@ TEST(StepContext, remembers_the_last_push_through_steady_motion) {
   EXPECT_EQ(context.front().previous_push[kUsualMemory], 0.0);
   EXPECT_GT(context[190].previous_push[kUsualMemory], 0.8);
   EXPECT_LT(context[350].previous_push[kUsualMemory], -0.5);
+  const double push = 5.0 * kBase.left_radius;
+  for (std::size_t k = 0; k < kPushes.size(); ++k) {
+    const double stays = kPushes[k] < push ? 1.0 : 0.0;
+    EXPECT_EQ(context[190].previous_push[kMemorySpans.size() + k], stays) << kPushes[k];
+    EXPECT_EQ(context.back().previous_push[kMemorySpans.size() + k], -stays) << kPushes[k];
+  }
+}
+
+TEST(StepContext, counts_from_stops_that_last) {
+  WheelTrack track;
+  double angle = 0.0;
+  for (int k = 0; k <= 400; ++k) {  // stands for 0.3 s at 4 s, for 0.1 s at 6 s
+    const double t = 0.02 * k;
+    const bool stands = (t > 4.0 && t < 4.31) || (t > 6.0 && t < 6.11);
+    if (!stands) angle += 0.1;
+    track.t.push_back(t);
+    track.left.push_back(angle);
+    track.right.push_back(angle);
+    track.segment.push_back(0);
+  }
+  const auto since = make_context(track, kBase).back().since_stop;
+  const double step = 0.1 * kBase.left_radius;
+  EXPECT_NEAR(since[0], 94.0 * step, 2.0 * step);
+  EXPECT_NEAR(since[1], 179.0 * step, 2.0 * step);
+  EXPECT_GT(since[2], 100.0);
 }
 
 TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
