@@ -35,9 +35,9 @@ class Adjustment {
     terms.mixed.setZero(3, size());
     const Frame sensor(place.pose);
     for (const Strike& strike : map.strikes(beams, place.pose)) {
-      const RangeTerm term = range_term(map, beams[strike.beam], strike.wall, sensor, options);
-      const double weight = weight_of(term, place.scale);
-      if (weight > 0.0) enter(term, strike.wall, weight, terms);
+      const auto term = range_term(map, beams[strike.beam], strike.wall, sensor, options);
+      const double weight = term ? weight_of(*term, place.scale) : 0.0;
+      if (weight > 0.0) enter(*term, strike.wall, weight, terms);
     }
     if (!anchored) eliminate(terms);
     return terms;

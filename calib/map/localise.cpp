@@ -21,12 +21,14 @@ std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>&
                                     const PlaceOptions& options, double gate, std::size_t& strikes) {
   std::vector<RangeTerm> terms;
   const std::vector<Strike> struck = map.strikes(beams, pose);
-  strikes = struck.size();
+  strikes = 0;
   terms.reserve(struck.size());
   const Frame frame(pose);
   for (const Strike& strike : struck) {
-    const RangeTerm term = range_term(map, beams[strike.beam], strike.wall, frame, options);
-    if (std::abs(term.residual) < gate) terms.push_back(term);
+    const auto term = range_term(map, beams[strike.beam], strike.wall, frame, options);
+    if (!term) continue;
+    ++strikes;
+    if (std::abs(term->residual) < gate) terms.push_back(*term);
   }
   return terms;
 }
@@ -63,9 +65,12 @@ double improve(const std::vector<RangeTerm>& terms, double share, Place& place) 
 
 }  // namespace
 
-RangeTerm range_term(const WallMap& map, const Beam& beam, std::size_t wall, const Frame& sensor,
-                     const PlaceOptions& options) {
+std::optional<RangeTerm> range_term(const WallMap& map, const Beam& beam, std::size_t wall,
+                                    const Frame& sensor, const PlaceOptions& options) {
+  constexpr double kCertain = 4.0;  // deviations
   RangeTerm term = map.term(beam, wall, sensor, options.range_noise);
+  if (options.range_max > 0.0 && term.sighting.range > options.range_max - kCertain * options.range_noise)
+    return std::nullopt;
   if (!options.range_error.isZero()) term.residual -= options.range_error.dot(by_coefficient(term.sighting));
   return term;
 }

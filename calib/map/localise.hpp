@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "calib/map/range_law.hpp"
@@ -14,6 +15,9 @@ struct PlaceOptions {
   double gate = 0.3;          ///< m, largest difference of a range from what the map expects
   int iterations = 12;
   RangeLaw range_error = RangeLaw::Zero();  ///< taken out of every reading
+  /// m, where the sensor gives up; 0: nobody knows. Of walls near it only the readings come through that
+  /// noise has shortened.
+  double range_max = 0.0;
 };
 
 struct Place {
@@ -30,9 +34,10 @@ struct Place {
 Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const Pose& guess,
                  const PlaceOptions& options);
 
-/// What a reading says once the ranges' error is taken out.
-RangeTerm range_term(const WallMap& map, const Beam& beam, std::size_t wall, const Frame& sensor,
-                     const PlaceOptions& options);
+/// What a reading says once the ranges' error is taken out. Nothing when its wall is so far away that noise
+/// decides whether there is a reading.
+std::optional<RangeTerm> range_term(const WallMap& map, const Beam& beam, std::size_t wall,
+                                    const Frame& sensor, const PlaceOptions& options);
 
 /// Readings of a scan that is in its place, as far as they fit the map.
 std::vector<RangeTerm> fitting_terms(const WallMap& map, const std::vector<Beam>& beams, const Pose& sensor,

@@ -19,7 +19,13 @@ constexpr std::size_t kAdjusted = 500;       ///< scans that the map is adjusted
 constexpr std::size_t kMostWalls = 300;
 constexpr std::size_t kFewestScans = 50;
 constexpr double kMostLost = 0.1;    ///< share of the scans
+constexpr double kDouble = 2.0;      ///< range noise, across a wall that was taken for two
 constexpr double kFirstGate = 0.15;  ///< m, for a scan placed from the one before it
+
+/// Of the recording's only lidar, m.
+double range_max(const Recording& recording) {
+  return recording.scans.empty() ? 0.0 : recording.scans.front().range_max;
+}
 
 class Mapper {
  public:
@@ -28,7 +34,7 @@ class Mapper {
       : recording_(recording),
         mount_(to_base(parameters).mount),
         trajectory_(model.trajectory(parameters, effects)),
-        options_{options.range_noise, kFirstGate},
+        options_{.range_noise = options.range_noise, .gate = kFirstGate, .range_max = range_max(recording)},
         trace_ranges_(options.trace_ranges) {
     for (std::size_t k = 0; k < recording.scans.size(); ++k) {
       const Scan& scan = recording.scans[k];
@@ -110,7 +116,9 @@ class Mapper {
   void adjust() {
     const std::size_t stride = std::max<std::size_t>(2, chosen_.size() / kAdjusted + 1);
     PlacedBeams used = sample(0, stride);
-    const RangeEvidence evidence = adjust_map(used.beams, options_, path_.map, used.places);
+    RangeEvidence evidence = adjust_map(used.beams, options_, path_.map, used.places);
+    if (path_.map.drop_doubles(kDouble * options_.range_noise))
+      evidence = adjust_map(used.beams, options_, path_.map, used.places);
     if (!trace_ranges_ || !(shows_offset(evidence) || shows_slant(evidence))) return;
     RangeTrace trace = trace_ranges(evidence, used, sample(stride / 2, stride), options_, path_.map);
     path_.map = std::move(trace.map);

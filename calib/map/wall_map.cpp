@@ -12,6 +12,7 @@ namespace {
 constexpr double kMinLength = 0.25;   ///< m; shorter pieces may be curved
 constexpr double kMaxOffset = 0.06;   ///< m across, between pieces of one wall
 constexpr double kMinAlike = 0.995;   ///< cosine between their normals, 5.7 degrees
+constexpr double kMinAlong = 0.9;     ///< the same, of a double
 constexpr double kMaxGapAlong = 0.5;  ///< m, between pieces of one wall
 constexpr double kShade = 0.1;        ///< m, a wall may be this much longer than what was seen of it
 constexpr double kEndMargin = 0.02;   ///< m, at ends that are already short of what was seen
@@ -50,6 +51,16 @@ std::pair<double, double> ends_along(const MapWall& from, const MapWall& wall) {
   return {along(from.low), along(from.high)};
 }
 
+bool lies_along(const MapWall& piece, const MapWall& wall, double tolerance) {
+  if (piece.normal.dot(wall.normal) < kMinAlong) return false;
+  const auto [low, high] = ends_along(piece, wall);
+  if (low > wall.high + kShade || high < wall.low - kShade) return false;
+  const auto across = [&](double s) {
+    return std::abs(wall.normal.dot(piece.centre + s * piece.direction() - wall.centre));
+  };
+  return across(piece.low) < tolerance && across(piece.high) < tolerance;
+}
+
 void merge(MapWall& into, const MapWall& piece) {
   const MapWall before = into;
   into.sums += piece.sums;
@@ -85,6 +96,26 @@ void WallMap::insert(const Walls& seen, const Pose& sensor) {
     else
       walls_.push_back(piece);
   }
+}
+
+bool WallMap::drop_doubles(double tolerance) {
+  const auto length = [](const MapWall& wall) { return wall.high - wall.low; };
+  std::stable_sort(walls_.begin(), walls_.end(),
+                   [&](const MapWall& a, const MapWall& b) { return length(a) > length(b); });
+  std::vector<MapWall> kept;
+  for (const MapWall& wall : walls_) {
+    const auto whole = std::find_if(kept.begin(), kept.end(),
+                                    [&](const MapWall& k) { return lies_along(wall, k, tolerance); });
+    if (whole == kept.end()) {
+      kept.push_back(wall);
+      continue;
+    }
+    const auto [low, high] = ends_along(wall, *whole);
+    whole->low = std::min(whole->low, low);
+    whole->high = std::max(whole->high, high);
+  }
+  std::swap(walls_, kept);
+  return walls_.size() < kept.size();
 }
 
 std::vector<Strike> WallMap::strikes(const std::vector<Beam>& beams, const Pose& sensor) const {

@@ -47,6 +47,12 @@ class WallMap {
   /// @param sensor pose of the scan in the map
   void insert(const Walls& seen, const Pose& sensor);
 
+  /// Drops pieces that lie along a longer wall, not recognised as a part of it while the map grew: beams
+  /// would strike whichever their noise makes the nearer one.
+  /// @param tolerance m, of both their ends from the wall's line
+  /// @return whether there were any
+  bool drop_doubles(double tolerance);
+
   /// For each beam the nearest wall on its way; beams that would strike near the end of a wall are left out,
   /// since they may as well miss it, and so are those that strike too flat.
   [[nodiscard]] std::vector<Strike> strikes(const std::vector<Beam>& beams, const Pose& sensor) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "calib/statistics/median.hpp"
@@ -127,23 +128,50 @@ double angular_step(const Scan& scan) {
   return median_of(steps);
 }
 
-/// Noise along the beam that lines through runs of neighbouring readings show. Runs that cross a corner show
-/// more, so that only the median over many runs means anything.
-void collect_line_noise(const Scan& scan, std::vector<double>& out) {
-  constexpr std::size_t kRun = 13;
-  std::vector<SurfacePoint> points;
-  for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam)
-    if (is_usable(scan, beam)) points.push_back(beam_end(scan, beam, [](double) { return Pose{}; }));
-  const RunSums sums(points);
-  const double step = angular_step(scan);
-  for (std::size_t first = 0; first + kRun <= points.size(); first += kRun / 2) {
-    const std::size_t middle = first + kRun / 2;
-    if (reach(points, middle, -1, step) > first || reach(points, middle, +1, step) < first + kRun - 1)
-      continue;
-    const Line line = sums.line(first, first + kRun - 1);
-    const double incidence = std::abs(line.normal.dot(points[middle].beam));
-    if (incidence > 0.3) out.push_back(line.rms / incidence);
+/// How far the reciprocal range of beam k lies off the line through beams k - lag and k + lag, in units of
+/// what range noise of 1 m would make of it: on a straight wall 1 / r = A cos(angle) + B sin(angle). Walls
+/// struck flatter than 45 degrees show how uneven they are instead.
+std::optional<double> bend(const Scan& scan, std::size_t k, std::size_t lag) {
+  const std::size_t beams[] = {k - lag, k, k + lag};
+  double u[3];
+  for (int j = 0; j < 3; ++j) {
+    if (!is_usable(scan, beams[j])) return std::nullopt;
+    u[j] = 1.0 / static_cast<double>(scan.ranges[beams[j]]);
   }
+  const double before = wrap_angle(scan.angle(k) - scan.angle(k - lag));
+  const double after = wrap_angle(scan.angle(k + lag) - scan.angle(k));
+  const double whole = std::sin(before + after);
+  const double slope =
+      (u[0] / u[2] - 1.0) * u[1] / u[0] / (before + after);  // of the range, tangent of the incidence
+  if (std::abs(whole) < 1e-6 || std::abs(slope) > 1.0) return std::nullopt;
+  const double first = std::sin(after) / whole, last = std::sin(before) / whole;
+  const double noise = std::hypot(u[1] * u[1], first * u[0] * u[0], last * u[2] * u[2]);
+  return (u[1] - first * u[0] - last * u[2]) / noise;
+}
+
+/// Corners and edges lie in a part of all bends; over two and a half degrees few.
+void collect_bends(const Scan& scan, std::vector<double>& out) {
+  constexpr double kHalf = 1.25 * kPi / 180.0;
+  const double step = angular_step(scan);
+  if (!(step > 0.0)) return;
+  const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(kHalf / step)));
+  for (std::size_t k = lag; k + lag < scan.ranges.size(); ++k)
+    if (const auto bent = bend(scan, k, lag)) out.push_back(std::abs(*bent));
+}
+
+/// Standard deviation of the normal part of a list of sizes: root mean square of what lies within 2.5 of it,
+/// over that of a normal distribution cut there.
+double normal_part(const std::vector<double>& sizes) {
+  constexpr double kCut = 2.5, kOfCutNormal = 0.9546;
+  double scale = kMadToSigma * median_of(sizes);
+  for (int pass = 0; pass < 20; ++pass) {
+    double sum = 0.0, count = 0.0;
+    for (const double size : sizes)
+      if (size < kCut * scale) sum += size * size, count += 1.0;
+    if (!(count > 0.0)) break;
+    scale = std::sqrt(sum / count) / kOfCutNormal;
+  }
+  return scale;
 }
 
 }  // namespace
@@ -175,11 +203,11 @@ Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_no
 }
 
 double estimate_range_noise(std::span<const Scan> scans) {
-  std::vector<double> noise;
+  std::vector<double> bends;
   const std::size_t stride = std::max<std::size_t>(scans.size() / 100, 1);
-  for (std::size_t k = 0; k < scans.size(); k += stride) collect_line_noise(scans[k], noise);
-  if (noise.empty()) return kDefaultRangeNoise;
-  return std::clamp(median_of(noise), kMinRangeNoise, kMaxRangeNoise);
+  for (std::size_t k = 0; k < scans.size(); k += stride) collect_bends(scans[k], bends);
+  if (bends.empty()) return kDefaultRangeNoise;
+  return std::clamp(normal_part(bends), kMinRangeNoise, kMaxRangeNoise);
 }
 
 }  // namespace odomcalib::calib

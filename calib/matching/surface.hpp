@@ -42,9 +42,8 @@ bool is_usable(const Scan& scan, std::size_t beam);
 /// @param range_noise standard deviation of a range, m; decides what still counts as one line
 Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_noise);
 
-/// Standard deviation of the range readings, m, from lines through runs of neighbouring readings: it includes
-/// what short surfaces are uneven by, and sensors that smooth neighbouring readings do not look better than
-/// they are.
+/// Standard deviation of the range readings, m, from how straight walls look over two and a half degrees. The
+/// normal part of what is seen counts, so that corners do not, however few and noisy the readings are.
 double estimate_range_noise(std::span<const Scan> scans);
 
 }  // namespace odomcalib::calib

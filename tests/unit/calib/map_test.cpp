@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "calib/map/adjust.hpp"
@@ -41,6 +42,24 @@ TEST(WallMap, a_beam_strikes_the_nearest_wall_and_no_wall_behind_it) {
   EXPECT_GT(strikes.size(), beams.size() / 2);
   for (const Strike& strike : strikes)
     EXPECT_LT(std::abs(map.term(beams[strike.beam], strike.wall, Frame(pose), kNoise).residual), 0.05);
+}
+
+TEST(WallMap, a_piece_along_a_longer_wall_is_dropped_and_a_ledge_before_it_stays) {
+  MapWall wall, piece, ledge;
+  wall.centre = {0.0, 2.0};
+  wall.normal = piece.normal = ledge.normal = {0.0, -1.0};
+  wall.low = -2.0, wall.high = 2.0;
+  piece.centre = {1.9, 2.015};
+  ledge.centre = {0.0, 1.9};
+  piece.low = ledge.low = -0.2, piece.high = ledge.high = 0.2;
+  WallMap map;
+  map.walls() = {piece, wall, ledge};
+  EXPECT_TRUE(map.drop_doubles(0.03));
+  ASSERT_EQ(map.walls().size(), 2U);
+  EXPECT_EQ(map.walls()[0].centre, wall.centre);
+  EXPECT_NEAR(map.walls()[0].high - map.walls()[0].low, 4.1, 1e-9) << "the piece went on beyond the end";
+  EXPECT_EQ(map.walls()[1].centre, ledge.centre);
+  EXPECT_FALSE(map.drop_doubles(0.03));
 }
 
 TEST(WallMap, derivatives_agree_with_central_differences) {
@@ -106,6 +125,21 @@ TEST(PlaceScan, finds_the_place_and_states_its_own_error) {
   // error.
   EXPECT_GT(sum, 2.0);
   EXPECT_LT(sum, 8.0);
+}
+
+// Of a wall just within reach only the readings come back that noise has shortened.
+TEST(PlaceScan, walls_where_noise_decides_whether_they_are_seen_say_nothing) {
+  const WallMap map = map_of_room();
+  const Pose pose{0.0, 0.0, 0.0};
+  const auto beams = make_beams(scan_from(kRoom, pose, kNoise, 1), kAtRest);
+  PlaceOptions options{kNoise, 0.15};
+  const auto all = fitting_terms(map, beams, pose, options);
+  options.range_max = 3.0;
+  const auto certain = fitting_terms(map, beams, pose, options);
+  const auto near = [](const RangeTerm& term) { return term.sighting.range < 3.0 - 4.0 * kNoise; };
+  EXPECT_EQ(certain.size(), static_cast<std::size_t>(std::count_if(all.begin(), all.end(), near)));
+  EXPECT_TRUE(std::all_of(certain.begin(), certain.end(), near));
+  EXPECT_LT(certain.size(), all.size());
 }
 
 TEST(PlaceScan, a_scan_of_another_room_finds_no_place) {

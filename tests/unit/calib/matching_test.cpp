@@ -194,7 +194,28 @@ TEST(Surface, estimates_the_range_noise) {
   for (const double noise : {0.004, 0.01, 0.03}) {
     std::vector<Scan> scans;
     for (unsigned i = 0; i < 10; ++i) scans.push_back(scan_from(kRoom, {0.1 * i, 0.0, 0.2 * i}, noise, i));
-    EXPECT_NEAR(estimate_range_noise(scans) / noise, 1.0, 0.2) << noise;
+    EXPECT_NEAR(estimate_range_noise(scans) / noise, 1.0, 0.1) << noise;
+  }
+}
+
+// One reading in two degrees, a twentieth of them missing, a display in centimetres: no run of neighbours is
+// long.
+TEST(Surface, estimates_the_range_noise_of_few_beams) {
+  for (const double noise : {0.006, 0.014, 0.028}) {
+    std::vector<Scan> scans;
+    for (unsigned i = 0; i < 60; ++i) {
+      const Scan fine = scan_from(kRoom, {0.02 * i, 0.0, 0.2 * i}, noise, i);
+      const std::size_t every = fine.ranges.size() / 180;
+      Scan scan = fine;
+      scan.ranges.clear();
+      scan.angle_increment = fine.angle_increment * static_cast<double>(every);
+      for (std::size_t k = 0; k < fine.ranges.size(); k += every) {
+        const float rounded = std::round(fine.ranges[k] * 100.0F) / 100.0F;
+        scan.ranges.push_back((k / every + i) % 20 == 0 ? 0.0F : rounded);
+      }
+      scans.push_back(scan);
+    }
+    EXPECT_NEAR(estimate_range_noise(scans) / std::hypot(noise, 0.01 / std::sqrt(12.0)), 1.0, 0.2) << noise;
   }
 }
 

@@ -230,8 +230,10 @@ TEST(ScanGraph, S2_24_the_intel_lab_closes_and_agrees_with_the_relations_checked
               distances.size(), pairs, 1e3 * distance, angle);
   for (const auto& [reason, count] : made.refused) std::printf("refused %zu: %s\n", count, reason.c_str());
   EXPECT_GT(made.count(EdgeSource::loop), 250U);
-  EXPECT_LE(distance, 10.6e-3);
-  EXPECT_LE(angle, 0.18);
+  // The published figures to the digits they have. With a range noise of 4.5 to 10 mm instead of the estimate
+  // 9.9 to 11.3 mm and 0.17 to 0.183 degrees were measured.
+  EXPECT_LT(distance, 10.65e-3);
+  EXPECT_LT(angle, 0.185);
 }
 
 }  // namespace
