@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "calib/wheels/fine_track.hpp"
 #include "calib/wheels/nominal_base.hpp"
 
 namespace odomcalib::calib {
@@ -58,7 +59,7 @@ Result<Session> Session::open(std::span<const Recording> recordings) {
     if (!same_robot(recording.robot, recordings.front().robot))
       return Error{ErrorCode::format, "nominal values differ from those of " + recordings.front().name,
                    recording.name, "solve recordings of different robots separately"};
-    WheelTrack track = recording.increments.empty() ? wheel_track_from_ticks(recording)
+    WheelTrack track = recording.increments.empty() ? finely_sampled(wheel_track_from_ticks(recording))
                                                     : wheel_track_from_increments(recording);
     if (track.empty())
       return Error{ErrorCode::empty, "tick times do not advance", recording.name,

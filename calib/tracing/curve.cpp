@@ -85,7 +85,7 @@ class CurveEffect final : public StepEffect<CurveEffect> {
     for (std::size_t k = 0; k < basis_size(curve_); ++k) {
       std::string name(1, 'c');
       list.push_back({name.append(std::to_string(k + 1)), "1", typical_size(), -largest_size(),
-                      largest_size(), 0.0, prior()});
+                      largest_size(), 0.0, prior(k)});
     }
     return list;
   }
@@ -119,7 +119,11 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   }
   /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a curve must
   /// do no harm in other drives.
-  [[nodiscard]] double prior() const { return 4.0 * typical_size(); }
+  [[nodiscard]] double prior(std::size_t function) const {
+    // Where turns of one speed cannot tell which, each radian leaves the same way.
+    const bool is_refinement = curve_.law.carrier == Carrier::turn_path && function > 0;
+    return (is_refinement ? 1.0 : 4.0) * typical_size();
+  }
 
   Curve curve_;
 };
@@ -315,12 +319,11 @@ BasisValues functions_in(const Curve& curve, const StepContext& c) {
 bool concerns_sensor(const Curve& curve) { return curve.law.carrier == Carrier::sensor_yaw; }
 
 std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models) {
-  constexpr int kMostKnots = 8;
   std::vector<Curve> shapes;
   const bool has_knots = is_signed_speed(curve.law.variable) && curve.law.carrier != Carrier::turn_path;
-  if (has_knots && 2 * curve.knots <= kMostKnots) {
+  for (int knots = 2 * curve.knots; has_knots && knots <= kMostKnots; knots *= 2) {
     shapes.push_back(curve);
-    shapes.back().knots *= 2;
+    shapes.back().knots = knots;
   }
   const std::size_t memories = memories_of(curve.law.variable);
   for (std::size_t memory = 0; memories > kUsualMemory + 1 && memory < memories; ++memory) {

@@ -20,13 +20,15 @@ namespace odomcalib::calib {
 ///   that repeats itself, one wave: its cosine and sine, and both times the cosine of the angle between the
 ///   heading and the way across the crests;
 /// - a push that stays until the opposite one: its sign;
-/// - speeds and turn rate: piecewise linear in the magnitude (at four or eight knots), a step with the
-/// direction, and the
+/// - speeds and turn rate: piecewise linear in the magnitude (at four knots, eight or sixteen), a step with
+/// the direction, and the
 ///   magnitude times the direction;
 /// - on the sensor's yaw: the variable and its signed square;
 /// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
 /// A constant is a base parameter's, except on carriers of the unsigned way in drives both ways, and on the
 /// turn path, where it is the first function.
+inline constexpr int kMostKnots = 16;
+
 struct Curve {
   Law law;
   double low = -1.0;
@@ -36,14 +38,14 @@ struct Curve {
   /// Subtracted from the functions; none: 0. Functions that are zero at rest leave the base parameters the
   /// meaning of slow motion; functions without a mean leave them that of the drive they were fitted to.
   std::vector<double> mean = {};
-  int knots = 4;                      ///< of speeds only
+  int knots = 4;                      ///< of speeds only; 4, 8 or kMostKnots
   std::size_t memory = kUsualMemory;  ///< of what happened before only: which way to understand it
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
   bool constant = false;              ///< of heading only: with a constant as the first function
   [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
 };
 
-/// At most sixteen functions' values. They are asked for each tick interval of each fit, so they stay off the
+/// A curve's functions' values. They are asked for each tick interval of each fit, so they stay off the
 /// heap.
 class BasisValues {
  public:
@@ -59,7 +61,7 @@ class BasisValues {
   [[nodiscard]] const double* end() const { return values_.data() + count_; }
 
  private:
-  std::array<double, 16> values_{};
+  std::array<double, kMostKnots + 2> values_{};
   std::size_t count_ = 0;
 };
 
@@ -78,7 +80,7 @@ Curve centred(Curve curve, std::span<const DriveModel* const> models);
 double spread_of(const Curve& curve, std::span<const double> coefficients,
                  std::span<const DriveModel* const> models);
 
-/// The same law in other shapes: twice the knots, other ways to understand what happened before.
+/// The same law in other shapes: more knots, other ways to understand what happened before.
 std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models);
 
 /// A dependence of the sensor's place on the base: none of odometry's.

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "calib/tracing/score.hpp"
 
@@ -39,11 +40,30 @@ bool is_negligible(const Effect& effect, const FitResult& fit) {
   return largest < kNegligibleShare;
 }
 
+bool is_hidden_by_ticks(const Curve& curve, const FitResult& fit, std::span<const DriveModel* const> models) {
+  constexpr double kAtLeast = 2.0;                                               // times what is hidden
+  const double strongest = std::max(std::abs(curve.low), std::abs(curve.high));  // rad/s^2
+  double hidden = 0.0;
+  for (const DriveModel* model : models) {
+    const WheelTrack& track = model->track();
+    const double step = track.tick_angle * fit.parameters(kLeftRadius) / fit.parameters(kTrackWidth);
+    hidden = std::max(hidden, strongest * track.tick_period * track.tick_period / 8.0 + step);
+  }
+  const Eigen::VectorXd own = fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
+  double sway = 0.0;
+  for (const double share : {0.5, 1.0}) {
+    StepContext c;
+    c.turn_acceleration_before = c.turn_acceleration_after = share * strongest;
+    const BasisValues functions = basis(curve, c);
+    sway = std::max(sway, std::abs(std::inner_product(functions.begin(), functions.end(), own.data(), 0.0)));
+  }
+  return sway < kAtLeast * hidden;
+}
+
 bool spoils_base(const Effect& effect, const FitResult& before, const FitResult& after) {
-  if (effect.storage() == Storage::nowhere) return false;
-  constexpr double kMaxInflation = 3.0;  // of a standard deviation
+  const double most = effect.storage() == Storage::nowhere ? 10.0 : 3.0;  // times a standard deviation
   for (const auto k : {kLeftRadius, kRightRadius, kTrackWidth})
-    if (after.covariance(k, k) > kMaxInflation * kMaxInflation * before.covariance(k, k)) return true;
+    if (after.covariance(k, k) > most * most * before.covariance(k, k)) return true;
   return false;
 }
 

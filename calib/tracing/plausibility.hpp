@@ -2,6 +2,7 @@
 #pragma once
 
 #include "calib/estimators/joint.hpp"
+#include "calib/tracing/curve.hpp"
 
 namespace odomcalib::calib {
 
@@ -11,8 +12,13 @@ bool is_impossible(const Effect& effect, const FitResult& fit);
 /// Every size is below the share of its typical size that matters to odometry.
 bool is_negligible(const Effect& effect, const FitResult& fit);
 
+/// A sway of the sensor, the curve's coefficients being the fit's last, that is no larger than what ticks
+/// hide: what a turn that speeds up does between two of them, and the step of a count.
+bool is_hidden_by_ticks(const Curve& curve, const FitResult& fit, std::span<const DriveModel* const> models);
+
 /// This drive cannot tell the addition from the wheels: it would trade a known geometry for a guess. (With
-/// what changes by the day the wheels of one moment are less well known than their mean, which is no fault.)
+/// what changes by the day the wheels of one moment are less well known than their mean, which up to ten
+/// times is no fault.)
 bool spoils_base(const Effect& effect, const FitResult& before, const FitResult& after);
 
 /// The effect, whose parameters begin at `first`, is no longer needed beside what was added after it: its

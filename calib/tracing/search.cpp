@@ -207,7 +207,11 @@ class Search {
     return !(same_ground && named.statistic > kSameLaw * free_form.statistic);
   }
 
-  [[nodiscard]] std::string implausibility(const Effect& effect, const FitResult& fit) const {
+  [[nodiscard]] std::string implausibility(const Candidate& candidate, const FitResult& fit) const {
+    const Effect& effect = *candidate.effect;
+    if (candidate.curve && concerns_sensor(*candidate.curve) &&
+        is_hidden_by_ticks(*candidate.curve, fit, task_.models()))
+      return "ticks so far apart hide as much";
     if (is_impossible(effect, fit)) return "outside its physical range";
     if (is_negligible(effect, fit)) return "too small to matter";
     return spoils_base(effect, basis_.fit, fit) ? "this drive cannot tell it from the wheels" : "";
@@ -219,7 +223,7 @@ class Search {
     const Score& score = table.scores()[trial.candidate];
     Proof proof;
     proof.family_p_value = score.family_p_value;
-    std::string reason = implausibility(*candidate.effect, trial.model.fit);
+    std::string reason = implausibility(candidate, trial.model.fit);
     if (reason.empty())
       reason = objection(task_, basis_, trial.model, table.selected_without(trial.candidate, kFoldLevel),
                          largest_ratio(candidate), proof);
@@ -265,6 +269,25 @@ class Search {
     return true;
   }
 
+  /// The curve on top of `model` in that of its shapes that describes the data best.
+  [[nodiscard]] std::optional<Reshaped> in_best_shape(const FittedModel& model, const Curve& curve) const {
+    std::vector<Curve> shapes = other_shapes(curve, task_.models());
+    shapes.push_back(curve);
+    for (std::size_t k = 0, count = shapes.size(); k < count; ++k)
+      if (shapes[k].mean.empty()) shapes.push_back(centred(shapes[k], task_.models()));
+    std::optional<Reshaped> best;
+    const auto misfit = [&](const FittedModel& m) {
+      return m.fit.cost + penalty(static_cast<std::size_t>(m.fit.parameters.size()));
+    };
+    for (const Curve& shape : shapes) {
+      const auto effect = make_curve_effect(shape);
+      auto fitted = with_effect(task_, model, effect, result_.model.fit.noise);
+      if (!fitted || spoils_base(*effect, model.fit, fitted->fit)) continue;
+      if (!best || misfit(*fitted) < misfit(best->model)) best = {shape, std::move(*fitted)};
+    }
+    return best;
+  }
+
   /// A free law that cannot stand on the name's, but foretells held-out data better in its place: then the
   /// name was the wrong one.
   void replace(const std::shared_ptr<const Effect>& name, const Candidate& candidate, const Score& score,
@@ -274,17 +297,16 @@ class Search {
     const auto without =
         without_effect(task_, result_.model, static_cast<std::size_t>(place - effects.begin()), {});
     if (!without) return;
-    const auto free = with_effect(task_, *without, candidate.effect, result_.model.fit.noise);
+    const auto free = in_best_shape(*without, *candidate.curve);
     Proof proof;
     proof.family_p_value = score.family_p_value;
-    if (!free || spoils_base(*candidate.effect, without->fit, free->fit) ||
-        !is_better(task_, result_.model, *free) ||
-        !objection(task_, *without, *free, all_folds(), largest_ratio(candidate), proof).empty())
+    if (!free || !is_better(task_, result_.model, free->model) ||
+        !objection(task_, *without, free->model, all_folds(), largest_ratio(candidate), proof).empty())
       return;
     std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
-    result_.model = *free;
+    result_.model = free->model;
     result_.considered.back().outcome = "took the place of " + name->name();
-    result_.curves.push_back({candidate.effect, *candidate.curve, proof, nullptr, alike});
+    result_.curves.push_back({free->model.effects.back(), free->curve, proof, nullptr, alike});
     settle_shape_of_newest_curve();
     has_changed_ = true;
   }

@@ -26,7 +26,8 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   curve.wave = entry.value("wave", curve.wave);
   curve.constant = entry.value("constant", false);
   if (!(curve.high > curve.low) || curve.memory >= memories_of(*variable) ||
-      (curve.knots != 4 && curve.knots != 8) || coefficients.size() != basis_size(curve))
+      (curve.knots != 4 && curve.knots != 8 && curve.knots != kMostKnots) ||
+      coefficients.size() != basis_size(curve))
     return std::nullopt;
   curve.mean = entry.value("mean", std::vector<double>{});
   if (!curve.mean.empty() && curve.mean.size() != coefficients.size()) return std::nullopt;

@@ -15,6 +15,8 @@ struct WheelTrack {
   std::vector<double> left;
   std::vector<double> right;
   std::vector<int> segment;  ///< motion is unknown across a change of segment
+  double tick_period = 0.0;  ///< s, median; what lies between ticks is interpolated. 0: not from ticks
+  double tick_angle = 0.0;   ///< rad, of one count
 
   [[nodiscard]] bool empty() const { return t.size() < 2; }
   /// Index k with t[k] <= time < t[k+1], clamped to the valid intervals.

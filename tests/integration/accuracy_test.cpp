@@ -27,6 +27,50 @@ TEST(Accuracy, twenty_robots_near_the_bound_of_their_range_readings_with_honest_
   EXPECT_LE(table.coverage(), 0.99);
 }
 
+struct Machine {
+  const char* name;
+  double tick_period;  ///< s
+  double ticks_per_rev;
+  double turns_per_second;
+  int beams;
+  double range_noise, resolution, range_max;  ///< m
+};
+
+class OtherMachines : public ::testing::TestWithParam<Machine> {};
+
+/// What a robot without any effect must not get: an effect, or lengths that are off by more than is said.
+TEST_P(OtherMachines, are_calibrated_as_honestly) {
+  const Machine& machine = GetParam();
+  sim::SimulationConfig config = sim::standard_config(7);
+  config.tick_period = machine.tick_period;
+  config.nominal.ticks_per_rev = config.truth.ticks_per_rev = machine.ticks_per_rev;
+  config.lidar.turns_per_second = machine.turns_per_second;
+  config.lidar.beams_per_turn = machine.beams;
+  config.lidar.range_noise = machine.range_noise;
+  config.lidar.resolution = machine.resolution;
+  config.lidar.range_max = machine.range_max;
+  const sim::SimulatedRun run =
+      sim::simulate_recording(config, sim::follow(config.nominal, sim::guided_pattern()));
+  const Calibration result = calib::solve({&run.recording, 1}, {});
+  ASSERT_EQ(result.verdict, Verdict::accepted) << result.reasons[0];
+  EXPECT_TRUE(result.effects.empty()) << result.effects.front().name;
+  EXPECT_FALSE(result.unexplained) << result.unexplained->depends_on.front();
+  for (const double sigma : testing::length_errors_in_sigmas(result, run.truth))
+    EXPECT_LT(std::abs(sigma), 3.5);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_LT(result.parameters[k].second.std, 6e-4 * result.parameters[k].second.value);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Simulated, OtherMachines,
+    ::testing::Values(Machine{"rare_ticks", 0.1, 4096.0, 10.0, 450, 0.008, 0.001, 12.0},
+                      Machine{"coarse_ticks", 0.05, 400.0, 10.0, 450, 0.008, 0.001, 12.0},
+                      Machine{"noisy_ranges", 0.02, 4096.0, 10.0, 450, 0.028, 0.01, 12.0},
+                      Machine{"short_reach", 0.02, 4096.0, 12.0, 360, 0.025, 0.001, 5.0},
+                      Machine{"few_beams", 0.02, 4096.0, 7.0, 180, 0.01, 0.004, 12.0},
+                      Machine{"many_turns", 0.02, 4096.0, 40.0, 240, 0.004, 0.001, 30.0}),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
 struct Injected {
   const char* simulated;  ///< the simulator's own law
   double size;

@@ -158,6 +158,25 @@ TEST(Tracing, a_mast_that_sways_is_flagged_and_kept_out_of_odometry) {
   EXPECT_EQ(result.curves[0].effect->storage(), Storage::driver);
 }
 
+// Slow or coarse ticks blur when a turn speeds up, which looks like a sensor that sways a little.
+TEST(Tracing, a_sway_that_ticks_can_hide_is_not_believed) {
+  const auto hidden = [](double period, double angle, double sway) {
+    WheelTrack track;
+    track.tick_period = period;
+    track.tick_angle = angle;
+    const DriveModel model(track, {});
+    const DriveModel* models[] = {&model};
+    FitResult fit;
+    fit.parameters = to_vector(kBase, 2);
+    fit.parameters.tail<2>() << sway, 0.0;
+    return is_hidden_by_ticks({{Variable::turn_acceleration, Carrier::sensor_yaw}, -4.0, 4.0}, fit, models);
+  };
+  EXPECT_FALSE(hidden(0.02, 1e-3, 0.002));
+  EXPECT_TRUE(hidden(0.1, 1e-3, 0.002));
+  EXPECT_TRUE(hidden(0.02, 2e-2, 0.002));
+  EXPECT_FALSE(hidden(0.1, 1e-3, 0.03));
+}
+
 TEST(Tracing, a_narrow_peak_gets_more_knots_and_the_wheel_a_wider_deviation) {
   const DriveModel model = lively_model();
   const Curve peak{{Variable::left_speed, Carrier::left_travel}, -0.3, 0.3, 0.0, 0, {}, 8};
@@ -165,7 +184,7 @@ TEST(Tracing, a_narrow_peak_gets_more_knots_and_the_wheel_a_wider_deviation) {
   const SearchResult result = searched(measured(model, {make_curve_effect(peak)}, values));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.curves[0].curve.law, peak.law);
-  EXPECT_EQ(result.curves[0].curve.knots, 8);
+  EXPECT_GE(result.curves[0].curve.knots, 8);
   double doubt = 0.0;
   for (const Eigen::VectorXd& d : result.doubts) doubt = std::hypot(doubt, d(kLeftRadius));
   const double deviation =
@@ -300,9 +319,10 @@ TEST(Curve, is_zero_at_rest_but_on_the_turn_path) {
 TEST(Curve, more_knots_can_say_all_that_few_can) {
   const Curve coarse{{Variable::speed, Carrier::both_travel}, -0.5, 0.5};
   const auto shapes = other_shapes(coarse, {});
-  ASSERT_EQ(shapes.size(), 1U);
+  ASSERT_EQ(shapes.size(), 2U);
   const Curve& fine = shapes.front();
-  EXPECT_TRUE(other_shapes(fine, {}).empty());
+  EXPECT_EQ(shapes.back().knots, kMostKnots);
+  EXPECT_TRUE(other_shapes(shapes.back(), {}).empty());
   EXPECT_TRUE(other_shapes({{Variable::heading, Carrier::both_travel}, -1.0, 1.0}, {}).empty());
   // A hat is the mean of its neighbours halfway between the old knots.
   for (const double speed : {-0.41, -0.1, 0.03, 0.2, 0.38, 0.5}) {
