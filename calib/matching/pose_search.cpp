@@ -119,7 +119,9 @@ class Lattice {
     std::vector<Eigen::Vector2i> border;
   };
 
-  [[nodiscard]] std::size_t row(int turn) const { return static_cast<std::size_t>(turn + turns_); }
+  [[nodiscard]] std::size_t row(int turn) const {
+    return static_cast<std::size_t>(std::int64_t{turn} + turns_);
+  }
 
   /// Cells of the points at one yaw; a shift in x and y then only adds to them. Plain loops over plain
   /// arrays of narrow numbers, which the compiler turns into vector instructions.

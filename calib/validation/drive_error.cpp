@@ -64,6 +64,7 @@ Bounded bounded(Part part, const std::vector<Stretch>& stretches, const std::vec
     total = {total.squares + one.squares, total.amounts + one.amounts};
   }
   std::vector<Sums> blocks;
+  blocks.reserve(by_block.size());
   for (const auto& [block, sums] : by_block) blocks.push_back(sums);
   std::mt19937 engine(kSeed);
   std::vector<double> figures;
@@ -102,7 +103,7 @@ class Judge {
         geometry_parameters_.push_back(with_wheels(full.fit->parameters, full.effects, to_base(as_span(p))));
   }
 
-  void add(StretchKind kind, std::vector<std::pair<std::string, Part>> names,
+  void add(StretchKind kind, const std::vector<std::pair<std::string, Part>>& names,
            std::vector<DriveError>& out) const {
     const auto stretches = find_stretches(kind, data_, folds_, *full_.fit);
     if (stretches.size() < kFewest) return;

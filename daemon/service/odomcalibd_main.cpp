@@ -81,9 +81,7 @@ int serve(const std::string& path) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"Calibrates the odometry of a differential-drive robot: the service on the robot.",
                "odomcalibd"};
   std::string config = "/etc/odomcalib/odomcalib.toml";
@@ -92,13 +90,19 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   spdlog::set_pattern("%l: %v");
   catch_signals();
+  return serve(config);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int status = 1;
   try {
-    // A solve that still runs in its thread ends with the process.
-    const int status = serve(config);
-    std::fflush(nullptr);
-    _exit(status);
+    status = run(argc, argv);
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
-    return 1;
+    std::fprintf(stderr, "error: %s\n", error.what());
   }
+  // A solve that still runs in its thread ends with the process.
+  std::fflush(nullptr);
+  _exit(status);
 }

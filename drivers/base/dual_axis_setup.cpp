@@ -1,5 +1,6 @@
 // From "nothing heard" to "configured and sending": identity before any write, then what the profile says,
 // read back.
+#include <cmath>
 #include <utility>
 
 #include "drivers/base/canopen/words.hpp"
@@ -46,7 +47,7 @@ std::string clean_text(const std::vector<std::uint8_t>& bytes) {
 void add_watchdog(std::vector<SdoStep>& steps, const Profile& profile) {
   const ProfileWatchdog& watchdog = profile.watchdog;
   if (watchdog.kind == ProfileWatchdog::Kind::none) return;
-  const auto counts = static_cast<std::int64_t>(watchdog.time_ms / watchdog.unit_ms + 0.5);
+  const auto counts = std::int64_t{std::llround(watchdog.time_ms / watchdog.unit_ms)};
   const bool consumer = watchdog.kind == ProfileWatchdog::Kind::heartbeat_consumer;
   const std::int64_t value = consumer ? (std::int64_t{profile.host_node} << 16 | counts) : counts;
   add_checked_write(steps, watchdog.object, watchdog.type, value, true, "watchdog");
@@ -73,7 +74,7 @@ std::vector<SdoStep> configuration(const Profile& profile) {
   add_rest(steps, profile);
   for (const ProfileWrite& init : profile.init) add_checked_write(steps, init.object, init.type, init.value);
   add_safety_readings(steps);
-  const auto heartbeat = static_cast<std::int64_t>(profile.heartbeat_ms / profile.heartbeat_unit_ms + 0.5);
+  const auto heartbeat = std::int64_t{std::llround(profile.heartbeat_ms / profile.heartbeat_unit_ms)};
   add_checked_write(steps, {0x1017, 0}, kU16, heartbeat);
   add_watchdog(steps, profile);
   if (profile.mode) {

@@ -116,7 +116,7 @@ std::int64_t most_of(canopen::NumberType type) {
 }
 
 std::string read_quantity(ProfileTable& table, const Profile& profile) {
-  const std::string quantity = table.text("quantity", std::nullopt);
+  std::string quantity = table.text("quantity", std::nullopt);
   if (profile.axes == 1) {
     if (quantity == "wheel_diameter") return profile.side + "_wheel_diameter";
     table.complain("quantity", "\"" + quantity + "\"", "wheel_diameter");

@@ -14,7 +14,7 @@ constexpr double kStart_ticks = 3.0;
 // A wheel that was turning: found within 100 ms (readings come every 10 ms), unless it is told to go so
 // slowly, or counts so coarsely, that it may stand as long.
 constexpr double kFrozen_s = 0.075;
-constexpr double kFrozen_rad_s = 0.5;
+constexpr double kFrozenRate = 0.5;  // rad/s
 constexpr double kFrozen_ticks = 5.0;
 constexpr unsigned kFrozen_readings = 3;
 // Drives that refresh their counts slowly, wheels that go by fits and starts: twice the longest pause seen.
@@ -53,7 +53,7 @@ void StuckWatch::counted(std::int64_t forward, double t, double now) {
     ++same_;
     return;
   }
-  if (turning_ && lowest_ >= kFrozen_rad_s) longest_pause_ = std::max(longest_pause_, t - changed_t_);
+  if (turning_ && lowest_ >= kFrozenRate) longest_pause_ = std::max(longest_pause_, t - changed_t_);
   count_ = forward;
   changed_t_ = t;
   changed_at_ = now;
@@ -71,7 +71,7 @@ bool StuckWatch::never_left(double now) const {
 
 bool StuckWatch::froze() const {
   const double stood = sample_t_ - changed_t_;
-  return turning_ && same_ >= kFrozen_readings && lowest_ >= kFrozen_rad_s &&
+  return turning_ && same_ >= kFrozen_readings && lowest_ >= kFrozenRate &&
          stood > std::max(kFrozen_s, kPauses * longest_pause_) && lowest_ * stood > kFrozen_ticks * tick_rad_;
 }
 

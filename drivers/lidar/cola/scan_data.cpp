@@ -60,12 +60,12 @@ void read_header(Arguments& in, ScanData& out) {
   for (int i = 0; i < 4; ++i) (void)in.number(1);  // digital inputs, outputs
   out.layer = in.signed_number(2);
   out.turns_chz = in.number(4);
-  out.measurements_hHz = in.number(4);
+  out.measurements_hundred_hz = in.number(4);
 }
 
 bool is_sensible(const ScanData& data) {
   const Channel* distances = data.find("DIST1");
-  if (data.turns_chz < kSlowest_chz || data.turns_chz > kFastest_chz || data.measurements_hHz == 0)
+  if (data.turns_chz < kSlowest_chz || data.turns_chz > kFastest_chz || data.measurements_hundred_hz == 0)
     return false;
   if (distances == nullptr || distances->values.size() < 2 || distances->step == 0) return false;
   const double span = true_step(distances->step) * static_cast<double>(distances->values.size() - 1);

@@ -26,7 +26,7 @@ struct ScanData {
   std::uint32_t started_us = 0, sent_us = 0;        ///< device clock
   int layer = 0;                                    ///< of a sensor with several; 0: the horizontal one
   std::uint32_t turns_chz = 0;                      ///< 1/100 Hz
-  std::uint32_t measurements_hHz = 0;               ///< 100 Hz
+  std::uint32_t measurements_hundred_hz = 0;        ///< 100 Hz
   std::vector<Channel> channels;
 
   /// nullptr when there is none of that name.

@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint8_t kStx = 0x02, kEtx = 0x03;
 constexpr std::size_t kMarkBytes = 4;  // STX four times begins a binary telegram
 constexpr std::size_t kHeaderBytes = 8;
-constexpr std::size_t kMostBytes = 64 * 1024;
+constexpr std::size_t kMostBytes = std::size_t{64} * 1024;
 
 std::uint8_t xor_of(Bytes bytes) {
   std::uint8_t sum = 0;

@@ -81,8 +81,10 @@ std::vector<Reading> express_readings(ByteReader reader) {
 }
 
 std::vector<Reading> dense_readings(ByteReader reader) {
+  constexpr int kReadings = 40;
   std::vector<Reading> out;
-  for (int i = 0; i < 40; ++i) out.push_back(with_fixed_quality(reader.u16(), 0.0));
+  out.reserve(kReadings);
+  for (int i = 0; i < kReadings; ++i) out.push_back(with_fixed_quality(reader.u16(), 0.0));
   return out;
 }
 
@@ -131,7 +133,8 @@ double ultra_correction(int range_mm) {
   if (range_mm < 50) return 7.5;
   const int k = 98'361 / (range_mm * 4);
   const int eight_degrees = static_cast<int>(8.0 * std::numbers::pi / 180.0 * 65'536.0);
-  return kUnit * (eight_degrees - 64 * k - k * k * k / 98'304);
+  const int units = eight_degrees - 64 * k - k * k * k / 98'304;  // as the device's own arithmetic: whole
+  return kUnit * units;
 }
 
 Reading ultra_reading(int range_mm) {
