@@ -16,6 +16,8 @@ namespace {
 constexpr double kNewWallsAfter = 0.3;       ///< m of travel, or ...
 constexpr double kNewWallsAfterTurn = 0.35;  ///< rad
 constexpr std::size_t kAdjusted = 500;       ///< scans that the map is adjusted to
+constexpr std::size_t kMostScans = 4000;     ///< placed, about thirteen a second in five minutes
+constexpr double kMostBeams = 2e6;           ///< of all of them
 constexpr std::size_t kMostWalls = 300;
 constexpr std::size_t kFewestScans = 50;
 constexpr double kMostLost = 0.1;    ///< share of the scans
@@ -25,6 +27,15 @@ constexpr double kFirstGate = 0.15;  ///< m, for a scan placed from the one befo
 /// Of the recording's only lidar, m.
 double range_max(const Recording& recording) {
   return recording.scans.empty() ? 0.0 : recording.scans.front().range_max;
+}
+
+template <typename T>
+std::vector<T> every_nth(std::vector<T> all, std::size_t n) {
+  if (n < 2) return all;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < all.size(); k += n) all[kept++] = all[k];
+  all.resize(kept);
+  return all;
 }
 
 class Mapper {
@@ -41,6 +52,7 @@ class Mapper {
       const double end = scan.t + 2.0 * reference_time(scan);
       if (model.track().covers(scan.t, end)) chosen_.push_back(k);
     }
+    thin_out();
   }
 
   ScanPath run(const ScanPath& known) {
@@ -56,6 +68,19 @@ class Mapper {
   }
 
  private:
+  /// More scans and beams than the wheels' own noise lets matter only take longer.
+  void thin_out() {
+    const std::size_t scan_step = (chosen_.size() + kMostScans - 1) / kMostScans;
+    chosen_ = every_nth(std::move(chosen_), scan_step);
+    double total = 0.0;
+    for (const std::size_t k : chosen_) total += static_cast<double>(recording_.scans[k].ranges.size());
+    beam_step_ = static_cast<std::size_t>(std::max(1.0, std::round(total / kMostBeams)));
+  }
+
+  [[nodiscard]] std::vector<Beam> beams(std::size_t k) const {
+    return every_nth(make_beams(scan(k), motion_of(k)), beam_step_);
+  }
+
   void begin_with(const ScanPath& known) {
     path_.map = known.map;
     auto placed = known.scans.begin();
@@ -103,7 +128,7 @@ class Mapper {
 
   /// In the map, or else by a match with the last key scan.
   [[nodiscard]] std::optional<Pose> find(std::size_t k, const Pose& guess) const {
-    const Place place = place_scan(path_.map, make_beams(scan(k), motion_of(k)), guess, options_);
+    const Place place = place_scan(path_.map, beams(k), guess, options_);
     if (place.is_usable()) return place.pose;
     MatchOptions match;
     match.range_noise = options_.range_noise;
@@ -129,7 +154,7 @@ class Mapper {
   [[nodiscard]] PlacedBeams sample(std::size_t first, std::size_t stride) const {
     PlacedBeams sample;
     for (std::size_t k = first; k < chosen_.size(); k += stride) {
-      sample.beams.push_back(make_beams(scan(k), motion_of(k)));
+      sample.beams.push_back(beams(k));
       sample.places.push_back(place_scan(path_.map, sample.beams.back(), poses_[k], options_));
     }
     return sample;
@@ -137,7 +162,7 @@ class Mapper {
 
   void place_all() {
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
-      const Place place = place_scan(path_.map, make_beams(scan(k), motion_of(k)), poses_[k], options_);
+      const Place place = place_scan(path_.map, beams(k), poses_[k], options_);
       if (!place.is_usable()) {
         ++path_.lost;
         continue;
@@ -152,7 +177,8 @@ class Mapper {
   Trajectory trajectory_;
   PlaceOptions options_;
   bool trace_ranges_;
-  std::vector<std::size_t> chosen_;  ///< scans that the ticks cover
+  std::vector<std::size_t> chosen_;  ///< scans that the ticks cover, thinned out
+  std::size_t beam_step_ = 1;        ///< every so many of their beams one counts
   std::vector<Pose> poses_;          ///< of those, while the map grows
   std::unique_ptr<MatchReference> key_;
   Pose key_pose_;

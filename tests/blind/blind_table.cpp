@@ -96,7 +96,7 @@ std::string number(const char* format, double value) {
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
 /// Position error after against that of the robot without the effect.
@@ -134,6 +134,7 @@ std::string line(const std::string& what, const std::string& result) {
 std::string ratios_line(const std::string& what, const std::vector<const Trial*>& trials,
                         double (*ratio)(const Trial&)) {
   std::vector<double> values;
+  values.reserve(trials.size());
   for (const Trial* t : trials) values.push_back(ratio(*t));
   return line(what, number("median %.2f", quantile(values, 0.5)) +
                         number(", 90 %% below %.2f", quantile(values, 0.9)));
@@ -155,6 +156,7 @@ std::string summary(const std::vector<Trial>& trials) {
   const auto foreign = select(trials, {is_foreign_kind, is_detectable});
   const auto of_robot = select(trials, {has_effect, is_detectable, is_of_the_robot});
   std::vector<double> seconds;
+  seconds.reserve(trials.size());
   for (const Trial& t : trials) seconds.push_back(t.solve_seconds);
   return "| | |\n| --- | --- |\n" + line("recordings", std::to_string(trials.size())) +
          line("catalogue effects that hurt: named, or in the named set",
@@ -209,11 +211,19 @@ std::string per_kind(const std::vector<Trial>& trials) {
       "| --- | --- | --- | --- | --- | --- | --- |\n";
   for (const auto& [name, row] : rows) {
     std::string found;
-    for (const auto& [what, times] : row.found)
-      found += (found.empty() ? "" : "; ") + what + (times > 1 ? " x" + std::to_string(times) : "");
-    text += "| " + name + " | " + std::to_string(row.runs) + " | " + std::to_string(row.hurting) + " | " +
-            std::to_string(row.right) + " | " + number("%.2f", quantile(row.before, 0.5)) + " | " +
-            number("%.2f", quantile(row.after, 0.5)) + " | " + found + " |\n";
+    for (const auto& [what, times] : row.found) {
+      found.append(found.empty() ? "" : "; ").append(what);
+      if (times > 1) found.append(" x").append(std::to_string(times));
+    }
+    const std::vector<std::string> cells = {name,
+                                            std::to_string(row.runs),
+                                            std::to_string(row.hurting),
+                                            std::to_string(row.right),
+                                            number("%.2f", quantile(row.before, 0.5)),
+                                            number("%.2f", quantile(row.after, 0.5)),
+                                            found};
+    for (const std::string& cell : cells) text.append("| ").append(cell).append(" ");
+    text += "|\n";
   }
   return text;
 }

@@ -37,7 +37,7 @@ int print_table(const std::vector<std::string>& files) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{"Blind test: recordings with effects that the solver is not told about, scored"};
   std::uint64_t campaign = 1;
   unsigned first = 0, count = 10;
@@ -56,4 +56,7 @@ int main(int argc, char** argv) {
   app.add_option("--table", files, "make the table of these files of lines instead");
   CLI11_PARSE(app, argc, argv);
   return files.empty() ? run(campaign, first, count, options) : print_table(files);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "error: %s\n", error.what());
+  return 1;
 }
