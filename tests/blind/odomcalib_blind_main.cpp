@@ -49,6 +49,8 @@ int main(int argc, char** argv) try {
   app.add_option("--without", options.share_without_effect, "share of recordings without effect");
   app.add_option("--effects", options.effects, "effects in one recording");
   app.add_flag("--catalogue", options.only_catalogue, "only effects that the catalogue has");
+  app.add_flag("--any-machine", options.any_machine,
+               "other lidars, encoders and sizes than the usual robot's");
   std::set<std::string> names;
   for (const auto& kind : odomcalib::sim::effect_kinds()) names.insert(kind.name);
   app.add_option("--only", options.only, "only these effects, for a closer look")

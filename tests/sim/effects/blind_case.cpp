@@ -100,6 +100,35 @@ SimulationConfig draw_config(Random& random, std::uint64_t seed) {
   return config;
 }
 
+double any_of(Random& random, std::initializer_list<double> values) {
+  return *(values.begin() + random() % values.size());
+}
+
+/// What is sold: small and large bases, coarse and fine encoders read seldom or often, lidars of 5 to 40
+/// turns a second with few or many beams, near- and far-sighted, good and poor.
+void draw_machine(Random& random, SimulationConfig& config) {
+  const double diameter = uniform(random, 0.06, 0.30);
+  Geometry& nominal = config.nominal;
+  config.body.motor.acceleration = config.body.motor.deceleration =
+      uniform(random, 0.3, 1.5) / (0.5 * diameter);
+  nominal.left_diameter = nominal.right_diameter = diameter;
+  nominal.track_width = uniform(random, 0.14, 0.60);
+  nominal.lidar.yaw = any_angle(random);
+  nominal.ticks_per_rev = std::floor(std::exp(uniform(random, std::log(250.0), std::log(65536.0))));
+  config.truth = draw_truth(nominal, random());
+  config.tick_period = any_of(random, {0.01, 0.02, 0.05, 0.1});
+  LidarOptions& lidar = config.lidar;
+  lidar.turns_per_second = any_of(random, {5.5, 7.0, 10.0, 12.0, 20.0, 40.0}) * uniform(random, 0.98, 1.02);
+  const bool fast = lidar.turns_per_second > 15.0;
+  lidar.beams_per_turn =
+      static_cast<int>(fast ? any_of(random, {180, 360, 455}) : any_of(random, {180, 360, 720, 1440}));
+  lidar.range_noise = std::exp(uniform(random, std::log(0.003), std::log(0.03)));
+  lidar.resolution = any_of(random, {0.0, 0.001, 0.004, 0.01});
+  lidar.range_max = any_of(random, {6.0, 12.0, 30.0});
+  lidar.random_drops = any_of(random, {0.0, 0.01, 0.05});
+  config.body.slip_noise = uniform(random, 0.0001, 0.001);
+}
+
 /// What a tape would find: a wheel's diameter is the distance of a turn over pi.
 Geometry effective(const SimulationConfig& config) {
   Geometry truth = config.truth;
@@ -125,6 +154,7 @@ Draw draw(std::uint64_t campaign, unsigned number, int attempt, const BlindOptio
   out.answer.campaign = campaign;
   out.answer.number = number;
   out.config = draw_config(random, random());
+  if (options.any_machine) draw_machine(random, out.config);
   out.drive = draw_drive(random, out.config.nominal, out.answer);
   out.config.disturbances = draw_effects(random, options, out.answer);
   out.answer.truth = effective(out.config);

@@ -39,6 +39,7 @@ struct BlindOptions {
   unsigned effects = 1;      ///< of different kinds, in the recordings that have any
   bool only_catalogue = false;
   std::vector<std::string> only;  ///< kinds by name; empty: all
+  bool any_machine = false;       ///< other lidars, encoders, sizes and durations than the usual robot's
 };
 
 /// Same campaign and number, same case. The recording's names give nothing away but campaign and number.

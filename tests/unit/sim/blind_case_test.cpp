@@ -49,6 +49,21 @@ TEST(BlindCase, without_effects_when_asked_for) {
     EXPECT_TRUE(make_blind_case(1, number, options).answer.effects.empty());
 }
 
+TEST(BlindCase, any_machine_means_other_lidars_and_encoders) {
+  BlindOptions options;
+  options.share_without_effect = 1.0;
+  options.any_machine = true;
+  std::set<std::size_t> beams;
+  std::set<double> ticks;
+  for (unsigned number = 0; number < 4; ++number) {
+    const Recording recording = make_blind_case(3, number, options).run.recording;
+    beams.insert(recording.scans.front().ranges.size());
+    ticks.insert(recording.robot.ticks_per_rev);
+  }
+  EXPECT_GT(beams.size(), 1U);
+  EXPECT_EQ(ticks.size(), 4U);
+}
+
 TEST(BlindCase, pairs_are_of_two_kinds_and_of_two_names) {
   BlindOptions options;
   options.share_without_effect = 0.0;
