@@ -8,7 +8,6 @@
 #include "calib/lidar/lidar_effect.hpp"
 #include "calib/model/drive_model.hpp"
 #include "calib/tracing/tracing_json.hpp"
-#include "calib/wheels/nominal_base.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -122,7 +121,7 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
   const WheelTrack track = wheel_track_from_ticks(recording);
   if (track.empty()) return poses;
   const Correction correction = correction_of(calibration);
-  std::vector<StepContext> context = make_context(track, nominal_base(recording.robot));
+  std::vector<StepContext> context = make_context(track, to_base(as_span(correction.parameters)));
   for (StepContext& c : context) c.t = correction.time;
   const DriveModel model(track, std::move(context));
   const std::vector<Pose> base = model.trajectory(as_span(correction.parameters), correction.effects).poses();
@@ -136,7 +135,7 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
 
 struct Odometry::State {
   Correction correction;
-  BaseParameters nominal;
+  BaseParameters base;
   double ticks_per_rev = 0.0;
   std::deque<TickSample> history;
   Pose pose;
@@ -145,9 +144,9 @@ struct Odometry::State {
 
 Odometry::Odometry(const Calibration& calibration) : state_(std::make_unique<State>()) {
   state_->correction = correction_of(calibration);
-  state_->nominal = nominal_base(calibration.robot);
+  state_->base = to_base(as_span(state_->correction.parameters));
   state_->ticks_per_rev = calibration.robot.ticks_per_rev;
-  state_->drive = DriveHistory(state_->nominal);
+  state_->drive = DriveHistory(state_->base);
 }
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
@@ -166,7 +165,7 @@ PoseSample Odometry::update(const TickSample& sample) {
   recent.robot.ticks_per_rev = s.ticks_per_rev;
   recent.ticks.assign(s.history.begin(), s.history.end());
   WheelTrack track = wheel_track_from_ticks(recent);
-  StepContext context = make_context(track, s.nominal).back();
+  StepContext context = make_context_of_moment(track, s.base).back();
   context.t = s.correction.time;
   s.drive.advance(context);
 

@@ -11,17 +11,19 @@ namespace {
 // trails. The side it swings to follows the direction of travel, the turn before (kappa_turn), or is always
 // the same (kappa_side). One that stands nearly straight has to fall over first: the push then grows with s
 // before it fades (order 2). After turns too, the push may follow the angle by which the caster points past
-// the way of its pivot, the length being its trail (order 0).
+// the way of its pivot, the length being its trail and the lean what is left of that angle when it has
+// settled (order 0).
 class CasterKick final : public StepEffect<CasterKick> {
  public:
-  CasterKick(double length, double order) : length_(length), order_(order) {}
+  CasterKick(double length, double order, double lean = 0.0) : length_(length), order_(order), lean_(lean) {}
   [[nodiscard]] std::string name() const override { return "caster_kick"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
     return {{"kappa", "rad", 0.01, -0.2, 0.2},
             {"kappa_turn", "rad", 0.01, -0.2, 0.2},
             {"kappa_side", "rad", 0.01, -0.2, 0.2},
             {"length", "m", 1e9, 0.005, 1.0, length_, 0.0, true},
-            {"order", "1", 1e9, 0.0, 2.0, order_, 0.0, true}};
+            {"order", "1", 1e9, 0.0, 2.0, order_, 0.0, true},
+            {"lean", "rad", 1e9, -0.1, 0.1, lean_, 0.0, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
   [[nodiscard]] std::string separating_motion() const override {
@@ -31,7 +33,8 @@ class CasterKick final : public StepEffect<CasterKick> {
     std::vector<std::shared_ptr<const Effect>> all;
     for (const double length : {0.04, 0.08, 0.15}) all.push_back(std::make_shared<CasterKick>(length, 1.0));
     for (const double length : {0.04, 0.08}) all.push_back(std::make_shared<CasterKick>(length, 2.0));
-    for (const double length : kCasterTrails) all.push_back(std::make_shared<CasterKick>(length, 0.0));
+    for (const double length : kCasterTrails)
+      for (const double lean : kCasterLeans) all.push_back(std::make_shared<CasterKick>(length, 0.0, lean));
     return all;
   }
   [[nodiscard]] std::vector<Law> laws() const override {
@@ -42,7 +45,8 @@ class CasterKick final : public StepEffect<CasterKick> {
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
     using std::exp;
     if (plain(p[4]) < 0.5) {
-      step.yaw += p[0] * c.caster[trail_nearest(plain(p[3]))] * (std::abs(c.speed) * c.dt) / p[3];
+      step.yaw +=
+          p[0] * c.caster[nearest_caster(plain(p[3]), plain(p[5]))] * (std::abs(c.speed) * c.dt) / p[3];
       return;
     }
     const T side = p[0] * c.direction + p[1] * c.previous_turn[kUsualMemory] + p[2];
@@ -52,15 +56,18 @@ class CasterKick final : public StepEffect<CasterKick> {
   }
 
  private:
-  static std::size_t trail_nearest(double length) {
-    const auto nearest = std::min_element(
-        kCasterTrails.begin(), kCasterTrails.end(),
-        [length](double a, double b) { return std::abs(a - length) < std::abs(b - length); });
-    return static_cast<std::size_t>(nearest - kCasterTrails.begin());
+  template <std::size_t N>
+  static std::size_t nearest(const std::array<double, N>& values, double value) {
+    const auto closer = [value](double a, double b) { return std::abs(a - value) < std::abs(b - value); };
+    return static_cast<std::size_t>(std::min_element(values.begin(), values.end(), closer) - values.begin());
+  }
+  static std::size_t nearest_caster(double trail, double lean) {
+    return nearest(kCasterTrails, trail) * kCasterLeans.size() + nearest(kCasterLeans, lean);
   }
 
   double length_;
   double order_;
+  double lean_;
 };
 
 }  // namespace

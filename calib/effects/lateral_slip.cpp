@@ -5,16 +5,24 @@ namespace odomcalib::calib {
 namespace {
 
 // The contacts yield sideways under centripetal force: viscous, dy = -k omega ds, and as tyres do at a slip
-// angle, dy = -k_tyre |v| omega ds.
+// angle, dy = -k_tyre |v| omega ds; omega may lag by the way over which a tyre takes up its slip angle.
 class LateralSlip final : public StepEffect<LateralSlip> {
  public:
+  explicit LateralSlip(double relaxation) : relaxation_(relaxation) {}
   [[nodiscard]] std::string name() const override { return "lateral_slip"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"k", "s", 0.01, -0.2, 0.2}, {"k_tyre", "s^2/m", 0.01, -0.5, 0.5}};
+    return {{"k", "s", 0.01, -0.2, 0.2},
+            {"k_tyre", "s^2/m", 0.01, -0.5, 0.5},
+            {"relaxation", "m", 1e9, 0.0, 1.0, relaxation_, 0.0, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"toe", "icr_offset"}; }
   [[nodiscard]] std::string separating_motion() const override {
     return "arcs left and right, forward and backward, at two speeds and two radii";
+  }
+  [[nodiscard]] std::vector<std::shared_ptr<const Effect>> variants() const override {
+    std::vector<std::shared_ptr<const Effect>> all = {std::make_shared<LateralSlip>(0.0)};
+    for (const double way : kRelaxations) all.push_back(std::make_shared<LateralSlip>(way));
+    return all;
   }
   [[nodiscard]] std::vector<Law> laws() const override {
     return {{Variable::lateral_acceleration, Carrier::sideways_path},
@@ -24,12 +32,22 @@ class LateralSlip final : public StepEffect<LateralSlip> {
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
-    step.side -= (p[0] + p[1] * std::abs(c.speed)) * c.turn_rate * c.speed * c.dt;
+    step.side -= (p[0] + p[1] * std::abs(c.speed)) * felt_turn(c, plain(p[2])) * c.dt;
   }
+
+ private:
+  /// Speed times turn rate, m/s^2.
+  static double felt_turn(const StepContext& c, double relaxation) {
+    for (std::size_t k = 0; k < kRelaxations.size(); ++k)
+      if (relaxation == kRelaxations[k]) return c.relaxed_turn_rate[k] * std::abs(c.speed);
+    return c.turn_rate * c.speed;
+  }
+
+  double relaxation_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Effect> make_lateral_slip() { return std::make_shared<LateralSlip>(); }
+std::shared_ptr<const Effect> make_lateral_slip() { return std::make_shared<LateralSlip>(0.0); }
 
 }  // namespace odomcalib::calib

@@ -4,8 +4,8 @@
 namespace odomcalib::calib {
 namespace {
 
-/// A counter that misses edges above a wheel speed: dL' = dL (1 + kappa_L [|u_L| > threshold]). The step is
-/// given the width over which the smoothed speed changes anyway.
+/// A counter that misses edges above a wheel speed: dL' = dL (1 + kappa_L [|u_L| > threshold]). The step has
+/// a width: that over which the smoothed speed changes anyway, or more.
 class TickLoss final : public StepEffect<TickLoss> {
  public:
   explicit TickLoss(double threshold) : threshold_(threshold) {}
@@ -13,7 +13,8 @@ class TickLoss final : public StepEffect<TickLoss> {
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
     return {{"left_kappa", "1", 0.01, -0.3, 0.3},
             {"right_kappa", "1", 0.01, -0.3, 0.3},
-            {"threshold", "m/s", 1e9, 0.02, 5.0, threshold_}};
+            {"threshold", "m/s", 1e9, 0.02, 5.0, threshold_},
+            {"width", "m/s", 1e9, 0.005, 0.2, kWidth}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"speed_dependent_radius", "track_depends_on_motion"};
@@ -33,16 +34,17 @@ class TickLoss final : public StepEffect<TickLoss> {
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
-    step.left *= 1.0 + p[0] * above(std::abs(c.left_speed), p[2]);
-    step.right *= 1.0 + p[1] * above(std::abs(c.right_speed), p[2]);
+    step.left *= 1.0 + p[0] * above(std::abs(c.left_speed), p[2], p[3]);
+    step.right *= 1.0 + p[1] * above(std::abs(c.right_speed), p[2], p[3]);
   }
 
  private:
+  static constexpr double kWidth = 0.02;  // m/s
+
   template <typename T>
-  static T above(double speed, const T& threshold) {
+  static T above(double speed, const T& threshold, const T& width) {
     using std::exp;
-    constexpr double kWidth = 0.01;  // m/s
-    const T steps = (threshold - speed) / kWidth;
+    const T steps = (threshold - speed) / width;
     return 1.0 / (1.0 + exp(steps));
   }
   double threshold_;

@@ -41,6 +41,7 @@ DriveModel::DriveModel(WheelTrack track, std::vector<StepContext> context)
 
 void DriveModel::locate(std::span<const Fix> fixes, std::span<const double> parameters,
                         const EffectList& effects) {
+  context_ = make_context(track_, to_base(parameters));
   const Trajectory path = trajectory(parameters, effects);
   Pose origin;  // of dead reckoning, in the frame of the fixes
   std::size_t next = 0;

@@ -74,9 +74,8 @@ class DriveModel {
   [[nodiscard]] const WheelTrack& track() const { return track_; }
   [[nodiscard]] const std::vector<StepContext>& context() const { return context_; }
 
-  /// Sets heading and place of every interval: the latest fix (in time order) and dead reckoning with these
-  /// parameters from there on. Without fixes dead reckoning alone, which is better than the nominal one of
-  /// make_context().
+  /// Observes every interval anew with these base parameters. Heading and place are the latest fix (in time
+  /// order) and dead reckoning from there on; without fixes dead reckoning alone.
   void locate(std::span<const Fix> fixes, std::span<const double> parameters, const EffectList& effects);
 
   /// Dead reckoning with these parameters, to be asked for poses. Throws std::invalid_argument if they are
@@ -95,7 +94,7 @@ class DriveModel {
 /// What accumulates over a drive: pose by the plain model, and how far back the last reversals lie.
 class DriveHistory {
  public:
-  explicit DriveHistory(const BaseParameters& nominal) : nominal_(nominal) { since_stop_.fill(kFarBack); }
+  explicit DriveHistory(const BaseParameters& base) : base_(base) { since_stop_.fill(kFarBack); }
   /// Fills the fields of `context` that depend on the drive so far, then takes the interval in.
   void advance(StepContext& context);
 
@@ -108,23 +107,29 @@ class DriveHistory {
     double advance(double delta);
   };
   void swing_caster(StepContext& context, const Pose& step);
+  void relax_turn(StepContext& context, double way);
   void remember_stop(StepContext& context);
   void remember_push(StepContext& context);
   void remember_turn(StepContext& context, double yaw);
 
-  BaseParameters nominal_;
+  BaseParameters base_;
   Pose pose_;
   Wheel left_, right_;
   double direction_ = 0.0;
   double since_reversal_ = kFarBack;
   double stood_ = 0.0;  ///< s
   std::array<double, kStops.size()> since_stop_;
+  std::array<double, kRelaxations.size()> relaxed_turn_rate_{};
   Memory previous_turn_{};
   PushMemory previous_push_{};
-  std::array<double, kCasterTrails.size()> caster_{};  ///< rad, direction in which each would roll, base axes
+  std::array<double, kCasters> caster_{};  ///< rad, direction in which each would roll, base axes
 };
 
-/// Observable variables of each tick interval, from smoothed wheel angles and nominal geometry.
-std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& nominal);
+/// Observable variables of each tick interval, from smoothed wheel angles and a geometry that is nearly
+/// right; but for what depends on the drive before.
+std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const BaseParameters& base);
+
+/// The same with what depends on the drive before.
+std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& base);
 
 }  // namespace odomcalib::calib

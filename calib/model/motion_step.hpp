@@ -30,8 +30,16 @@ using PushMemory = std::array<double, kMemorySpans.size() + kPushes.size()>;
 /// s; how long a robot has to stand until something sticks is not known either.
 inline constexpr std::array<double, 3> kStops = {0.1, 0.2, 0.4};
 
-/// m; trails of casters are not known either.
-inline constexpr std::array<double, 3> kCasterTrails = {0.02, 0.04, 0.08};
+/// m; trails of casters are not known either ...
+inline constexpr std::array<double, 6> kCasterTrails = {0.02, 0.028, 0.04, 0.057, 0.08, 0.113};
+/// ... nor by how much a caster that has settled still points past its way, rad: to which side it falls after
+/// a straight motion is reversed hangs on this alone.
+inline constexpr std::array<double, 5> kCasterLeans = {0.0, -0.002, 0.002, -0.01, 0.01};
+inline constexpr std::size_t kCasters = kCasterTrails.size() * kCasterLeans.size();  ///< by trail, then lean
+
+/// m; nor are the ways over which tyres take up a slip angle (Pacejka, Tire and Vehicle Dynamics,
+/// section 5.2).
+inline constexpr std::array<double, 3> kRelaxations = {0.03, 0.07, 0.15};
 
 /// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
 /// are smoothed, since differences of raw ticks are mostly quantisation noise.
@@ -46,8 +54,11 @@ struct StepContext {
   double speed = 0.0;                                                      ///< forward, m/s
   double turn_rate = 0.0;                                                  ///< rad/s
   double turn_acceleration_before = 0.0, turn_acceleration_after = 0.0;    ///< rad/s^2, at begin and end
-  double heading = 0.0;                                                    ///< rad, from the plain model
-  double x = 0.0, y = 0.0;                                                 ///< m, from the plain model
+  /// The turn rate as tyres feel it, rad/s: its sign is that of the force, and it lags by each of
+  /// kRelaxations.
+  std::array<double, kRelaxations.size()> relaxed_turn_rate{};
+  double heading = 0.0;              ///< rad, from the plain model
+  double x = 0.0, y = 0.0;           ///< m, from the plain model
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;
@@ -56,8 +67,8 @@ struct StepContext {
   Memory previous_turn{};      ///< which way it turned lately: mean of the turn's sign over a radian, -1 to 1
   PushMemory previous_push{};  ///< whether it was sped up or slowed down lately: the same over 0.1 m/s
   /// Sine of the angle by which a caster behind the axle still points past the way its pivot moves, for each
-  /// of kCasterTrails: -1 to 1.
-  std::array<double, kCasterTrails.size()> caster{};
+  /// trail and lean: -1 to 1.
+  std::array<double, kCasters> caster{};
   double direction = 0.0;  ///< sign of the forward speed, kept while standing
 };
 

@@ -60,15 +60,15 @@ Window window_around(const WheelTrack& track, std::size_t k, Window window, doub
 }
 
 void fill_speeds(StepContext& c, const WheelTrack& track, Window window, double centre,
-                 const BaseParameters& nominal) {
+                 const BaseParameters& base) {
   const auto left = local_derivatives(track.t, track.left, window.low, window.high, centre);
   const auto right = local_derivatives(track.t, track.right, window.low, window.high, centre);
-  c.left_speed = nominal.left_radius * left.first;
-  c.right_speed = nominal.right_radius * right.first;
-  c.left_acceleration = nominal.left_radius * left.second;
-  c.right_acceleration = nominal.right_radius * right.second;
+  c.left_speed = base.left_radius * left.first;
+  c.right_speed = base.right_radius * right.first;
+  c.left_acceleration = base.left_radius * left.second;
+  c.right_acceleration = base.right_radius * right.second;
   c.speed = (c.left_speed + c.right_speed) / 2.0;
-  c.turn_rate = (c.right_speed - c.left_speed) / nominal.track_width;
+  c.turn_rate = (c.right_speed - c.left_speed) / base.track_width;
 }
 
 /// At the samples between two intervals, from the smoothed accelerations in their middles.
@@ -104,8 +104,8 @@ double DriveHistory::Wheel::advance(double delta) {
 }
 
 void DriveHistory::advance(StepContext& c) {
-  const Pose step = wheel_arc(nominal_.left_radius * c.left_delta, nominal_.right_radius * c.right_delta,
-                              nominal_.track_width);
+  const Pose step =
+      wheel_arc(base_.left_radius * c.left_delta, base_.right_radius * c.right_delta, base_.track_width);
   const double now = std::abs(c.speed) > kStanding ? std::copysign(1.0, c.speed) : direction_;
   if (direction_ != 0.0 && now != direction_) since_reversal_ = 0.0;
   direction_ = now;
@@ -115,6 +115,7 @@ void DriveHistory::advance(StepContext& c) {
   c.left_since_reversal = left_.advance(c.left_delta);
   c.right_since_reversal = right_.advance(c.right_delta);
   swing_caster(c, step);
+  relax_turn(c, std::hypot(step.x, step.y));
   remember_stop(c);
   remember_push(c);
   remember_turn(c, step.yaw);
@@ -125,21 +126,29 @@ void DriveHistory::advance(StepContext& c) {
 }
 
 /// A wheel that trails by t turns towards the way s of its pivot: tan(beta / 2) falls as exp(-s / t), beta
-/// the angle between both (Campion, Bastin and D'Andrea-Novel 1996, eq. 4: no slip across the wheel).
+/// the angle between both (Campion, Bastin and D'Andrea-Novel 1996, eq. 4: no slip across the wheel). A lean
+/// turns it on by lean * s / t.
 void DriveHistory::swing_caster(StepContext& c, const Pose& step) {
   constexpr double kBehind = 0.6;  // track widths; what matters is that a spin moves the pivot sideways
-  const double across = -kBehind * nominal_.track_width * step.yaw;
+  const double across = -kBehind * base_.track_width * step.yaw;
   const double way = std::hypot(step.x, across);
   const double towards = std::atan2(across, step.x);
-  for (std::size_t k = 0; k < caster_.size(); ++k) {
-    if (way > 0.0) {
-      const double before = wrap_angle(caster_[k] - towards);
-      const double after = 2.0 * std::atan(std::tan(before / 2.0) * std::exp(-way / kCasterTrails[k]));
-      c.caster[k] = 0.5 * (std::sin(before) + std::sin(after));
-      caster_[k] = towards + after;
-    }
-    caster_[k] -= step.yaw;
+  for (std::size_t k = 0; k < caster_.size() && way > 0.0; ++k) {
+    const double turns = way / kCasterTrails[k / kCasterLeans.size()];
+    const double lean = kCasterLeans[k % kCasterLeans.size()] * turns;
+    const double before = wrap_angle(caster_[k] - towards);
+    const double after = 2.0 * std::atan(std::tan(before / 2.0) * std::exp(-turns)) + lean;
+    c.caster[k] = 0.5 * (std::sin(before) + std::sin(after));
+    caster_[k] = towards + after;
   }
+  for (double& direction : caster_) direction -= step.yaw;
+}
+
+void DriveHistory::relax_turn(StepContext& c, double way) {
+  const double turn_rate = std::copysign(c.turn_rate, c.turn_rate * c.speed);
+  for (std::size_t k = 0; k < kRelaxations.size(); ++k)
+    relaxed_turn_rate_[k] -= std::expm1(-way / kRelaxations[k]) * (turn_rate - relaxed_turn_rate_[k]);
+  c.relaxed_turn_rate = relaxed_turn_rate_;
 }
 
 void DriveHistory::remember_stop(StepContext& c) {
@@ -149,8 +158,8 @@ void DriveHistory::remember_stop(StepContext& c) {
     if (stood_ > kStops[k]) since_stop_[k] = 0.0;
   c.since_stop = since_stop_;
   for (double& since : since_stop_)
-    since += 0.5 * (nominal_.left_radius * std::abs(c.left_delta) +
-                    nominal_.right_radius * std::abs(c.right_delta));
+    since +=
+        0.5 * (base_.left_radius * std::abs(c.left_delta) + base_.right_radius * std::abs(c.right_delta));
 }
 
 /// Noise of the acceleration at steady speed must not wash the memory out.
@@ -171,14 +180,13 @@ void DriveHistory::remember_turn(StepContext& c, double yaw) {
   remember(previous_turn_, yaw);
 }
 
-std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& nominal) {
+std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const BaseParameters& base) {
   std::vector<StepContext> contexts;
   if (track.empty()) return contexts;
   contexts.reserve(track.t.size() - 1);
-  DriveHistory history(nominal);
   Window window;
   for (std::size_t k = 0; k + 1 < track.t.size(); ++k) {
-    StepContext c;
+    StepContext& c = contexts.emplace_back();
     const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
     const bool joined = track.segment[k] == track.segment[k + 1];
     c.t = centre - track.t.front();
@@ -188,11 +196,16 @@ std::vector<StepContext> make_context(const WheelTrack& track, const BaseParamet
     c.left_delta = joined ? track.left[k + 1] - track.left[k] : 0.0;
     c.right_delta = joined ? track.right[k + 1] - track.right[k] : 0.0;
     window = window_around(track, k, window, centre);
-    fill_speeds(c, track, window, centre, nominal);
-    history.advance(c);
-    contexts.push_back(c);
+    fill_speeds(c, track, window, centre, base);
   }
-  fill_accelerations_at_ends(contexts, nominal.track_width);
+  fill_accelerations_at_ends(contexts, base.track_width);
+  return contexts;
+}
+
+std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& base) {
+  std::vector<StepContext> contexts = make_context_of_moment(track, base);
+  DriveHistory history(base);
+  for (StepContext& c : contexts) history.advance(c);
   return contexts;
 }
 

@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "calib/model/drive_model.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kPeriod = 0.01;  // s
+constexpr double kSpeed = 0.2;    // m/s
+const BaseParameters kBase{0.075, 0.075, 0.4, {}};
+
+/// A drive of legs, each with a constant speed of either rim.
+struct Leg {
+  double left = 0.0, right = 0.0;  ///< m/s
+  double duration = 0.0;           ///< s
+};
+
+std::vector<StepContext> contexts_of(const std::vector<Leg>& legs) {
+  WheelTrack track{{0.0}, {0.0}, {0.0}, {0}};
+  for (const Leg& leg : legs)
+    for (int k = 0; k < static_cast<int>(std::round(leg.duration / kPeriod)); ++k) {
+      track.t.push_back(track.t.back() + kPeriod);
+      track.left.push_back(track.left.back() + leg.left * kPeriod / kBase.left_radius);
+      track.right.push_back(track.right.back() + leg.right * kPeriod / kBase.right_radius);
+      track.segment.push_back(0);
+    }
+  return make_context(track, kBase);
+}
+
+std::size_t caster(std::size_t trail, double lean) {
+  const auto place = std::find(kCasterLeans.begin(), kCasterLeans.end(), lean);
+  return trail * kCasterLeans.size() + static_cast<std::size_t>(place - kCasterLeans.begin());
+}
+
+/// Sine of the caster's angle summed over the way of the leg that begins at sample `first`, in trails.
+double push_of(const std::vector<StepContext>& contexts, std::size_t first, std::size_t which) {
+  double push = 0.0;
+  for (std::size_t k = first; k < contexts.size(); ++k)
+    push += contexts[k].caster[which] * kSpeed * kPeriod / kCasterTrails[which / kCasterLeans.size()];
+  return push;
+}
+
+TEST(Caster, falls_off_its_lean_and_turns_through_half_a_circle) {
+  const auto contexts = contexts_of({{kSpeed, kSpeed, 5.0}, {-kSpeed, -kSpeed, 5.0}});
+  for (std::size_t trail = 0; trail < kCasterTrails.size(); ++trail)
+    for (const double lean : {-0.01, -0.002, 0.002, 0.01}) {
+      const std::size_t which = caster(trail, lean);
+      EXPECT_NEAR(contexts[480].caster[which], lean, 0.1 * std::abs(lean)) << trail;
+      // Once reversed, it points past its way by the lean less half a turn. The integral of sin(beta) ds / t
+      // is that of -dbeta: half a turn, and what the lean adds on the way.
+      EXPECT_NEAR(push_of(contexts, 500, which), -std::copysign(std::numbers::pi, lean), 0.8) << trail;
+    }
+}
+
+TEST(Caster, stands_on_its_head_after_a_straight_when_nothing_tips_it) {
+  const auto contexts = contexts_of({{kSpeed, kSpeed, 2.0}, {-kSpeed, -kSpeed, 0.05}});
+  EXPECT_NEAR(contexts.back().caster[caster(0, 0.0)], 0.0, 1e-12);
+}
+
+TEST(Caster, falls_inwards_after_an_arc) {
+  for (const double side : {-1.0, 1.0}) {
+    const double more = side * 0.02;
+    const auto contexts = contexts_of({{kSpeed - more, kSpeed + more, 5.0}, {-kSpeed, -kSpeed, 5.0}});
+    EXPECT_GT(std::abs(push_of(contexts, 500, caster(2, 0.0))), 2.5);
+    EXPECT_EQ(std::signbit(push_of(contexts, 500, caster(2, 0.0))), std::signbit(side));
+    // A lean far smaller than the arc's angle does not change the side.
+    EXPECT_EQ(std::signbit(push_of(contexts, 500, caster(2, 0.002))), std::signbit(side));
+    EXPECT_EQ(std::signbit(push_of(contexts, 500, caster(2, -0.002))), std::signbit(side));
+  }
+}
+
+TEST(RelaxedTurnRate, follows_over_its_way_and_has_the_sign_of_the_force) {
+  constexpr double kTurn = 0.5;  // rad/s
+  const double half = 0.5 * kTurn * kBase.track_width;
+  const auto contexts = contexts_of(
+      {{kSpeed, kSpeed, 3.0}, {kSpeed - half, kSpeed + half, 5.0}, {-kSpeed - half, -kSpeed + half, 5.0}});
+  for (std::size_t k = 0; k < kRelaxations.size(); ++k) {
+    const auto after = static_cast<std::size_t>(std::round(kRelaxations[k] / (kSpeed * kPeriod)));
+    // Smoothing over a quarter of a second blurs the beginning of the turn.
+    EXPECT_NEAR(contexts[300 + after].relaxed_turn_rate[k], kTurn * (1.0 - std::exp(-1.0)), 0.1 * kTurn) << k;
+    EXPECT_NEAR(contexts[790].relaxed_turn_rate[k], kTurn, 0.01 * kTurn) << k;
+    EXPECT_NEAR(contexts[1290].relaxed_turn_rate[k], -kTurn, 0.01 * kTurn) << k;
+  }
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
