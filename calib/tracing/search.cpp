@@ -253,20 +253,31 @@ class Search {
     auto trial = refit(index);
     if (trial && spoils_base(*candidates_[index].effect, basis_.fit, trial->model.fit))
       trial = refit_centred(index);
-    const Candidate candidate = candidates_[index];
-    const auto law_of = completed_by(candidate);
+    const auto law_of = completed_by(candidates_[index]);
     const std::vector<Variable> alike = variables_like(candidates_, table, index);
     if (!trial) {
-      strike(candidate.key);
+      strike(candidates_[index].key);
       return true;
     }
-    const auto proof = accept(table, *trial);
-    if (!proof && law_of) replace(law_of, candidate, table.scores()[index], alike);
+    auto proof = accept(table, *trial);
+    if (!proof && law_of) replace(law_of, candidates_[index], table.scores()[index], alike);
+    if (!proof && !law_of) proof = accept_reshaped(table, index);
     if (!proof) return true;
+    const Candidate& candidate = candidates_[index];
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
     settle_shape_of_newest_curve();
     retire_superfluous();
     return true;
+  }
+
+  /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.
+  std::optional<Proof> accept_reshaped(const ScoreTable& table, std::size_t index) {
+    Candidate& candidate = candidates_[index];
+    auto best = in_best_shape(basis_, *candidate.curve);
+    if (!best) return std::nullopt;
+    candidate.curve = std::move(best->curve);
+    candidate.effect = best->model.effects.back();
+    return accept(table, Trial{index, std::move(best->model)});
   }
 
   /// The curve on top of `model` in that of its shapes that describes the data best.
