@@ -256,7 +256,7 @@ class Solver {
 
   /// Matches that slide in a loose room look like a carpet; places in the map take their part then.
   bool measure_by_places() {
-    constexpr double kSliding = 3.0;  // deviations; rooms with walls enough mostly stay below 1.5
+    constexpr double kSliding = 2.0;  // deviations; rooms with walls enough mostly stay below 1.5
     bool any = false;
     for (std::size_t i = 0; i < paths_.size(); ++i) {
       const auto& pairs = session_->data()[i].pairs;

@@ -477,8 +477,8 @@ TEST(Plausibility, bounds_size_and_need_are_judged_both_ways) {
 }
 
 TEST(Plausibility, the_shape_of_an_effect_is_no_size) {
-  EXPECT_TRUE(is_negligible(*find_effect("tick_loss"), fit_with({1e-4, 0.0, 0.4}, 1e-3)));
-  EXPECT_FALSE(is_negligible(*find_effect("tick_loss"), fit_with({0.01, 0.0, 0.4}, 1e-3)));
+  EXPECT_TRUE(is_negligible(*find_effect("tick_loss"), fit_with({1e-4, 0.0, 0.4, 0.02}, 1e-3)));
+  EXPECT_FALSE(is_negligible(*find_effect("tick_loss"), fit_with({0.01, 0.0, 0.4, 0.02}, 1e-3)));
 }
 
 TEST(Score, tail_of_chi_squared_agrees_with_tables) {
