@@ -38,7 +38,7 @@ inline constexpr std::array<double, 5> kCasterLeans = {0.0, -0.002, 0.002, -0.01
 inline constexpr std::size_t kCasters = kCasterTrails.size() * kCasterLeans.size();  ///< by trail, then lean
 
 /// m; nor are the ways over which tyres take up a slip angle (Pacejka, Tire and Vehicle Dynamics,
-/// section 5.2).
+/// chapter 7).
 inline constexpr std::array<double, 3> kRelaxations = {0.03, 0.07, 0.15};
 
 /// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
