@@ -135,7 +135,6 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
 
 struct Odometry::State {
   Correction correction;
-  BaseParameters base;
   double ticks_per_rev = 0.0;
   std::deque<TickSample> history;
   Pose pose;
@@ -144,9 +143,8 @@ struct Odometry::State {
 
 Odometry::Odometry(const Calibration& calibration) : state_(std::make_unique<State>()) {
   state_->correction = correction_of(calibration);
-  state_->base = to_base(as_span(state_->correction.parameters));
   state_->ticks_per_rev = calibration.robot.ticks_per_rev;
-  state_->drive = DriveHistory(state_->base);
+  state_->drive = DriveHistory(to_base(as_span(state_->correction.parameters)));
 }
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
@@ -165,7 +163,7 @@ PoseSample Odometry::update(const TickSample& sample) {
   recent.robot.ticks_per_rev = s.ticks_per_rev;
   recent.ticks.assign(s.history.begin(), s.history.end());
   WheelTrack track = wheel_track_from_ticks(recent);
-  StepContext context = make_context_of_moment(track, s.base).back();
+  StepContext context = make_context_of_moment(track, to_base(as_span(s.correction.parameters))).back();
   context.t = s.correction.time;
   s.drive.advance(context);
 

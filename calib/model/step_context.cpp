@@ -133,13 +133,16 @@ void DriveHistory::swing_caster(StepContext& c, const Pose& step) {
   const double across = -kBehind * base_.track_width * step.yaw;
   const double way = std::hypot(step.x, across);
   const double towards = std::atan2(across, step.x);
-  for (std::size_t k = 0; k < caster_.size() && way > 0.0; ++k) {
-    const double turns = way / kCasterTrails[k / kCasterLeans.size()];
-    const double lean = kCasterLeans[k % kCasterLeans.size()] * turns;
-    const double before = wrap_angle(caster_[k] - towards);
-    const double after = 2.0 * std::atan(std::tan(before / 2.0) * std::exp(-turns)) + lean;
-    c.caster[k] = 0.5 * (std::sin(before) + std::sin(after));
-    caster_[k] = towards + after;
+  std::size_t k = 0;
+  for (const double trail : kCasterTrails) {
+    if (!(way > 0.0)) break;
+    const double turns = way / trail, fading = std::exp(-turns);
+    for (const double lean : kCasterLeans) {
+      const double before = wrap_angle(caster_[k] - towards);
+      const double after = 2.0 * std::atan(std::tan(before / 2.0) * fading) + lean * turns;
+      c.caster[k] = 0.5 * (std::sin(before) + std::sin(after));
+      caster_[k++] = towards + after;
+    }
   }
   for (double& direction : caster_) direction -= step.yaw;
 }

@@ -2,6 +2,9 @@
 
 #include <boost/math/interpolators/makima.hpp>
 #include <cmath>
+#include <utility>
+
+#include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -14,6 +17,12 @@ constexpr std::size_t kFewest = 4;  // samples that a cubic needs
 
 std::vector<double> part_of(const std::vector<double>& all, std::size_t begin, std::size_t end) {
   return {all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end)};
+}
+
+double median_period(const WheelTrack& track) {
+  std::vector<double> periods;
+  for (std::size_t k = 1; k < track.t.size(); ++k) periods.push_back(track.t[k] - track.t[k - 1]);
+  return periods.empty() ? 0.0 : median_of(std::move(periods));
 }
 
 void append(WheelTrack& track, double t, double left, double right, int segment) {
@@ -50,7 +59,7 @@ void append_refined(const WheelTrack& track, std::size_t begin, std::size_t end,
 
 WheelTrack finely_sampled(const WheelTrack& track) {
   WheelTrack out;
-  out.tick_period = track.tick_period;
+  out.tick_period = median_period(track);
   out.tick_angle = track.tick_angle;
   std::size_t begin = 0;
   for (std::size_t k = 1; k <= track.t.size(); ++k) {

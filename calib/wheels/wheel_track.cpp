@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "calib/geometry/se2.hpp"
-#include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
 
@@ -36,10 +34,7 @@ WheelTrack wheel_track_from_ticks(const Recording& recording) {
     track.right.push_back(rad_per_tick * (right + static_cast<double>(sample.right - first.right)));
     track.segment.push_back(sample.segment);
   }
-  std::vector<double> periods(track.t.size());
-  std::adjacent_difference(track.t.begin(), track.t.end(), periods.begin());
   track.tick_angle = rad_per_tick;
-  track.tick_period = median_of(std::move(periods));
   return track;
 }
 

@@ -15,7 +15,7 @@ struct WheelTrack {
   std::vector<double> left;
   std::vector<double> right;
   std::vector<int> segment;  ///< motion is unknown across a change of segment
-  double tick_period = 0.0;  ///< s, median; what lies between ticks is interpolated. 0: not from ticks
+  double tick_period = 0.0;  ///< s, median, of ticks that were sampled more finely; 0: they were not
   double tick_angle = 0.0;   ///< rad, of one count
 
   [[nodiscard]] bool empty() const { return t.size() < 2; }
