@@ -12,6 +12,8 @@
 
 namespace odomcalib::calib {
 
+inline constexpr int kMostKnots = 16;
+
 /// f(z) = sum of coefficients times basis functions of the variable z:
 /// - angles: harmonics 1 to 3, or one alone;
 /// - distances since an event: piecewise linear in its logarithm, zero far away;
@@ -21,14 +23,11 @@ namespace odomcalib::calib {
 ///   heading and the way across the crests;
 /// - a push that stays until the opposite one: its sign;
 /// - speeds and turn rate: piecewise linear in the magnitude (at four knots, eight or sixteen), a step with
-/// the direction, and the
-///   magnitude times the direction;
+///   the direction, and the magnitude times the direction;
 /// - on the sensor's yaw: the variable and its signed square;
 /// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
 /// A constant is a base parameter's, except on carriers of the unsigned way in drives both ways, and on the
 /// turn path, where it is the first function.
-inline constexpr int kMostKnots = 16;
-
 struct Curve {
   Law law;
   double low = -1.0;
@@ -42,6 +41,7 @@ struct Curve {
   std::size_t memory = kUsualMemory;  ///< of what happened before only: which way to understand it
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
   bool constant = false;              ///< of heading only: with a constant as the first function
+  bool operator==(const Curve&) const = default;
   [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
 };
 

@@ -273,15 +273,17 @@ class Search {
   /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.
   std::optional<Proof> accept_reshaped(const ScoreTable& table, std::size_t index) {
     Candidate& candidate = candidates_[index];
-    auto best = in_best_shape(basis_, *candidate.curve);
-    if (!best) return std::nullopt;
+    auto best = in_best_shape(basis_, *candidate.curve, basis_.fit.noise);
+    if (!best || best->curve == *candidate.curve) return std::nullopt;
     candidate.curve = std::move(best->curve);
     candidate.effect = best->model.effects.back();
     return accept(table, Trial{index, std::move(best->model)});
   }
 
-  /// The curve on top of `model` in that of its shapes that describes the data best.
-  [[nodiscard]] std::optional<Reshaped> in_best_shape(const FittedModel& model, const Curve& curve) const {
+  /// The curve on top of `model` in that of its shapes that describes the data best, on the noise of what it
+  /// will be compared with.
+  [[nodiscard]] std::optional<Reshaped> in_best_shape(const FittedModel& model, const Curve& curve,
+                                                      const std::vector<NoiseModel>& noise) const {
     std::vector<Curve> shapes = other_shapes(curve, task_.models());
     shapes.push_back(curve);
     for (std::size_t k = 0, count = shapes.size(); k < count; ++k)
@@ -292,7 +294,7 @@ class Search {
     };
     for (const Curve& shape : shapes) {
       const auto effect = make_curve_effect(shape);
-      auto fitted = with_effect(task_, model, effect, result_.model.fit.noise);
+      auto fitted = with_effect(task_, model, effect, noise);
       if (!fitted || spoils_base(*effect, model.fit, fitted->fit)) continue;
       if (!best || misfit(*fitted) < misfit(best->model)) best = {shape, std::move(*fitted)};
     }
@@ -308,7 +310,7 @@ class Search {
     const auto without =
         without_effect(task_, result_.model, static_cast<std::size_t>(place - effects.begin()), {});
     if (!without) return;
-    const auto free = in_best_shape(*without, *candidate.curve);
+    const auto free = in_best_shape(*without, *candidate.curve, result_.model.fit.noise);
     Proof proof;
     proof.family_p_value = score.family_p_value;
     if (!free || !is_better(task_, result_.model, free->model) ||
