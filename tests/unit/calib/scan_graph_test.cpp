@@ -232,7 +232,7 @@ TEST(ScanGraph, S2_24_the_intel_lab_closes_and_agrees_with_the_relations_checked
   EXPECT_GT(made.count(EdgeSource::loop), 250U);
   // The published figures to the digits they have. With a range noise of 4.5 to 10 mm instead of the estimate
   // 9.9 to 11.3 mm and 0.17 to 0.183 degrees were measured.
-  EXPECT_LT(distance, 10.65e-3);
+  EXPECT_LE(distance, 10.6e-3);
   EXPECT_LT(angle, 0.185);
 }
 
