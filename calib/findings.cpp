@@ -91,15 +91,17 @@ class Filler {
   }
 
   void fill_residual() {
-    const auto after = held_out_residual(found_.session.data(), effects(), found_.outcome.model.fit, fixed());
-    calibration_.residual.held_out = after.has_value();
-    if (!after) return;
+    const auto& data = found_.session.data();
+    const auto of_all = held_out_errors(data, effects(), found_.outcome.model.fit, fixed());
+    const auto of_plain =
+        effects().empty() || !plain_ ? of_all : held_out_errors(data, {}, *plain_, found_.session.fixed(0));
+    const auto after = held_out_residual(of_all, of_plain);
+    const auto before = held_out_residual(of_plain, of_all);
+    calibration_.residual.held_out = after && before;
+    if (!after || !before) return;
     calibration_.residual.after = after->rms;
     calibration_.residual.noise_floor = after->noise_floor;
-    calibration_.residual.before = after->rms;
-    if (effects().empty() || !plain_) return;
-    const auto before = held_out_residual(found_.session.data(), {}, *plain_, found_.session.fixed(0));
-    if (before) calibration_.residual.before = before->rms;
+    calibration_.residual.before = before->rms;
   }
 
   [[nodiscard]] const Finding* finding_of(const Effect* effect) const {
@@ -114,12 +116,14 @@ class Filler {
     Evidence evidence;
     evidence.p_value = std::erfc(z / std::sqrt(2.0));
     if (!plain_) return evidence;
-    const std::vector<bool> trusted = trusted_pairs(*plain_, found_.outcome.model.fit);
-    const auto before = horizon_error(found_.session.data(), {}, *plain_, found_.session.fixed(0), trusted);
-    const auto after =
-        horizon_error(found_.session.data(), effects(), found_.outcome.model.fit, fixed(), trusted);
-    if (before) evidence.held_out_before = before->rms_position();
-    if (after) evidence.held_out_after = after->rms_position();
+    const auto& data = found_.session.data();
+    const FitResult& fit = found_.outcome.model.fit;
+    const auto windows =
+        find_stretches(StretchKind::open_loop, data, folds_of(data), fit, trusted_pairs(*plain_, fit));
+    if (windows.size() < kFewestStretches) return evidence;
+    evidence.held_out_before =
+        stretch_errors(data, windows, {}, *plain_, found_.session.fixed(0)).rms_position();
+    evidence.held_out_after = stretch_errors(data, windows, effects(), fit, fixed()).rms_position();
     return evidence;
   }
 

@@ -63,6 +63,8 @@ std::size_t memories_of(Variable variable) {
       return kMemorySpans.size();
     case Variable::previous_push:
       return kMemorySpans.size() + kPushes.size();
+    case Variable::turn_acceleration:
+      return kSwayLags.size();
     case Variable::since_stop:
       return kStops.size();
     default:
@@ -91,7 +93,7 @@ double value_of(Variable variable, const StepContext& c, std::size_t memory) {
     case Variable::right_acceleration:
       return c.right_acceleration;
     case Variable::turn_acceleration:
-      return 0.5 * (c.turn_acceleration_before + c.turn_acceleration_after);
+      return 0.5 * (c.turn_acceleration_before[memory] + c.turn_acceleration_after[memory]);
     case Variable::left_phase:
       return c.left_angle;
     case Variable::right_phase:

@@ -41,6 +41,11 @@ inline constexpr std::size_t kCasters = kCasterTrails.size() * kCasterLeans.size
 /// chapter 7).
 inline constexpr std::array<double, 3> kRelaxations = {0.03, 0.07, 0.15};
 
+/// s; the time constants by which a mast may follow the base's acceleration late, the usual one second (see
+/// kUsualMemory).
+inline constexpr std::array<double, 4> kSwayLags = {0.05, 0.0, 0.1, 0.2};
+using Sways = std::array<double, kSwayLags.size()>;
+
 /// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
 /// are smoothed, since differences of raw ticks are mostly quantisation noise.
 struct StepContext {
@@ -53,7 +58,7 @@ struct StepContext {
   double left_acceleration_change = 0.0, right_acceleration_change = 0.0;  ///< over the interval, m/s^2
   double speed = 0.0;                                                      ///< forward, m/s
   double turn_rate = 0.0;                                                  ///< rad/s
-  double turn_acceleration_before = 0.0, turn_acceleration_after = 0.0;    ///< rad/s^2, at begin and end
+  Sways turn_acceleration_before{}, turn_acceleration_after{};  ///< rad/s^2, at begin and end, late by each
   /// The turn rate as tyres feel it, rad/s: its sign is that of the force, and it lags by each of
   /// kRelaxations.
   std::array<double, kRelaxations.size()> relaxed_turn_rate{};

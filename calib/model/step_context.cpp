@@ -81,9 +81,21 @@ void fill_accelerations_at_ends(std::vector<StepContext>& contexts, double track
     const StepContext& after = contexts[k + 1 < contexts.size() ? k + 1 : k];
     contexts[k].left_acceleration_change = 0.5 * (after.left_acceleration - before.left_acceleration);
     contexts[k].right_acceleration_change = 0.5 * (after.right_acceleration - before.right_acceleration);
-    contexts[k].turn_acceleration_before = 0.5 * (in_middle(before) + in_middle(contexts[k]));
-    contexts[k].turn_acceleration_after = 0.5 * (in_middle(contexts[k]) + in_middle(after));
+    contexts[k].turn_acceleration_before.fill(0.5 * (in_middle(before) + in_middle(contexts[k])));
+    contexts[k].turn_acceleration_after.fill(0.5 * (in_middle(contexts[k]) + in_middle(after)));
   }
+}
+
+/// A mast with friction follows what bends it with a time constant.
+void delay_sways(std::vector<StepContext>& contexts) {
+  Sways bend{};
+  for (StepContext& c : contexts)
+    for (std::size_t k = 0; k < kSwayLags.size(); ++k) {
+      if (kSwayLags[k] == 0.0) continue;
+      c.turn_acceleration_before[k] = bend[k];
+      bend[k] -= std::expm1(-c.dt / kSwayLags[k]) * (c.turn_acceleration_after[k] - bend[k]);
+      c.turn_acceleration_after[k] = bend[k];
+    }
 }
 
 /// Means of a motion's sign move on by the motion, in units of the usual span.
@@ -202,6 +214,7 @@ std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const B
     fill_speeds(c, track, window, centre, base);
   }
   fill_accelerations_at_ends(contexts, base.track_width);
+  delay_sways(contexts);
   return contexts;
 }
 

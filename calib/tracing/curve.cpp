@@ -68,8 +68,8 @@ BasisValues sway_functions(const Curve& curve, double z) {
 
 /// Of each function over the interval.
 BasisValues growth(const Curve& curve, const StepContext& c) {
-  BasisValues after = sway_functions(curve, c.turn_acceleration_after);
-  const BasisValues before = sway_functions(curve, c.turn_acceleration_before);
+  BasisValues after = sway_functions(curve, c.turn_acceleration_after[curve.memory]);
+  const BasisValues before = sway_functions(curve, c.turn_acceleration_before[curve.memory]);
   for (std::size_t k = 0; k < after.size(); ++k) after[k] -= before[k];
   return after;
 }
@@ -173,14 +173,39 @@ bool is_signed_speed(Variable variable) {
 /// Direction as a step, smooth over a few percent of the range so that noise about zero does not flip it.
 double direction_of(double relative) { return std::tanh(relative / 0.03); }
 
-/// Zero at rest; hats about magnitudes, the direction, and the direction times the magnitude.
+/// Cubic B-spline with unit knots about zero (Schoenberg, Quart. Appl. Math. 4, 1946).
+double cubic_bump(double x) {
+  const double a = std::abs(x);
+  if (a >= 2.0) return 0.0;
+  const double tail = 2.0 - a, core = 1.0 - a;
+  return (tail * tail * tail - (a < 1.0 ? 4.0 * core * core * core : 0.0)) / 6.0;
+}
+
+BasisValues hats(int knots, double place) {
+  BasisValues functions;
+  for (int k = 1; k <= knots; ++k) functions.push_back(std::max(0.0, 1.0 - std::abs(place - k)));
+  return functions;
+}
+
+/// Of the splines about knots 1 to one past the last, four differ from zero.
+BasisValues cubic_splines(int knots, double place) {
+  BasisValues functions(static_cast<std::size_t>(knots) + 1);
+  const int before = static_cast<int>(place) - 1;
+  for (int k = std::max(before, 1); k <= std::min(before + 3, knots + 1); ++k)
+    functions[static_cast<std::size_t>(k) - 1] = cubic_bump(place - k);
+  functions[0] -= cubic_bump(1.0);  // zero at rest
+  return functions;
+}
+
+/// Those of the magnitude, the direction, and the direction times the magnitude.
 BasisValues speed_functions(const Curve& curve, double z) {
   const double relative = std::clamp(z / std::max(std::abs(curve.low), std::abs(curve.high)), -1.0, 1.0);
   const double direction = direction_of(relative), magnitude = std::abs(relative);
   if (curve.law.carrier == Carrier::turn_path) return {1.0, magnitude, direction, relative};
-  BasisValues functions;
-  for (int k = 1; k <= curve.knots; ++k)
-    functions.push_back(std::max(0.0, 1.0 - std::abs(curve.knots * magnitude - k)));
+  // A law is found by few straight pieces; one that bends is described by many splines.
+  const double place = curve.knots * magnitude;
+  BasisValues functions =
+      curve.knots == kKnots.front() ? hats(curve.knots, place) : cubic_splines(curve.knots, place);
   functions.push_back(direction);
   functions.push_back(relative);
   return functions;
@@ -321,7 +346,8 @@ bool concerns_sensor(const Curve& curve) { return curve.law.carrier == Carrier::
 std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models) {
   std::vector<Curve> shapes;
   const bool has_knots = is_signed_speed(curve.law.variable) && curve.law.carrier != Carrier::turn_path;
-  for (int knots = 2 * curve.knots; has_knots && knots <= kMostKnots; knots *= 2) {
+  for (const int knots : kKnots) {
+    if (!has_knots || knots <= curve.knots) continue;
     shapes.push_back(curve);
     shapes.back().knots = knots;
   }
@@ -388,6 +414,10 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
       curve.constant = false;
       if (variable == Variable::left_phase || variable == Variable::right_phase)
         add_harmonics(curve, kHarmonics + 1, kHighestHarmonic, curves);
+      if (variable == Variable::turn_acceleration) {  // what comes late may look like what went before
+        curves.push_back(curve);
+        curves.back().memory = kSwayLags.size() - 1;
+      }
       // A drive seldom shows all headings; one wave round the circle is what few of them can tell.
       if (variable == Variable::heading) add_harmonics(curve, 1, 1, curves);
     }

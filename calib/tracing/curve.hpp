@@ -12,7 +12,8 @@
 
 namespace odomcalib::calib {
 
-inline constexpr int kMostKnots = 16;
+/// Knots over the magnitude of a speed: the first to find a law, the others to describe it.
+inline constexpr std::array<int, 4> kKnots = {4, 8, 12, 16};
 
 /// f(z) = sum of coefficients times basis functions of the variable z:
 /// - angles: harmonics 1 to 3, or one alone;
@@ -22,8 +23,8 @@ inline constexpr int kMostKnots = 16;
 ///   that repeats itself, one wave: its cosine and sine, and both times the cosine of the angle between the
 ///   heading and the way across the crests;
 /// - a push that stays until the opposite one: its sign;
-/// - speeds and turn rate: piecewise linear in the magnitude (at four knots, eight or sixteen), a step with
-///   the direction, and the magnitude times the direction;
+/// - speeds and turn rate: piecewise linear in the magnitude at four knots or cubic splines at eight or
+///   sixteen, a step with the direction, and the magnitude times the direction;
 /// - on the sensor's yaw: the variable and its signed square;
 /// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
 /// A constant is a base parameter's, except on carriers of the unsigned way in drives both ways, and on the
@@ -37,7 +38,7 @@ struct Curve {
   /// Subtracted from the functions; none: 0. Functions that are zero at rest leave the base parameters the
   /// meaning of slow motion; functions without a mean leave them that of the drive they were fitted to.
   std::vector<double> mean = {};
-  int knots = 4;                      ///< of speeds only; 4, 8 or kMostKnots
+  int knots = kKnots.front();         ///< of speeds only
   std::size_t memory = kUsualMemory;  ///< of what happened before only: which way to understand it
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
   bool constant = false;              ///< of heading only: with a constant as the first function
@@ -50,6 +51,8 @@ struct Curve {
 class BasisValues {
  public:
   BasisValues() = default;
+  /// All zero.
+  explicit BasisValues(std::size_t count) : count_(count) {}
   BasisValues(std::initializer_list<double> values) {
     for (const double value : values) push_back(value);
   }
@@ -61,7 +64,7 @@ class BasisValues {
   [[nodiscard]] const double* end() const { return values_.data() + count_; }
 
  private:
-  std::array<double, kMostKnots + 2> values_{};
+  std::array<double, kKnots.back() + 3> values_{};
   std::size_t count_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <random>
 
@@ -11,42 +12,10 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kBootstrapBlockSeconds = 30.0;
-constexpr std::size_t kMinWindows = 10;
+constexpr double kBlockSeconds = 10.0;
 constexpr int kDraws = 1000;
 constexpr unsigned kSeed = 19960612;
 constexpr double kHeadingLever = 0.5;  ///< m
-
-struct Window {
-  Interval interval;
-  Pose measured;
-};
-
-/// Windows of unbroken, well-matched pairs inside one fold, half overlapping.
-std::vector<Window> windows_of(const FitData& data, std::size_t first, const std::vector<std::size_t>& folds,
-                               const std::vector<bool>& trusted, std::size_t fold) {
-  std::vector<Window> windows;
-  for (std::size_t begin = 0; begin < data.pairs.size();) {
-    Pose chained;
-    std::size_t k = begin;
-    std::size_t half = begin + 1;
-    for (; k < data.pairs.size(); ++k) {
-      const bool joined = k == begin || data.pairs[k].follows_previous;
-      if (!joined || folds[first + k] != fold || !trusted[first + k]) break;
-      chained = compose(chained, data.pairs[k].motion);
-      const double elapsed = data.pairs[k].interval.end - data.pairs[begin].interval.begin;
-      if (elapsed < kHorizonSeconds / 2.0) half = k + 1;
-      if (elapsed >= kHorizonSeconds) {
-        windows.push_back({{data.pairs[begin].interval.begin, data.pairs[k].interval.end}, chained});
-        break;
-      }
-    }
-    const bool complete = k < data.pairs.size() && !windows.empty() &&
-                          windows.back().interval.begin == data.pairs[begin].interval.begin;
-    begin = complete ? half : std::max(k, begin + 1);
-  }
-  return windows;
-}
 
 double rms(const std::vector<double>& values) {
   double sum = 0.0;
@@ -54,57 +23,52 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / std::max(static_cast<double>(values.size()), 1.0));
 }
 
-double combined_square(const HorizonError& e, std::size_t k) {
+double combined_square(const StretchErrors& e, std::size_t k) {
   return e.position[k] * e.position[k] + std::pow(kHeadingLever * e.heading[k], 2);
+}
+
+std::vector<Stretch> select(const std::vector<Stretch>& stretches, std::size_t fold, std::size_t recording) {
+  std::vector<Stretch> selected;
+  std::copy_if(stretches.begin(), stretches.end(), std::back_inserter(selected),
+               [&](const Stretch& s) { return s.fold == fold && s.recording == recording; });
+  return selected;
+}
+
+void add_errors(const FitData& data, const Eigen::VectorXd& parameters, const EffectList& effects,
+                const std::vector<Stretch>& stretches, StretchErrors& error) {
+  std::vector<Interval> intervals;
+  for (const Stretch& s : stretches) intervals.push_back(s.interval);
+  const auto predicted = data.model->predict(as_span(parameters), effects, intervals);
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    const Pose& measured = stretches[k].sensor_motion;
+    error.position.push_back(std::hypot(predicted[k].x - measured.x, predicted[k].y - measured.y));
+    error.heading.push_back(wrap_angle(predicted[k].yaw - measured.yaw));
+    error.fold.push_back(stretches[k].fold);
+    error.block.push_back(stretches[k].block);
+  }
 }
 
 }  // namespace
 
-double HorizonError::rms_position() const { return rms(position); }
-double HorizonError::rms_heading() const { return rms(heading); }
+double StretchErrors::rms_position() const { return rms(position); }
+double StretchErrors::rms_heading() const { return rms(heading); }
 
-std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b) {
-  constexpr double kTrustedWeight = 0.3;
-  std::vector<bool> trusted;
-  for (std::size_t k = 0; k < std::min(a.weights.size(), b.weights.size()); ++k)
-    trusted.push_back(std::max(a.weights[k], b.weights[k]) >= kTrustedWeight);
-  return trusted;
-}
-
-std::optional<HorizonError> horizon_error(std::span<const FitData> data, const EffectList& effects,
-                                          const FitResult& fit, const std::vector<bool>& fixed,
-                                          const std::vector<bool>& trusted) {
+StretchErrors stretch_errors(std::span<const FitData> data, const std::vector<Stretch>& stretches,
+                             const EffectList& effects, const FitResult& fit,
+                             const std::vector<bool>& fixed) {
   const auto folds = folds_of(data);
-  HorizonError error;
+  StretchErrors error;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const Eigen::VectorXd parameters = without_fold(fit, folds, fold, fixed);
-    std::size_t first = 0;
-    for (std::size_t d = 0; d < data.size(); ++d) {
-      const auto windows = windows_of(data[d], first, folds, trusted, fold);
-      first += data[d].pairs.size();
-      std::vector<Interval> intervals;
-      intervals.reserve(windows.size());
-      for (const Window& w : windows) intervals.push_back(w.interval);
-      const auto predicted = data[d].model->predict(as_span(parameters), effects, intervals);
-      for (std::size_t k = 0; k < windows.size(); ++k) {
-        error.position.push_back(
-            std::hypot(predicted[k].x - windows[k].measured.x, predicted[k].y - windows[k].measured.y));
-        error.heading.push_back(wrap_angle(predicted[k].yaw - windows[k].measured.yaw));
-        error.fold.push_back(fold);
-        error.block.push_back(1000 * d +
-                              static_cast<std::size_t>(std::max(
-                                  0.0, (windows[k].interval.begin - data[d].pairs.front().interval.begin) /
-                                           kBootstrapBlockSeconds)));
-      }
-    }
+    for (std::size_t d = 0; d < data.size(); ++d)
+      add_errors(data[d], parameters, effects, select(stretches, fold, d), error);
   }
-  if (error.position.size() < kMinWindows) return std::nullopt;
   return error;
 }
 
-HorizonError where_selected(const HorizonError& before, const HorizonError& after,
-                            const FoldFlags& selected) {
-  HorizonError mixed = before;
+StretchErrors where_selected(const StretchErrors& before, const StretchErrors& after,
+                             const FoldFlags& selected) {
+  StretchErrors mixed = before;
   const std::size_t count = std::min(before.position.size(), after.position.size());
   for (std::size_t k = 0; k < count; ++k) {
     if (!selected[before.fold[k]]) continue;
@@ -114,7 +78,7 @@ HorizonError where_selected(const HorizonError& before, const HorizonError& afte
   return mixed;
 }
 
-Improvement compare(const HorizonError& before, const HorizonError& after) {
+Improvement compare(const StretchErrors& before, const StretchErrors& after) {
   struct Sums {
     double before = 0.0;
     double after = 0.0;
@@ -172,7 +136,7 @@ HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before
   for (const FitData& d : data) {
     double begin = -1e300;
     for (std::size_t k = 0; k < d.pairs.size(); ++k) {
-      if (d.pairs[k].interval.begin > begin + kBootstrapBlockSeconds / 3.0) {
+      if (d.pairs[k].interval.begin > begin + kBlockSeconds) {
         blocks.push_back(0.0);
         begin = d.pairs[k].interval.begin;
       }

@@ -1,40 +1,29 @@
-// Open-loop odometry error over ten seconds on data that was not fitted: what a user feels.
+// Odometry error over stretches of a drive on data that was not fitted, of one model beside another's.
 #pragma once
 
 #include <array>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "calib/estimators/joint.hpp"
 #include "calib/validation/folds.hpp"
+#include "calib/validation/stretch.hpp"
 
 namespace odomcalib::calib {
 
-inline constexpr double kHorizonSeconds = 10.0;
-
-struct HorizonError {
-  std::vector<double> position;    ///< per window, m
-  std::vector<double> heading;     ///< per window, rad
-  std::vector<std::size_t> fold;   ///< that each window was held out in
-  std::vector<std::size_t> block;  ///< block of 30 s each window belongs to
+struct StretchErrors {
+  std::vector<double> position;    ///< per stretch, m
+  std::vector<double> heading;     ///< per stretch, rad
+  std::vector<std::size_t> fold;   ///< that each stretch was held out in
+  std::vector<std::size_t> block;  ///< see Stretch
   [[nodiscard]] double rms_position() const;
   [[nodiscard]] double rms_heading() const;
 };
 
-/// A pair counts unless it is far out for both models: then its match has failed.
-std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b);
-
-/// Error of the predicted sensor motion over windows of kHorizonSeconds against the chained measured pairs.
-/// Five folds of blocks of 20 s: the parameters for a window's fold come from all others (one Gauss-Newton
-/// step from the full fit, which for a nearly linear problem is the refit). nullopt when fewer than ten
-/// windows exist.
-/// @param trusted one flag per pair; windows do not cross a pair whose match has failed. Two models are
-/// compared on
-///        the same windows, so the flags must not come from one of them alone
-std::optional<HorizonError> horizon_error(std::span<const FitData> data, const EffectList& effects,
-                                          const FitResult& fit, const std::vector<bool>& fixed,
-                                          const std::vector<bool>& trusted);
+/// Error of the predicted sensor motion over each stretch. The parameters for a stretch's fold come from all
+/// other folds (one Gauss-Newton step from the full fit, which for a nearly linear problem is the refit).
+StretchErrors stretch_errors(std::span<const FitData> data, const std::vector<Stretch>& stretches,
+                             const EffectList& effects, const FitResult& fit, const std::vector<bool>& fixed);
 
 /// Whether a candidate would have been chosen without the data of each fold.
 using FoldFlags = std::array<bool, kFolds>;
@@ -46,7 +35,8 @@ inline FoldFlags all_folds() {
 
 /// `after` in the folds whose training data select the candidate, `before` in the others: so the choice
 /// itself is held out too.
-HorizonError where_selected(const HorizonError& before, const HorizonError& after, const FoldFlags& selected);
+StretchErrors where_selected(const StretchErrors& before, const StretchErrors& after,
+                             const FoldFlags& selected);
 
 struct Improvement {
   double ratio = 1.0;  ///< rms after over rms before, position
@@ -54,9 +44,9 @@ struct Improvement {
   double lower = 1.0;  ///< 2.5 % bound
 };
 
-/// Paired block bootstrap over the windows' blocks, 1000 draws with a fixed seed. Position and heading (times
-/// the distance over which it acts, half a metre) count together.
-Improvement compare(const HorizonError& before, const HorizonError& after);
+/// Paired block bootstrap over the stretches' blocks, 1000 draws with a fixed seed. Position and heading
+/// (times the distance over which it acts, half a metre) count together.
+Improvement compare(const StretchErrors& before, const StretchErrors& after);
 
 /// Drop of the whitened squared residual on held-out folds, summed over the recording, and its 2.5 % bound by
 /// block bootstrap.

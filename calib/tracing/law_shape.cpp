@@ -76,10 +76,10 @@ std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, co
   return all;
 }
 
-bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other) {
+bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other,
+               double per_parameter) {
   const auto more = static_cast<double>(other.fit.parameters.size() - given.fit.parameters.size());
-  const double penalty = more * std::log(static_cast<double>(given.fit.whitened_residual.size()));
-  return given.fit.cost - other.fit.cost > penalty &&
+  return given.fit.cost - other.fit.cost > per_parameter * more &&
          compared_on_held_out(task, given, other, all_folds()).total > 0.0;
 }
 

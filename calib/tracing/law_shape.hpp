@@ -15,8 +15,12 @@ struct Reshaped {
 /// @param model whose last effect is the curve's
 std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, const Curve& curve);
 
-/// Whether the other shape is worth its parameters, and better on held-out data.
-bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other);
+/// What a parameter has to take off -2 log L when what it belongs to is proved already (Akaike, IEEE Trans.
+/// Autom. Control 19, 1974).
+inline constexpr double kAkaike = 2.0;
+
+/// Whether the other model is worth its parameters, and better on held-out data.
+bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other, double per_parameter);
 
 /// A curve about its mean leaves the base the average of this drive; where its law would be zero, nobody
 /// knows. By how much that may move the base parameters.

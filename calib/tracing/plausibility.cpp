@@ -53,7 +53,8 @@ bool is_hidden_by_ticks(const Curve& curve, const FitResult& fit, std::span<cons
   double sway = 0.0;
   for (const double share : {0.5, 1.0}) {
     StepContext c;
-    c.turn_acceleration_before = c.turn_acceleration_after = share * strongest;
+    c.turn_acceleration_before.fill(share * strongest);
+    c.turn_acceleration_after = c.turn_acceleration_before;
     const BasisValues functions = basis(curve, c);
     sway = std::max(sway, std::abs(std::inner_product(functions.begin(), functions.end(), own.data(), 0.0)));
   }

@@ -1,6 +1,7 @@
 #include "calib/tracing/proof.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace odomcalib::calib {
 
@@ -14,18 +15,44 @@ HeldOutGain compared_on_held_out(const FitTask& task, const FittedModel& before,
                        task.fixed(after.effects), selected);
 }
 
+namespace {
+
+/// Both models over the same stretches.
+struct Comparison {
+  StretchErrors without, with;
+};
+
+/// Too few of a kind say nothing.
+std::optional<Comparison> compared(StretchKind kind, const FitTask& task, const FittedModel& before,
+                                   const FittedModel& after) {
+  const auto stretches =
+      find_stretches(kind, task.data, folds_of(task.data), before.fit, trusted_pairs(before.fit, after.fit));
+  if (stretches.size() < kFewestStretches) return std::nullopt;
+  const auto error_of = [&](const FittedModel& model) {
+    return stretch_errors(task.data, stretches, model.effects, model.fit, task.fixed(model.effects));
+  };
+  return Comparison{error_of(before), error_of(after)};
+}
+
+}  // namespace
+
+bool spoils_drives(const FitTask& task, const FittedModel& before, const FittedModel& after) {
+  constexpr double kTolerated = 1.05;
+  const auto is_spoilt = [&](StretchKind kind) {
+    const auto errors = compared(kind, task, before, after);
+    return errors && compare(errors->without, errors->with).lower > kTolerated;
+  };
+  return is_spoilt(StretchKind::turn) || is_spoilt(StretchKind::straight) ||
+         is_spoilt(StretchKind::open_loop);
+}
+
 std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,
                       const FoldFlags& selected, double largest_ratio, Proof& proof) {
-  const std::vector<bool> trusted = trusted_pairs(before.fit, after.fit);
-  const auto error_of = [&](const FittedModel& model) {
-    return horizon_error(task.data, model.effects, model.fit, task.fixed(model.effects), trusted);
-  };
-  const auto without = error_of(before), with = error_of(after);
-  if (without && with) {
-    const HorizonError mixed = where_selected(*without, *with, selected);
-    proof.before = without->rms_position();
+  if (const auto windows = compared(StretchKind::open_loop, task, before, after)) {
+    const StretchErrors mixed = where_selected(windows->without, windows->with, selected);
+    proof.before = windows->without.rms_position();
     proof.after = mixed.rms_position();
-    proof.improvement = compare(*without, mixed);
+    proof.improvement = compare(windows->without, mixed);
     if (proof.improvement.ratio > largest_ratio)
       return "too small a gain: error times " + std::to_string(proof.improvement.ratio).substr(0, 5);
     if (proof.improvement.upper < 1.0) return {};

@@ -16,7 +16,15 @@ struct Proof {
   Improvement improvement;
 };
 
-/// On one noise model: error at the horizon, or else whitened residual per block.
+/// Fewer stretches than these say nothing.
+inline constexpr std::size_t kFewestStretches = 10;
+
+/// Whether the held-out error of full turns, of straight metres or of ten seconds rises by more than a
+/// twentieth from one model to the other, beyond its 95 % interval. Each may have its own noise model.
+bool spoils_drives(const FitTask& task, const FittedModel& before, const FittedModel& after);
+
+/// On one noise model: error at the horizon, or else whitened
+/// residual per block.
 /// @param selected the choice itself is held out: a fold counts only if the others point to the candidate
 /// @param largest_ratio of the errors at the horizon after and before
 /// @return empty if it holds, otherwise what is missing

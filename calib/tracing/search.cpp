@@ -229,6 +229,7 @@ class Search {
                          largest_ratio(candidate), proof);
     auto settled = reason.empty() ? refit(trial.candidate, {}) : std::nullopt;
     if (reason.empty() && !settled) reason = "the fit does not settle";
+    if (reason.empty() && spoils_drives(task_, basis_, settled->model)) reason = "drives get worse";
     result_.considered.push_back(
         {candidate.effect->name(), score.statistic, score.family_p_value, reason.empty() ? "added" : reason});
     strike(candidate.key);
@@ -313,7 +314,7 @@ class Search {
     const auto free = in_best_shape(*without, *candidate.curve, result_.model.fit.noise);
     Proof proof;
     proof.family_p_value = score.family_p_value;
-    if (!free || !is_better(task_, result_.model, free->model) ||
+    if (!free || !is_better(task_, result_.model, free->model, penalty(1)) ||
         !objection(task_, *without, free->model, all_folds(), largest_ratio(candidate), proof).empty())
       return;
     std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
@@ -332,7 +333,7 @@ class Search {
     for (Reshaped& other : reshaped(task_, first, newest.curve)) {
       result_.doubts.emplace_back(other.model.fit.parameters.head<kBaseCount>() -
                                   first.fit.parameters.head<kBaseCount>());
-      if (!is_better(task_, result_.model, other.model)) continue;
+      if (!is_better(task_, result_.model, other.model, kAkaike)) continue;
       result_.model = std::move(other.model);
       newest.curve = std::move(other.curve);
       newest.effect = result_.model.effects.back();
@@ -379,8 +380,8 @@ class Search {
       const auto first = static_cast<std::size_t>(first_parameter(model.effects, e));
       if (finding == result_.findings.end() || is_completed(*finding)) continue;
       auto fewer = without_effect(task_, model, e, model.fit.noise);
-      if (!fewer ||
-          !(is_superfluous(*model.effects[e], first, model.fit) || !is_better(task_, *fewer, model)))
+      if (!fewer || !(is_superfluous(*model.effects[e], first, model.fit) ||
+                      !is_better(task_, *fewer, model, penalty(1))))
         continue;
       result_.model = std::move(*fewer);
       result_.findings.erase(finding);

@@ -1,5 +1,6 @@
 #include "calib/tracing/tracing_json.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -18,15 +19,19 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   const auto variable = enum_from(entry.value("variable", ""), kLastVariable);
   const auto carrier = enum_from(entry.value("carrier", ""), kLastCarrier);
   if (!variable || !carrier) return std::nullopt;
-  Curve curve{{*variable, *carrier},      entry.value("low", 0.0),    entry.value("high", 0.0),
-              entry.value("period", 0.0), entry.value("harmonic", 0), {},
-              entry.value("knots", 4)};
+  Curve curve{{*variable, *carrier},
+              entry.value("low", 0.0),
+              entry.value("high", 0.0),
+              entry.value("period", 0.0),
+              entry.value("harmonic", 0),
+              {},
+              entry.value("knots", kKnots.front())};
   const auto coefficients = entry.value("coefficients", std::vector<double>{});
   curve.memory = entry.value("memory", kUsualMemory);
   curve.wave = entry.value("wave", curve.wave);
   curve.constant = entry.value("constant", false);
   if (!(curve.high > curve.low) || curve.memory >= memories_of(*variable) ||
-      (curve.knots != 4 && curve.knots != 8 && curve.knots != kMostKnots) ||
+      std::find(kKnots.begin(), kKnots.end(), curve.knots) == kKnots.end() ||
       coefficients.size() != basis_size(curve))
     return std::nullopt;
   curve.mean = entry.value("mean", std::vector<double>{});

@@ -105,7 +105,7 @@ class Judge {
 
   void add(StretchKind kind, const std::vector<std::pair<std::string, Part>>& names,
            std::vector<DriveError>& out) const {
-    const auto stretches = find_stretches(kind, data_, folds_, *full_.fit);
+    const auto stretches = find_stretches(kind, data_, folds_, *full_.fit, trusted_pairs(*full_.fit));
     if (stretches.size() < kFewest) return;
     const auto errors = [&](const std::vector<Eigen::VectorXd>& parameters) {
       return parameters.empty() ? std::vector<Pose>{}

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kHorizonSeconds = 10.0;
 constexpr double kBlockSeconds = 30.0;
-constexpr double kTrustedWeight = 0.3;      ///< a pair far out on the tail may be a failed match
+constexpr double kTrustedWeight = 0.3;
 constexpr double kStraight = 0.15;          ///< rad/m; more is a curve
 constexpr double kOnTheSpot = 0.08;         ///< m/rad; more is an arc
 constexpr double kStanding = 0.004;         ///< m and rad; a pair at rest belongs to any kind
@@ -88,12 +88,13 @@ class Chain {
 class Finder {
  public:
   Finder(StretchKind kind, const FitData& data, std::size_t recording, std::span<const std::size_t> folds,
-         std::span<const double> weights, const NoiseModel& noise, const Pose& mount)
+         const std::vector<bool>& trusted, std::size_t first, const NoiseModel& noise, const Pose& mount)
       : kind_(kind),
         pairs_(data.pairs),
         recording_(recording),
         folds_(folds),
-        weights_(weights),
+        trusted_(trusted),
+        first_(first),
         noise_(noise),
         mount_(mount) {}
 
@@ -107,8 +108,7 @@ class Finder {
 
  private:
   [[nodiscard]] bool joined(std::size_t begin, std::size_t k) const {
-    return folds_[k] == folds_[begin] && weights_[k] >= kTrustedWeight &&
-           (k == begin || pairs_[k].follows_previous);
+    return folds_[k] == folds_[begin] && trusted_[first_ + k] && (k == begin || pairs_[k].follows_previous);
   }
 
   /// Windows overlap by half. @return where the next one begins
@@ -154,6 +154,7 @@ class Finder {
     stretch.block = 1000 * recording_ + static_cast<std::size_t>(std::max(0.0, since / kBlockSeconds));
     stretch.amount = amount;
     stretch.interval = {pairs_[first].interval.begin, pairs_[last].interval.end};
+    stretch.sensor_motion = chain.end();
     stretch.motion = conjugate(chain.end(), inverse(mount_));
     stretch.covariance = chain.covariance(mount_);
     found_.push_back(stretch);
@@ -163,7 +164,8 @@ class Finder {
   std::span<const SensorPair> pairs_;
   std::size_t recording_;
   std::span<const std::size_t> folds_;
-  std::span<const double> weights_;
+  const std::vector<bool>& trusted_;  ///< of all recordings
+  std::size_t first_;                 ///< pair of this one among them
   const NoiseModel& noise_;
   Pose mount_;
   std::vector<Stretch> found_;
@@ -171,16 +173,26 @@ class Finder {
 
 }  // namespace
 
+std::vector<bool> trusted_pairs(const FitResult& fit) { return trusted_pairs(fit, fit); }
+
+std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b) {
+  std::vector<bool> trusted;
+  for (std::size_t k = 0; k < std::min(a.weights.size(), b.weights.size()); ++k)
+    trusted.push_back(std::max(a.weights[k], b.weights[k]) >= kTrustedWeight);
+  return trusted;
+}
+
 std::vector<Stretch> find_stretches(StretchKind kind, std::span<const FitData> data,
-                                    const std::vector<std::size_t>& folds, const FitResult& fit) {
+                                    const std::vector<std::size_t>& folds, const FitResult& fit,
+                                    const std::vector<bool>& trusted) {
   const Pose mount = to_base(as_span(fit.parameters)).mount;
   std::vector<Stretch> all;
   std::size_t first = 0;
   for (std::size_t d = 0; d < data.size(); ++d) {
     const std::size_t count = data[d].pairs.size();
-    const auto found = Finder(kind, data[d], d, std::span(folds).subspan(first, count),
-                              std::span(fit.weights).subspan(first, count), fit.noise[d], mount)
-                           .run();
+    const auto found =
+        Finder(kind, data[d], d, std::span(folds).subspan(first, count), trusted, first, fit.noise[d], mount)
+            .run();
     all.insert(all.end(), found.begin(), found.end());
     first += count;
   }

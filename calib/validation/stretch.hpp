@@ -20,12 +20,23 @@ struct Stretch {
   std::size_t block = 0;  ///< of half a minute: stretches of one block are not independent
   double amount = 1.0;    ///< in units of the kind: 1 for open loop, m of length, full turns
   Interval interval;
-  Pose motion;                 ///< measured, of the base, in its frame at the begin
+  Pose sensor_motion;          ///< measured, in the sensor's frame at the begin
+  Pose motion;                 ///< the same of the base, in its own
   Eigen::Matrix3d covariance;  ///< of `motion` as the noise model has it: reference and wheels
 };
 
-/// @param folds of all pairs (see folds_of); @param fit gives mount, noise and which matches to trust
+/// One flag per pair: whether its match is to be trusted by a fit. A pair far out on the tail may have
+/// failed.
+std::vector<bool> trusted_pairs(const FitResult& fit);
+/// By either of two: far out for both, a match has failed.
+std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b);
+
+/// @param folds of all pairs (see folds_of)
+/// @param fit gives mount and noise
+/// @param trusted one flag per pair; stretches do not cross a pair that is not. Two models are compared on
+///        the same stretches, so the flags must not come from one of them alone
 std::vector<Stretch> find_stretches(StretchKind kind, std::span<const FitData> data,
-                                    const std::vector<std::size_t>& folds, const FitResult& fit);
+                                    const std::vector<std::size_t>& folds, const FitResult& fit,
+                                    const std::vector<bool>& trusted);
 
 }  // namespace odomcalib::calib

@@ -74,6 +74,26 @@ TEST(Caster, falls_inwards_after_an_arc) {
   }
 }
 
+TEST(Sway, comes_late_by_its_lag) {
+  constexpr double kAcceleration = 1.5;  // rad/s^2
+  std::vector<Leg> legs = {{0.0, 0.0, 1.0}};
+  for (double t = 0.0; t < 2.0; t += kPeriod) {
+    const double rim = 0.5 * kAcceleration * t * kBase.track_width;
+    legs.push_back({-rim, rim, kPeriod});
+  }
+  const auto contexts = contexts_of(legs);
+  for (std::size_t k = 0; k < kSwayLags.size(); ++k) {
+    double missing = 0.0;  // what a first-order lag never makes up for: lag times acceleration
+    for (std::size_t i = 0; i + 20 < contexts.size(); ++i) {
+      missing +=
+          (contexts[i].turn_acceleration_after[kUsualMemory] - contexts[i].turn_acceleration_after[k]) *
+          contexts[i].dt;
+      EXPECT_EQ(contexts[i + 1].turn_acceleration_before[k], contexts[i].turn_acceleration_after[k]);
+    }
+    EXPECT_NEAR(missing, kSwayLags[k] * kAcceleration, 0.01 * kAcceleration) << kSwayLags[k];
+  }
+}
+
 TEST(RelaxedTurnRate, follows_over_its_way_and_has_the_sign_of_the_force) {
   constexpr double kTurn = 0.5;  // rad/s
   const double half = 0.5 * kTurn * kBase.track_width;

@@ -1,6 +1,7 @@
 // From residual to missing effect, on wheels and sensor motions made from the model alone.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <random>
 
@@ -9,9 +10,11 @@
 #include "calib/tracing/curve.hpp"
 #include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/plausibility.hpp"
+#include "calib/tracing/proof.hpp"
 #include "calib/tracing/score.hpp"
 #include "calib/tracing/search.hpp"
 #include "calib/tracing/tracing_json.hpp"
+#include "calib/validation/held_out.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -160,6 +163,17 @@ TEST(Tracing, a_mast_that_sways_is_flagged_and_kept_out_of_odometry) {
   EXPECT_EQ(result.curves[0].effect->storage(), Storage::driver);
 }
 
+TEST(Tracing, a_mast_that_follows_late_gets_its_lag) {
+  const DriveModel model = jerky_model();
+  Curve sway{{Variable::turn_acceleration, Carrier::sensor_yaw}, -3.0, 3.0};
+  for (sway.memory = 0; sway.memory < kSwayLags.size(); ++sway.memory) {
+    const SearchResult result = searched(measured(model, {make_curve_effect(sway)}, {0.03, 0.0}));
+    ASSERT_TRUE(result.has_unnamed()) << kSwayLags[sway.memory] << " s, seed " << kSeed;
+    EXPECT_EQ(result.curves[0].curve.law, sway.law);
+    EXPECT_EQ(result.curves[0].curve.memory, sway.memory);
+  }
+}
+
 // Slow or coarse ticks blur when a turn speeds up, which looks like a sensor that sways a little.
 TEST(Tracing, a_sway_that_ticks_can_hide_is_not_believed) {
   const auto hidden = [](double period, double angle, double sway) {
@@ -182,11 +196,11 @@ TEST(Tracing, a_sway_that_ticks_can_hide_is_not_believed) {
 TEST(Tracing, a_narrow_peak_gets_more_knots_and_the_wheel_a_wider_deviation) {
   const DriveModel model = lively_model();
   const Curve peak{{Variable::left_speed, Carrier::left_travel}, -0.3, 0.3, 0.0, 0, {}, 8};
-  const std::vector<double> values = {0.0, 0.0, 0.0, -0.03, -0.03, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const std::vector<double> values = {0.0, 0.0, 0.0, -0.03, -0.03, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   const SearchResult result = searched(measured(model, {make_curve_effect(peak)}, values));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.curves[0].curve.law, peak.law);
-  EXPECT_GE(result.curves[0].curve.knots, 8);
+  EXPECT_GT(result.curves[0].curve.knots, kKnots.front());
   double doubt = 0.0;
   for (const Eigen::VectorXd& d : result.doubts) doubt = std::hypot(doubt, d(kLeftRadius));
   const double deviation =
@@ -318,21 +332,44 @@ TEST(Curve, is_zero_at_rest_but_on_the_turn_path) {
   EXPECT_EQ(basis(turn, StepContext{})[0], 1.0);
 }
 
-TEST(Curve, more_knots_can_say_all_that_few_can) {
+TEST(Curve, of_a_speed_is_zero_at_rest_with_any_knots) {
+  for (const int knots : kKnots) {
+    const Curve curve{{Variable::speed, Carrier::both_travel}, -0.5, 0.5, 0.0, 0, {}, knots};
+    for (const double f : basis(curve, StepContext{})) EXPECT_NEAR(f, 0.0, 1e-12) << knots;
+  }
+}
+
+/// Largest error of the curve that is nearest to a smooth bump, relative to its height.
+double misfit_of_bump(const Curve& curve) {
+  constexpr int kSpeeds = 200;
+  const auto functions = static_cast<Eigen::Index>(basis_size(curve));
+  Eigen::MatrixXd columns(kSpeeds, functions);
+  Eigen::VectorXd bump(kSpeeds);
+  for (int k = 0; k < kSpeeds; ++k) {
+    StepContext c;
+    c.speed = 0.5 * (k + 1) / kSpeeds;
+    const BasisValues values = basis(curve, c);
+    columns.row(k) = Eigen::Map<const Eigen::RowVectorXd>(values.begin(), functions);
+    bump(k) = std::exp(-std::pow((c.speed - 0.27) / 0.06, 2));
+  }
+  const Eigen::VectorXd nearest = columns.colPivHouseholderQr().solve(bump);
+  return (columns * nearest - bump).cwiseAbs().maxCoeff();
+}
+
+TEST(Curve, more_knots_describe_a_bump_better) {
   const Curve coarse{{Variable::speed, Carrier::both_travel}, -0.5, 0.5};
   const auto shapes = other_shapes(coarse, {});
-  ASSERT_EQ(shapes.size(), 2U);
-  const Curve& fine = shapes.front();
-  EXPECT_EQ(shapes.back().knots, kMostKnots);
+  ASSERT_EQ(shapes.size(), kKnots.size() - 1);
+  EXPECT_EQ(shapes.back().knots, kKnots.back());
   EXPECT_TRUE(other_shapes(shapes.back(), {}).empty());
   EXPECT_TRUE(other_shapes({{Variable::heading, Carrier::both_travel}, -1.0, 1.0}, {}).empty());
-  // A hat is the mean of its neighbours halfway between the old knots.
-  for (const double speed : {-0.41, -0.1, 0.03, 0.2, 0.38, 0.5}) {
-    StepContext c;
-    c.speed = speed;
-    const BasisValues few = basis(coarse, c), many = basis(fine, c);
-    EXPECT_NEAR(few[1], 0.5 * many[2] + many[3] + 0.5 * many[4], 1e-12) << speed;
+  double before = misfit_of_bump(coarse);
+  for (const Curve& shape : shapes) {
+    const double misfit = misfit_of_bump(shape);
+    EXPECT_LT(misfit, 0.5 * before) << shape.knots;
+    before = misfit;
   }
+  EXPECT_LT(before, 0.01);
 }
 
 TEST(Curve, its_spread_is_that_of_the_law_over_the_drive) {
@@ -488,15 +525,43 @@ TEST(Score, tail_of_chi_squared_agrees_with_tables) {
   EXPECT_EQ(chi_squared_tail(7.0, 0), 1.0);
 }
 
+TEST(Proof, what_makes_drives_worse_is_refused) {
+  const DriveModel model = lively_model();
+  FitData data = measured(model, {}, {});
+  for (SensorPair& pair : data.pairs) pair.follows_previous = &pair != &data.pairs.front();
+  const FitTask task{{&data, 1}, std::vector<bool>(kBaseCount, false)};
+  const auto fit = fit_joint(task.data, {}, to_vector(kBase));
+  ASSERT_TRUE(fit) << "seed " << kSeed;
+  const FittedModel right{{}, fit.value()};
+  FittedModel wrong = right;
+  wrong.fit.parameters(kTrackWidth) *= 1.02;
+  EXPECT_TRUE(spoils_drives(task, right, wrong));
+  EXPECT_FALSE(spoils_drives(task, wrong, right));
+  EXPECT_FALSE(spoils_drives(task, right, right));
+}
+
+TEST(HeldOut, two_models_are_compared_on_the_same_pairs) {
+  const Eigen::Vector3d variance(1e-6, 1e-6, 1e-6), usual(1e-3, 1e-3, 1e-3), gross(1.0, 1.0, 1.0);
+  std::vector<HeldOutError> before(100, {usual, variance}), after = before;
+  before[0].error = after[0].error = gross;  // a failed match
+  before[1].error = gross;                   // what the second model explains
+  const auto of_before = held_out_residual(before, after), of_after = held_out_residual(after, before);
+  ASSERT_TRUE(of_before && of_after);
+  EXPECT_EQ(of_before->pairs, 99U);
+  EXPECT_EQ(of_after->pairs, 99U);
+  EXPECT_NEAR(of_before->rms[2], std::sqrt((1.0 + 98e-6) / 99.0), 1e-12);
+  EXPECT_NEAR(of_after->rms[2], 1e-3, 1e-12);
+}
+
 TEST(Horizon, a_fold_that_would_not_have_chosen_keeps_its_error) {
-  HorizonError before, after;
+  StretchErrors before, after;
   before.position = {1.0, 2.0, 3.0};
   before.heading = {0.1, 0.2, 0.3};
   before.fold = {0, 1, 4};
   before.block = {0, 1, 2};
   after = before;
   after.position = {0.1, 0.2, 0.3};
-  const HorizonError mixed = where_selected(before, after, {true, false, true, true, false});
+  const StretchErrors mixed = where_selected(before, after, {true, false, true, true, false});
   EXPECT_EQ(mixed.position, (std::vector<double>{0.1, 2.0, 3.0}));
 }
 
