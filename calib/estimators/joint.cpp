@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "calib/estimators/stack.hpp"
@@ -121,48 +122,89 @@ double prior_cost(const Eigen::VectorXd& information, const Eigen::VectorXd& p) 
   return information.dot(p.cwiseAbs2());
 }
 
-double sum_of_squares(std::span<const FitData> data, const EffectList& effects, const Eigen::VectorXd& p,
-                      const std::vector<NoiseModel>& noise, const std::vector<double>& weights) {
-  const Stack stack = make_stack(data, effects, p, false);
-  return whitened(data, stack, noise, weights, stack.residual).squaredNorm();
-}
+/// Levenberg-Marquardt. The model is so nearly linear that a Jacobian serves for all steps that stay within a
+/// deviation of where it was taken, also when weights or noise have changed since.
+class Descent {
+ public:
+  Descent(std::span<const FitData> data, const EffectList& effects, const std::vector<bool>& fixed,
+          const Eigen::VectorXd& prior, Eigen::VectorXd start)
+      : data_(data), effects_(effects), fixed_(fixed), prior_(prior), p_(std::move(start)) {
+    linearise();
+  }
 
-/// Levenberg-Marquardt on fixed weights; returns whether it settled.
-Result<bool> descend(std::span<const FitData> data, const EffectList& effects,
-                     const std::vector<NoiseModel>& noise, const std::vector<double>& weights,
-                     const std::vector<bool>& fixed, const Eigen::VectorXd& prior, int iterations,
-                     Eigen::VectorXd& p) {
-  double damping = 1e-9;
-  for (int i = 0; i < iterations; ++i) {
-    const Stack stack = make_stack(data, effects, p, true);
-    const Eigen::MatrixXd residual = whitened(data, stack, noise, weights, stack.residual);
-    const Eigen::MatrixXd jacobian = whitened(data, stack, noise, weights, stack.jacobian);
-    NormalSystem system = normal_system(jacobian, residual.col(0), fixed);
-    add_prior(prior, p, system);
-    if (auto error = check_rank(system, fixed)) return *error;
-    const double before = residual.squaredNorm() + prior_cost(prior, p);
-    bool improved = false;
-    for (int attempt = 0; attempt < 8 && !improved; ++attempt) {
+  [[nodiscard]] const Eigen::VectorXd& parameters() const { return p_; }
+  [[nodiscard]] const Stack& stack() const { return stack_; }
+
+  /// On fixed weights; returns whether it settled.
+  Result<bool> settle(const std::vector<NoiseModel>& noise, const std::vector<double>& weights,
+                      int iterations) {
+    damping_ = 1e-9;
+    for (int i = 0; i < iterations; ++i) {
+      if (moved_ > kReach) linearise();
+      const double before = cost(stack_, p_, noise, weights);
+      const Eigen::MatrixXd jacobian = whitened(data_, stack_, noise, weights, stack_.jacobian);
+      NormalSystem system =
+          normal_system(jacobian, whitened(data_, stack_, noise, weights, stack_.residual), fixed_);
+      add_prior(prior_, p_, system);
+      if (auto error = check_rank(system, fixed_)) return *error;
+      const auto length = descend(system, jacobian, before, noise, weights);
+      if (length && *length < kSettled) return true;
+      if (!length && moved_ == 0.0) return true;
+      if (length)
+        moved_ += *length;
+      else
+        linearise();
+    }
+    return false;
+  }
+
+ private:
+  static constexpr double kReach = 1.0;  ///< sigma
+
+  void linearise() {
+    stack_ = make_stack(data_, effects_, p_, true);
+    moved_ = 0.0;
+  }
+
+  [[nodiscard]] double cost(const Stack& stack, const Eigen::VectorXd& p,
+                            const std::vector<NoiseModel>& noise, const std::vector<double>& weights) const {
+    return whitened(data_, stack, noise, weights, stack.residual).squaredNorm() + prior_cost(prior_, p);
+  }
+
+  /// Takes the first step that does not make it worse, more damped from one to the next. One that is short
+  /// enough to end with is not damped further.
+  /// @return its length, sigma
+  std::optional<double> descend(const NormalSystem& system, const Eigen::MatrixXd& jacobian, double before,
+                                const std::vector<NoiseModel>& noise, const std::vector<double>& weights) {
+    for (int attempt = 0; attempt < 8; ++attempt) {
       Eigen::MatrixXd damped = system.matrix;
       for (Eigen::Index k = 0; k < damped.rows(); ++k)
-        damped(k, k) = system.scale(k) > 0.0 ? damped(k, k) + damping : 1.0;
+        damped(k, k) = system.scale(k) > 0.0 ? damped(k, k) + damping_ : 1.0;
       const Eigen::VectorXd step = system.scale.asDiagonal() * damped.ldlt().solve(system.right_side);
-      const Eigen::VectorXd candidate = p + step;
-      const double after =
-          sum_of_squares(data, effects, candidate, noise, weights) + prior_cost(prior, candidate);
-      improved = after <= before * (1.0 + 1e-12);
-      if (!improved) {
-        damping = std::max(damping * 10.0, 1e-6);
-        continue;
+      const double length = (jacobian * step).norm();
+      Stack there = make_stack(data_, effects_, p_ + step, false);
+      if (cost(there, p_ + step, noise, weights) <= before * (1.0 + 1e-12)) {
+        p_ += step;
+        there.jacobian = std::move(stack_.jacobian);
+        stack_ = std::move(there);
+        damping_ = std::max(damping_ * 0.1, 1e-12);
+        return length;
       }
-      p = candidate;
-      damping = std::max(damping * 0.1, 1e-12);
-      if ((jacobian * step).norm() < kSettled) return true;
+      if (length < kSettled) return length;
+      damping_ = std::max(damping_ * 10.0, 1e-6);
     }
-    if (!improved) return true;
+    return std::nullopt;
   }
-  return false;
-}
+
+  std::span<const FitData> data_;
+  const EffectList& effects_;
+  const std::vector<bool>& fixed_;
+  const Eigen::VectorXd& prior_;
+  Eigen::VectorXd p_;
+  Stack stack_;         ///< residual at p_, Jacobian near it
+  double moved_ = 0.0;  ///< sigma, since the Jacobian was taken
+  double damping_ = 0.0;
+};
 
 ClusterRobust robust_covariance(std::span<const FitData> data, const Stack& stack, const FitResult& fit,
                                 const Eigen::MatrixXd& inverse) {
@@ -227,26 +269,24 @@ void conclude(std::span<const FitData> data, const EffectList& effects, const st
 Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects,
                             const Eigen::VectorXd& start, const FitOptions& options) {
   FitResult fit;
-  fit.parameters = start;
   std::vector<bool> fixed = options.fixed;
   fixed.resize(static_cast<std::size_t>(start.size()), false);
   const std::vector<double> prior = prior_information(kBaseCount, effects);
   fit.prior_information =
       Eigen::Map<const Eigen::VectorXd>(prior.data(), static_cast<Eigen::Index>(prior.size()));
   fit.noise = options.noise.empty() ? std::vector<NoiseModel>(data.size()) : options.noise;
-  Stack stack = make_stack(data, effects, start, false);
-  if (stack.states.empty())
+  Descent descent(data, effects, fixed, fit.prior_information, start);
+  if (descent.stack().states.empty())
     return Error{ErrorCode::empty, "no pair of scans or poses with ticks", "joint estimate",
                  "check the recording"};
   for (int round = 0; round < kNoiseRounds; ++round) {
-    if (options.noise.empty()) fit.noise = estimate_noise(data, stack, fit.noise);
-    fit.weights = robust_weights(distances(data, stack, fit.noise));
-    const auto settled = descend(data, effects, fit.noise, fit.weights, fixed, fit.prior_information,
-                                 options.max_iterations / kNoiseRounds, fit.parameters);
+    if (options.noise.empty()) fit.noise = estimate_noise(data, descent.stack(), fit.noise);
+    fit.weights = robust_weights(distances(data, descent.stack(), fit.noise));
+    const auto settled = descent.settle(fit.noise, fit.weights, options.max_iterations / kNoiseRounds);
     if (!settled) return settled.error();
     fit.converged = settled.value();
-    stack = make_stack(data, effects, fit.parameters, false);
   }
+  fit.parameters = descent.parameters();
   if (!fit.parameters.allFinite())
     return Error{ErrorCode::refused, "the fit diverged", "joint estimate", "check the nominal values"};
   conclude(data, effects, fixed, fit);

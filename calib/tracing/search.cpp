@@ -274,6 +274,7 @@ class Search {
   /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.
   std::optional<Proof> accept_reshaped(const ScoreTable& table, std::size_t index) {
     Candidate& candidate = candidates_[index];
+    if (candidate.curve->is_wave()) return std::nullopt;
     auto best = in_best_shape(basis_, *candidate.curve, basis_.fit.noise);
     if (!best || best->curve == *candidate.curve) return std::nullopt;
     candidate.curve = std::move(best->curve);
