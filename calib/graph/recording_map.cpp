@@ -57,11 +57,18 @@ PoseGraph placed_at(PoseGraph graph, const std::vector<Pose>& poses) {
 
 Pose pose_of(const GraphVertex& vertex) { return {vertex.x, vertex.y, vertex.yaw}; }
 
+std::vector<Eigen::Vector2d> seen_from(const GraphVertex& vertex, const Surface& surface) {
+  std::vector<Eigen::Vector2d> seen;
+  const Frame frame(pose_of(vertex));
+  for (const SurfacePoint& point : surface.points) seen.push_back(frame.transform(point.position));
+  return seen;
+}
+
 std::vector<Eigen::Vector2d> seen_in_map(const std::vector<Surface>& surfaces, const PoseGraph& graph) {
   std::vector<Eigen::Vector2d> seen;
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
-    const Frame frame(pose_of(graph.vertices[k]));
-    for (const SurfacePoint& point : surfaces[k].points) seen.push_back(frame.transform(point.position));
+    const auto here = seen_from(graph.vertices[k], surfaces[k]);
+    seen.insert(seen.end(), here.begin(), here.end());
   }
   std::erase_if(seen, [](const auto& p) { return !(p.cwiseAbs().maxCoeff() < kFarthestReading); });
   return seen;
@@ -97,6 +104,7 @@ void draw_map(const std::vector<Surface>& surfaces, RecordingMap& map) {
   for (std::size_t k = 0; k < surfaces.size(); ++k)
     grid.insert(pose_of(map.made.graph.vertices[k]), positions(surfaces[k]));
   map.cell = options.cell;
+  map.last_scan = seen_from(map.made.graph.vertices[surfaces.size() - 1], surfaces.back());
   map.occupied = cells_seen(seen, options.cell);
   std::erase_if(map.occupied, [&grid](const auto& centre) { return grid.probability(centre) < kOccupied; });
 }

@@ -13,9 +13,10 @@ namespace odomcalib::calib {
 struct RecordingMap {
   ScanGraph made;         ///< vertices are keyframes; `scans` are positions in Recording::scans
   PoseGraph by_odometry;  ///< the same keyframes where odometry alone puts them, from the same first pose
-  std::vector<Eigen::Vector2d> occupied;  ///< m, centres of cells that are probably occupied
-  double cell = 0.0;                      ///< m
-  double range_noise = 0.0;               ///< m, standard deviation of a range, estimated from the scans
+  std::vector<Eigen::Vector2d> occupied;   ///< m, centres of cells that are probably occupied
+  double cell = 0.0;                       ///< m
+  std::vector<Eigen::Vector2d> last_scan;  ///< m, what was seen from the last keyframe
+  double range_noise = 0.0;                ///< m, standard deviation of a range, estimated from the scans
 };
 
 /// The poses are those of the lidar, the first one is the origin. Odometry is that of the nominal robot; what

@@ -82,13 +82,38 @@ std::string points(const PoseGraph& graph, const Frame& frame) {
 /// A small square for every cell.
 std::string cells(const PictureMap& map, const Frame& frame) {
   const double side = std::max(map.cell * frame.scale(), 0.7);  // a thinner one would fade
-  std::string out = "<path id=\"map\" fill=\"#222\" d=\"";
+  std::string out = "<path id=\"map\" fill=\"#c51b8a\" d=\"";
   for (const Eigen::Vector2d& centre : map.occupied) {
     const Eigen::Vector2d corner = frame.at(centre) - Eigen::Vector2d::Constant(0.5 * side);
     fmt::format_to(std::back_inserter(out), "M{:.1f} {:.1f}h{:.1f}v{:.1f}h{:.1f}z", corner.x(), corner.y(),
                    side, side, -side);
   }
   return out + "\"/>\n";
+}
+
+std::string rays(const PictureMap& map, const GraphVertex& eye, const Frame& frame) {
+  std::string out = "<path id=\"rays\" fill=\"none\" stroke=\"#9acd32\" stroke-width=\"0.3\" d=\"";
+  for (const Eigen::Vector2d& seen : map.last_scan) {
+    const Eigen::Vector2d end = frame.at(seen);
+    fmt::format_to(std::back_inserter(out), "M{:.1f} {:.1f}L{:.1f} {:.1f}", frame.x(eye), frame.y(eye),
+                   end.x(), end.y());
+  }
+  return out + "\"/>\n";
+}
+
+std::string scan(const PictureMap& map, const Frame& frame) {
+  std::string out = "<g id=\"scan\" fill=\"#1a9641\">";
+  for (const Eigen::Vector2d& seen : map.last_scan) {
+    const Eigen::Vector2d end = frame.at(seen);
+    fmt::format_to(std::back_inserter(out), "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.5\"/>", end.x(),
+                   end.y());
+  }
+  return out + "</g>\n";
+}
+
+const GraphVertex& last_pose(const PoseGraph& graph) {
+  return *std::find_if(graph.vertices.rbegin(), graph.vertices.rend(),
+                       [](const GraphVertex& v) { return v.kind == VertexKind::pose; });
 }
 
 std::string legend(const Frame& frame) {
@@ -106,9 +131,11 @@ std::string graph_picture(const PoseGraph& before, const PoseGraph& after, const
   frame.include(before);
   frame.include(after);
   for (const Eigen::Vector2d& centre : map.occupied) frame.include(centre);
+  for (const Eigen::Vector2d& seen : map.last_scan) frame.include(seen);
   return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\">\n",
                      frame.width(), frame.height() + kLegend) +
-         (map.occupied.empty() ? "" : cells(map, frame)) +
+         (map.occupied.empty() ? ""
+                               : rays(map, last_pose(after), frame) + cells(map, frame) + scan(map, frame)) +
          trajectory(before, frame, "before", "stroke=\"#888\" stroke-dasharray=\"3 2\"") +
          loop_edges(after, frame) +
          trajectory(after, frame, "after", "stroke=\"#2166ac\" stroke-width=\"1.5\"") + points(after, frame) +

@@ -79,8 +79,8 @@ Result<void> write_results(const BuildOptions& options, const calib::RecordingMa
   if (!options.out.empty())
     if (auto written = replace_file(options.out, to_g2o(map.made.graph)); !written) return written;
   if (options.picture.empty()) return {};
-  return replace_file(options.picture,
-                      graph_picture(map.by_odometry, map.made.graph, {map.occupied, map.cell}));
+  return replace_file(options.picture, graph_picture(map.by_odometry, map.made.graph,
+                                                     {map.occupied, map.cell, map.last_scan}));
 }
 
 int build(const BuildOptions& options, const Session& session) {

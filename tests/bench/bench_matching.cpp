@@ -1,5 +1,6 @@
 // Branch and bound against brute force on a thousand random cases: the same optimum, from how much of the
-// time? Run build/release/bin/bench_matching.
+// time? And what a hill climb gives away for its speed, over its parameters. Run
+// build/release/bin/bench_matching.
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -14,6 +15,7 @@ using namespace odomcalib;
 using calib::Pose;
 
 constexpr unsigned kCases = 1000;
+constexpr double kDegrees = 180.0 / calib::kPi;
 
 std::vector<Eigen::Vector2d> points_of(const Scan& scan, std::size_t stride) {
   std::vector<Eigen::Vector2d> points;
@@ -34,21 +36,33 @@ double timed(const Search& search) {
          1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec);
 }
 
+/// A pair of scans in a room and the way between them, each coordinate of either sign.
+struct Case {
+  Pose motion;
+  calib::LikelihoodField field;
+  std::vector<Eigen::Vector2d> points;
+};
+
+Case random_case(std::mt19937& engine, unsigned seed, const Pose& farthest, double cell) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const Pose a{uniform(engine), uniform(engine), calib::kPi * uniform(engine)};
+  const Pose motion{farthest.x * uniform(engine), farthest.y * uniform(engine),
+                    farthest.yaw * uniform(engine)};
+  const auto reference = points_of(testing::scan_from(testing::kRoom, a, 0.02, seed), 2);
+  auto points =
+      points_of(testing::scan_from(testing::kRoom, calib::compose(a, motion), 0.02, seed + kCases), 10);
+  return {motion, calib::LikelihoodField(reference, {.cell = cell}), std::move(points)};
+}
+
 /// Whether all optima are equal.
 bool compare(double cell) {
   std::mt19937 engine(1);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   double brute_time = 0.0;
   double bound_time = 0.0;
   double work = 0.0;
   unsigned equal = 0;
   for (unsigned seed = 1; seed <= kCases; ++seed) {
-    const Pose a{uniform(engine), uniform(engine), calib::kPi * uniform(engine)};
-    const Pose motion{uniform(engine), uniform(engine), 0.7 * uniform(engine)};
-    const auto reference = points_of(testing::scan_from(testing::kRoom, a, 0.02, seed), 2);
-    const auto points =
-        points_of(testing::scan_from(testing::kRoom, calib::compose(a, motion), 0.02, seed + kCases), 10);
-    calib::LikelihoodField field(reference, {.cell = cell});
+    auto [motion, field, points] = random_case(engine, seed, {1.0, 1.0, 0.7}, cell);
     calib::SearchResult brute, bound;
     // The coarser levels are made inside: they are part of the work of one search.
     bound_time += timed([&] { bound = calib::search_branch_and_bound(field, points, {}); });
@@ -65,9 +79,43 @@ bool compare(double cell) {
   return equal == kCases;
 }
 
+/// What a climb from the window's centre gives away, and takes, beside brute force over the whole window.
+void print_climb(double cell, const calib::SearchWindow& window, const calib::ClimbOptions& options) {
+  std::mt19937 engine(2);
+  double brute_time = 0.0, climb_time = 0.0, gap = 0.0;
+  unsigned lost = 0;
+  for (unsigned seed = 1; seed <= kCases; ++seed) {
+    const Case c = random_case(engine, seed, {window.half_width, window.half_width, window.half_angle}, cell);
+    calib::SearchResult brute, climb;
+    brute_time += timed([&] { brute = calib::search_brute_force(c.field, c.points, window); });
+    climb_time += timed([&] { climb = calib::search_hill_climb(c.field, c.points, {}, options); });
+    gap += brute.score - climb.score;
+    const Pose error = calib::between(c.motion, climb.pose);
+    if (std::hypot(error.x, error.y) > 0.1 || std::abs(calib::wrap_angle(error.yaw)) > 0.05) ++lost;
+  }
+  std::printf(
+      "| %.0f cm | %.2f m, %.0f deg | %.0f cm, %.1f deg, %d | %+.3f | %.1f %% | %.2f | %.3f | %.0f |\n",
+      100.0 * cell, window.half_width, kDegrees * window.half_angle, 100.0 * options.step,
+      kDegrees * options.angle_step, options.halvings, gap / kCases, 100.0 * lost / kCases,
+      1e3 * brute_time / kCases, 1e3 * climb_time / kCases, brute_time / climb_time);
+}
+
+void sweep_climbs() {
+  std::puts(
+      "| cells | window, +- | first steps, halvings | score given away | ends elsewhere | brute force, ms | "
+      "climb, ms | faster |");
+  for (const double cell : {0.1, 0.05})
+    for (const double width : {0.1, 0.3, 1.0})
+      for (const double step : {0.05, 0.2})
+        for (const int halvings : {1, 4})
+          print_climb(cell, {.half_width = width, .half_angle = 0.7 * width},
+                      {.step = step, .angle_step = 0.2 * step, .halvings = halvings});
+}
+
 }  // namespace
 
 int main() {
-  const bool coarse = compare(0.1);
-  return compare(0.05) && coarse ? 0 : 1;
+  const bool equal = compare(0.1) && compare(0.05);
+  sweep_climbs();
+  return equal ? 0 : 1;
 }

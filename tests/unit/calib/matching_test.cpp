@@ -23,9 +23,9 @@ TEST(Matching, S2_04_recovers_a_known_motion_from_noise_free_scans) {
   const Pose b = compose(a, Pose{0.08, 0.03, 0.15});
   const ScanMatch match = match_scans(scan_from(kRoom, a, 0.0, 1), scan_from(kRoom, b, 0.0, 2), {0, 0, 0});
   ASSERT_TRUE(match.ok()) << match.status;
-  EXPECT_NEAR(match.pose[0], 0.08, 1e-4);
-  EXPECT_NEAR(match.pose[1], 0.03, 1e-4);
-  EXPECT_NEAR(match.pose[2], 0.15, 1e-4);
+  EXPECT_NEAR(match.pose[0], 0.08, 1e-6);
+  EXPECT_NEAR(match.pose[1], 0.03, 1e-6);
+  EXPECT_NEAR(match.pose[2], 0.15, 1e-6);
 }
 
 TEST(Matching, S2_40_errors_agree_with_the_reported_covariance) {

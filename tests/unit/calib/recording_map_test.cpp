@@ -144,6 +144,9 @@ TEST(RecordingMap, S2_40_the_occupied_cells_are_the_walls) {
     if (distance_to_walls(first.transform(centre)) > 1.5 * made.value().cell) ++far;
   EXPECT_GT(made.value().occupied.size(), 500U);  // 60 m of walls in cells of 5 cm, most of them seen
   EXPECT_LT(far, made.value().occupied.size() / 50);
+  const auto& last = made.value().last_scan;
+  EXPECT_GT(last.size(), 100U);
+  for (const Eigen::Vector2d& seen : last) EXPECT_LT(distance_to_walls(first.transform(seen)), 0.1);
 }
 
 TEST(RecordingMap, S2_05_the_graph_that_is_written_is_settled) {

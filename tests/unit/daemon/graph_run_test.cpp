@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/graph_picture.hpp"
@@ -61,6 +62,19 @@ TEST(GraphRun, S2_34_draws_both_trajectories_and_the_loops_in_one_frame) {
     return picture.substr(begin, picture.find(' ', begin) - begin);
   };
   EXPECT_EQ(first_of("before"), first_of("after"));
+}
+
+TEST(GraphRun, S2_39_draws_map_scan_path_and_rays) {
+  const GraphRun run = square();
+  const PictureMap map{{{0.5, 0.5}}, 0.05, {{0.5, 0.5}, {0.2, 1.4}}};
+  const std::string picture = graph_picture(run.before, run.after, map);
+  const auto layer = [&picture](const std::string& id) { return picture.find("id=\"" + id + "\""); };
+  for (const char* id : {"map", "scan", "after", "rays"}) ASSERT_NE(layer(id), std::string::npos) << id;
+  EXPECT_LT(layer("rays"), layer("map")) << "rays would hide the walls";
+  EXPECT_LT(layer("scan"), layer("after"));
+  const std::string rays = picture.substr(layer("rays"), picture.find("/>", layer("rays")) - layer("rays"));
+  EXPECT_EQ(std::count(rays.begin(), rays.end(), 'M'), 2);
+  EXPECT_THAT(graph_picture(run.before, run.after), Not(HasSubstr("id=\"rays\"")));
 }
 
 TEST(GraphRun, S2_05_what_is_written_is_read_back_and_is_at_its_optimum) {
