@@ -1,5 +1,6 @@
 #include "calib/predict.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 
@@ -162,12 +163,13 @@ PoseSample Odometry::update(const TickSample& sample) {
   Recording recent;
   recent.robot.ticks_per_rev = s.ticks_per_rev;
   recent.ticks.assign(s.history.begin(), s.history.end());
-  WheelTrack track = wheel_track_from_ticks(recent);
-  StepContext context = make_context_of_moment(track, to_base(as_span(s.correction.parameters))).back();
+  const WheelTrack track = wheel_track_from_ticks(recent);
+  const std::size_t n = track.t.size();
+  const BaseParameters base = to_base(as_span(s.correction.parameters));
+  StepContext context = make_context_of_moment(track, base, n - std::min<std::size_t>(n, 3)).back();
   context.t = s.correction.time;
   s.drive.advance(context);
 
-  const std::size_t n = track.t.size();
   WheelTrack last{{track.t[n - 2], track.t[n - 1]},
                   {track.left[n - 2], track.left[n - 1]},
                   {track.right[n - 2], track.right[n - 1]},

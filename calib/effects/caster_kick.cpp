@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "calib/effects/factories.hpp"
 #include "calib/effects/step_effect.hpp"
 
@@ -56,13 +54,8 @@ class CasterKick final : public StepEffect<CasterKick> {
   }
 
  private:
-  template <std::size_t N>
-  static std::size_t nearest(const std::array<double, N>& values, double value) {
-    const auto closer = [value](double a, double b) { return std::abs(a - value) < std::abs(b - value); };
-    return static_cast<std::size_t>(std::min_element(values.begin(), values.end(), closer) - values.begin());
-  }
   static std::size_t nearest_caster(double trail, double lean) {
-    return nearest(kCasterTrails, trail) * kCasterLeans.size() + nearest(kCasterLeans, lean);
+    return nearest_of(kCasterTrails, trail) * kCasterLeans.size() + nearest_of(kCasterLeans, lean);
   }
 
   double length_;

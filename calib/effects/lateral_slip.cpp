@@ -38,9 +38,8 @@ class LateralSlip final : public StepEffect<LateralSlip> {
  private:
   /// Speed times turn rate, m/s^2.
   static double felt_turn(const StepContext& c, double relaxation) {
-    for (std::size_t k = 0; k < kRelaxations.size(); ++k)
-      if (relaxation == kRelaxations[k]) return c.relaxed_turn_rate[k] * std::abs(c.speed);
-    return c.turn_rate * c.speed;
+    if (relaxation < 0.5 * kRelaxations.front()) return c.turn_rate * c.speed;
+    return c.relaxed_turn_rate[nearest_of(kRelaxations, relaxation)] * std::abs(c.speed);
   }
 
   double relaxation_;

@@ -127,7 +127,9 @@ class DriveHistory {
 
 /// Observable variables of each tick interval, from smoothed wheel angles and a geometry that is nearly
 /// right; but for what depends on the drive before.
-std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const BaseParameters& base);
+/// @param first interval that is wanted; the first of them takes its acceleration's change from itself alone
+std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const BaseParameters& base,
+                                                std::size_t first = 0);
 
 /// The same with what depends on the drive before.
 std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& base);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace odomcalib::calib {
@@ -15,6 +16,15 @@ struct WheelStep {
   T yaw{0.0};    ///< rotation in addition to (right - left) / track_width
   T track{1.0};  ///< factor on the track width
 };
+
+/// Place of the nearest of values of which only these are known.
+template <std::size_t N>
+std::size_t nearest_of(const std::array<double, N>& values, double value) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < N; ++k)
+    if (std::abs(values[k] - value) < std::abs(values[best] - value)) best = k;
+  return best;
+}
 
 /// What happened lately, fading over several spans: nobody knows how long a robot remembers.
 inline constexpr std::array<double, 3> kMemorySpans = {1.0 / 3.0, 1.0, 3.0};

@@ -195,12 +195,13 @@ void DriveHistory::remember_turn(StepContext& c, double yaw) {
   remember(previous_turn_, yaw);
 }
 
-std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const BaseParameters& base) {
+std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const BaseParameters& base,
+                                                std::size_t first) {
   std::vector<StepContext> contexts;
   if (track.empty()) return contexts;
-  contexts.reserve(track.t.size() - 1);
+  contexts.reserve(track.t.size() - 1 - first);
   Window window;
-  for (std::size_t k = 0; k + 1 < track.t.size(); ++k) {
+  for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
     StepContext& c = contexts.emplace_back();
     const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
     const bool joined = track.segment[k] == track.segment[k + 1];

@@ -26,6 +26,7 @@ constexpr int kMaxSteps = 12;       ///< additions and failed proofs together
 constexpr std::size_t kRefits = 4;  ///< candidates refitted jointly per step
 constexpr double kAmbiguity = 6.0;  ///< units of BIC
 constexpr double kSameLaw = 0.5;    ///< share of a curve's statistic that a name with that law must reach
+constexpr double kNearlyAll = 0.9;  ///< share of it that leaves no doubt
 /// Family-wise level at which the data outside a fold must point to a candidate that all data together have
 /// chosen.
 constexpr double kFoldLevel = 0.05;
@@ -160,7 +161,6 @@ class Search {
   /// What a finding leaves on its own ground is the rest of its law, unless a second name explains nearly all
   /// that a free curve would.
   [[nodiscard]] bool is_rest_of_a_law(const ScoreTable& table, std::size_t candidate) const {
-    constexpr double kNearlyAll = 0.9;
     const std::vector<Law> laws = candidates_[candidate].effect->laws();
     const auto is_taken = [&](const Law& law) {
       return std::any_of(result_.findings.begin(), result_.findings.end(),
@@ -261,7 +261,8 @@ class Search {
       return true;
     }
     auto proof = accept(table, *trial);
-    if (!proof && law_of) replace(law_of, candidates_[index], table.scores()[index], alike);
+    if (!proof && law_of && !is_completed(law_of))
+      replace(law_of, candidates_[index], table.scores()[index], alike);
     if (!proof && !law_of) proof = accept_reshaped(table, index);
     if (!proof) return true;
     const Candidate& candidate = candidates_[index];
@@ -315,7 +316,8 @@ class Search {
     const auto free = in_best_shape(*without, *candidate.curve, result_.model.fit.noise);
     Proof proof;
     proof.family_p_value = score.family_p_value;
-    if (!free || !is_better(task_, result_.model, free->model, penalty(1)) ||
+    if (!free || explains_nearly_all(result_.model, free->model, place - effects.begin()) ||
+        !is_better(task_, result_.model, free->model, penalty(1)) ||
         !objection(task_, *without, free->model, all_folds(), largest_ratio(candidate), proof).empty())
       return;
     std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
@@ -324,6 +326,14 @@ class Search {
     result_.curves.push_back({free->model.effects.back(), free->curve, proof, nullptr, alike});
     settle_shape_of_newest_curve();
     has_changed_ = true;
+  }
+
+  /// A name that leaves little to a freer law is the right one, whatever that little is.
+  /// @param index of the name's effect in `named`; `free` has a curve in its place, on the same noise
+  [[nodiscard]] bool explains_nearly_all(const FittedModel& named, const FittedModel& free,
+                                         std::ptrdiff_t index) const {
+    const auto without = without_effect(task_, named, static_cast<std::size_t>(index), named.fit.noise);
+    return without && without->fit.cost - named.fit.cost > kNearlyAll * (without->fit.cost - free.fit.cost);
   }
 
   /// A law with a narrow peak needs more knots than finding it did, one of the past another memory. What
@@ -367,9 +377,9 @@ class Search {
   }
 
   /// A law that was completed shares its ground with the curve, and keeps its name.
-  [[nodiscard]] bool is_completed(const Finding& finding) const {
+  [[nodiscard]] bool is_completed(const std::shared_ptr<const Effect>& name) const {
     return std::any_of(result_.curves.begin(), result_.curves.end(),
-                       [&](const AddedCurve& curve) { return curve.law_of == finding.effect; });
+                       [&](const AddedCurve& curve) { return curve.law_of == name; });
   }
 
   /// What an earlier finding explained may belong to what was just added.
@@ -379,7 +389,7 @@ class Search {
       const auto finding = std::find_if(result_.findings.begin(), result_.findings.end(),
                                         [&](const Finding& f) { return f.effect == model.effects[e]; });
       const auto first = static_cast<std::size_t>(first_parameter(model.effects, e));
-      if (finding == result_.findings.end() || is_completed(*finding)) continue;
+      if (finding == result_.findings.end() || is_completed(finding->effect)) continue;
       auto fewer = without_effect(task_, model, e, model.fit.noise);
       if (!fewer || !(is_superfluous(*model.effects[e], first, model.fit) ||
                       !is_better(task_, *fewer, model, penalty(1))))
