@@ -13,6 +13,7 @@ namespace {
 constexpr int kPasses = 4;         // readings that no longer seem outliers show some more of the error
 constexpr double kSettled = 1e-4;  // m
 constexpr double kHeldOutZ = 2.5;  // of the mean gain of scans that were not used
+constexpr double kClear = 4.0;     // deviations
 
 /// A map, and the error of the ranges that it was adjusted with.
 struct Adjusted {
@@ -118,12 +119,18 @@ class Trace {
   }
 
  private:
-  /// None where scans that were not used do not confirm it.
+  /// None where scans that were not used do not confirm it, or where what is left, once it is taken out,
+  /// would undo a good part of it: then it stood for something else.
   std::vector<LidarFinding> offset() {
+    const Adjusted before = state_;
     const double p_value = p_value_of_offset(state_.evidence);
     const auto proof = advance(offset_step);
     if (!proof) return {};
     const double deviation = deviation_of_offset(state_.evidence);
+    if (std::abs(state_.options.range_error(0)) < kClear * deviation) {
+      state_ = before;
+      return {};
+    }
     return {finding_of(make_range_bias(), p_value, *proof, state_.options.range_error.head<1>(),
                        Eigen::VectorXd::Constant(1, deviation))};
   }
