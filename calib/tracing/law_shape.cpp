@@ -76,6 +76,36 @@ std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, co
   return all;
 }
 
+std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& model, const Curve& curve,
+                                      const std::vector<NoiseModel>& noise) {
+  std::vector<Curve> shapes = other_shapes(curve, task.models());
+  shapes.push_back(curve);
+  for (std::size_t k = 0, count = shapes.size(); k < count; ++k)
+    if (shapes[k].mean.empty()) shapes.push_back(centred(shapes[k], task.models()));
+  std::optional<Reshaped> best;
+  const auto misfit = [&](const FittedModel& m) {
+    return m.fit.cost + per_parameter(m.fit) * static_cast<double>(m.fit.parameters.size());
+  };
+  for (const Curve& shape : shapes) {
+    const auto effect = make_curve_effect(shape);
+    auto fitted = with_effect(task, model, effect, noise);
+    if (!fitted || spoils_base(*effect, model.fit, fitted->fit)) continue;
+    if (!best || misfit(*fitted) < misfit(best->model)) best = {shape, std::move(*fitted)};
+  }
+  return best;
+}
+
+bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::size_t index,
+                         const FittedModel& free) {
+  constexpr double kNearlyAll = 0.9;
+  const auto without = without_effect(task, named, index, named.fit.noise);
+  return without && without->fit.cost - named.fit.cost > kNearlyAll * (without->fit.cost - free.fit.cost);
+}
+
+double per_parameter(const FitResult& fit) {
+  return std::log(static_cast<double>(fit.whitened_residual.size()));
+}
+
 bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other,
                double per_parameter) {
   const auto more = static_cast<double>(other.fit.parameters.size() - given.fit.parameters.size());

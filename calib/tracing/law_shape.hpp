@@ -1,6 +1,8 @@
 // The shape of a law that was found as a curve: how fine it is, and what is unknown of it.
 #pragma once
 
+#include <optional>
+
 #include "calib/tracing/curve.hpp"
 #include "calib/tracing/fitted_model.hpp"
 
@@ -18,6 +20,19 @@ std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, co
 /// What a parameter has to take off -2 log L when what it belongs to is proved already (Akaike, IEEE Trans.
 /// Autom. Control 19, 1974).
 inline constexpr double kAkaike = 2.0;
+/// The same when that is what is asked (Schwarz, Ann. Statist. 6, 1978).
+double per_parameter(const FitResult& fit);
+
+/// The curve on top of `model` in that of its shapes that describes the data best; nullopt if the drive can
+/// tell none from the wheels.
+/// @param noise of what it will be compared with, per recording
+std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& model, const Curve& curve,
+                                      const std::vector<NoiseModel>& noise);
+
+/// A name that leaves a tenth or less to a freer law is the right one, whatever that little is.
+/// @param index of the name's effect in `named`; `free` has a curve in its place, on the same noise
+bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::size_t index,
+                         const FittedModel& free);
 
 /// Whether the other model is worth its parameters, and better on held-out data.
 bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other, double per_parameter);

@@ -26,7 +26,6 @@ constexpr int kMaxSteps = 12;       ///< additions and failed proofs together
 constexpr std::size_t kRefits = 4;  ///< candidates refitted jointly per step
 constexpr double kAmbiguity = 6.0;  ///< units of BIC
 constexpr double kSameLaw = 0.5;    ///< share of a curve's statistic that a name with that law must reach
-constexpr double kNearlyAll = 0.9;  ///< share of it that leaves no doubt
 /// Family-wise level at which the data outside a fold must point to a candidate that all data together have
 /// chosen.
 constexpr double kFoldLevel = 0.05;
@@ -116,7 +115,7 @@ class Search {
   }
 
   [[nodiscard]] double penalty(std::size_t degrees) const {
-    return static_cast<double>(degrees) * std::log(static_cast<double>(basis_.fit.whitened_residual.size()));
+    return static_cast<double>(degrees) * per_parameter(basis_.fit);
   }
 
   [[nodiscard]] double penalised(const Score& score) const {
@@ -172,6 +171,7 @@ class Search {
       if (is_open(k) && candidates_[k].curve && contains(laws, candidates_[k].curve->law) &&
           is_taken(candidates_[k].curve->law))
         of_curves += table.scores()[k].statistic;
+    constexpr double kNearlyAll = 0.9;
     return table.scores()[candidate].statistic < kNearlyAll * of_curves;
   }
 
@@ -276,32 +276,11 @@ class Search {
   std::optional<Proof> accept_reshaped(const ScoreTable& table, std::size_t index) {
     Candidate& candidate = candidates_[index];
     if (candidate.curve->is_wave()) return std::nullopt;
-    auto best = in_best_shape(basis_, *candidate.curve, basis_.fit.noise);
+    auto best = in_best_shape(task_, basis_, *candidate.curve, basis_.fit.noise);
     if (!best || best->curve == *candidate.curve) return std::nullopt;
     candidate.curve = std::move(best->curve);
     candidate.effect = best->model.effects.back();
     return accept(table, Trial{index, std::move(best->model)});
-  }
-
-  /// The curve on top of `model` in that of its shapes that describes the data best, on the noise of what it
-  /// will be compared with.
-  [[nodiscard]] std::optional<Reshaped> in_best_shape(const FittedModel& model, const Curve& curve,
-                                                      const std::vector<NoiseModel>& noise) const {
-    std::vector<Curve> shapes = other_shapes(curve, task_.models());
-    shapes.push_back(curve);
-    for (std::size_t k = 0, count = shapes.size(); k < count; ++k)
-      if (shapes[k].mean.empty()) shapes.push_back(centred(shapes[k], task_.models()));
-    std::optional<Reshaped> best;
-    const auto misfit = [&](const FittedModel& m) {
-      return m.fit.cost + penalty(static_cast<std::size_t>(m.fit.parameters.size()));
-    };
-    for (const Curve& shape : shapes) {
-      const auto effect = make_curve_effect(shape);
-      auto fitted = with_effect(task_, model, effect, noise);
-      if (!fitted || spoils_base(*effect, model.fit, fitted->fit)) continue;
-      if (!best || misfit(*fitted) < misfit(best->model)) best = {shape, std::move(*fitted)};
-    }
-    return best;
   }
 
   /// A free law that cannot stand on the name's, but foretells held-out data better in its place: then the
@@ -310,14 +289,14 @@ class Search {
                const std::vector<Variable>& alike) {
     const auto& effects = result_.model.effects;
     const auto place = std::find(effects.begin(), effects.end(), name);
-    const auto without =
-        without_effect(task_, result_.model, static_cast<std::size_t>(place - effects.begin()), {});
+    const auto index = static_cast<std::size_t>(place - effects.begin());
+    const auto without = without_effect(task_, result_.model, index, {});
     if (!without) return;
-    const auto free = in_best_shape(*without, *candidate.curve, result_.model.fit.noise);
+    const auto free = in_best_shape(task_, *without, *candidate.curve, result_.model.fit.noise);
     Proof proof;
     proof.family_p_value = score.family_p_value;
-    if (!free || explains_nearly_all(result_.model, free->model, place - effects.begin()) ||
-        !is_better(task_, result_.model, free->model, penalty(1)) ||
+    if (!free || explains_nearly_all(task_, result_.model, index, free->model) ||
+        !is_better(task_, result_.model, free->model, per_parameter(basis_.fit)) ||
         !objection(task_, *without, free->model, all_folds(), largest_ratio(candidate), proof).empty())
       return;
     std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
@@ -326,14 +305,6 @@ class Search {
     result_.curves.push_back({free->model.effects.back(), free->curve, proof, nullptr, alike});
     settle_shape_of_newest_curve();
     has_changed_ = true;
-  }
-
-  /// A name that leaves little to a freer law is the right one, whatever that little is.
-  /// @param index of the name's effect in `named`; `free` has a curve in its place, on the same noise
-  [[nodiscard]] bool explains_nearly_all(const FittedModel& named, const FittedModel& free,
-                                         std::ptrdiff_t index) const {
-    const auto without = without_effect(task_, named, static_cast<std::size_t>(index), named.fit.noise);
-    return without && without->fit.cost - named.fit.cost > kNearlyAll * (without->fit.cost - free.fit.cost);
   }
 
   /// A law with a narrow peak needs more knots than finding it did, one of the past another memory. What
@@ -392,7 +363,7 @@ class Search {
       if (finding == result_.findings.end() || is_completed(finding->effect)) continue;
       auto fewer = without_effect(task_, model, e, model.fit.noise);
       if (!fewer || !(is_superfluous(*model.effects[e], first, model.fit) ||
-                      !is_better(task_, *fewer, model, penalty(1))))
+                      !is_better(task_, *fewer, model, per_parameter(basis_.fit))))
         continue;
       result_.model = std::move(*fewer);
       result_.findings.erase(finding);

@@ -36,6 +36,8 @@ struct Machine {
   double range_noise, resolution, range_max;  ///< m
 };
 
+std::ostream& operator<<(std::ostream& out, const Machine& machine) { return out << machine.name; }
+
 class OtherMachines : public ::testing::TestWithParam<Machine> {};
 
 /// What a robot without any effect must not get: an effect, or lengths that are off by more than is said.
@@ -76,6 +78,8 @@ struct Injected {
   double size;
   const char* name;  ///< what the report must call it, list among what it cannot tell from it, or depend on
 };
+
+std::ostream& operator<<(std::ostream& out, const Injected& injected) { return out << injected.simulated; }
 
 class NamesTheEffect : public ::testing::TestWithParam<Injected> {};
 
