@@ -119,25 +119,22 @@ class Trace {
   }
 
  private:
-  /// None where scans that were not used do not confirm it, or where what is left, once it is taken out,
-  /// would undo a good part of it: then it stood for something else.
+  /// None where what is left, once it is taken out, would undo a good part of it: then it stood for something
+  /// else. Nor where scans that were not used do not confirm it.
   std::vector<LidarFinding> offset() {
-    const Adjusted before = state_;
     const double p_value = p_value_of_offset(state_.evidence);
-    const auto proof = advance(offset_step);
+    Adjusted better = adjusted_with(offset_step, state_, used_);
+    const double value = better.options.range_error(0), deviation = deviation_of_offset(better.evidence);
+    if (std::abs(value) < kClear * deviation) return {};
+    const auto proof = advance(std::move(better));
     if (!proof) return {};
-    const double deviation = deviation_of_offset(state_.evidence);
-    if (std::abs(state_.options.range_error(0)) < kClear * deviation) {
-      state_ = before;
-      return {};
-    }
-    return {finding_of(make_range_bias(), p_value, *proof, state_.options.range_error.head<1>(),
+    return {finding_of(make_range_bias(), p_value, *proof, Eigen::VectorXd::Constant(1, value),
                        Eigen::VectorXd::Constant(1, deviation))};
   }
 
   std::vector<LidarFinding> slant() {
     const double p_value = p_value_of_slant(state_.evidence);
-    const auto proof = advance(slant_step);
+    const auto proof = advance(adjusted_with(slant_step, state_, used_));
     if (!proof) return {};
     const RangeLaw deviations = state_.evidence.covariance.diagonal().cwiseSqrt();
     return {finding_of(make_incidence_error(), p_value, *proof,
@@ -145,8 +142,8 @@ class Trace {
                        deviations.tail<kRangeCoefficients - 1>())};
   }
 
-  std::optional<Proof> advance(Step step) {
-    Adjusted better = adjusted_with(step, state_, used_);
+  /// To a state that scans that were not used confirm.
+  std::optional<Proof> advance(Adjusted better) {
     const Proof proof = prove(state_, better, others_);
     if (proof.z < kHeldOutZ) return std::nullopt;
     state_ = std::move(better);

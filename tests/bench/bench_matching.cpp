@@ -62,11 +62,11 @@ bool compare(double cell) {
   double work = 0.0;
   unsigned equal = 0;
   for (unsigned seed = 1; seed <= kCases; ++seed) {
-    auto [motion, field, points] = random_case(engine, seed, {1.0, 1.0, 0.7}, cell);
+    Case c = random_case(engine, seed, {1.0, 1.0, 0.7}, cell);
     calib::SearchResult brute, bound;
     // The coarser levels are made inside: they are part of the work of one search.
-    bound_time += timed([&] { bound = calib::search_branch_and_bound(field, points, {}); });
-    brute_time += timed([&] { brute = calib::search_brute_force(field, points, {}); });
+    bound_time += timed([&] { bound = calib::search_branch_and_bound(c.field, c.points, {}); });
+    brute_time += timed([&] { brute = calib::search_brute_force(c.field, c.points, {}); });
     if (bound.score == brute.score) ++equal;
     work += static_cast<double>(bound.evaluated) / static_cast<double>(brute.evaluated);
   }

@@ -99,9 +99,8 @@ Tour make_tour(unsigned seed) {
   Tour tour;
   Pose believed;
   for (int side = 0; side < 6; ++side) {
-    const Eigen::Vector2d from = corners[static_cast<std::size_t>(side % 4)],
-                          to = corners[static_cast<std::size_t>((side + 1) % 4)];
-    const Eigen::Vector2d way = to - from;
+    const Eigen::Vector2d& from = corners[static_cast<std::size_t>(side % 4)];
+    const Eigen::Vector2d way = corners[static_cast<std::size_t>((side + 1) % 4)] - from;
     const int steps = static_cast<int>(way.norm() / 0.5);
     for (int i = 0; i < steps; ++i) {
       const Eigen::Vector2d at = from + way * i / steps;
