@@ -4,14 +4,14 @@
 #include <string>
 
 #include "calib/tracing/fitted_model.hpp"
-#include "calib/tracing/horizon.hpp"
+#include "calib/tracing/stretch_errors.hpp"
 
 namespace odomcalib::calib {
 
 /// What speaks for an addition to the model.
 struct Proof {
   double family_p_value = 1.0;
-  double before = 0.0;  ///< held-out position error at the horizon, m
+  double before = 0.0;  ///< held-out position error over ten seconds, m
   double after = 0.0;
   Improvement improvement;
 };
@@ -23,10 +23,9 @@ inline constexpr std::size_t kFewestStretches = 10;
 /// twentieth from one model to the other, beyond its 95 % interval. Each may have its own noise model.
 bool spoils_drives(const FitTask& task, const FittedModel& before, const FittedModel& after);
 
-/// On one noise model: error at the horizon, or else whitened
-/// residual per block.
+/// On one noise model: error over ten seconds, or else whitened residual per block.
 /// @param selected the choice itself is held out: a fold counts only if the others point to the candidate
-/// @param largest_ratio of the errors at the horizon after and before
+/// @param largest_ratio of the errors over ten seconds after and before
 /// @return empty if it holds, otherwise what is missing
 std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,
                       const FoldFlags& selected, double largest_ratio, Proof& proof);

@@ -9,7 +9,7 @@
 
 #include "calib/estimators/joint.hpp"
 #include "calib/tracing/candidate.hpp"
-#include "calib/tracing/horizon.hpp"
+#include "calib/tracing/stretch_errors.hpp"
 
 namespace odomcalib::calib {
 

@@ -553,7 +553,7 @@ TEST(HeldOut, two_models_are_compared_on_the_same_pairs) {
   EXPECT_NEAR(of_after->rms[2], 1e-3, 1e-12);
 }
 
-TEST(Horizon, a_fold_that_would_not_have_chosen_keeps_its_error) {
+TEST(StretchErrors, a_fold_that_would_not_have_chosen_keeps_its_error) {
   StretchErrors before, after;
   before.position = {1.0, 2.0, 3.0};
   before.heading = {0.1, 0.2, 0.3};

@@ -1,4 +1,4 @@
-#include "calib/tracing/horizon.hpp"
+#include "calib/tracing/stretch_errors.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
