@@ -37,6 +37,7 @@ std::vector<Stretch> select(const std::vector<Stretch>& stretches, std::size_t f
 void add_errors(const FitData& data, const Eigen::VectorXd& parameters, const EffectList& effects,
                 const std::vector<Stretch>& stretches, StretchErrors& error) {
   std::vector<Interval> intervals;
+  intervals.reserve(stretches.size());
   for (const Stretch& s : stretches) intervals.push_back(s.interval);
   const auto predicted = data.model->predict(as_span(parameters), effects, intervals);
   for (std::size_t k = 0; k < stretches.size(); ++k) {
