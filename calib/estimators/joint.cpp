@@ -141,12 +141,12 @@ class Descent {
     damping_ = 1e-9;
     for (int i = 0; i < iterations; ++i) {
       if (moved_ > kReach) linearise();
-      const double before = cost(stack_, p_, noise, weights);
+      const Eigen::VectorXd residual = whitened(data_, stack_, noise, weights, stack_.residual);
       const Eigen::MatrixXd jacobian = whitened(data_, stack_, noise, weights, stack_.jacobian);
-      NormalSystem system =
-          normal_system(jacobian, whitened(data_, stack_, noise, weights, stack_.residual), fixed_);
+      NormalSystem system = normal_system(jacobian, residual, fixed_);
       add_prior(prior_, p_, system);
       if (auto error = check_rank(system, fixed_)) return *error;
+      const double before = residual.squaredNorm() + prior_cost(prior_, p_);
       const auto length = descend(system, jacobian, before, noise, weights);
       if (length && *length < kSettled) return true;
       if (!length && moved_ == 0.0) return true;

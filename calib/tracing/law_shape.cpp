@@ -84,7 +84,7 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
     if (shapes[k].mean.empty()) shapes.push_back(centred(shapes[k], task.models()));
   std::optional<Reshaped> best;
   const auto misfit = [&](const FittedModel& m) {
-    return m.fit.cost + per_parameter(m.fit) * static_cast<double>(m.fit.parameters.size());
+    return m.fit.cost + schwarz(m.fit) * static_cast<double>(m.fit.parameters.size());
   };
   for (const Curve& shape : shapes) {
     const auto effect = make_curve_effect(shape);
@@ -97,14 +97,11 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
 
 bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::size_t index,
                          const FittedModel& free) {
-  constexpr double kNearlyAll = 0.9;
   const auto without = without_effect(task, named, index, named.fit.noise);
   return without && without->fit.cost - named.fit.cost > kNearlyAll * (without->fit.cost - free.fit.cost);
 }
 
-double per_parameter(const FitResult& fit) {
-  return std::log(static_cast<double>(fit.whitened_residual.size()));
-}
+double schwarz(const FitResult& fit) { return std::log(static_cast<double>(fit.whitened_residual.size())); }
 
 bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other,
                double per_parameter) {

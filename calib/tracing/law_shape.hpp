@@ -21,7 +21,10 @@ std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, co
 /// Autom. Control 19, 1974).
 inline constexpr double kAkaike = 2.0;
 /// The same when that is what is asked (Schwarz, Ann. Statist. 6, 1978).
-double per_parameter(const FitResult& fit);
+double schwarz(const FitResult& fit);
+
+/// Share of what a freer law explains that leaves no doubt about a name.
+inline constexpr double kNearlyAll = 0.9;
 
 /// The curve on top of `model` in that of its shapes that describes the data best; nullopt if the drive can
 /// tell none from the wheels.
@@ -29,7 +32,7 @@ double per_parameter(const FitResult& fit);
 std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& model, const Curve& curve,
                                       const std::vector<NoiseModel>& noise);
 
-/// A name that leaves a tenth or less to a freer law is the right one, whatever that little is.
+/// A name that leaves so little to a freer law is the right one, whatever that little is.
 /// @param index of the name's effect in `named`; `free` has a curve in its place, on the same noise
 bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::size_t index,
                          const FittedModel& free);

@@ -115,7 +115,7 @@ class Search {
   }
 
   [[nodiscard]] double penalty(std::size_t degrees) const {
-    return static_cast<double>(degrees) * per_parameter(basis_.fit);
+    return static_cast<double>(degrees) * schwarz(basis_.fit);
   }
 
   [[nodiscard]] double penalised(const Score& score) const {
@@ -171,7 +171,6 @@ class Search {
       if (is_open(k) && candidates_[k].curve && contains(laws, candidates_[k].curve->law) &&
           is_taken(candidates_[k].curve->law))
         of_curves += table.scores()[k].statistic;
-    constexpr double kNearlyAll = 0.9;
     return table.scores()[candidate].statistic < kNearlyAll * of_curves;
   }
 
@@ -296,7 +295,7 @@ class Search {
     Proof proof;
     proof.family_p_value = score.family_p_value;
     if (!free || explains_nearly_all(task_, result_.model, index, free->model) ||
-        !is_better(task_, result_.model, free->model, per_parameter(basis_.fit)) ||
+        !is_better(task_, result_.model, free->model, schwarz(basis_.fit)) ||
         !objection(task_, *without, free->model, all_folds(), largest_ratio(candidate), proof).empty())
       return;
     std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
@@ -363,7 +362,7 @@ class Search {
       if (finding == result_.findings.end() || is_completed(finding->effect)) continue;
       auto fewer = without_effect(task_, model, e, model.fit.noise);
       if (!fewer || !(is_superfluous(*model.effects[e], first, model.fit) ||
-                      !is_better(task_, *fewer, model, per_parameter(basis_.fit))))
+                      !is_better(task_, *fewer, model, schwarz(basis_.fit))))
         continue;
       result_.model = std::move(*fewer);
       result_.findings.erase(finding);

@@ -5,15 +5,14 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <random>
 
+#include "calib/statistics/bootstrap.hpp"
 #include "calib/validation/folds.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
 constexpr double kBlockSeconds = 10.0;
-constexpr int kDraws = 1000;
 constexpr unsigned kSeed = 19960612;
 constexpr double kHeadingLever = 0.5;  ///< m
 
@@ -26,6 +25,17 @@ double rms(const std::vector<double>& values) {
 double combined_square(const StretchErrors& e, std::size_t k) {
   return e.position[k] * e.position[k] + std::pow(kHeadingLever * e.heading[k], 2);
 }
+
+/// Sums over stretches, of both models.
+struct SquaredErrors {
+  double before = 0.0;
+  double after = 0.0;
+  SquaredErrors& operator+=(const SquaredErrors& other) {
+    before += other.before;
+    after += other.after;
+    return *this;
+  }
+};
 
 std::vector<Stretch> select(const std::vector<Stretch>& stretches, std::size_t fold, std::size_t recording) {
   std::vector<Stretch> selected;
@@ -80,35 +90,20 @@ StretchErrors where_selected(const StretchErrors& before, const StretchErrors& a
 }
 
 Improvement compare(const StretchErrors& before, const StretchErrors& after) {
-  struct Sums {
-    double before = 0.0;
-    double after = 0.0;
-  };
-  std::map<std::size_t, Sums> by_block;
+  std::map<std::size_t, SquaredErrors> by_block;
+  SquaredErrors total;
   const std::size_t count = std::min(before.position.size(), after.position.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    by_block[before.block[k]].before += combined_square(before, k);
-    by_block[before.block[k]].after += combined_square(after, k);
-  }
-  std::vector<Sums> blocks;
+  for (std::size_t k = 0; k < count; ++k)
+    by_block[before.block[k]] += {combined_square(before, k), combined_square(after, k)};
+  std::vector<SquaredErrors> blocks;
   blocks.reserve(by_block.size());
-  for (const auto& [block, sums] : by_block) blocks.push_back(sums);
-  const auto ratio = [](const Sums& s) { return std::sqrt(s.after / std::max(s.before, 1e-300)); };
-  Sums total;
-  for (const Sums& s : blocks) total = {total.before + s.before, total.after + s.after};
-  std::mt19937 engine(kSeed);
-  std::vector<double> ratios;
-  for (int draw = 0; draw < kDraws; ++draw) {
-    Sums sample;
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      const Sums& s = blocks[engine() % blocks.size()];
-      sample = {sample.before + s.before, sample.after + s.after};
-    }
-    ratios.push_back(ratio(sample));
+  for (const auto& [block, sums] : by_block) {
+    blocks.push_back(sums);
+    total += sums;
   }
-  std::sort(ratios.begin(), ratios.end());
-  return {ratio(total), ratios[static_cast<std::size_t>(0.975 * kDraws)],
-          ratios[static_cast<std::size_t>(0.025 * kDraws)]};
+  const auto ratio = [](const SquaredErrors& s) { return std::sqrt(s.after / std::max(s.before, 1e-300)); };
+  const BootstrapInterval interval = bootstrap(blocks, kSeed, ratio);
+  return {ratio(total), interval.upper, interval.lower};
 }
 
 HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before,
@@ -147,15 +142,7 @@ HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before
   }
   HeldOutGain gain;
   for (const double b : blocks) gain.total += b;
-  std::mt19937 engine(kSeed);
-  std::vector<double> totals;
-  for (int draw = 0; draw < kDraws; ++draw) {
-    double total = 0.0;
-    for (std::size_t b = 0; b < blocks.size(); ++b) total += blocks[engine() % blocks.size()];
-    totals.push_back(total);
-  }
-  std::sort(totals.begin(), totals.end());
-  gain.lower = totals[static_cast<std::size_t>(0.025 * kDraws)];
+  gain.lower = bootstrap(blocks, kSeed, [](double sum) { return sum; }).lower;
   return gain;
 }
 

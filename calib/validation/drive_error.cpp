@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <random>
 
 #include "calib/effects/reference_effect.hpp"
+#include "calib/statistics/bootstrap.hpp"
 #include "calib/validation/folds.hpp"
 #include "calib/validation/stretch.hpp"
 
@@ -14,7 +14,6 @@ namespace odomcalib::calib {
 namespace {
 
 constexpr std::size_t kFewest = 4;
-constexpr int kDraws = 1000;
 constexpr unsigned kSeed = 20010823;
 
 /// Predicted minus measured motion of each stretch, in the base's frame at its begin.
@@ -51,6 +50,11 @@ double variance_of(Part part, const Eigen::Matrix3d& c) {
 struct Sums {
   double squares = 0.0;
   double amounts = 0.0;
+  Sums& operator+=(const Sums& other) {
+    squares += other.squares;
+    amounts += other.amounts;
+    return *this;
+  }
   [[nodiscard]] double figure() const { return std::sqrt(squares / std::max(amounts, 1e-300)); }
 };
 
@@ -59,33 +63,20 @@ Bounded bounded(Part part, const std::vector<Stretch>& stretches, const std::vec
   Sums total;
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     const Sums one{square_of(part, errors[k]), stretches[k].amount * stretches[k].amount};
-    Sums& block = by_block[stretches[k].block];
-    block = {block.squares + one.squares, block.amounts + one.amounts};
-    total = {total.squares + one.squares, total.amounts + one.amounts};
+    by_block[stretches[k].block] += one;
+    total += one;
   }
   std::vector<Sums> blocks;
   blocks.reserve(by_block.size());
   for (const auto& [block, sums] : by_block) blocks.push_back(sums);
-  std::mt19937 engine(kSeed);
-  std::vector<double> figures;
-  for (int draw = 0; draw < kDraws; ++draw) {
-    Sums sample;
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      const Sums& s = blocks[engine() % blocks.size()];
-      sample = {sample.squares + s.squares, sample.amounts + s.amounts};
-    }
-    figures.push_back(sample.figure());
-  }
-  std::sort(figures.begin(), figures.end());
-  return {total.figure(), figures[static_cast<std::size_t>(0.025 * kDraws)],
-          figures[static_cast<std::size_t>(0.975 * kDraws)]};
+  const BootstrapInterval interval = bootstrap(blocks, kSeed, [](const Sums& s) { return s.figure(); });
+  return {total.figure(), interval.lower, interval.upper};
 }
 
 double noise_floor(Part part, const std::vector<Stretch>& stretches) {
   Sums sums;
   for (const Stretch& s : stretches) {
-    sums.squares += std::max(variance_of(part, s.covariance), 0.0);
-    sums.amounts += s.amount * s.amount;
+    sums += {std::max(variance_of(part, s.covariance), 0.0), s.amount * s.amount};
   }
   return sums.figure();
 }

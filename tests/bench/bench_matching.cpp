@@ -115,7 +115,7 @@ void sweep_climbs() {
 }  // namespace
 
 int main() {
-  const bool equal = compare(0.1) && compare(0.05);
+  const bool coarse = compare(0.1), fine = compare(0.05);
   sweep_climbs();
-  return equal ? 0 : 1;
+  return coarse && fine ? 0 : 1;
 }

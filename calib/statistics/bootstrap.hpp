@@ -1,0 +1,34 @@
+// Percentile bootstrap over blocks that are independent of each other (Efron, Ann. Statist. 7, 1979).
+#pragma once
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace odomcalib::calib {
+
+struct BootstrapInterval {
+  double lower = 0.0;  ///< 2.5 % quantile of the figure
+  double upper = 0.0;  ///< 97.5 %
+};
+
+/// Of a figure of sums over blocks, 1000 draws with replacement.
+/// @param blocks not empty; their sums add by +=, and one made by `{}` is zero
+/// @param figure double of a sum
+template <typename Sum, typename Figure>
+BootstrapInterval bootstrap(const std::vector<Sum>& blocks, unsigned seed, const Figure& figure) {
+  constexpr int kDraws = 1000;
+  std::mt19937 engine(seed);
+  std::vector<double> figures;
+  figures.reserve(kDraws);
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Sum sample{};
+    for (std::size_t b = 0; b < blocks.size(); ++b) sample += blocks[engine() % blocks.size()];
+    figures.push_back(figure(sample));
+  }
+  std::sort(figures.begin(), figures.end());
+  return {figures[static_cast<std::size_t>(0.025 * kDraws)],
+          figures[static_cast<std::size_t>(0.975 * kDraws)]};
+}
+
+}  // namespace odomcalib::calib
