@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "calib/geometry/vector2.hpp"
+#include "calib/map/sector_index.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -118,28 +119,37 @@ bool WallMap::drop_doubles(double tolerance) {
   return walls_.size() < kept.size();
 }
 
+/// The nearest wall on the beam's way; none when it would strike near its end or too flat.
+std::optional<std::size_t> WallMap::struck_by(const Eigen::Vector2d& from, const Eigen::Vector2d& direction,
+                                              std::span<const std::uint32_t> near) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  std::optional<std::size_t> struck;
+  for (const std::uint32_t w : near) {
+    const MapWall& wall = walls_[w];
+    const double towards = wall.normal.dot(direction);
+    if (towards >= 0.0) continue;
+    const double range = wall.normal.dot(wall.centre - from) / towards;
+    if (range <= 0.0 || range >= nearest) continue;
+    const double s = wall.direction().dot(from + range * direction - wall.centre);
+    if (s < wall.low - kShade || s > wall.high + kShade) continue;
+    nearest = range;
+    const bool inside = s > wall.low + kEndMargin && s < wall.high - kEndMargin;
+    struck = inside && towards < -kMinWallIncidence ? std::optional<std::size_t>(w) : std::nullopt;
+  }
+  return struck;
+}
+
 std::vector<Strike> WallMap::strikes(const std::vector<Beam>& beams, const Pose& sensor) const {
   const Frame frame(sensor);
+  double reach = 0.0;
+  for (const Beam& beam : beams) reach = std::max(reach, beam.origin.norm());
+  const SectorIndex index(walls_, frame.origin(), reach, kShade);
   std::vector<Strike> found;
   found.reserve(beams.size());
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const Eigen::Vector2d from = frame.origin() + frame.rotate(beams[i].origin);
     const Eigen::Vector2d direction = frame.rotate(beams[i].direction);
-    double nearest = std::numeric_limits<double>::infinity();
-    Strike strike{i, walls_.size()};
-    for (std::size_t w = 0; w < walls_.size(); ++w) {
-      const MapWall& wall = walls_[w];
-      const double towards = wall.normal.dot(direction);
-      if (towards >= 0.0) continue;
-      const double range = wall.normal.dot(wall.centre - from) / towards;
-      if (range <= 0.0 || range >= nearest) continue;
-      const double s = wall.direction().dot(from + range * direction - wall.centre);
-      if (s < wall.low - kShade || s > wall.high + kShade) continue;
-      nearest = range;
-      const bool inside = s > wall.low + kEndMargin && s < wall.high - kEndMargin;
-      strike.wall = inside && towards < -kMinWallIncidence ? w : walls_.size();
-    }
-    if (strike.wall < walls_.size()) found.push_back(strike);
+    if (const auto wall = struck_by(from, direction, index.towards(direction))) found.push_back({i, *wall});
   }
   return found;
 }

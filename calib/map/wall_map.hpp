@@ -3,6 +3,9 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "calib/geometry/vector2.hpp"
@@ -63,6 +66,9 @@ class WallMap {
 
  private:
   [[nodiscard]] MapWall* find_alike(const MapWall& wall);
+  [[nodiscard]] std::optional<std::size_t> struck_by(const Eigen::Vector2d& from,
+                                                     const Eigen::Vector2d& direction,
+                                                     std::span<const std::uint32_t> near) const;
   std::vector<MapWall> walls_;
 };
 
