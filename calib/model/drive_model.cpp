@@ -4,6 +4,7 @@
 #include <complex>
 #include <stdexcept>
 
+#include "calib/model/part_of_step.hpp"
 #include "calib/model/step_twist.hpp"
 
 namespace odomcalib::calib {
@@ -13,8 +14,8 @@ Pose pose_at(const WheelTrack& track, const std::vector<Pose>& poses, const std:
              double time) {
   const std::size_t k = track.interval_at(time);
   const double share = (time - track.t[k]) / (track.t[k + 1] - track.t[k]);
-  const Pose& w = twists[k];
-  return compose(poses[k], exp_se2(share * w.x, share * w.y, share * w.yaw));
+  const Pose w = PartOfStep(track, twists, k).twist(share);
+  return compose(poses[k], exp_se2(w.x, w.y, w.yaw));
 }
 
 }  // namespace

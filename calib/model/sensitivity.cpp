@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "calib/geometry/vector2.hpp"
+#include "calib/model/part_of_step.hpp"
 #include "calib/model/step_twist.hpp"
 
 namespace odomcalib::calib {
@@ -21,10 +22,10 @@ Eigen::Matrix<double, 3, N> derivatives_of(const Pose2<SmallJet<N>>& pose) {
   return rows;
 }
 
-/// d exp(share w) / d w.
-Eigen::Matrix3d exp_derivative(const Pose& w, double share) {
+/// d exp(w) / d w.
+Eigen::Matrix3d exp_derivative(const Pose& w) {
   using J = SmallJet<3>;
-  return derivatives_of<3>(exp_se2<J>(share * J(w.x, 0), share * J(w.y, 1), share * J(w.yaw, 2)));
+  return derivatives_of<3>(exp_se2<J>(J(w.x, 0), J(w.y, 1), J(w.yaw, 2)));
 }
 
 /// Derivatives of m = mount^-1 * base * mount: columns base x, y, yaw, mount x, y, yaw.
@@ -37,7 +38,8 @@ Eigen::Matrix<double, 3, 6> conjugate_derivative(const Pose& base, const Pose& m
 /// One end of an interval on the trajectory.
 struct End {
   std::size_t step = 0;
-  double share = 0.0;  ///< of the step's twist that lies before the end
+  PartOfStep::Weights<double> weights{};  ///< of the twist since the step's begin
+  Eigen::Matrix3d by_twist;               ///< of the motion since the step's begin, by that twist
   Pose pose;
   Eigen::Vector3d velocity;  ///< by encoder time, in room axes
 };
@@ -49,11 +51,12 @@ End end_at(const WheelTrack& track, const Trajectory& along, double sensor_time)
   end.step = track.interval_at(time);
   const double begin = track.t[end.step];
   const J share = (J(time, 0) - begin) / (track.t[end.step + 1] - begin);
-  const Pose& w = along.twists()[end.step];
+  const PartOfStep part(track, along.twists(), end.step);
+  const Pose2<J> w = part.twist(share);
   const Pose& p = along.poses()[end.step];
-  const auto pose =
-      compose<J>({J(p.x), J(p.y), J(p.yaw)}, exp_se2<J>(share * w.x, share * w.y, share * w.yaw));
-  end.share = share.a;
+  const auto pose = compose<J>({J(p.x), J(p.y), J(p.yaw)}, exp_se2<J>(w.x, w.y, w.yaw));
+  end.weights = part.weights(share.a);
+  end.by_twist = exp_derivative({w.x.a, w.y.a, w.yaw.a});
   end.pose = {pose.x.a, pose.y.a, pose.yaw.a};
   end.velocity = derivatives_of<1>(pose);
   return end;
@@ -102,11 +105,14 @@ std::vector<Jet> seed(std::span<const double> parameters, std::size_t first) {
 struct Sensitivity::Path {
   End begin, end;
   Eigen::Matrix<double, 3, 6> to_sensor;  ///< by base motion, then by mount
-  std::vector<Eigen::Matrix3d> by_twist;  ///< base motion by the twist of each step from begin.step on
+  std::size_t first = 0;                  ///< step whose twist matters
+  std::vector<Eigen::Matrix3d> by_twist;  ///< base motion by the twist of each step from `first` on
   Eigen::Vector3d by_begin, by_end;       ///< base motion by the encoder times of the ends
 
   Path(const Trajectory& along, const Pose& mount, const End& from, const End& to,
        const std::vector<Eigen::Matrix3d>& whole_steps);
+  /// @param by_part base motion by the twist of the part of the step that lies before one of its ends
+  void add(const End& at, const Eigen::Matrix3d& by_part);
   /// What delays of both ends do.
   [[nodiscard]] Chunk by_delays(const Jet& at_begin, const Jet& at_end) const {
     return -by_begin * at_begin.v.transpose() - by_end * at_end.v.transpose();
@@ -120,14 +126,19 @@ Sensitivity::Path::Path(const Trajectory& along, const Pose& mount, const End& f
   to_sensor = conjugate_derivative(between(b, e), mount);
   by_end = rotation_about_z(-b.yaw) * end.velocity;
   by_begin = -carried(b, b, e) * begin.velocity;
-  for (std::size_t k = begin.step; k <= end.step; ++k) {
-    const bool first = k == begin.step, last = k == end.step;
-    const double low = first ? begin.share : 0.0, high = last ? end.share : 1.0;
-    const Eigen::Matrix3d part =
-        first || last ? exp_derivative(along.twists()[k], high - low) : whole_steps[k];
-    by_twist.push_back(
-        twist_to_motion(b, first ? b : along.poses()[k], last ? e : along.poses()[k + 1], e, part));
-  }
+  first = begin.step > 0 ? begin.step - 1 : 0;
+  const std::size_t last = std::min(end.step + 1, along.twists().size() - 1);
+  by_twist.assign(last - first + 1, Eigen::Matrix3d::Zero());
+  for (std::size_t k = begin.step; k < end.step; ++k)
+    by_twist[k - first] = twist_to_motion(b, along.poses()[k], along.poses()[k + 1], e, whole_steps[k]);
+  add(end, twist_to_motion(b, along.poses()[end.step], e, e, end.by_twist));
+  add(begin, -twist_to_motion(b, along.poses()[begin.step], b, e, begin.by_twist));
+}
+
+void Sensitivity::Path::add(const End& at, const Eigen::Matrix3d& by_part) {
+  by_twist[at.step - first] += at.weights.own * by_part;
+  if (at.step > first) by_twist[at.step - first - 1] += at.weights.before * by_part;
+  if (at.step + 1 < first + by_twist.size()) by_twist[at.step - first + 1] += at.weights.after * by_part;
 }
 
 Sensitivity::Sensitivity(const DriveModel& model, const Trajectory& along,
@@ -135,7 +146,7 @@ Sensitivity::Sensitivity(const DriveModel& model, const Trajectory& along,
     : model_(model), along_(along), intervals_(intervals.begin(), intervals.end()) {
   std::vector<Eigen::Matrix3d> whole_steps;
   whole_steps.reserve(along.twists().size());
-  for (const Pose& w : along.twists()) whole_steps.push_back(exp_derivative(w, 1.0));
+  for (const Pose& w : along.twists()) whole_steps.push_back(exp_derivative(w));
   const Pose mount = to_base(along.parameters()).mount;
   paths_.reserve(intervals.size());
   for (const Interval& i : intervals)
@@ -166,7 +177,7 @@ std::vector<StepResponse> Sensitivity::by_steps(const EffectList& effects,
   const std::vector<Jet> jets = seed(more.parameters, along_.parameters().size());
   const std::vector<Chunk> twists = twist_derivatives(model_.context(), jets, more.effects);
   std::vector<std::size_t> first;
-  for (const Path& path : paths_) first.push_back(path.begin.step);
+  for (const Path& path : paths_) first.push_back(path.first);
   std::vector<StepResponse> responses;
   for (Eigen::Index p = 0; p < static_cast<Eigen::Index>(parameters.size()); ++p) {
     std::vector<Eigen::Matrix3Xd> rows;
@@ -175,7 +186,7 @@ std::vector<StepResponse> Sensitivity::by_steps(const EffectList& effects,
       Eigen::Matrix3Xd row(3, static_cast<Eigen::Index>(path.by_twist.size()));
       for (std::size_t k = 0; k < path.by_twist.size(); ++k)
         row.col(static_cast<Eigen::Index>(k)) =
-            path.to_sensor.leftCols<3>() * (path.by_twist[k] * twists[path.begin.step + k].col(p));
+            path.to_sensor.leftCols<3>() * (path.by_twist[k] * twists[path.first + k].col(p));
       rows.push_back(std::move(row));
     }
     responses.emplace_back(first, std::move(rows));
@@ -206,7 +217,7 @@ Eigen::MatrixXd Sensitivity::by(std::span<const double> parameters, const Placed
       Chunk base = path.by_delays(effects.delay<Jet>(intervals_[i].begin - middle, jets),
                                   effects.delay<Jet>(intervals_[i].end - middle, jets));
       for (std::size_t k = 0; k < path.by_twist.size(); ++k)
-        base.noalias() += path.by_twist[k] * twists[path.begin.step + k];
+        base.noalias() += path.by_twist[k] * twists[path.first + k];
       Chunk rows = path.to_sensor.leftCols<3>() * base;
       for (Eigen::Index m = 0; m < 3; ++m) {
         const auto column = static_cast<Eigen::Index>(kMountX) + m - static_cast<Eigen::Index>(chunk);

@@ -13,6 +13,16 @@ std::size_t WheelTrack::interval_at(double time) const {
   return std::min(index, t.size() - 2);
 }
 
+Bend WheelTrack::bend(std::size_t interval) const {
+  constexpr double kAlike = 2.0;  // neighbours' durations
+  if (interval == 0 || interval + 2 >= t.size() || segment[interval - 1] != segment[interval + 2]) return {};
+  const auto duration = [this](std::size_t k) { return t[k + 1] - t[k]; };
+  const double own = duration(interval), before = duration(interval - 1), after = duration(interval + 1);
+  if (std::max(before, after) > kAlike * own || std::min(before, after) * kAlike < own) return {};
+  const double by_rate = own * own / (own + 0.5 * (before + after));
+  return {by_rate / before, by_rate / after};
+}
+
 bool WheelTrack::covers(double from, double to) const {
   if (empty() || from < t.front() || to > t.back()) return false;
   return segment[interval_at(from)] == segment[std::min(interval_at(to) + 1, t.size() - 1)];

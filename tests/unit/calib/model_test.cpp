@@ -74,6 +74,39 @@ TEST(DriveModel, heading_and_place_follow_the_fixes_whatever_the_wheels_say) {
   EXPECT_LT(worst(), 1e-12);
 }
 
+/// Wheels that speed up steadily, left with 3 rad/s^2 and right with 5.
+double steadily(double rate, double t) { return 0.5 * rate * t * t; }
+
+TEST(DriveModel, between_samples_wheels_speed_up_as_they_do_from_one_to_the_next) {
+  WheelTrack track;
+  for (double t : {0.0, 0.1, 0.19, 0.31, 0.4, 0.5}) {  // not quite even
+    track.t.push_back(t);
+    track.left.push_back(steadily(3.0, t));
+    track.right.push_back(steadily(5.0, t));
+    track.segment.push_back(0);
+  }
+  const DriveModel model(track, make_context(track, kBase));
+  const Trajectory path = model.trajectory(as_span(to_vector(kBase)), {});
+  const auto turned = [](double t) {
+    return (steadily(5.0, t) * kBase.right_radius - steadily(3.0, t) * kBase.left_radius) / kBase.track_width;
+  };
+  for (double t = 0.1; t < 0.4; t += 0.013) EXPECT_NEAR(path.at(t).yaw, turned(t), 1e-12) << t;
+  const double chord = turned(0.4) + 0.5 * (turned(0.5) - turned(0.4));
+  EXPECT_NEAR(path.at(0.45).yaw, chord, 1e-12) << "after the last interval nothing is known";
+}
+
+TEST(WheelTrack, next_to_a_gap_or_another_segment_nothing_is_told_from_neighbours) {
+  const auto bends = [](std::vector<double> t, std::vector<int> segment) {
+    const WheelTrack track{std::move(t), {0, 1, 3, 6}, {0, 1, 3, 6}, std::move(segment)};
+    return track.bend(1).after != 0.0 && track.bend(1).before != 0.0;
+  };
+  EXPECT_TRUE(bends({0.0, 0.1, 0.2, 0.3}, {0, 0, 0, 0}));
+  EXPECT_FALSE(bends({0.0, 0.1, 0.2, 0.9}, {0, 0, 0, 0}));
+  EXPECT_FALSE(bends({0.0, 0.7, 0.8, 0.9}, {0, 0, 0, 0}));
+  EXPECT_FALSE(bends({0.0, 0.1, 0.2, 0.3}, {0, 0, 0, 1}));
+  EXPECT_FALSE(bends({0.0, 0.1, 0.2, 0.3}, {0, 1, 1, 1}));
+}
+
 class JacobianOf : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(JacobianOf, agrees_with_central_differences) {

@@ -1,0 +1,67 @@
+#include "calib/gate.hpp"
+
+#include <gtest/gtest.h>
+
+namespace odomcalib::calib {
+namespace {
+
+/// All as it should be.
+Calibration sound() {
+  Calibration calibration;
+  calibration.robot.left_wheel_diameter = calibration.robot.right_wheel_diameter = 0.15;
+  calibration.robot.track_width = 0.4;
+  calibration.parameters = {{"left_wheel_diameter", {0.151, 1e-4, "m"}},
+                            {"right_wheel_diameter", {0.149, 1e-4, "m"}},
+                            {"track_width", {0.41, 2e-4, "m"}},
+                            {"lidar_x", {0.1, 0.5, "m"}}};
+  return calibration;
+}
+
+Calibration with_track(double value, double deviation) {
+  Calibration calibration = sound();
+  calibration.parameters[2].second = {value, deviation, "m"};
+  return calibration;
+}
+
+constexpr Footing kFirm{true, 400, 20};
+
+TEST(Gate, accepts_what_is_sound_and_leaves_the_lidar_pose_alone) {
+  const GateResult gate = judge(sound(), kFirm);
+  EXPECT_EQ(gate.verdict, Verdict::accepted);
+  EXPECT_TRUE(gate.reasons.empty());
+}
+
+TEST(Gate, refuses_a_badly_determined_length_and_names_the_motion_for_it) {
+  EXPECT_EQ(judge(with_track(0.4, 0.0019), kFirm).verdict, Verdict::accepted);
+  EXPECT_EQ(judge(with_track(0.4, 0.0021), kFirm).verdict, Verdict::accepted_with_warnings);
+  const GateResult gate = judge(with_track(0.4, 0.0121), kFirm);
+  EXPECT_EQ(gate.verdict, Verdict::refused);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("turn on the spot"), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, refuses_what_cannot_be_the_robot) {
+  EXPECT_EQ(judge(with_track(0.43, 1e-4), kFirm).verdict, Verdict::accepted);
+  EXPECT_EQ(judge(with_track(0.45, 1e-4), kFirm).verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(judge(with_track(0.81, 1e-4), kFirm).verdict, Verdict::refused);
+  EXPECT_EQ(judge(with_track(0.19, 1e-4), kFirm).verdict, Verdict::refused);
+  EXPECT_EQ(judge(with_track(-0.4, 1e-4), kFirm).verdict, Verdict::refused);
+}
+
+TEST(Gate, refuses_values_of_the_few_scans_that_happened_to_match) {
+  EXPECT_EQ(judge(sound(), {true, 50, 50}).verdict, Verdict::accepted);
+  EXPECT_EQ(judge(sound(), {true, 49, 51}).verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(judge(sound(), {true, 10, 90}).verdict, Verdict::accepted_with_warnings);
+  const GateResult gate = judge(sound(), {true, 9, 91});
+  EXPECT_EQ(gate.verdict, Verdict::refused);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("9 of 100"), std::string::npos) << gate.reasons[0];
+  EXPECT_EQ(judge(sound(), Footing{}).verdict, Verdict::accepted) << "places in a map, poses or tuples";
+}
+
+TEST(Gate, warns_of_a_fit_that_has_not_settled) {
+  EXPECT_EQ(judge(sound(), {false, 400, 20}).verdict, Verdict::accepted_with_warnings);
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
