@@ -15,9 +15,11 @@ using State = Eigen::Matrix<double, kState, 1>;
 using StateMatrix = Eigen::Matrix<double, kState, kState>;
 enum Column : Eigen::Index { kX, kY, kYaw, kLeftRadius, kRightRadius, kTrack, kLidarX, kLidarY, kLidarYaw };
 
-constexpr double kProbe = 1e-6;  // m and rad, for derivatives of ranges
-constexpr double kSteepest =
-    50.0;  // m per m; beams that strike a corner or graze a wall tell nothing reliable
+constexpr double kProbe = 1e-6;     // m and rad, for derivatives of ranges
+constexpr double kSteepest = 50.0;  // m per m and m per rad; beams that strike a corner tell nothing
+/// m per m, 1 / cos(80 deg): flatter beams would promise what no real wall keeps (they are left out of the
+/// published bounds of matching, too).
+constexpr double kGrazing = 5.76;
 
 /// Before the first reading nothing is known but that the robot is no toy and no truck.
 StateMatrix ignorance() {
@@ -49,7 +51,7 @@ class Path {
   const std::vector<TruthSample>& samples_;
 };
 
-/// Range by position and direction of the beam; nothing where a corner is near.
+/// Range by position and direction of the beam; nothing where a corner is near or the wall is grazed.
 std::optional<Eigen::Vector3d> range_gradient(const Room& room, const Pose& eye, double direction) {
   const auto cast = [&](double dx, double dy, double dyaw) {
     const auto hit = room.cast({eye.x + dx, eye.y + dy}, direction + dyaw);
@@ -58,7 +60,7 @@ std::optional<Eigen::Vector3d> range_gradient(const Room& room, const Pose& eye,
   Eigen::Vector3d gradient(cast(kProbe, 0, 0) - cast(-kProbe, 0, 0), cast(0, kProbe, 0) - cast(0, -kProbe, 0),
                            cast(0, 0, kProbe) - cast(0, 0, -kProbe));
   gradient /= 2.0 * kProbe;
-  if (gradient.cwiseAbs().maxCoeff() > kSteepest) return std::nullopt;
+  if (gradient.cwiseAbs().maxCoeff() > kSteepest || gradient.head<2>().norm() > kGrazing) return std::nullopt;
   return gradient;
 }
 
