@@ -10,8 +10,10 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr int kMaxNeighbours = 12;          ///< on each side
-constexpr double kMaxNeighbourhood = 0.25;  ///< m; longer stretches of wall gain nothing and bend at corners
+constexpr int kMaxNeighbours = 12;  ///< on each side
+constexpr double kMaxNeighbourhood =
+    0.25;  ///< m; longer stretches of wall gain nothing and bend at corners ...
+constexpr double kWideNeighbourhood = 2.5;  ///< steps between beams; ... but few beams need more than that
 constexpr std::size_t kMinLinePoints = 4;
 constexpr double kLineNoiseFactor = 2.0;  ///< accepted rms of a line fit in units of the expected noise
 constexpr double kRelativeGap =
@@ -67,8 +69,9 @@ double expected_step(const SurfacePoint& a, double angular_step) {
 }
 
 /// How far the neighbourhood of i reaches to one side before a gap, the size limit or the count limit.
-std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int direction,
-                  double angular_step) {
+/// @param farthest m
+std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int direction, double angular_step,
+                  double farthest) {
   std::size_t k = i;
   for (int n = 0; n < kMaxNeighbours; ++n) {
     if ((direction < 0 && k == 0) || (direction > 0 && k + 1 == points.size())) break;
@@ -76,7 +79,7 @@ std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int di
     // A surface seen at a grazing angle spreads its points; beyond about 75 degrees it is not used.
     const double gap = (points[next].position - points[k].position).norm();
     if (gap > kRelativeGap * expected_step(points[k], angular_step)) break;
-    if ((points[next].position - points[i].position).norm() > kMaxNeighbourhood) break;
+    if ((points[next].position - points[i].position).norm() > farthest) break;
     k = next;
   }
   return k;
@@ -90,21 +93,32 @@ bool acceptable(const Line& line, const SurfacePoint& point, double range_noise)
 }
 
 /// Widest neighbourhood that is still one line: both sides, one side (next to a corner), then a narrower one.
-void attach_line(std::vector<SurfacePoint>& points, const RunSums& sums, std::size_t i, double angular_step,
-                 double range_noise) {
-  const std::size_t low = reach(points, i, -1, angular_step);
-  const std::size_t high = reach(points, i, +1, angular_step);
+std::optional<Line> line_within(const std::vector<SurfacePoint>& points, const RunSums& sums, std::size_t i,
+                                double angular_step, double farthest, double range_noise) {
+  const std::size_t low = reach(points, i, -1, angular_step, farthest);
+  const std::size_t high = reach(points, i, +1, angular_step, farthest);
   const std::pair<std::size_t, std::size_t> windows[] = {
       {low, high}, {low, i}, {i, high}, {i - (i - low) / 2, i + (high - i) / 2}};
   for (const auto& [first, last] : windows) {
     const Line line = sums.line(first, last);
-    if (!acceptable(line, points[i], range_noise)) continue;
-    SurfacePoint& point = points[i];
-    point.normal = line.normal.dot(point.beam) > 0.0 ? Eigen::Vector2d(-line.normal) : line.normal;
-    point.anchor = point.position - line.normal * line.normal.dot(point.position - line.centre);
-    point.has_line = true;
-    return;
+    if (acceptable(line, points[i], range_noise)) return line;
   }
+  return std::nullopt;
+}
+
+void attach_line(std::vector<SurfacePoint>& points, const RunSums& sums, std::size_t i, double angular_step,
+                 double range_noise) {
+  const auto within = [&](double farthest) {
+    return line_within(points, sums, i, angular_step, farthest, range_noise);
+  };
+  SurfacePoint& point = points[i];
+  auto line = within(kMaxNeighbourhood);
+  const double wide = kWideNeighbourhood * expected_step(point, angular_step);
+  if (!line && wide > kMaxNeighbourhood) line = within(wide);
+  if (!line) return;
+  point.normal = line->normal.dot(point.beam) > 0.0 ? Eigen::Vector2d(-line->normal) : line->normal;
+  point.anchor = point.position - line->normal * line->normal.dot(point.position - line->centre);
+  point.has_line = true;
 }
 
 SurfacePoint beam_end(const Scan& scan, std::size_t beam, const BeamMotion& motion) {

@@ -13,6 +13,7 @@ namespace odomcalib::calib {
 namespace {
 
 using testing::kCorridor;
+using testing::kHall;
 using testing::kRoom;
 using testing::ray_distance;
 using testing::RoomWall;
@@ -28,6 +29,16 @@ TEST(Matching, S2_04_recovers_a_known_motion_from_noise_free_scans) {
   EXPECT_NEAR(match.pose[2], 0.15, 1e-6);
 }
 
+/// e' C^-1 e; three are expected.
+double normalised_error_squared(const ScanMatch& match, const Pose& motion) {
+  Eigen::Matrix3d covariance;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      covariance(i, j) = match.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+  const Eigen::Vector3d error(match.pose[0] - motion.x, match.pose[1] - motion.y, match.pose[2] - motion.yaw);
+  return error.dot(covariance.inverse() * error);
+}
+
 TEST(Matching, S2_40_errors_agree_with_the_reported_covariance) {
   constexpr unsigned kRuns = 300;
   double squared = 0.0;
@@ -38,16 +49,29 @@ TEST(Matching, S2_40_errors_agree_with_the_reported_covariance) {
         match_scans(scan_from(kRoom, a, 0.008, 2 * run),
                     scan_from(kRoom, compose(a, motion), 0.008, 2 * run + 1), {0, 0, 0}, 0.008);
     ASSERT_TRUE(match.ok()) << match.status << " run " << run;
-    Eigen::Matrix3d covariance;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        covariance(i, j) = match.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-    const Eigen::Vector3d error(match.pose[0] - motion.x, match.pose[1] - motion.y,
-                                match.pose[2] - motion.yaw);
-    squared += error.dot(covariance.inverse() * error);
+    squared += normalised_error_squared(match, motion);
   }
   std::printf("%u matches: e' C^-1 e is %.3f times its expectation\n", kRuns, squared / (3.0 * kRuns));
   EXPECT_NEAR(squared / (3.0 * kRuns), 1.0, 0.2);
+}
+
+// Two degrees are 20 cm at 6 m: the lines through neighbouring ends have to reach farther than in dense
+// scans.
+TEST(Matching, few_beams_in_a_wide_hall_match_as_they_say) {
+  constexpr unsigned kRuns = 200;
+  constexpr int kBeams = 180;
+  const Pose motion{0.15, 0.02, -0.1};
+  double squared = 0.0;
+  for (unsigned run = 0; run < kRuns; ++run) {
+    const Pose a{0.1 * (run % 5), 0.05 * (run % 7), 0.3 * run};
+    const ScanMatch match = match_scans(scan_from(kHall, a, 0.008, 2 * run, kBeams),
+                                        scan_from(kHall, compose(a, motion), 0.008, 2 * run + 1, kBeams),
+                                        {0.12, 0.0, -0.08}, 0.008);
+    ASSERT_TRUE(match.ok()) << match.status << " run " << run;
+    squared += normalised_error_squared(match, motion);
+  }
+  std::printf("%u matches: e' C^-1 e is %.3f times its expectation\n", kRuns, squared / (3.0 * kRuns));
+  EXPECT_NEAR(squared / (3.0 * kRuns), 1.0, 0.25);
 }
 
 TEST(Matching, the_result_does_not_depend_on_the_guess) {

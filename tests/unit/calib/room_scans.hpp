@@ -33,17 +33,18 @@ inline double ray_distance(const std::vector<RoomWall>& walls, double x, double 
 
 inline const std::vector<RoomWall> kRoom = {{-3, -2, 4, -2}, {4, -2, 4, 3}, {4, 3, -3, 3},
                                             {-3, 3, -3, -2}, {1, 3, 1, 2},  {1, 2, 2, 2}};
+inline const std::vector<RoomWall> kHall = {{-6, -5, 5, -5}, {5, -5, 5, 4}, {5, 4, -6, 4}, {-6, 4, -6, -5}};
 inline const std::vector<RoomWall> kCorridor = {{-50, -1, 50, -1}, {-50, 1, 50, 1}};
 
 inline Scan scan_from(const std::vector<RoomWall>& walls, const calib::Pose& pose, double noise,
-                      unsigned seed) {
+                      unsigned seed, int beams = 720) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> gauss(0.0, noise);
   Scan scan;
   scan.angle_min = -calib::kPi;
-  scan.angle_increment = 2.0 * calib::kPi / 720.0;
+  scan.angle_increment = 2.0 * calib::kPi / beams;
   scan.range_max = 12.0;
-  for (int i = 0; i < 720; ++i) {
+  for (int i = 0; i < beams; ++i) {
     const double range =
         ray_distance(walls, pose.x, pose.y, pose.yaw + scan.angle_min + scan.angle_increment * i);
     scan.ranges.push_back(range < 12.0 ? static_cast<float>(range + (noise > 0.0 ? gauss(engine) : 0.0))
