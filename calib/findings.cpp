@@ -61,7 +61,7 @@ class Filler {
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
     store_report_data(make_report_data(found_.session, effects(), found_.outcome.model.fit, plain_),
                       calibration_);
-    const GateResult gate = judge(calibration_, fit.converged);
+    const GateResult gate = judge(calibration_, footing());
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;
   }
@@ -75,6 +75,17 @@ class Filler {
   [[nodiscard]] bool lengths_may_be_scaled() const {
     if (!found_.session.reference_is_scans()) return false;
     return !found_.every_scan_placed || !effects().empty() || !found_.lidar.empty();
+  }
+
+  [[nodiscard]] Footing footing() const {
+    Footing footing{found_.outcome.model.fit.converged};
+    if (!found_.session.reference_is_scans() || found_.every_scan_placed) return footing;
+    for (const PairSet& set : found_.session.pair_sets()) {
+      footing.matched += set.pairs.size();
+      for (const auto& [reason, count] : set.rejected)
+        if (reason.starts_with("match")) footing.unmatched += count;
+    }
+    return footing;
   }
 
   /// The six base parameters alone, on the same pairs: what the effects are measured against.

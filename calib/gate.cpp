@@ -12,6 +12,8 @@ constexpr double kWarnRelativeDeviation = 0.005;
 constexpr double kPlausibleLow = 0.5;  ///< estimate over nominal
 constexpr double kPlausibleHigh = 2.0;
 constexpr double kWarnChange = 0.10;
+constexpr double kFewestMatched = 0.1;  ///< of the pairs of scans; the others may say something else
+constexpr double kWarnMatched = 0.5;
 
 std::string percent(double share) {
   std::ostringstream out;
@@ -50,6 +52,17 @@ class Judgement {
     if (nominal > 0.0) check_against_nominal(name, quantity.value / nominal);
   }
 
+  void check_matches(std::size_t matched, std::size_t unmatched) {
+    const auto all = static_cast<double>(matched + unmatched);
+    const std::string finding =
+        "only " + std::to_string(matched) + " of " + std::to_string(matched + unmatched) +
+        " pairs of scans could be matched; drive where the lidar sees walls on all sides";
+    if (static_cast<double>(matched) < kFewestMatched * all)
+      refuse(finding);
+    else if (static_cast<double>(matched) < kWarnMatched * all)
+      warn(finding);
+  }
+
   [[nodiscard]] GateResult result() const {
     if (!refusals_.empty()) return {Verdict::refused, refusals_};
     if (!warnings_.empty()) return {Verdict::accepted_with_warnings, warnings_};
@@ -71,13 +84,14 @@ class Judgement {
 
 }  // namespace
 
-GateResult judge(const Calibration& calibration, bool converged) {
+GateResult judge(const Calibration& calibration, const Footing& footing) {
   Judgement judgement;
   for (const auto& [name, quantity] : calibration.parameters) {
     if (name.starts_with("lidar_")) continue;
     judgement.check(name, quantity, nominal_value(calibration.robot, name));
   }
-  if (!converged) judgement.warn("the fit had not settled when its iterations ran out");
+  judgement.check_matches(footing.matched, footing.unmatched);
+  if (!footing.converged) judgement.warn("the fit had not settled when its iterations ran out");
   return judgement.result();
 }
 

@@ -1,6 +1,7 @@
 // The quality gate: may this calibration be written to a robot?
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,15 @@ struct GateResult {
   std::vector<std::string> reasons;
 };
 
-/// Refuses implausible or badly determined values and says which motion is missing; warns of what a user
-/// should know.
-GateResult judge(const Calibration& calibration, bool converged);
+/// What the values stand on.
+struct Footing {
+  bool converged = true;
+  std::size_t matched = 0;    ///< pairs of scans, where the values come from these
+  std::size_t unmatched = 0;  ///< pairs that gave no motion
+};
+
+/// Refuses implausible or badly determined values, or those of the few scans that happened to match, and says
+/// what is missing; warns of what a user should know.
+GateResult judge(const Calibration& calibration, const Footing& footing);
 
 }  // namespace odomcalib::calib
