@@ -18,7 +18,12 @@ std::string key_of(const Effect& effect) { return effect.name() + "/" + effect.p
 
 std::string key_of(const Effect& effect, const Curve& curve) {
   return effect.name() + "/" + std::to_string(curve.period) + "/" + std::to_string(curve.harmonic) + "/" +
-         std::to_string(curve.wave[0]) + "/" + std::to_string(curve.wave[1]);
+         std::to_string(curve.wave[0]) + "/" + std::to_string(curve.wave[1]) +
+         (curve.patches ? "/patches" : "");
+}
+
+bool is_phase(Variable variable) {
+  return variable == Variable::left_phase || variable == Variable::right_phase;
 }
 
 bool belongs_to_one_recording(const Effect& effect) {
@@ -91,6 +96,9 @@ bool must_be_worthwhile(const Candidate& candidate) {
 
 double largest_ratio(const Candidate& candidate) {
   if (must_be_worthwhile(candidate)) return kWorthwhile;
+  // What comes back with each turn of a wheel cancels over ten seconds, however plain it is in between.
+  if (candidate.curve && is_phase(candidate.curve->law.variable))
+    return std::numeric_limits<double>::infinity();
   const bool will_be_used = candidate.effect->storage() == Storage::host;
   return candidate.curve && will_be_used ? kUseful : std::numeric_limits<double>::infinity();
 }

@@ -181,6 +181,16 @@ double cubic_bump(double x) {
   return (tail * tail * tail - (a < 1.0 ? 4.0 * core * core * core : 0.0)) / 6.0;
 }
 
+/// Bilinear, one knot after another along x for each along y.
+BasisValues patches(const Curve& curve, double x, double y) {
+  const auto place = [&](double z) { return 0.5 * (scaled(curve, z) + 1.0) * (kPatches - 1); };
+  const auto hat = [](double at, int knot) { return std::max(0.0, 1.0 - std::abs(at - knot)); };
+  BasisValues functions;
+  for (int j = 0; j < kPatches; ++j)
+    for (int i = 0; i < kPatches; ++i) functions.push_back(hat(place(x), i) * hat(place(y), j));
+  return functions;
+}
+
 BasisValues hats(int knots, double place) {
   BasisValues functions;
   for (int k = 1; k <= knots; ++k) functions.push_back(std::max(0.0, 1.0 - std::abs(place - k)));
@@ -268,6 +278,12 @@ void add_periods(double duration, std::vector<Curve>& curves) {
     curves.push_back({{Variable::time, Carrier::both_travel}, 0.0, duration, duration / cycles, 0});
 }
 
+/// Of what lies on the floor; wheels sink in, both alike.
+void add_patches(double low, double high, std::vector<Curve>& curves) {
+  curves.push_back({{Variable::position, Carrier::both_travel}, low, high});
+  curves.back().patches = true;
+}
+
 void add_harmonics(const Curve& curve, int first, int last, std::vector<Curve>& curves) {
   for (int harmonic = first; harmonic <= last; ++harmonic) {
     curves.push_back(curve);
@@ -322,6 +338,7 @@ BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);
   if (variable == Variable::time) return legendre(scaled(curve, z));
   if (curve.is_wave()) return wave_functions(curve, c);
+  if (curve.patches) return patches(curve, c.x, c.y);
   if (variable == Variable::position) {
     const double x = scaled(curve, c.x), y = scaled(curve, c.y);
     return {x, y, x * x, x * y, y * y};
@@ -350,6 +367,10 @@ std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* 
     if (!has_knots || knots <= curve.knots) continue;
     shapes.push_back(curve);
     shapes.back().knots = knots;
+  }
+  if (curve.law.variable == Variable::position && !curve.is_wave() && !curve.patches) {
+    shapes.push_back(curve);
+    shapes.back().patches = true;
   }
   const std::size_t memories = memories_of(curve.law.variable);
   for (std::size_t memory = 0; memories > kUsualMemory + 1 && memory < memories; ++memory) {
@@ -422,6 +443,7 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
       if (variable == Variable::heading) add_harmonics(curve, 1, 1, curves);
     }
     if (variable == Variable::time) add_periods(high - low, curves);
+    if (variable == Variable::position) add_patches(low, high, curves);
   }
   return curves;
 }

@@ -14,14 +14,16 @@ namespace odomcalib::calib {
 
 /// Knots over the magnitude of a speed: the first to find a law, the others to describe it.
 inline constexpr std::array<int, 4> kKnots = {4, 8, 12, 16};
+/// Knots each way over a place with patches: a rug has an edge, which no polynomial has.
+inline constexpr int kPatches = 4;
 
 /// f(z) = sum of coefficients times basis functions of the variable z:
 /// - angles: harmonics 1 to 3, or one alone;
 /// - distances since an event: piecewise linear in its logarithm, zero far away;
 /// - time with a period: one cosine and one sine;
-/// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both; or, of a floor
-///   that repeats itself, one wave: its cosine and sine, and both times the cosine of the angle between the
-///   heading and the way across the crests;
+/// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both; or patches,
+///   bilinear between kPatches knots each way; or, of a floor that repeats itself, one wave: its cosine and
+///   sine, and both times the cosine of the angle between the heading and the way across the crests;
 /// - a push that stays until the opposite one: its sign;
 /// - speeds and turn rate: piecewise linear in the magnitude at four knots or cubic splines at more, a step
 /// with the direction, and the magnitude times the direction;
@@ -42,6 +44,7 @@ struct Curve {
   std::size_t memory = kUsualMemory;  ///< of what happened before only: which way to understand it
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
   bool constant = false;              ///< of heading only: with a constant as the first function
+  bool patches = false;               ///< of position only
   bool operator==(const Curve&) const = default;
   [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
 };

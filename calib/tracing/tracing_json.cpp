@@ -30,6 +30,7 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   curve.memory = entry.value("memory", kUsualMemory);
   curve.wave = entry.value("wave", curve.wave);
   curve.constant = entry.value("constant", false);
+  curve.patches = entry.value("patches", false);
   if (!(curve.high > curve.low) || curve.memory >= memories_of(*variable) ||
       std::find(kKnots.begin(), kKnots.end(), curve.knots) == kKnots.end() ||
       coefficients.size() != basis_size(curve))
@@ -65,6 +66,7 @@ std::string curves_to_json(const std::vector<FittedCurve>& curves) {
                     {"memory", curve.memory},
                     {"wave", curve.wave},
                     {"constant", curve.constant},
+                    {"patches", curve.patches},
                     {"coefficients", coefficients},
                     {"law_of", law_of}});
   return list.dump();

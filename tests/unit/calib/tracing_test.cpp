@@ -3,9 +3,11 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/tracing/candidate.hpp"
 #include "calib/tracing/candidate_columns.hpp"
 #include "calib/tracing/curve.hpp"
 #include "calib/tracing/law_shape.hpp"
@@ -372,6 +374,50 @@ TEST(Curve, more_knots_describe_a_bump_better) {
   EXPECT_LT(before, 0.01);
 }
 
+/// Of the best sum of the curve's functions and a constant to what is 1 in a square and 0 elsewhere.
+double misfit_of_rug(const Curve& curve) {
+  constexpr int kSteps = 30;  // each way
+  const auto functions = static_cast<Eigen::Index>(basis_size(curve));
+  Eigen::MatrixXd columns(kSteps * kSteps, functions + 1);
+  Eigen::VectorXd rug(kSteps * kSteps);
+  for (Eigen::Index k = 0; k < rug.size(); ++k) {
+    StepContext c;
+    c.x = -1.0 + 2.0 * static_cast<double>(k % kSteps) / (kSteps - 1);
+    c.y = -1.0 + 2.0 * static_cast<double>(k / kSteps) / (kSteps - 1);
+    const BasisValues values = basis(curve, c);
+    columns.row(k) << 1.0, Eigen::Map<const Eigen::RowVectorXd>(values.begin(), functions);
+    rug(k) = std::max(std::abs(c.x - 0.4), std::abs(c.y - 0.3)) < 0.35 ? 1.0 : 0.0;
+  }
+  const Eigen::VectorXd nearest = columns.completeOrthogonalDecomposition().solve(rug);
+  return (columns * nearest - rug).norm() / rug.norm();
+}
+
+TEST(Curve, patches_describe_a_rug_better_than_polynomials) {
+  const Curve smooth{{Variable::position, Carrier::both_travel}, -1.0, 1.0};
+  const auto shapes = other_shapes(smooth, {});
+  ASSERT_EQ(shapes.size(), 1U);
+  EXPECT_TRUE(shapes[0].patches);
+  EXPECT_LT(misfit_of_rug(shapes[0]), 0.8 * misfit_of_rug(smooth));
+  for (const double place : {-3.0, -0.9, 0.0, 0.37, 1.0, 8.0}) {
+    StepContext c;
+    c.x = place;
+    c.y = -0.7 * place;
+    const BasisValues values = basis(shapes[0], c);
+    EXPECT_NEAR(std::accumulate(values.begin(), values.end(), 0.0), 1.0, 1e-12) << place;
+  }
+}
+
+TEST(Candidate, what_must_help_over_ten_seconds) {
+  const auto ratio = [](Variable variable, Carrier carrier) {
+    const Curve curve{{variable, carrier}, -1.0, 1.0};
+    return largest_ratio({make_curve_effect(curve), curve, ""});
+  };
+  EXPECT_LT(ratio(Variable::speed, Carrier::both_travel), 1.0);
+  EXPECT_LT(ratio(Variable::heading, Carrier::both_travel), ratio(Variable::speed, Carrier::both_travel));
+  EXPECT_GT(ratio(Variable::left_phase, Carrier::left_travel), 1.0)
+      << "cancels over whole turns of the wheel";
+}
+
 TEST(Curve, its_spread_is_that_of_the_law_over_the_drive) {
   const DriveModel model = lively_model();
   const DriveModel* models[] = {&model};
@@ -477,9 +523,12 @@ TEST(Curve, survives_the_calibration_file) {
   const Curve curve{{Variable::time, Carrier::both_travel}, 0.0, 290.0, 61.5, 0};
   Curve tiles{{Variable::position, Carrier::both_travel}};
   tiles.wave = {3.0, -0.5};
-  const auto read = curves_from_json(
-      curves_to_json({{curve, {0.01, -0.02}, "drift_with_time"}, {tiles, {0.01, 0.0, 0.0, 0.0}, ""}}));
-  ASSERT_EQ(read.size(), 2U);
+  const Curve rug = other_shapes({{Variable::position, Carrier::both_travel}, -1.0, 1.0}, {}).front();
+  const auto read = curves_from_json(curves_to_json({{curve, {0.01, -0.02}, "drift_with_time"},
+                                                     {tiles, {0.01, 0.0, 0.0, 0.0}, ""},
+                                                     {rug, std::vector<double>(16, 0.01), ""}}));
+  ASSERT_EQ(read.size(), 3U);
+  EXPECT_EQ(read[2].curve, rug);
   EXPECT_EQ(read[1].curve.wave, tiles.wave);
   EXPECT_EQ(read[0].curve.law, curve.law);
   EXPECT_EQ(read[0].curve.period, curve.period);
