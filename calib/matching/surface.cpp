@@ -11,9 +11,11 @@ namespace odomcalib::calib {
 namespace {
 
 constexpr int kMaxNeighbours = 12;  ///< on each side
-constexpr double kMaxNeighbourhood =
-    0.25;  ///< m; longer stretches of wall gain nothing and bend at corners ...
-constexpr double kWideNeighbourhood = 2.5;  ///< steps between beams; ... but few beams need more than that
+/// m to either side; longer stretches of wall gain nothing and bend at corners.
+constexpr double kMaxNeighbourhood = 0.25;
+/// Steps between beams: where no more than kFewLines of the points have a line, beams are too rare for that.
+constexpr double kWideNeighbourhood = 2.5;
+constexpr double kFewLines = 0.33;
 constexpr std::size_t kMinLinePoints = 4;
 constexpr double kLineNoiseFactor = 2.0;  ///< accepted rms of a line fit in units of the expected noise
 constexpr double kRelativeGap =
@@ -106,19 +108,26 @@ std::optional<Line> line_within(const std::vector<SurfacePoint>& points, const R
   return std::nullopt;
 }
 
-void attach_line(std::vector<SurfacePoint>& points, const RunSums& sums, std::size_t i, double angular_step,
-                 double range_noise) {
-  const auto within = [&](double farthest) {
-    return line_within(points, sums, i, angular_step, farthest, range_noise);
-  };
-  SurfacePoint& point = points[i];
-  auto line = within(kMaxNeighbourhood);
-  const double wide = kWideNeighbourhood * expected_step(point, angular_step);
-  if (!line && wide > kMaxNeighbourhood) line = within(wide);
-  if (!line) return;
-  point.normal = line->normal.dot(point.beam) > 0.0 ? Eigen::Vector2d(-line->normal) : line->normal;
-  point.anchor = point.position - line->normal * line->normal.dot(point.position - line->centre);
+void set_line(SurfacePoint& point, const Line& line) {
+  point.normal = line.normal.dot(point.beam) > 0.0 ? Eigen::Vector2d(-line.normal) : line.normal;
+  point.anchor = point.position - line.normal * line.normal.dot(point.position - line.centre);
   point.has_line = true;
+}
+
+/// Lines within the usual neighbourhood; where these are rare because the beams are, wider ones, too.
+void attach_lines(std::vector<SurfacePoint>& points, double angular_step, double range_noise) {
+  const RunSums sums(points);
+  std::size_t found = 0;
+  const auto attach = [&](std::size_t i, double farthest) {
+    const auto line = line_within(points, sums, i, angular_step, farthest, range_noise);
+    if (line) set_line(points[i], *line), ++found;
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) attach(i, kMaxNeighbourhood);
+  if (static_cast<double>(found) > kFewLines * static_cast<double>(points.size())) return;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double wide = kWideNeighbourhood * expected_step(points[i], angular_step);
+    if (!points[i].has_line && wide > kMaxNeighbourhood) attach(i, wide);
+  }
 }
 
 SurfacePoint beam_end(const Scan& scan, std::size_t beam, const BeamMotion& motion) {
@@ -209,10 +218,7 @@ Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_no
   surface.points.reserve(scan.ranges.size());
   for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam)
     if (is_usable(scan, beam)) surface.points.push_back(beam_end(scan, beam, motion));
-  const double step = angular_step(scan);
-  const RunSums sums(surface.points);
-  for (std::size_t i = 0; i < surface.points.size(); ++i)
-    attach_line(surface.points, sums, i, step, range_noise);
+  attach_lines(surface.points, angular_step(scan), range_noise);
   return surface;
 }
 
