@@ -12,6 +12,7 @@ namespace odomcalib::calib {
 struct FittedModel {
   EffectList effects;  ///< in the order of the parameter vector
   FitResult fit;
+  [[nodiscard]] Eigen::VectorXd base() const { return fit.parameters.head<kBaseCount>(); }
 };
 
 /// What the search fits: recordings, and which base parameters stay as they are.

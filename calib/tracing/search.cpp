@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -50,6 +51,7 @@ class Search {
     go_on(0.5);
     for (std::size_t e = 0; e < result_.model.effects.size(); ++e)
       result_.doubts.push_back(doubt_of_extrapolation(task_, result_.model, e));
+    std::move(unproved_.begin(), unproved_.end(), std::back_inserter(result_.doubts));
     return std::move(result_);
   }
 
@@ -218,24 +220,42 @@ class Search {
 
   /// Adds the candidate if it is plausible and proves itself; otherwise strikes it off the list.
   std::optional<Proof> accept(const ScoreTable& table, const Trial& trial) {
-    const Candidate& candidate = candidates_[trial.candidate];
+    const Candidate candidate = candidates_[trial.candidate];
     const Score& score = table.scores()[trial.candidate];
     Proof proof;
     proof.family_p_value = score.family_p_value;
+    std::optional<Trial> settled;
     std::string reason = implausibility(candidate, trial.model.fit);
-    if (reason.empty())
-      reason = objection(task_, basis_, trial.model, table.selected_without(trial.candidate, kFoldLevel),
-                         largest_ratio(candidate), proof);
-    auto settled = reason.empty() ? refit(trial.candidate, {}) : std::nullopt;
-    if (reason.empty() && !settled) reason = "the fit does not settle";
-    if (reason.empty() && spoils_drives(task_, basis_, settled->model)) reason = "drives get worse";
+    if (reason.empty()) {
+      reason = failure(table, trial, proof, settled);
+      if (!reason.empty() && !candidate.curve) unproved_.push_back(trial.model.base() - basis_.base());
+    }
     result_.considered.push_back(
         {candidate.effect->name(), score.statistic, score.family_p_value, reason.empty() ? "added" : reason});
     strike(candidate.key);
     if (!reason.empty()) return std::nullopt;
-    result_.model = std::move(settled->model);
-    has_changed_ = true;
+    adopt(std::move(settled->model));
     return proof;
+  }
+
+  /// How the trial fails its proof; empty when it does not.
+  /// @param settled the trial on its own noise then
+  std::string failure(const ScoreTable& table, const Trial& trial, Proof& proof,
+                      std::optional<Trial>& settled) {
+    const FoldFlags selected = table.selected_without(trial.candidate, kFoldLevel);
+    std::string reason =
+        objection(task_, basis_, trial.model, selected, largest_ratio(candidates_[trial.candidate]), proof);
+    if (!reason.empty()) return reason;
+    settled = refit(trial.candidate, {});
+    if (!settled) return "the fit does not settle";
+    return spoils_drives(task_, basis_, settled->model) ? "drives get worse" : "";
+  }
+
+  /// The search starts again from it.
+  void adopt(FittedModel model) {
+    result_.model = std::move(model);
+    has_changed_ = true;
+    unproved_.clear();
   }
 
   bool accept_name(const ScoreTable& table, const Trial& best) {
@@ -299,11 +319,10 @@ class Search {
         !objection(task_, *without, free->model, all_folds(), largest_ratio(candidate), proof).empty())
       return;
     std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
-    result_.model = free->model;
+    adopt(free->model);
     result_.considered.back().outcome = "took the place of " + name->name();
     result_.curves.push_back({free->model.effects.back(), free->curve, proof, nullptr, alike});
     settle_shape_of_newest_curve();
-    has_changed_ = true;
   }
 
   /// A law with a narrow peak needs more knots than finding it did, one of the past another memory. What
@@ -312,8 +331,7 @@ class Search {
     AddedCurve& newest = result_.curves.back();
     const FittedModel first = result_.model;
     for (Reshaped& other : reshaped(task_, first, newest.curve)) {
-      result_.doubts.emplace_back(other.model.fit.parameters.head<kBaseCount>() -
-                                  first.fit.parameters.head<kBaseCount>());
+      result_.doubts.emplace_back(other.model.base() - first.base());
       if (!is_better(task_, result_.model, other.model, kAkaike)) continue;
       result_.model = std::move(other.model);
       newest.curve = std::move(other.curve);
@@ -364,9 +382,8 @@ class Search {
       if (!fewer || !(is_superfluous(*model.effects[e], first, model.fit) ||
                       !is_better(task_, *fewer, model, schwarz(basis_.fit))))
         continue;
-      result_.model = std::move(*fewer);
+      adopt(std::move(*fewer));
       result_.findings.erase(finding);
-      has_changed_ = true;
       return;
     }
   }
@@ -391,6 +408,9 @@ class Search {
   bool has_changed_ = true;    ///< the model or the candidates, since the table was made
   SearchResult result_;
   FittedModel basis_;  ///< that candidates are tested on
+  /// What plausible names would make of the base parameters that the last model could neither show nor rule
+  /// out.
+  std::vector<Eigen::VectorXd> unproved_;
 };
 
 }  // namespace

@@ -178,9 +178,10 @@ Attempt first_clear_attempt(std::uint64_t campaign, unsigned number, const Blind
   return attempt;
 }
 
-/// Random arcs for two minutes, with other noise; the whole circle of headings and all speeds.
+/// Random arcs for ten minutes, with other noise; the whole circle of headings and all speeds. Less, and the
+/// ratio of two errors would be uncertain by a fifth.
 SimulatedRun fresh_drive(Draw one) {
-  constexpr double kDuration = 120.0;  // s
+  constexpr double kDuration = 600.0;  // s
   one.config.seed += 1000003;
   one.config.duration = kDuration;
   return simulate_recording(one.config, random_drive(one.config.nominal, one.config.seed, 0.9));

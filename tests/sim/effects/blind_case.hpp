@@ -48,7 +48,7 @@ BlindCase make_blind_case(std::uint64_t campaign, unsigned number, const BlindOp
 /// Recordings to judge an answer by, which no estimator is given.
 struct BlindProof {
   SimulatedRun twin;        ///< same robot, room, drive and noise, without the effects
-  SimulatedRun fresh;       ///< same robot with the effects, two minutes of another drive
+  SimulatedRun fresh;       ///< same robot with the effects, ten minutes of another drive
   SimulatedRun fresh_twin;  ///< the other drive without the effects
 };
 BlindProof make_blind_proof(std::uint64_t campaign, unsigned number, const BlindOptions& options = {});

@@ -98,6 +98,26 @@ TEST(Tracing, adds_nothing_when_nothing_is_missing) {
   EXPECT_EQ(result.model.fit.parameters.size(), kBaseCount);
 }
 
+/// Sum of squares of what the search doubts about the base.
+double doubt_of(const SearchResult& result) {
+  double sum = 0.0;
+  for (const Eigen::VectorXd& doubt : result.doubts) sum += doubt.squaredNorm();
+  return std::sqrt(sum);
+}
+
+TEST(Tracing, a_name_that_is_plain_in_one_stretch_only_stays_a_doubt_about_the_lengths) {
+  const DriveModel model = lively_model();
+  FitData data = measured(model, {}, {});
+  const FitData with = measured(model, {find_effect("direction_dependent_diameter")}, {0.03, 0.03});
+  std::copy(with.pairs.begin(), with.pairs.begin() + 50, data.pairs.begin());  // 25 s of 238
+  const SearchResult result = searched(data);
+  EXPECT_TRUE(result.findings.empty());
+  ASSERT_FALSE(result.considered.empty()) << "seed " << kSeed;
+  EXPECT_EQ(result.considered.front().outcome, "no gain on held-out data");
+  EXPECT_GT(doubt_of(result), 1e-5);
+  EXPECT_EQ(doubt_of(searched(measured(model, {}, {}))), 0.0);
+}
+
 TEST(Tracing, names_what_is_in_the_catalogue_and_finds_its_size) {
   const DriveModel model = lively_model();
   struct Case {
