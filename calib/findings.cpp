@@ -82,8 +82,7 @@ class Filler {
     if (!found_.session.reference_is_scans() || found_.every_scan_placed) return footing;
     for (const PairSet& set : found_.session.pair_sets()) {
       footing.matched += set.pairs.size();
-      for (const auto& [reason, count] : set.rejected)
-        if (reason.starts_with("match")) footing.unmatched += count;
+      footing.unmatched += set.unmatched;
     }
     return footing;
   }

@@ -109,7 +109,10 @@ class ScanChain {
     match.range_noise = set_.range_noise;
     match.min_overlap = options_.min_overlap;
     const MatchResult result = match_point_to_line(reference, scan, scans_.guess(from, to), match);
-    if (!result.is_usable()) return reject("match: " + to_string(result.status));
+    if (!result.is_usable()) {
+      ++set_.unmatched;
+      return reject("match: " + to_string(result.status));
+    }
     const Interval interval{scans_.times()[from], scans_.times()[to]};
     set_.pairs.push_back({interval, result.motion, result.covariance, linked});
     return true;

@@ -24,6 +24,7 @@ inline PairOptions pose_pair_options() { return {0.5, 0.5, 10.0, 0.4}; }
 struct PairSet {
   std::vector<SensorPair> pairs;
   std::map<std::string, std::size_t> rejected;  ///< reason -> number of pairs
+  std::size_t unmatched = 0;                    ///< of these, scans that did not match
   double range_noise = 0.0;                     ///< m; 0 for recordings without scans
 };
 

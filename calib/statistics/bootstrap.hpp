@@ -2,6 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -29,6 +32,26 @@ BootstrapInterval bootstrap(const std::vector<Sum>& blocks, unsigned seed, const
   std::sort(figures.begin(), figures.end());
   return {figures[static_cast<std::size_t>(0.025 * kDraws)],
           figures[static_cast<std::size_t>(0.975 * kDraws)]};
+}
+
+/// Two sums whose ratio's root is the figure.
+struct RatioOfSums {
+  double above = 0.0;
+  double below = 0.0;
+  RatioOfSums& operator+=(const RatioOfSums& other) {
+    above += other.above;
+    below += other.below;
+    return *this;
+  }
+  [[nodiscard]] double root() const { return std::sqrt(above / std::max(below, 1e-300)); }
+};
+
+/// @param by_block not empty
+inline BootstrapInterval bootstrap_root(const std::map<std::size_t, RatioOfSums>& by_block, unsigned seed) {
+  std::vector<RatioOfSums> blocks;
+  blocks.reserve(by_block.size());
+  for (const auto& [block, sums] : by_block) blocks.push_back(sums);
+  return bootstrap(blocks, seed, [](const RatioOfSums& s) { return s.root(); });
 }
 
 }  // namespace odomcalib::calib

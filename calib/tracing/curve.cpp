@@ -181,19 +181,22 @@ double cubic_bump(double x) {
   return (tail * tail * tail - (a < 1.0 ? 4.0 * core * core * core : 0.0)) / 6.0;
 }
 
+/// 1 at the knot, 0 from its neighbours on.
+double hat(double steps) { return std::max(0.0, 1.0 - std::abs(steps)); }
+
 /// Bilinear, one knot after another along x for each along y.
 BasisValues patches(const Curve& curve, double x, double y) {
   const auto place = [&](double z) { return 0.5 * (scaled(curve, z) + 1.0) * (kPatches - 1); };
-  const auto hat = [](double at, int knot) { return std::max(0.0, 1.0 - std::abs(at - knot)); };
+  const double along = place(x), across = place(y);
   BasisValues functions;
   for (int j = 0; j < kPatches; ++j)
-    for (int i = 0; i < kPatches; ++i) functions.push_back(hat(place(x), i) * hat(place(y), j));
+    for (int i = 0; i < kPatches; ++i) functions.push_back(hat(along - i) * hat(across - j));
   return functions;
 }
 
 BasisValues hats(int knots, double place) {
   BasisValues functions;
-  for (int k = 1; k <= knots; ++k) functions.push_back(std::max(0.0, 1.0 - std::abs(place - k)));
+  for (int k = 1; k <= knots; ++k) functions.push_back(hat(place - k));
   return functions;
 }
 
@@ -229,7 +232,7 @@ BasisValues fading(Variable variable, double distance) {
   const double nearest = of_wheel ? kNearestAngle : kNearestLength;
   const double place = std::log2(std::max(distance, nearest) / nearest);
   BasisValues functions;
-  for (int k = 0; k < kFadeKnots; ++k) functions.push_back(std::max(0.0, 1.0 - std::abs(place - k)));
+  for (int k = 0; k < kFadeKnots; ++k) functions.push_back(hat(place - k));
   return functions;
 }
 

@@ -220,7 +220,7 @@ class Search {
 
   /// Adds the candidate if it is plausible and proves itself; otherwise strikes it off the list.
   std::optional<Proof> accept(const ScoreTable& table, const Trial& trial) {
-    const Candidate candidate = candidates_[trial.candidate];
+    const Candidate& candidate = candidates_[trial.candidate];
     const Score& score = table.scores()[trial.candidate];
     Proof proof;
     proof.family_p_value = score.family_p_value;

@@ -26,17 +26,6 @@ double combined_square(const StretchErrors& e, std::size_t k) {
   return e.position[k] * e.position[k] + std::pow(kHeadingLever * e.heading[k], 2);
 }
 
-/// Sums over stretches, of both models.
-struct SquaredErrors {
-  double before = 0.0;
-  double after = 0.0;
-  SquaredErrors& operator+=(const SquaredErrors& other) {
-    before += other.before;
-    after += other.after;
-    return *this;
-  }
-};
-
 std::vector<Stretch> select(const std::vector<Stretch>& stretches, std::size_t fold, std::size_t recording) {
   std::vector<Stretch> selected;
   std::copy_if(stretches.begin(), stretches.end(), std::back_inserter(selected),
@@ -90,20 +79,14 @@ StretchErrors where_selected(const StretchErrors& before, const StretchErrors& a
 }
 
 Improvement compare(const StretchErrors& before, const StretchErrors& after) {
-  std::map<std::size_t, SquaredErrors> by_block;
-  SquaredErrors total;
+  std::map<std::size_t, RatioOfSums> by_block;
   const std::size_t count = std::min(before.position.size(), after.position.size());
   for (std::size_t k = 0; k < count; ++k)
-    by_block[before.block[k]] += {combined_square(before, k), combined_square(after, k)};
-  std::vector<SquaredErrors> blocks;
-  blocks.reserve(by_block.size());
-  for (const auto& [block, sums] : by_block) {
-    blocks.push_back(sums);
-    total += sums;
-  }
-  const auto ratio = [](const SquaredErrors& s) { return std::sqrt(s.after / std::max(s.before, 1e-300)); };
-  const BootstrapInterval interval = bootstrap(blocks, kSeed, ratio);
-  return {ratio(total), interval.upper, interval.lower};
+    by_block[before.block[k]] += {combined_square(after, k), combined_square(before, k)};
+  RatioOfSums total;
+  for (const auto& [block, sums] : by_block) total += sums;
+  const BootstrapInterval interval = bootstrap_root(by_block, kSeed);
+  return {total.root(), interval.upper, interval.lower};
 }
 
 HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before,

@@ -47,38 +47,23 @@ double variance_of(Part part, const Eigen::Matrix3d& c) {
   return part == Part::heading ? c(2, 2) : c(0, 0) + c(1, 1);
 }
 
-struct Sums {
-  double squares = 0.0;
-  double amounts = 0.0;
-  Sums& operator+=(const Sums& other) {
-    squares += other.squares;
-    amounts += other.amounts;
-    return *this;
-  }
-  [[nodiscard]] double figure() const { return std::sqrt(squares / std::max(amounts, 1e-300)); }
-};
-
 Bounded bounded(Part part, const std::vector<Stretch>& stretches, const std::vector<Pose>& errors) {
-  std::map<std::size_t, Sums> by_block;
-  Sums total;
+  std::map<std::size_t, RatioOfSums> by_block;
+  RatioOfSums total;
   for (std::size_t k = 0; k < stretches.size(); ++k) {
-    const Sums one{square_of(part, errors[k]), stretches[k].amount * stretches[k].amount};
+    const RatioOfSums one{square_of(part, errors[k]), stretches[k].amount * stretches[k].amount};
     by_block[stretches[k].block] += one;
     total += one;
   }
-  std::vector<Sums> blocks;
-  blocks.reserve(by_block.size());
-  for (const auto& [block, sums] : by_block) blocks.push_back(sums);
-  const BootstrapInterval interval = bootstrap(blocks, kSeed, [](const Sums& s) { return s.figure(); });
-  return {total.figure(), interval.lower, interval.upper};
+  const BootstrapInterval interval = bootstrap_root(by_block, kSeed);
+  return {total.root(), interval.lower, interval.upper};
 }
 
 double noise_floor(Part part, const std::vector<Stretch>& stretches) {
-  Sums sums;
-  for (const Stretch& s : stretches) {
+  RatioOfSums sums;
+  for (const Stretch& s : stretches)
     sums += {std::max(variance_of(part, s.covariance), 0.0), s.amount * s.amount};
-  }
-  return sums.figure();
+  return sums.root();
 }
 
 class Judge {

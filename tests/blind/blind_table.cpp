@@ -124,7 +124,7 @@ bool has_none(const Trial& t) { return t.answer.effects.empty(); }
 bool is_named_kind(const Trial& t) { return has_effect(t) && !is_outside(t); }
 bool is_foreign_kind(const Trial& t) { return has_effect(t) && is_outside(t); }
 bool is_of_the_robot(const Trial& t) { return !belongs_to_the_place(t); }
-/// Beyond what two minutes of drive can tell: a tenth.
+/// Beyond what a fresh drive can tell: a tenth.
 bool worse_than_plain(const Trial& t) { return t.after.position > 1.1 * t.before.position; }
 
 std::string line(const std::string& what, const std::string& result) {
