@@ -7,8 +7,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json error_json(const DriveError& error) { return {error.position, error.heading}; }
-DriveError error_from(const Json& json) { return {json.at(0), json.at(1)}; }
+Json error_json(const DriveError& error) {
+  return {error.position.rms, error.heading.rms, error.position.upper, error.heading.upper};
+}
+DriveError error_from(const Json& json) { return {{json.at(0), json.at(2)}, {json.at(1), json.at(3)}}; }
 
 Json effect_json(const sim::BlindEffect& effect) {
   return {{"name", effect.name},

@@ -100,9 +100,11 @@ double quantile(std::vector<double> values, double share) {
 }
 
 /// Position error after against that of the robot without the effect.
-double ratio_after(const Trial& trial) { return trial.after.position / std::max(trial.twin.position, 1e-9); }
+double ratio_after(const Trial& trial) {
+  return trial.after.position.rms / std::max(trial.twin.position.rms, 1e-9);
+}
 double ratio_before(const Trial& trial) {
-  return trial.before.position / std::max(trial.twin.position, 1e-9);
+  return trial.before.position.rms / std::max(trial.twin.position.rms, 1e-9);
 }
 
 using Predicate = bool (*)(const Trial&);
@@ -124,8 +126,11 @@ bool has_none(const Trial& t) { return t.answer.effects.empty(); }
 bool is_named_kind(const Trial& t) { return has_effect(t) && !is_outside(t); }
 bool is_foreign_kind(const Trial& t) { return has_effect(t) && is_outside(t); }
 bool is_of_the_robot(const Trial& t) { return !belongs_to_the_place(t); }
-/// Beyond what a fresh drive can tell: a tenth.
-bool worse_than_plain(const Trial& t) { return t.after.position > 1.1 * t.before.position; }
+bool worse_by_a_tenth(const Trial& t) { return t.after.position.rms > 1.1 * t.before.position.rms; }
+/// Beyond what a fresh drive can tell of the plain fit's error.
+bool worse_than_plain(const Trial& t) {
+  return t.after.position.rms > t.before.position.upper || t.after.heading.rms > t.before.heading.upper;
+}
 
 std::string line(const std::string& what, const std::string& result) {
   return "| " + what + " | " + result + " |\n";
@@ -164,7 +169,9 @@ std::string summary(const std::vector<Trial>& trials) {
          line("robots without an effect that got one", percent(count(none, claims_anything), none.size())) +
          line("effects outside the catalogue that hurt: flagged with the right variable",
               percent(count(foreign, flags_right_variable), foreign.size())) +
-         line("worse than the plain fit by over a tenth on the fresh drive",
+         line("position error on the fresh drive over a tenth above the plain fit's",
+              percent(count(select(trials, {}), worse_by_a_tenth), trials.size())) +
+         line("position or heading error above the 95 % interval of the plain fit's",
               percent(count(select(trials, {}), worse_than_plain), trials.size())) +
          ratios_line("error over 10 s against the robot without the effect, plain fit", of_robot,
                      ratio_before) +

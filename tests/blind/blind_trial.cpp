@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <map>
 #include <numbers>
 
 #include "calib/predict.hpp"
 #include "calib/solve.hpp"
+#include "calib/statistics/bootstrap.hpp"
 
 namespace odomcalib::blind {
 namespace {
@@ -38,26 +40,51 @@ sim::Pose true_pose(const std::vector<sim::TruthSample>& path, double t) {
           before->pose.yaw + share * turn};
 }
 
-/// Delay that the calibration reports, s; a scan stamped t was taken at encoder time t - delay.
-double reported_delay(const Calibration& calibration) {
+/// Mean of stamp minus true time, s.
+template <typename Sample>
+double mean_lateness(const std::vector<Sample>& samples, const std::vector<double>& times) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < samples.size(); ++k) sum += samples[k].t - times[k];
+  return sum / std::max(1.0, static_cast<double>(samples.size()));
+}
+
+/// What has to be added to the encoders' stamps to get the world's time, s. Which of two clocks is late no
+/// data can tell, so the reported delay is freed from what the scans of the solved recording were late.
+double stamp_correction(const Calibration& calibration, const sim::SimulatedRun& solved) {
   for (const EffectResult& effect : calibration.effects)
-    if (effect.name == "time_offset") return effect.parameters.front().second.value;
+    if (effect.name == "time_offset")
+      return effect.parameters.front().second.value -
+             mean_lateness(solved.recording.scans, solved.scan_times);
   return 0.0;
 }
 
-/// Which of two clocks is right no data can tell. Where the encoders' stamps are late, the reported delay
-/// leads back to the world's time; where the scans' are, odometry is in it already.
-bool encoders_are_late(const sim::BlindAnswer& answer) {
-  return std::any_of(answer.effects.begin(), answer.effects.end(), [](const sim::BlindEffect& effect) {
-    return effect.name == "count_queue" || effect.name == "encoder_filter";
-  });
+/// Sums over the windows that begin in the same span, by number of the span: neighbouring windows share a
+/// part of the drive.
+struct WindowErrors {
+  std::map<std::size_t, calib::RatioOfSums> position, heading;
+
+  void add(double t, const Relative& odometry, const Relative& truth) {
+    const auto span = static_cast<std::size_t>(std::max(0.0, t) / (2.0 * kHorizon));
+    const double turn = std::remainder(odometry.yaw - truth.yaw, 2.0 * std::numbers::pi);
+    position[span] += {std::pow(odometry.x - truth.x, 2) + std::pow(odometry.y - truth.y, 2), 1.0};
+    heading[span] += {turn * turn, 1.0};
+  }
+};
+
+BoundedError rms_of(const std::map<std::size_t, calib::RatioOfSums>& by_span) {
+  constexpr unsigned kSeed = 1;
+  calib::RatioOfSums sum;
+  for (const auto& [span, sums] : by_span) sum += sums;
+  return {sum.root(), by_span.empty() ? 0.0 : calib::bootstrap_root(by_span, kSeed).upper};
 }
 
-/// @param delay to be added to the encoders' stamps, s
-DriveError error_on(const sim::SimulatedRun& run, const Calibration& calibration, double delay = 0.0) {
+/// A single stamp that is later or earlier than all others is no error of odometry; that all are late is.
+/// @param correction to be added to the encoders' stamps, s
+DriveError error_on(const sim::SimulatedRun& run, const Calibration& calibration, double correction = 0.0) {
   const std::vector<PoseSample> predicted = calib::predict(run.recording, calibration);
-  DriveError sum;
-  double windows = 0.0;
+  const double late = mean_lateness(run.recording.ticks, run.tick_times) + correction;
+  const auto truth_at = [&](std::size_t k) { return true_pose(run.path, run.tick_times[k] + late); };
+  WindowErrors errors;
   std::size_t end = 0;
   double next = 0.0;
   for (std::size_t begin = 0; begin < predicted.size(); ++begin) {
@@ -65,14 +92,10 @@ DriveError error_on(const sim::SimulatedRun& run, const Calibration& calibration
     next = predicted[begin].t + kStride;
     while (end < predicted.size() && predicted[end].t < predicted[begin].t + kHorizon) ++end;
     if (end == predicted.size()) break;
-    const Relative truth = relative(true_pose(run.path, predicted[begin].t + delay),
-                                    true_pose(run.path, predicted[end].t + delay));
-    const Relative odometry = relative(predicted[begin], predicted[end]);
-    sum.position += std::pow(odometry.x - truth.x, 2) + std::pow(odometry.y - truth.y, 2);
-    sum.heading += std::pow(std::remainder(odometry.yaw - truth.yaw, 2.0 * std::numbers::pi), 2);
-    windows += 1.0;
+    errors.add(predicted[begin].t, relative(predicted[begin], predicted[end]),
+               relative(truth_at(begin), truth_at(end)));
   }
-  return {std::sqrt(sum.position / std::max(windows, 1.0)), std::sqrt(sum.heading / std::max(windows, 1.0))};
+  return {rms_of(errors.position), rms_of(errors.heading)};
 }
 
 std::array<double, 3> sigmas_of(const Calibration& calibration, const sim::Geometry& truth) {
@@ -122,8 +145,7 @@ Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions
   trial.sigmas = sigmas_of(found, drawn.answer.truth);
   trial.plain_sigmas = sigmas_of(plain, drawn.answer.truth);
   trial.before = error_on(proof.fresh, plain);
-  const double delay = encoders_are_late(drawn.answer) ? reported_delay(found) : 0.0;
-  trial.after = error_on(proof.fresh, found, delay);
+  trial.after = error_on(proof.fresh, found, stamp_correction(found, drawn.run));
   trial.twin = error_on(proof.fresh_twin, solve_plain(proof.twin.recording));
   return trial;
 }

@@ -10,10 +10,16 @@
 
 namespace odomcalib::blind {
 
-/// Open-loop odometry error over windows of 10 s against the true path, RMS in m and rad.
+/// Root mean square, and the upper end of its 95 % interval.
+struct BoundedError {
+  double rms = 0.0;
+  double upper = 0.0;
+};
+
+/// Open-loop odometry error over windows of 10 s against the true path, m and rad.
 struct DriveError {
-  double position = 0.0;
-  double heading = 0.0;
+  BoundedError position;
+  BoundedError heading;
 };
 
 struct Trial {

@@ -45,11 +45,13 @@ struct Wanderer {
     return {way * uniform(0.1, 0.4), hand * uniform(0.2, 1.0), uniform(1.0, 4.0)};
   }
 
+  /// From outside, it may come back in.
   [[nodiscard]] bool stays_inside(Pose pose, const Manoeuvre& move) const {
     constexpr double kStep = 0.1;
+    const double farthest = std::max(radius, std::hypot(pose.x, pose.y));
     for (double t = 0.0; t < move.duration + 0.3; t += kStep) {
       pose = compose(pose, {move.speed * kStep, 0.0, move.yaw_rate * kStep});
-      if (std::hypot(pose.x, pose.y) > radius) return false;
+      if (std::hypot(pose.x, pose.y) > farthest) return false;
     }
     return true;
   }

@@ -35,10 +35,17 @@ class BelievedPose {
   Pose pose_;
 };
 
+/// What the recording holds, and when it really was.
+template <typename Sample>
+struct Timed {
+  Sample sample;
+  double t = 0.0;  // s, true
+};
+
 /// Gathers beams into sweeps as a driver would: from angle 0 to angle 0.
 class SweepBuilder {
  public:
-  SweepBuilder(const LidarHead& head, const Disturbances& disturbances, std::vector<Scan>& out)
+  SweepBuilder(const LidarHead& head, const Disturbances& disturbances, std::vector<Timed<Scan>>& out)
       : head_(head), disturbances_(disturbances), out_(out) {}
 
   void add(const Beam& beam) {
@@ -64,13 +71,13 @@ class SweepBuilder {
     ScanStamp stamp{scan_.t, 1.0 / head_.options().turns_per_second, scan_.t};
     for (const auto& effect : disturbances_) effect->on_scan(stamp);
     scan_.t = stamp.stamp;
-    out_.push_back(std::move(scan_));
+    out_.push_back({std::move(scan_), stamp.t});
     scan_ = Scan{};
   }
 
   const LidarHead& head_;
   const Disturbances& disturbances_;
-  std::vector<Scan>& out_;
+  std::vector<Timed<Scan>>& out_;
   Scan scan_;
 };
 
@@ -86,16 +93,23 @@ RobotDescription description(const SimulationConfig& config) {
   return robot;
 }
 
-void sample_ticks(const SimulationConfig& config, const Body& body, std::vector<TickSample>& out) {
+void sample_ticks(const SimulationConfig& config, const Body& body, std::vector<Timed<TickSample>>& out) {
   TickReading reading{body.time(), body.time(), body.counts(), false};
   for (const auto& effect : config.disturbances) effect->on_ticks(reading);
-  if (!reading.lost) out.push_back({reading.stamp, reading.counts[kLeft], reading.counts[kRight], 0});
+  if (!reading.lost)
+    out.push_back({{reading.stamp, reading.counts[kLeft], reading.counts[kRight], 0}, reading.t});
 }
 
+/// Into the recording in the order of their stamps.
 template <typename Sample>
-void sort_by_time(std::vector<Sample>& samples) {
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const Sample& a, const Sample& b) { return a.t < b.t; });
+void store_by_stamp(std::vector<Timed<Sample>> timed, std::vector<Sample>& samples,
+                    std::vector<double>& times) {
+  std::stable_sort(timed.begin(), timed.end(),
+                   [](const Timed<Sample>& a, const Timed<Sample>& b) { return a.sample.t < b.sample.t; });
+  for (Timed<Sample>& one : timed) {
+    samples.push_back(std::move(one.sample));
+    times.push_back(one.t);
+  }
 }
 
 }  // namespace
@@ -109,7 +123,9 @@ SimulatedRun simulate_recording(const SimulationConfig& config, const Drive& dri
 
   Body body(config.truth, config.body, config.seed, config.disturbances);
   LidarHead head(config.room, config.truth.lidar, config.lidar, config.seed, config.disturbances);
-  SweepBuilder sweeps(head, config.disturbances, run.recording.scans);
+  std::vector<Timed<TickSample>> ticks;
+  std::vector<Timed<Scan>> scans;
+  SweepBuilder sweeps(head, config.disturbances, scans);
   BelievedPose believed(config.nominal);
   std::vector<Beam> beams;
   const auto every = [&](double period) {
@@ -124,7 +140,7 @@ SimulatedRun simulate_recording(const SimulationConfig& config, const Drive& dri
           std::min(run.least_clearance, config.room.clearance({body.pose().x, body.pose().y}));
     }
     if (step % tick_steps == 0) {
-      sample_ticks(config, body, run.recording.ticks);
+      sample_ticks(config, body, ticks);
       const WheelCommand wanted = drive(body.time(), believed.update(body.counts()));
       body.command(wanted.left, wanted.right);
     }
@@ -135,8 +151,8 @@ SimulatedRun simulate_recording(const SimulationConfig& config, const Drive& dri
     head.advance(from, before, body.time(), body.pose(), beams);
     for (const Beam& beam : beams) sweeps.add(beam);
   }
-  sort_by_time(run.recording.ticks);
-  sort_by_time(run.recording.scans);
+  store_by_stamp(std::move(ticks), run.recording.ticks, run.tick_times);
+  store_by_stamp(std::move(scans), run.recording.scans, run.scan_times);
   return run;
 }
 

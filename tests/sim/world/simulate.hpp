@@ -37,6 +37,8 @@ struct SimulatedRun {
   Recording recording;
   Geometry truth;
   std::vector<TruthSample> path;
+  std::vector<double> tick_times;  ///< s, when each tick sample of the recording was really taken
+  std::vector<double> scan_times;  ///< s, when the first beam of each scan was really sent
   double least_clearance =
       0.0;  ///< m from the base to the nearest wall on the way; below 0.2 the run is no good
 };

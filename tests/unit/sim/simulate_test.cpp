@@ -139,6 +139,19 @@ TEST(Simulate, drives_stay_clear_of_the_walls) {
   }
 }
 
+TEST(Simulate, a_random_drive_that_has_come_too_far_comes_back) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SimulationConfig config = standard_config(seed);
+    config.lidar.beams_per_turn = 10;
+    config.duration = 600.0;
+    const auto path = simulate_recording(config, random_drive(config.nominal, seed, 0.9)).path;
+    double way = 0.0;
+    for (std::size_t k = path.size() * 3 / 4; k + 1 < path.size(); ++k)
+      way += std::hypot(path[k + 1].pose.x - path[k].pose.x, path[k + 1].pose.y - path[k].pose.y);
+    EXPECT_GT(way, 10.0) << "m in the last 150 s, seed " << seed;
+  }
+}
+
 TEST(Simulate, guided_pattern_excites_both_signs_of_everything_in_about_five_minutes) {
   const double duration = total_duration(guided_pattern());
   EXPECT_GT(duration, 240.0);
