@@ -37,10 +37,17 @@ double middle_of_drive(const Calibration& calibration) {
 
 /// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the
 /// lidar is none of odometry.
-Place place_of(const Effect& effect) {
+Place place_of(const Effect& effect, const std::string& parameter = "") {
+  if (concerns_wheels_too(effect, parameter)) return Place::odometry;
   if (concerns_reference(effect)) return Place::reference;
   const bool stays_behind = effect.storage() == Storage::nowhere && !counts_by_its_mean(effect);
   return stays_behind ? Place::nowhere : Place::odometry;
+}
+
+bool acts_on_odometry(const Effect& effect) {
+  const auto parameters = effect.parameters();
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [&](const EffectParameter& p) { return place_of(effect, p.name) == Place::odometry; });
 }
 
 /// The effect that the values were fitted for; null when this program does not know it.
@@ -74,7 +81,7 @@ Correction correction_of(const Calibration& calibration) {
   std::vector<double> values(correction.parameters.data(), correction.parameters.data() + kBaseCount);
   for (const EffectResult& result : calibration.effects) {
     const auto effect = effect_of(result);
-    if (!effect || place_of(*effect) != Place::odometry) continue;
+    if (!effect || !acts_on_odometry(*effect)) continue;
     correction.effects.push_back(effect);
     const std::vector<double> own = values_of(result, effect);
     values.insert(values.end(), own.begin(), own.end());
@@ -97,7 +104,7 @@ std::vector<Placement> effect_placements(const Calibration& calibration) {
     const auto effect = effect_of(result);
     const Place otherwise = find_lidar_effect(result.name) ? Place::reference : Place::nowhere;
     for (const auto& [name, quantity] : result.parameters)
-      placements.push_back({result.name, name, quantity, effect ? place_of(*effect) : otherwise});
+      placements.push_back({result.name, name, quantity, effect ? place_of(*effect, name) : otherwise});
   }
   for (const auto& [curve, coefficients, law_of] : curves_of(calibration)) {
     const auto effect = make_curve_effect(curve);

@@ -43,14 +43,13 @@ class CasterKick final : public StepEffect<CasterKick> {
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
     using std::exp;
     if (plain(p[4]) < 0.5) {
-      step.yaw +=
-          p[0] * c.caster[nearest_caster(plain(p[3]), plain(p[5]))] * (std::abs(c.speed) * c.dt) / p[3];
+      step.yaw += p[0] * c.caster[nearest_caster(plain(p[3]), plain(p[5]))] * c.way / p[3];
       return;
     }
     const T side = p[0] * c.direction + p[1] * c.previous_turn[kUsualMemory] + p[2];
     const T distance = c.since_reversal / p[3];
     const T rise = p[4] > 1.5 ? distance : T(1.0);
-    step.yaw += side * (std::abs(c.speed) * c.dt / p[3]) * rise * exp(-distance);
+    step.yaw += side * (c.way / p[3]) * rise * exp(-distance);
   }
 
  private:

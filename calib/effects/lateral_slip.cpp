@@ -5,7 +5,7 @@ namespace odomcalib::calib {
 namespace {
 
 // The contacts yield sideways under centripetal force: viscous, dy = -k omega ds, and as tyres do at a slip
-// angle, dy = -k_tyre |v| omega ds; omega may lag by the way over which a tyre takes up its slip angle.
+// angle, dy = -k_tyre |v| omega ds; both may lag by the way over which a tyre takes up its slip angle.
 class LateralSlip final : public StepEffect<LateralSlip> {
  public:
   explicit LateralSlip(double relaxation) : relaxation_(relaxation) {}
@@ -32,16 +32,16 @@ class LateralSlip final : public StepEffect<LateralSlip> {
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
-    step.side -= (p[0] + p[1] * std::abs(c.speed)) * felt_turn(c, plain(p[2])) * c.dt;
+    const double relaxation = plain(p[2]);
+    if (relaxation < 0.5 * kRelaxations.front()) {
+      step.side -= (p[0] + p[1] * std::abs(c.speed)) * c.turn_rate * c.speed * c.dt;
+      return;
+    }
+    const std::size_t k = nearest_of(kRelaxations, relaxation);
+    step.side -= (p[0] * c.relaxed_turn_rate[k] + p[1] * c.relaxed_lateral_acceleration[k]) * c.way;
   }
 
  private:
-  /// Speed times turn rate, m/s^2.
-  static double felt_turn(const StepContext& c, double relaxation) {
-    if (relaxation < 0.5 * kRelaxations.front()) return c.turn_rate * c.speed;
-    return c.relaxed_turn_rate[nearest_of(kRelaxations, relaxation)] * std::abs(c.speed);
-  }
-
   double relaxation_;
 };
 

@@ -2,6 +2,8 @@
 // robot.
 #pragma once
 
+#include <string>
+
 #include "calib/model/effect.hpp"
 
 namespace odomcalib::calib {
@@ -10,6 +12,12 @@ namespace odomcalib::calib {
 /// the reference needs them, dead reckoning must not have them.
 inline bool concerns_reference(const Effect& effect) {
   return effect.storage() == Storage::driver || effect.name() == "scan_skew";
+}
+
+/// But for one: encoders that smooth do so whoever looks at them. Only that they are late is a matter of
+/// stamps.
+inline bool concerns_wheels_too(const Effect& effect, const std::string& parameter) {
+  return effect.name() == "time_offset" && parameter == "smoothing";
 }
 
 }  // namespace odomcalib::calib

@@ -107,7 +107,7 @@ class DriveHistory {
     double advance(double delta);
   };
   void swing_caster(StepContext& context, const Pose& step);
-  void relax_turn(StepContext& context, double way);
+  void relax_turn(StepContext& context, const Pose& step);
   void remember_stop(StepContext& context);
   void remember_push(StepContext& context);
   void remember_turn(StepContext& context, double yaw);
@@ -119,7 +119,7 @@ class DriveHistory {
   double since_reversal_ = kFarBack;
   double stood_ = 0.0;  ///< s
   std::array<double, kStops.size()> since_stop_;
-  std::array<double, kRelaxations.size()> relaxed_turn_rate_{};
+  std::array<double, kRelaxations.size()> relaxed_turn_rate_{}, relaxed_lateral_acceleration_{};
   Memory previous_turn_{};
   PushMemory previous_push_{};
   std::array<double, kCasters> caster_{};  ///< rad, direction in which each would roll, base axes

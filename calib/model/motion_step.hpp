@@ -65,13 +65,16 @@ struct StepContext {
   double left_delta = 0.0, right_delta = 0.0;                ///< wheel rotation in the interval, rad
   double left_speed = 0.0, right_speed = 0.0;                ///< wheel rim speed, m/s
   double left_acceleration = 0.0, right_acceleration = 0.0;  ///< m/s^2
-  double left_acceleration_change = 0.0, right_acceleration_change = 0.0;  ///< over the interval, m/s^2
-  double speed = 0.0;                                                      ///< forward, m/s
-  double turn_rate = 0.0;                                                  ///< rad/s
+  double left_acceleration_change = 0.0,
+         right_acceleration_change = 0.0;                       ///< since the interval before, m/s^2
+  double speed = 0.0;                                           ///< forward, m/s
+  double turn_rate = 0.0;                                       ///< rad/s
   Sways turn_acceleration_before{}, turn_acceleration_after{};  ///< rad/s^2, at begin and end, late by each
-  /// The turn rate as tyres feel it, rad/s: its sign is that of the force, and it lags by each of
-  /// kRelaxations.
-  std::array<double, kRelaxations.size()> relaxed_turn_rate{};
+  /// What makes tyres slip sideways, its sign that of the force, lagging by each of kRelaxations: the turn
+  /// rate, rad/s, and the lateral acceleration, m/s^2. Not smoothed: the tyres do that.
+  std::array<double, kRelaxations.size()> relaxed_turn_rate{}, relaxed_lateral_acceleration{};
+  double way =
+      0.0;  ///< of the base in its direction, m; not smoothed, so that in a spin ticks give either sign
   double heading = 0.0;              ///< rad, from the plain model
   double x = 0.0, y = 0.0;           ///< m, from the plain model
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m

@@ -8,6 +8,8 @@ namespace odomcalib::calib {
 namespace {
 
 constexpr double kSmoothing = 0.25;  ///< s; differences of raw ticks over less are mostly quantisation noise
+constexpr double kSharp = 0.1;       ///< s; over which fine encoders still show an acceleration ...
+constexpr double kCoarse = 5e-4;     ///< m; ... and coarser ones do not
 constexpr double kStanding =
     0.005;  ///< m/s; below, the direction of travel is undefined and the last one is kept
 
@@ -71,6 +73,42 @@ void fill_speeds(StepContext& c, const WheelTrack& track, Window window, double 
   c.turn_rate = (c.right_speed - c.left_speed) / base.track_width;
 }
 
+/// Where an acceleration begins and ends matters to how much it has changed: smoothed no more than the
+/// encoders ask for.
+double duration_of_edges(const WheelTrack& track, const BaseParameters& base) {
+  const double tick = track.tick_angle * std::max(base.left_radius, base.right_radius);
+  return tick <= kCoarse ? kSharp : kSmoothing;
+}
+
+/// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on: so that
+/// odometry, which knows no future, sees the same.
+struct WheelAccelerations {
+  std::vector<double> left, right;
+};
+WheelAccelerations latest_accelerations(const WheelTrack& track, std::size_t first, double duration) {
+  constexpr std::size_t kFewest = 3;  // intervals that a curvature needs
+  WheelAccelerations all;
+  std::size_t low = 0;
+  for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
+    const double from = track.t[k + 1] - duration;
+    while (track.segment[low] != track.segment[k + 1] || (low + kFewest < k + 1 && track.t[low + 1] <= from))
+      ++low;
+    const double centre = (track.t[low] + track.t[k + 1]) / 2.0;
+    all.left.push_back(local_derivatives(track.t, track.left, low, k + 1, centre).second);
+    all.right.push_back(local_derivatives(track.t, track.right, low, k + 1, centre).second);
+  }
+  return all;
+}
+
+void fill_changes_of_acceleration(std::vector<StepContext>& contexts, const WheelAccelerations& wheels,
+                                  const BaseParameters& base) {
+  for (std::size_t k = 0; k < contexts.size(); ++k) {
+    const std::size_t before = k > 0 ? k - 1 : k;
+    contexts[k].left_acceleration_change = base.left_radius * (wheels.left[k] - wheels.left[before]);
+    contexts[k].right_acceleration_change = base.right_radius * (wheels.right[k] - wheels.right[before]);
+  }
+}
+
 /// At the samples between two intervals, from the smoothed accelerations in their middles.
 void fill_accelerations_at_ends(std::vector<StepContext>& contexts, double track_width) {
   const auto in_middle = [&](const StepContext& c) {
@@ -79,8 +117,6 @@ void fill_accelerations_at_ends(std::vector<StepContext>& contexts, double track
   for (std::size_t k = 0; k < contexts.size(); ++k) {
     const StepContext& before = contexts[k > 0 ? k - 1 : k];
     const StepContext& after = contexts[k + 1 < contexts.size() ? k + 1 : k];
-    contexts[k].left_acceleration_change = 0.5 * (after.left_acceleration - before.left_acceleration);
-    contexts[k].right_acceleration_change = 0.5 * (after.right_acceleration - before.right_acceleration);
     contexts[k].turn_acceleration_before.fill(0.5 * (in_middle(before) + in_middle(contexts[k])));
     contexts[k].turn_acceleration_after.fill(0.5 * (in_middle(contexts[k]) + in_middle(after)));
   }
@@ -123,11 +159,12 @@ void DriveHistory::advance(StepContext& c) {
   direction_ = now;
   c.direction = direction_;
   c.since_reversal = since_reversal_;
-  since_reversal_ += std::hypot(step.x, step.y);
+  c.way = std::copysign(std::hypot(step.x, step.y), step.x * direction_);
+  since_reversal_ += c.way;
   c.left_since_reversal = left_.advance(c.left_delta);
   c.right_since_reversal = right_.advance(c.right_delta);
   swing_caster(c, step);
-  relax_turn(c, std::hypot(step.x, step.y));
+  relax_turn(c, step);
   remember_stop(c);
   remember_push(c);
   remember_turn(c, step.yaw);
@@ -159,11 +196,16 @@ void DriveHistory::swing_caster(StepContext& c, const Pose& step) {
   for (double& direction : caster_) direction -= step.yaw;
 }
 
-void DriveHistory::relax_turn(StepContext& c, double way) {
-  const double turn_rate = std::copysign(c.turn_rate, c.turn_rate * c.speed);
-  for (std::size_t k = 0; k < kRelaxations.size(); ++k)
-    relaxed_turn_rate_[k] -= std::expm1(-way / kRelaxations[k]) * (turn_rate - relaxed_turn_rate_[k]);
+void DriveHistory::relax_turn(StepContext& c, const Pose& step) {
+  const double turn_rate = c.dt > 0.0 ? std::copysign(step.yaw, step.yaw * step.x) / c.dt : 0.0;
+  const double lateral_acceleration = c.dt > 0.0 ? turn_rate * c.way / c.dt : 0.0;
+  for (std::size_t k = 0; k < kRelaxations.size(); ++k) {
+    const double share = -std::expm1(-c.way / kRelaxations[k]);
+    relaxed_turn_rate_[k] += share * (turn_rate - relaxed_turn_rate_[k]);
+    relaxed_lateral_acceleration_[k] += share * (lateral_acceleration - relaxed_lateral_acceleration_[k]);
+  }
   c.relaxed_turn_rate = relaxed_turn_rate_;
+  c.relaxed_lateral_acceleration = relaxed_lateral_acceleration_;
 }
 
 void DriveHistory::remember_stop(StepContext& c) {
@@ -215,6 +257,8 @@ std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const B
     fill_speeds(c, track, window, centre, base);
   }
   fill_accelerations_at_ends(contexts, base.track_width);
+  fill_changes_of_acceleration(contexts, latest_accelerations(track, first, duration_of_edges(track, base)),
+                               base);
   delay_sways(contexts);
   return contexts;
 }
