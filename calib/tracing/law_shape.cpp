@@ -27,6 +27,24 @@ std::vector<BaseIndex> lengths_of(Carrier carrier) {
   }
 }
 
+bool scales_a_length(const Effect& effect) {
+  const std::vector<Law> laws = effect.laws();
+  return std::any_of(laws.begin(), laws.end(),
+                     [](const Law& law) { return !lengths_of(law.carrier).empty(); });
+}
+
+/// Parameters of the model with the effect's shape that of the variant; nullopt if they are the model's own.
+std::optional<Eigen::VectorXd> in_shape_of(const Effect& variant, const FittedModel& model,
+                                           std::size_t index) {
+  Eigen::VectorXd start = model.fit.parameters;
+  Eigen::Index k = first_parameter(model.effects, index);
+  for (const EffectParameter& parameter : variant.parameters()) {
+    if (parameter.fixed) start(k) = parameter.start;
+    ++k;
+  }
+  return start == model.fit.parameters ? std::nullopt : std::optional(start);
+}
+
 /// Relative changes of one length, each with the motion that it acted on.
 class Changes {
  public:
@@ -141,6 +159,25 @@ Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& m
   doubt(kRightRadius) = share(right) * model.fit.parameters(kRightRadius);
   doubt(kTrackWidth) = share(track) * model.fit.parameters(kTrackWidth);
   return doubt;
+}
+
+std::vector<Eigen::VectorXd> doubts_of_shape(const FitTask& task, const FittedModel& model,
+                                             std::size_t index) {
+  const Effect& effect = *model.effects[index];
+  std::vector<Eigen::VectorXd> doubts;
+  if (!scales_a_length(effect)) return doubts;
+  std::vector<double> likelihoods;
+  double all = 1.0;
+  for (const auto& variant : effect.variants()) {
+    const auto start = in_shape_of(*variant, model, index);
+    const auto fit = start ? task.fit(model.effects, *start, model.fit.noise) : std::nullopt;
+    if (!fit) continue;
+    likelihoods.push_back(std::exp(std::min(0.0, 0.5 * (model.fit.cost - fit->cost))));
+    all += likelihoods.back();
+    doubts.emplace_back(fit->parameters.head<kBaseCount>() - model.base());
+  }
+  for (std::size_t k = 0; k < doubts.size(); ++k) doubts[k] *= std::sqrt(likelihoods[k] / all);
+  return doubts;
 }
 
 }  // namespace odomcalib::calib

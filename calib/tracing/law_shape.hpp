@@ -50,4 +50,10 @@ Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, con
 /// @param index of the effect in the model
 Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model, std::size_t index);
 
+/// What the base parameters would be with the other shapes in which an effect that scales lengths is tried,
+/// each by the root of its probability beside all of them (Hoeting et al., Stat. Sci. 14, 1999, eq. 5).
+/// @param index of the effect in the model
+std::vector<Eigen::VectorXd> doubts_of_shape(const FitTask& task, const FittedModel& model,
+                                             std::size_t index);
+
 }  // namespace odomcalib::calib

@@ -49,13 +49,19 @@ class Search {
     go_on(0.0);
     ask_the_floor();
     go_on(0.5);
-    for (std::size_t e = 0; e < result_.model.effects.size(); ++e)
+    for (std::size_t e = 0; e < result_.model.effects.size(); ++e) {
       result_.doubts.push_back(doubt_of_extrapolation(task_, result_.model, e));
-    std::move(unproved_.begin(), unproved_.end(), std::back_inserter(result_.doubts));
+      add_doubts(doubts_of_shape(task_, result_.model, e));
+    }
+    add_doubts(unproved_);
     return std::move(result_);
   }
 
  private:
+  void add_doubts(const std::vector<Eigen::VectorXd>& doubts) {
+    result_.doubts.insert(result_.doubts.end(), doubts.begin(), doubts.end());
+  }
+
   /// @param done share of the whole search
   void go_on(double done) {
     for (int step = 0; step < kMaxSteps; ++step) {
@@ -132,20 +138,41 @@ class Search {
 
   /// Joint refits of the most promising names on the noise model of the current fit.
   std::optional<Trial> best_name(const ScoreTable& table) {
+    std::set<std::string> tried;
+    for (const std::size_t k : by_score(table, [&](std::size_t k) {
+           return !candidates_[k].curve && table.scores()[k].family_p_value <= level(candidates_[k]) &&
+                  !is_rest_of_a_law(table, k);
+         }))
+      if (tried.size() < kRefits && tried.insert(candidates_[k].key).second) try_out(k);
+    auto best = best_trial("");
+    if (!best) return best;
+    // Which shape of a law is right, its score at size zero hardly tells.
+    const std::string key = candidates_[best->candidate].key;
+    std::size_t shapes = 0;
+    for (const std::size_t k : by_score(table, [&](std::size_t k) { return candidates_[k].key == key; }))
+      if (shapes++ < kRefits) try_out(k);
+    return best_trial(key);
+  }
+
+  /// Candidates that are left and wanted, the most promising first.
+  template <typename Wanted>
+  [[nodiscard]] std::vector<std::size_t> by_score(const ScoreTable& table, const Wanted& wanted) const {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (is_open(k) && !candidates_[k].curve && table.scores()[k].family_p_value <= level(candidates_[k]) &&
-          !is_rest_of_a_law(table, k))
-        order.push_back(k);
+      if (is_open(k) && wanted(k)) order.push_back(k);
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return penalised(table.scores()[a]) > penalised(table.scores()[b]);
     });
-    std::set<std::string> tried;
-    for (const std::size_t k : order)
-      if (tried.size() < kRefits && tried.insert(candidates_[k].key).second) try_out(k);
+    return order;
+  }
+
+  /// @param key of its candidate; empty: any
+  [[nodiscard]] std::optional<Trial> best_trial(const std::string& key) const {
     const Trial* best = nullptr;
     for (const Trial& trial : trials_)
-      if (is_open(trial.candidate) && (best == nullptr || trial.gain > best->gain)) best = &trial;
+      if (is_open(trial.candidate) && (key.empty() || candidates_[trial.candidate].key == key) &&
+          (best == nullptr || trial.gain > best->gain))
+        best = &trial;
     return best == nullptr ? std::nullopt : std::optional(*best);
   }
 
@@ -176,12 +203,24 @@ class Search {
     return table.scores()[candidate].statistic < kNearlyAll * of_curves;
   }
 
+  /// Another shape than the first of a name is a choice of the data.
+  [[nodiscard]] static bool is_textbook(const Effect& effect) {
+    const EffectList shapes = effect.variants();
+    const auto starts = [](const Effect& e) {
+      std::vector<double> all;
+      for (const EffectParameter& p : e.parameters()) all.push_back(p.start);
+      return all;
+    };
+    return shapes.empty() || starts(*shapes.front()) == starts(effect);
+  }
+
   /// @param noise per recording; empty: estimated anew
   std::optional<Trial> refit(std::size_t index, const std::vector<NoiseModel>& noise) {
     const auto& effect = candidates_[index].effect;
     auto model = with_effect(task_, basis_, effect, noise);
     if (!model) return std::nullopt;
-    const double gain = basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect));
+    const double gain = basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect)) -
+                        (is_textbook(*effect) ? 0.0 : kAkaike);
     return Trial{index, std::move(*model), gain};
   }
   std::optional<Trial> refit(std::size_t index) { return refit(index, basis_.fit.noise); }

@@ -119,14 +119,17 @@ TEST(Tracing, a_name_that_is_plain_in_one_stretch_only_stays_a_doubt_about_the_l
 }
 
 TEST(Tracing, names_what_is_in_the_catalogue_and_finds_its_size) {
-  const DriveModel model = lively_model();
   struct Case {
     const char* name;
     std::vector<double> values;
+    double haste = 1.0;
   };
-  for (const Case& c : {Case{"wheel_eccentricity", {0.008, -0.004}}, Case{"speed_dependent_radius", {0.02}},
-                        Case{"tick_loss", {-0.02, 0.0, 0.15, 0.02}}, Case{"lateral_slip", {0.03, 0.1, 0.07}},
-                        Case{"turn_direction_asymmetry", {0.01}}}) {
+  // A law of speed has no shape to be seen in slow drives.
+  for (const Case& c :
+       {Case{"wheel_eccentricity", {0.008, -0.004}}, Case{"speed_dependent_radius", {0.02, 0.0}, 2.0},
+        Case{"speed_dependent_radius", {0.04, 0.2}, 2.0}, Case{"tick_loss", {-0.02, 0.0, 0.15, 0.02}},
+        Case{"lateral_slip", {0.03, 0.1, 0.07}}, Case{"turn_direction_asymmetry", {0.01}}}) {
+    const DriveModel model = lively_model(c.haste);
     const SearchResult result = searched(measured(model, {find_effect(c.name)}, c.values));
     ASSERT_EQ(result.findings.size(), 1U) << c.name << ", seed " << kSeed;
     EXPECT_EQ(result.findings[0].effect->name(), c.name);
@@ -240,9 +243,9 @@ TEST(Tracing, lengths_are_extrapolated_to_where_no_effect_is) {
     std::copy(values.begin(), values.end(), found.fit.parameters.data() + kBaseCount);
     return doubt_of_extrapolation({{&data, 1}, std::vector<bool>(kBaseCount, false)}, found, 0);
   };
-  const double slow = doubt(model, "speed_dependent_radius", {0.02})(kLeftRadius) / kBase.left_radius;
+  const double slow = doubt(model, "speed_dependent_radius", {0.02, 0.0})(kLeftRadius) / kBase.left_radius;
   EXPECT_GT(slow, 1e-5);
-  EXPECT_NEAR(doubt(fast, "speed_dependent_radius", {0.02})(kLeftRadius) / kBase.left_radius, 3.0 * slow,
+  EXPECT_NEAR(doubt(fast, "speed_dependent_radius", {0.02, 0.0})(kLeftRadius) / kBase.left_radius, 3.0 * slow,
               0.3 * slow);
   EXPECT_EQ(doubt(model, "wheel_eccentricity", {0.01, 0.0})(kLeftRadius), 0.0) << "of either sign";
   EXPECT_EQ(doubt(model, "carpet", {0.01, 0.0})(kLeftRadius), 0.0) << "of either sign";
@@ -296,8 +299,10 @@ TEST(Tracing, a_filter_of_the_encoder_is_a_delay_that_smooths) {
   ASSERT_TRUE(fit && delayed) << "seed " << kSeed;
   const auto& p = fit.value().parameters;
   EXPECT_NEAR(p(kBaseCount), -kLag, 2e-3);
-  EXPECT_NEAR(p(kBaseCount + 1), kLag * kLag / 2.0, 0.3 * kLag * kLag / 2.0);
-  EXPECT_LT(fit.value().rms.norm(), 0.8 * delayed.value().rms.norm());
+  // Samples come as far apart as the filter is late: the expansion's next orders share in its second.
+  EXPECT_GT(p(kBaseCount + 1), 0.5 * kLag * kLag / 2.0);
+  EXPECT_LT(p(kBaseCount + 1), 2.0 * kLag * kLag / 2.0);
+  EXPECT_LT(fit.value().rms.norm(), 0.5 * delayed.value().rms.norm());
 }
 
 TEST(Tracing, columns_of_curves_are_their_derivatives) {
@@ -570,16 +575,17 @@ FitResult fit_with(const std::vector<double>& values, double deviation) {
 
 TEST(Plausibility, bounds_size_and_need_are_judged_both_ways) {
   const auto effect = find_effect("speed_dependent_radius");
-  EXPECT_FALSE(is_impossible(*effect, fit_with({0.02}, 1e-3)));
-  EXPECT_TRUE(is_impossible(*effect, fit_with({0.3}, 1e-3)));
-  EXPECT_TRUE(is_impossible(*effect, fit_with({std::nan("")}, 1e-3)));
-  EXPECT_FALSE(is_negligible(*effect, fit_with({0.002}, 1e-3)));
-  EXPECT_TRUE(is_negligible(*effect, fit_with({0.001}, 1e-3)));
-  EXPECT_FALSE(is_superfluous(*effect, kBaseCount, fit_with({0.003}, 1e-3)));
-  EXPECT_TRUE(is_superfluous(*effect, kBaseCount, fit_with({0.001}, 1e-3)));
-  EXPECT_FALSE(spoils_base(*effect, fit_with({0.0}, 1e-3), fit_with({0.0}, 2.9e-3)));
-  EXPECT_TRUE(spoils_base(*effect, fit_with({0.0}, 1e-3), fit_with({0.0}, 3.1e-3)));
-  EXPECT_FALSE(spoils_base(*find_effect("drift_with_time"), fit_with({0.0}, 1e-3), fit_with({0.0}, 9e-3)));
+  EXPECT_FALSE(is_impossible(*effect, fit_with({0.02, 0.0}, 1e-3)));
+  EXPECT_TRUE(is_impossible(*effect, fit_with({0.3, 0.0}, 1e-3)));
+  EXPECT_TRUE(is_impossible(*effect, fit_with({std::nan(""), 0.0}, 1e-3)));
+  EXPECT_FALSE(is_negligible(*effect, fit_with({0.002, 0.0}, 1e-3)));
+  EXPECT_TRUE(is_negligible(*effect, fit_with({0.001, 0.0}, 1e-3)));
+  EXPECT_FALSE(is_superfluous(*effect, kBaseCount, fit_with({0.003, 0.0}, 1e-3)));
+  EXPECT_TRUE(is_superfluous(*effect, kBaseCount, fit_with({0.001, 0.0}, 1e-3)));
+  EXPECT_FALSE(spoils_base(*effect, fit_with({0.0, 0.0}, 1e-3), fit_with({0.0, 0.0}, 2.9e-3)));
+  EXPECT_TRUE(spoils_base(*effect, fit_with({0.0, 0.0}, 1e-3), fit_with({0.0, 0.0}, 3.1e-3)));
+  EXPECT_FALSE(
+      spoils_base(*find_effect("drift_with_time"), fit_with({0.0, 0.0}, 1e-3), fit_with({0.0, 0.0}, 9e-3)));
 }
 
 TEST(Plausibility, the_shape_of_an_effect_is_no_size) {
