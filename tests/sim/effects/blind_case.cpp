@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kEnoughClearance = 0.25;  // m; nearer the robot would have touched a wall
 constexpr int kAttempts = 20;
+constexpr double kRest = 0.8;       // s, braking included: robots that are calibrated stand still at times
+constexpr double kLongest = 300.0;  // s
 
 BlindEffect describe(const EffectKind& kind, double size) {
   return {kind.name, kind.catalogue_name, kind.depends_on, size, kind.unit};
@@ -58,7 +60,7 @@ Disturbances draw_effects(Random& random, const BlindOptions& options, BlindAnsw
 std::vector<Manoeuvre> shuffled_pattern(Random& random) {
   std::vector<std::vector<Manoeuvre>> pieces(1);
   double forward = 0.0;
-  for (const Manoeuvre& move : guided_pattern()) {
+  for (const Manoeuvre& move : guided_pattern(kRest)) {
     pieces.back().push_back(move);
     forward += move.speed * move.duration;
     const bool at_home = std::abs(forward) < 1e-9;
@@ -73,7 +75,7 @@ std::vector<Manoeuvre> shuffled_pattern(Random& random) {
 Drive draw_drive(Random& random, const Geometry& nominal, BlindAnswer& answer) {
   const double kind = uniform(random, 0.0, 1.0);
   answer.drive = kind < 0.5 ? "guided" : kind < 0.85 ? "shuffled" : "random";
-  if (answer.drive == "guided") return follow(nominal, guided_pattern());
+  if (answer.drive == "guided") return follow(nominal, guided_pattern(kRest));
   if (answer.drive == "shuffled") return follow(nominal, shuffled_pattern(random));
   return random_drive(nominal, random(), 1.1);
 }
@@ -89,6 +91,7 @@ Geometry draw_nominal(Random& random) {
 
 SimulationConfig draw_config(Random& random, std::uint64_t seed) {
   SimulationConfig config = standard_config(seed);
+  config.duration = std::min(kLongest, total_duration(guided_pattern(kRest)));
   config.nominal = draw_nominal(random);
   config.truth = draw_truth(config.nominal, seed);
   config.room = random_room(seed);

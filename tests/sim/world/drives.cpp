@@ -10,20 +10,26 @@ namespace odomcalib::sim {
 
 namespace {
 
-constexpr Manoeuvre kRest{0.0, 0.0, 0.4};
+/// A list of manoeuvres in the making.
+struct Pattern {
+  double rest = 0.0;  ///< s
+  std::vector<Manoeuvre> list{{0.0, 0.0, 1.0}};
 
-/// There and back again, with a pause at each end when `stop` is set.
-void shuttle(std::vector<Manoeuvre>& list, double speed, double yaw_rate, double duration, bool stop) {
-  list.push_back({speed, yaw_rate, duration});
-  if (stop) list.push_back(kRest);
-  list.push_back({-speed, -yaw_rate, duration});
-  if (stop) list.push_back(kRest);
-}
+  void move(const Manoeuvre& one) { list.push_back(one); }
 
-void turn(std::vector<Manoeuvre>& list, double yaw_rate, double angle) {
-  list.push_back({0.0, yaw_rate, angle / std::abs(yaw_rate)});
-  list.push_back(kRest);
-}
+  /// There and back again, with a pause at each end when `stop` is set.
+  void shuttle(double speed, double yaw_rate, double duration, bool stop) {
+    for (const double way : {1.0, -1.0}) {
+      list.push_back({way * speed, way * yaw_rate, duration});
+      if (stop) list.push_back({0.0, 0.0, rest});
+    }
+  }
+
+  void turn(double yaw_rate, double angle) {
+    list.push_back({0.0, yaw_rate, angle / std::abs(yaw_rate)});
+    list.push_back({0.0, 0.0, rest});
+  }
+};
 
 struct Wanderer {
   Geometry nominal;
@@ -97,34 +103,34 @@ Drive follow(const Geometry& nominal, std::vector<Manoeuvre> manoeuvres) {
   };
 }
 
-std::vector<Manoeuvre> guided_pattern() {
-  std::vector<Manoeuvre> list{{0.0, 0.0, 1.0}};
+std::vector<Manoeuvre> guided_pattern(double rest) {
+  Pattern pattern{rest};
   constexpr double kQuarter = 0.5 * std::numbers::pi;
   for (int heading = 0; heading < 4; ++heading) {
     const bool stop = heading % 2 == 0;
-    shuttle(list, 0.15, 0.0, 4.0, stop);
-    shuttle(list, 0.25, 0.0, 3.2, !stop);
-    shuttle(list, 0.45, 0.0, 2.2, stop);
-    list.push_back({0.15, 0.0, 1.5});  // from slow to fast without a stop
-    list.push_back({0.40, 0.0, 1.2});
-    list.push_back({-0.40, 0.0, 1.2});
-    list.push_back({-0.15, 0.0, 1.5});
-    turn(list, heading % 2 == 0 ? 0.8 : 0.5, kQuarter);
+    pattern.shuttle(0.15, 0.0, 4.0, stop);
+    pattern.shuttle(0.25, 0.0, 3.2, !stop);
+    pattern.shuttle(0.45, 0.0, 2.2, stop);
+    pattern.move({0.15, 0.0, 1.5});  // from slow to fast without a stop
+    pattern.move({0.40, 0.0, 1.2});
+    pattern.move({-0.40, 0.0, 1.2});
+    pattern.move({-0.15, 0.0, 1.5});
+    pattern.turn(heading % 2 == 0 ? 0.8 : 0.5, kQuarter);
   }
   for (const double rate : {0.3, 0.8, 1.3}) {
-    turn(list, rate, 4.0 * kQuarter);
-    turn(list, -rate, 4.0 * kQuarter);
+    pattern.turn(rate, 4.0 * kQuarter);
+    pattern.turn(-rate, 4.0 * kQuarter);
   }
   for (const double speed : {0.15, 0.35})
     for (const double yaw_rate : {0.4, -0.4, 0.9, -0.9})
-      for (const double way : {1.0, -1.0}) shuttle(list, way * speed, way * yaw_rate, 2.2, false);
+      for (const double way : {1.0, -1.0}) pattern.shuttle(way * speed, way * yaw_rate, 2.2, false);
   for (const double speed : {0.12, -0.12, 0.2}) {  // one wheel stands still
-    shuttle(list, speed, speed / 0.2, 2.0, true);
-    shuttle(list, speed, -speed / 0.2, 2.0, true);
+    pattern.shuttle(speed, speed / 0.2, 2.0, true);
+    pattern.shuttle(speed, -speed / 0.2, 2.0, true);
   }
-  shuttle(list, 0.25, 0.0, 3.2, true);
-  list.push_back({0.0, 0.0, 1.0});
-  return list;
+  pattern.shuttle(0.25, 0.0, 3.2, true);
+  pattern.move({0.0, 0.0, 1.0});
+  return pattern.list;
 }
 
 std::vector<Manoeuvre> lazy_pattern() {

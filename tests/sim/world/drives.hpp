@@ -30,7 +30,8 @@ Drive follow(const Geometry& nominal, std::vector<Manoeuvre> manoeuvres);
 
 /// Straights both ways at three speeds on four headings, spins both ways at three rates, arcs in all
 /// quadrants, turns on one wheel, with and without stops in between: some five minutes on about 2 m x 2 m.
-std::vector<Manoeuvre> guided_pattern();
+/// @param rest of a stop, s, braking included: with 0.4 fast wheels hardly come to stand still
+std::vector<Manoeuvre> guided_pattern(double rest = 0.4);
 /// Forward only at one speed with a few wide turns: what an impatient user drives. Needs about 3 m about the
 /// start.
 std::vector<Manoeuvre> lazy_pattern();
