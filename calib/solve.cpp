@@ -23,6 +23,7 @@ namespace {
 constexpr double kOffsetSignificance = 4.0;
 /// ... and longer than what a careful driver leaves, s.
 constexpr double kNegligibleOffset = 3e-3;
+const std::string kOffset = "time_offset", kDrift = "clock_drift";
 /// Two estimates from the same scans agree within this many standard deviations of both together.
 constexpr double kAgreement = 4.0;
 
@@ -90,17 +91,19 @@ class Solver {
   }
 
   /// Among the effects; as many as there are when it is none of them.
-  [[nodiscard]] std::size_t place_of_offset() const {
-    const auto offset = std::find_if(effects_.begin(), effects_.end(),
-                                     [](const auto& e) { return e->name() == "time_offset"; });
-    return static_cast<std::size_t>(offset - effects_.begin());
+  [[nodiscard]] std::size_t place_of(const std::string& name) const {
+    const auto place =
+        std::find_if(effects_.begin(), effects_.end(), [&](const auto& e) { return e->name() == name; });
+    return static_cast<std::size_t>(place - effects_.begin());
   }
 
-  [[nodiscard]] bool has_offset() const { return place_of_offset() < effects_.size(); }
+  [[nodiscard]] bool has(const std::string& name) const { return place_of(name) < effects_.size(); }
 
-  [[nodiscard]] double delay() const { return has_offset() ? parameters_(offset_index()) : 0.0; }
+  [[nodiscard]] double delay() const { return has(kOffset) ? parameters_(first_of(kOffset)) : 0.0; }
 
-  [[nodiscard]] Eigen::Index offset_index() const { return first_parameter(effects_, place_of_offset()); }
+  [[nodiscard]] Eigen::Index first_of(const std::string& name) const {
+    return first_parameter(effects_, place_of(name));
+  }
 
   /// First matches with nominal values; then the clocks' delay and what the recording does not state.
   void start() {
@@ -108,12 +111,14 @@ class Solver {
     parameters_ = to_vector(session_->nominal());
     session_->measure(parameters_, {}, PairOptions{});
     if (automatic_ && recordings_.front().increments.empty()) effects_.push_back(find_effect("time_offset"));
-    const double delay = has_offset() ? search_delay(session_->data()) : 0.0;
-    parameters_ = to_vector(start_values(*session_, delay), count_parameters(effects_));
+    const ClockStart clock = has(kOffset) ? search_clock(session_->data()) : ClockStart{};
+    if (automatic_ && clock.rate != 0.0) effects_.push_back(find_effect(kDrift));
+    parameters_ = to_vector(start_values(*session_, clock.delay), count_parameters(effects_));
     const std::vector<double> own = start_of(effects_);
     parameters_.tail(static_cast<Eigen::Index>(own.size())) =
         Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
-    if (has_offset()) parameters_(offset_index()) = delay;
+    if (has(kOffset)) parameters_(first_of(kOffset)) = clock.delay;
+    if (has(kDrift)) parameters_(first_of(kDrift)) = clock.rate;
   }
 
   /// Fits, matches again with the fitted parameters (guess and de-skew), and fits again. Noise of a match
@@ -123,7 +128,7 @@ class Solver {
     auto fit = fit_now();
     for (int pass = 0; pass < 2 && fit; ++pass) {
       parameters_ = fit.value().parameters;
-      if (pass == 0) drop_idle_offset(fit.value());
+      if (pass == 0) drop_idle_clocks(fit.value());
       report("matching", 0.33 * (pass + 1));
       session_->measure(parameters_, effects_, PairOptions{});
       report("fitting", 0.5 * (pass + 1));
@@ -139,16 +144,23 @@ class Solver {
     return fit_joint(session_->data(), effects_, parameters_, options);
   }
 
-  static bool is_idle(const FitResult& fit, Eigen::Index k) {
+  [[nodiscard]] bool is_idle(const std::string& name, const FitResult& fit) const {
+    const Eigen::Index k = first_of(name);
+    const double negligible = name == kOffset ? kNegligibleOffset : 0.0;
     const double deviation = std::sqrt(fit.covariance(k, k));
-    return std::abs(fit.parameters(k)) <= std::max(kOffsetSignificance * deviation, kNegligibleOffset);
+    return std::abs(fit.parameters(k)) <= std::max(kOffsetSignificance * deviation, negligible);
   }
 
-  void drop_idle_offset(const FitResult& fit) {
-    if (!automatic_ || !has_offset()) return;
-    if (!is_idle(fit, offset_index())) return;
-    effects_.clear();
-    parameters_ = parameters_.head(kBaseCount).eval();
+  /// Clocks that run apart need a delay to run apart from.
+  void drop_idle_clocks(const FitResult& fit) {
+    if (!automatic_) return;
+    if (has(kDrift) && is_idle(kDrift, fit)) drop_last();
+    if (!has(kDrift) && has(kOffset) && is_idle(kOffset, fit)) drop_last();
+  }
+
+  void drop_last() {
+    effects_.pop_back();
+    parameters_ = parameters_.head(static_cast<Eigen::Index>(kBaseCount + count_parameters(effects_))).eval();
   }
 
   [[nodiscard]] bool may_trace_lidar() const {
@@ -288,9 +300,9 @@ class Solver {
   /// The delay was fitted before anything else was known; what it stood for may have got its own name.
   void retire_idle_offset() {
     if (outcome_.findings.empty() && outcome_.curves.empty()) return;
-    if (!has_offset() || !is_idle(outcome_.model.fit, offset_index())) return;
+    if (!has(kOffset) || !is_idle(kOffset, outcome_.model.fit)) return;
     const FitTask task{session_->data(), session_->fixed(0)};
-    if (auto fewer = without_effect(task, outcome_.model, place_of_offset(), {}))
+    if (auto fewer = without_effect(task, outcome_.model, place_of(kOffset), {}))
       outcome_.model = std::move(*fewer);
     effects_ = outcome_.model.effects;
     parameters_ = outcome_.model.fit.parameters;

@@ -1,7 +1,10 @@
 #include "calib/session/start_values.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "calib/estimators/closed_form.hpp"
 
@@ -12,6 +15,8 @@ constexpr double kReach = 0.6;  ///< s
 constexpr double kStep = 0.02;  ///< s
 /// A delay must reduce the robust misfit by this factor to be believed; otherwise zero is the better start.
 constexpr double kBelievable = 0.9;
+/// Nearer to each other, delays of both halves are within reach of the fit from the delay of the whole, s.
+constexpr double kApart = 0.06;
 
 /// Mean absolute misfit of rotation = a left + b right at this delay, a and b by least squares with one
 /// reweighting.
@@ -39,24 +44,57 @@ double rotation_misfit(std::span<const FitData> data, double delay) {
   return misfit;
 }
 
+struct Delay {
+  double seconds = 0.0;
+  double misfit = 0.0;
+};
+
+Delay search_delay(std::span<const FitData> data) {
+  const double at_zero = rotation_misfit(data, 0.0);
+  Delay best{0.0, at_zero};
+  for (double d = -kReach; d <= kReach + 1e-9; d += kStep) {
+    const double misfit = rotation_misfit(data, d);
+    if (misfit < best.misfit) best = {d, misfit};
+  }
+  return best.misfit < kBelievable * at_zero ? best : Delay{0.0, at_zero};
+}
+
+/// The first and the second half of each recording's pairs.
+std::pair<std::vector<FitData>, std::vector<FitData>> halves(std::span<const FitData> data) {
+  std::pair<std::vector<FitData>, std::vector<FitData>> both;
+  for (const FitData& one : data) {
+    const auto middle = one.pairs.begin() + static_cast<std::ptrdiff_t>(one.pairs.size() / 2);
+    both.first.push_back({one.model, {one.pairs.begin(), middle}});
+    both.second.push_back({one.model, {middle, one.pairs.end()}});
+  }
+  return both;
+}
+
+/// Of the pairs, s.
+double mean_time(std::span<const FitData> data) {
+  double sum = 0.0, count = 0.0;
+  for (const FitData& one : data)
+    for (const SensorPair& pair : one.pairs) {
+      sum += 0.5 * (pair.interval.begin + pair.interval.end);
+      count += 1.0;
+    }
+  return sum / std::max(count, 1.0);
+}
+
 bool plausible(const BaseParameters& p) {
   return p.left_radius > 0.0 && p.right_radius > 0.0 && p.track_width > 0.0 && std::isfinite(p.track_width);
 }
 
 }  // namespace
 
-double search_delay(std::span<const FitData> data) {
-  const double at_zero = rotation_misfit(data, 0.0);
-  double best = at_zero;
-  double delay = 0.0;
-  for (double d = -kReach; d <= kReach + 1e-9; d += kStep) {
-    const double misfit = rotation_misfit(data, d);
-    if (misfit < best) {
-      best = misfit;
-      delay = d;
-    }
-  }
-  return best < kBelievable * at_zero ? delay : 0.0;
+ClockStart search_clock(std::span<const FitData> data) {
+  const Delay whole = search_delay(data);
+  const auto [early, late] = halves(data);
+  const Delay first = search_delay(early), second = search_delay(late);
+  const double apart = second.seconds - first.seconds;
+  if (std::abs(apart) < kApart || 0.5 * (first.misfit + second.misfit) > kBelievable * whole.misfit)
+    return {whole.seconds, 0.0};
+  return {0.5 * (first.seconds + second.seconds), apart / (mean_time(late) - mean_time(early))};
 }
 
 BaseParameters start_values(const Session& session, double delay) {
