@@ -8,8 +8,7 @@ namespace odomcalib::calib {
 namespace {
 
 constexpr double kSmoothing = 0.25;  ///< s; differences of raw ticks over less are mostly quantisation noise
-constexpr double kSharp = 0.1;       ///< s; over which fine encoders still show an acceleration ...
-constexpr double kCoarse = 5e-4;     ///< m; ... and coarser ones do not
+constexpr double kCoarse = 5e-4;     ///< m; ticks from which on shorter times show nothing else either
 constexpr double kStanding =
     0.005;  ///< m/s; below, the direction of travel is undefined and the last one is kept
 
@@ -51,10 +50,10 @@ struct Window {
 };
 
 /// Samples within half a smoothing window of `centre`, at least interval k itself, never across a segment.
-Window window_around(const WheelTrack& track, std::size_t k, Window window, double centre) {
-  while (track.t[window.low] < centre - kSmoothing / 2.0 && window.low < k) ++window.low;
+Window window_around(const WheelTrack& track, std::size_t k, Window window, double centre, double duration) {
+  while (track.t[window.low] < centre - duration / 2.0 && window.low < k) ++window.low;
   window.high = std::max(window.high, k + 1);
-  while (window.high + 1 < track.t.size() && track.t[window.high + 1] <= centre + kSmoothing / 2.0)
+  while (window.high + 1 < track.t.size() && track.t[window.high + 1] <= centre + duration / 2.0)
     ++window.high;
   while (track.segment[window.low] != track.segment[k] && window.low < k) ++window.low;
   while (track.segment[window.high] != track.segment[k] && window.high > k + 1) --window.high;
@@ -73,11 +72,10 @@ void fill_speeds(StepContext& c, const WheelTrack& track, Window window, double 
   c.turn_rate = (c.right_speed - c.left_speed) / base.track_width;
 }
 
-/// Where an acceleration begins and ends matters to how much it has changed: smoothed no more than the
-/// encoders ask for.
-double duration_of_edges(const WheelTrack& track, const BaseParameters& base) {
+/// Fine encoders show an acceleration over a shorter time than coarse ones.
+double duration_for(const WheelTrack& track, const BaseParameters& base, double if_fine) {
   const double tick = track.tick_angle * std::max(base.left_radius, base.right_radius);
-  return tick <= kCoarse ? kSharp : kSmoothing;
+  return tick <= kCoarse ? if_fine : kSmoothing;
 }
 
 /// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on: so that
@@ -100,8 +98,11 @@ WheelAccelerations latest_accelerations(const WheelTrack& track, std::size_t fir
   return all;
 }
 
-void fill_changes_of_acceleration(std::vector<StepContext>& contexts, const WheelAccelerations& wheels,
-                                  const BaseParameters& base) {
+/// Where an acceleration begins and ends matters to how much it has changed.
+void fill_changes_of_acceleration(std::vector<StepContext>& contexts, const WheelTrack& track,
+                                  std::size_t first, const BaseParameters& base) {
+  constexpr double kSharp = 0.1;  // s
+  const auto wheels = latest_accelerations(track, first, duration_for(track, base, kSharp));
   for (std::size_t k = 0; k < contexts.size(); ++k) {
     const std::size_t before = k > 0 ? k - 1 : k;
     contexts[k].left_acceleration_change = base.left_radius * (wheels.left[k] - wheels.left[before]);
@@ -109,16 +110,36 @@ void fill_changes_of_acceleration(std::vector<StepContext>& contexts, const Whee
   }
 }
 
+/// A push may be short, but what lies beyond a threshold must not be noise.
+void fill_pushes(std::vector<StepContext>& contexts, const WheelTrack& track, std::size_t first,
+                 const BaseParameters& base) {
+  constexpr double kShort = 0.16;  // s
+  const auto wheels = latest_accelerations(track, first, duration_for(track, base, kShort));
+  for (std::size_t k = 0; k < contexts.size(); ++k)
+    contexts[k].push = 0.5 * (base.left_radius * wheels.left[k] + base.right_radius * wheels.right[k]);
+}
+
 /// At the samples between two intervals, from the smoothed accelerations in their middles.
-void fill_accelerations_at_ends(std::vector<StepContext>& contexts, double track_width) {
-  const auto in_middle = [&](const StepContext& c) {
-    return (c.right_acceleration - c.left_acceleration) / track_width;
-  };
+void fill_accelerations_at_ends(std::vector<StepContext>& contexts, const WheelTrack& track,
+                                std::size_t first, const BaseParameters& base) {
+  constexpr double kSharp = 0.12;  // s
+  const double duration = duration_for(track, base, kSharp);
+  std::vector<double> in_middle;
+  Window window;
+  for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
+    const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
+    window = window_around(track, k, window, centre, duration);
+    const auto second = [&](const std::vector<double>& wheel) {
+      return local_derivatives(track.t, wheel, window.low, window.high, centre).second;
+    };
+    in_middle.push_back((base.right_radius * second(track.right) - base.left_radius * second(track.left)) /
+                        base.track_width);
+  }
   for (std::size_t k = 0; k < contexts.size(); ++k) {
-    const StepContext& before = contexts[k > 0 ? k - 1 : k];
-    const StepContext& after = contexts[k + 1 < contexts.size() ? k + 1 : k];
-    contexts[k].turn_acceleration_before.fill(0.5 * (in_middle(before) + in_middle(contexts[k])));
-    contexts[k].turn_acceleration_after.fill(0.5 * (in_middle(contexts[k]) + in_middle(after)));
+    const double before = in_middle[k > 0 ? k - 1 : k], own = in_middle[k],
+                 after = in_middle[k + 1 < contexts.size() ? k + 1 : k];
+    contexts[k].turn_acceleration_before.fill(0.5 * (before + own));
+    contexts[k].turn_acceleration_after.fill(0.5 * (own + after));
   }
 }
 
@@ -224,7 +245,7 @@ void DriveHistory::remember_push(StepContext& c) {
   constexpr double kMemory = 0.1;  // m/s
   constexpr double kLeast = 0.1;   // m/s^2
   c.previous_push = previous_push_;
-  const double acceleration = 0.5 * (c.left_acceleration + c.right_acceleration);
+  const double acceleration = c.push;
   if (std::abs(acceleration) < kLeast) return;
   remember(previous_push_, acceleration * c.dt / kMemory);
   for (std::size_t k = 0; k < kPushes.size(); ++k)
@@ -253,12 +274,12 @@ std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const B
     c.right_angle = (track.right[k] + track.right[k + 1]) / 2.0;
     c.left_delta = joined ? track.left[k + 1] - track.left[k] : 0.0;
     c.right_delta = joined ? track.right[k + 1] - track.right[k] : 0.0;
-    window = window_around(track, k, window, centre);
+    window = window_around(track, k, window, centre, kSmoothing);
     fill_speeds(c, track, window, centre, base);
   }
-  fill_accelerations_at_ends(contexts, base.track_width);
-  fill_changes_of_acceleration(contexts, latest_accelerations(track, first, duration_of_edges(track, base)),
-                               base);
+  fill_accelerations_at_ends(contexts, track, first, base);
+  fill_changes_of_acceleration(contexts, track, first, base);
+  fill_pushes(contexts, track, first, base);
   delay_sways(contexts);
   return contexts;
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/model/placed_effects.hpp"
 #include "calib/tracing/wave_curves.hpp"
 
 namespace odomcalib::calib {
@@ -101,6 +102,11 @@ double largest_ratio(const Candidate& candidate) {
     return std::numeric_limits<double>::infinity();
   const bool will_be_used = candidate.effect->storage() == Storage::host;
   return candidate.curve && will_be_used ? kUseful : std::numeric_limits<double>::infinity();
+}
+
+bool has_textbook_shape(const std::shared_ptr<const Effect>& effect) {
+  const EffectList shapes = effect->variants();
+  return shapes.empty() || start_of({effect}) == start_of({shapes.front()});
 }
 
 std::size_t count_sizes(const Effect& effect) {

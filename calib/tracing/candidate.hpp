@@ -40,6 +40,9 @@ bool must_be_worthwhile(const Candidate& candidate);
 /// seen to help odometry.
 double largest_ratio(const Candidate& candidate);
 
+/// Whether it is the first of its variants; another is a choice of the data.
+bool has_textbook_shape(const std::shared_ptr<const Effect>& effect);
+
 /// Parameters that a fit is free to choose.
 std::size_t count_sizes(const Effect& effect);
 

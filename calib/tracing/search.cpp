@@ -144,10 +144,12 @@ class Search {
                   !is_rest_of_a_law(table, k);
          }))
       if (tried.size() < kRefits && tried.insert(candidates_[k].key).second) try_out(k);
-    auto best = best_trial("");
-    if (!best) return best;
-    // Which shape of a law is right, its score at size zero hardly tells.
-    const std::string key = candidates_[best->candidate].key;
+    const auto best = best_trial("");
+    return best ? shaped(table, candidates_[best->candidate].key) : best;
+  }
+
+  /// Which shape of a law is right, its score at size zero hardly tells.
+  std::optional<Trial> shaped(const ScoreTable& table, const std::string& key) {
     std::size_t shapes = 0;
     for (const std::size_t k : by_score(table, [&](std::size_t k) { return candidates_[k].key == key; }))
       if (shapes++ < kRefits) try_out(k);
@@ -203,24 +205,13 @@ class Search {
     return table.scores()[candidate].statistic < kNearlyAll * of_curves;
   }
 
-  /// Another shape than the first of a name is a choice of the data.
-  [[nodiscard]] static bool is_textbook(const Effect& effect) {
-    const EffectList shapes = effect.variants();
-    const auto starts = [](const Effect& e) {
-      std::vector<double> all;
-      for (const EffectParameter& p : e.parameters()) all.push_back(p.start);
-      return all;
-    };
-    return shapes.empty() || starts(*shapes.front()) == starts(effect);
-  }
-
   /// @param noise per recording; empty: estimated anew
   std::optional<Trial> refit(std::size_t index, const std::vector<NoiseModel>& noise) {
     const auto& effect = candidates_[index].effect;
     auto model = with_effect(task_, basis_, effect, noise);
     if (!model) return std::nullopt;
     const double gain = basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect)) -
-                        (is_textbook(*effect) ? 0.0 : kAkaike);
+                        (has_textbook_shape(effect) ? 0.0 : kAkaike);
     return Trial{index, std::move(*model), gain};
   }
   std::optional<Trial> refit(std::size_t index) { return refit(index, basis_.fit.noise); }
