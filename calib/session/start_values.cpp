@@ -88,12 +88,14 @@ bool plausible(const BaseParameters& p) {
 }  // namespace
 
 ClockStart search_clock(std::span<const FitData> data) {
-  const Delay whole = search_delay(data);
   const auto [early, late] = halves(data);
   const Delay first = search_delay(early), second = search_delay(late);
+  const auto contradicts = [](const std::vector<FitData>& half, const Delay& own, const Delay& other) {
+    return own.misfit < kBelievable * rotation_misfit(half, other.seconds);
+  };
   const double apart = second.seconds - first.seconds;
-  if (std::abs(apart) < kApart || 0.5 * (first.misfit + second.misfit) > kBelievable * whole.misfit)
-    return {whole.seconds, 0.0};
+  if (std::abs(apart) < kApart || !contradicts(early, first, second) || !contradicts(late, second, first))
+    return {search_delay(data).seconds, 0.0};
   return {0.5 * (first.seconds + second.seconds), apart / (mean_time(late) - mean_time(early))};
 }
 

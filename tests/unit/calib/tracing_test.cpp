@@ -7,6 +7,7 @@
 #include <random>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/model/placed_effects.hpp"
 #include "calib/tracing/candidate.hpp"
 #include "calib/tracing/candidate_columns.hpp"
 #include "calib/tracing/curve.hpp"
@@ -231,6 +232,32 @@ TEST(Tracing, a_narrow_peak_gets_more_knots_and_the_wheel_a_wider_deviation) {
   const double deviation =
       std::hypot(doubt, std::sqrt(result.model.fit.covariance(kLeftRadius, kLeftRadius)));
   EXPECT_NEAR(result.model.fit.parameters(kLeftRadius), kBase.left_radius, 3.0 * deviation);
+}
+
+TEST(Tracing, what_other_shapes_would_make_of_a_length_is_doubted_by_their_probability) {
+  const DriveModel model = lively_model(2.0);
+  const auto doubts = [&](const char* name, double kappa) {
+    const auto effect = find_effect(name);
+    std::vector<double> values = start_of({effect});
+    values.front() = kappa;
+    const FitData data = measured(model, {effect}, values);
+    const FitTask task{{&data, 1}, std::vector<bool>(kBaseCount, false)};
+    const auto plain = fit_joint({&data, 1}, {}, to_vector(kBase));
+    const auto found = plain ? with_effect(task, {{}, plain.value()}, effect, {}) : std::nullopt;
+    EXPECT_TRUE(found) << name << ", seed " << kSeed;
+    return found ? doubts_of_shape(task, *found, 0) : std::vector<Eigen::VectorXd>{};
+  };
+  const auto sum = [](const std::vector<Eigen::VectorXd>& all) {
+    double of_squares = 0.0;
+    for (const Eigen::VectorXd& doubt : all) of_squares += doubt(kTrackWidth) * doubt(kTrackWidth);
+    return std::sqrt(of_squares);
+  };
+  const auto weak = doubts("track_depends_on_motion", 0.002),
+             strong = doubts("track_depends_on_motion", 0.05);
+  EXPECT_EQ(weak.size(), 3U);
+  EXPECT_GT(sum(weak), 1e-5) << "m; any shape may be right";
+  EXPECT_LT(sum(strong), sum(weak)) << "the data tell which";
+  EXPECT_TRUE(doubts("lateral_slip", 0.03).empty()) << "scales no length";
 }
 
 TEST(Tracing, lengths_are_extrapolated_to_where_no_effect_is) {
