@@ -38,7 +38,7 @@ inline constexpr std::array<double, 5> kPushes = {0.1, 0.17, 0.3, 0.5, 0.9};
 using PushMemory = std::array<double, kMemorySpans.size() + kPushes.size()>;
 
 /// s; how long a robot has to stand until something sticks is not known either.
-inline constexpr std::array<double, 3> kStops = {0.1, 0.2, 0.4};
+inline constexpr std::array<double, 5> kStops = {0.1, 0.14, 0.2, 0.28, 0.4};
 
 /// m; trails of casters are not known either ...
 inline constexpr std::array<double, 6> kCasterTrails = {0.02, 0.028, 0.04, 0.057, 0.08, 0.113};

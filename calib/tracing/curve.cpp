@@ -122,7 +122,10 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   [[nodiscard]] double prior(std::size_t function) const {
     // Where turns of one speed cannot tell which, each radian leaves the same way.
     const bool is_refinement = curve_.law.carrier == Carrier::turn_path && function > 0;
-    return (is_refinement ? 1.0 : 4.0) * typical_size();
+    const double usual = (is_refinement ? 1.0 : 4.0) * typical_size();
+    if (!is_distance_since(curve_.law.variable)) return usual;
+    // What is lost between one knot and the next is as much everywhere, the way between them half as long.
+    return std::min(std::ldexp(usual, kFadeKnots - 1 - static_cast<int>(function)), largest_size());
   }
 
   Curve curve_;

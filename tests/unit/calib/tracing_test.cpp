@@ -534,9 +534,12 @@ TEST(StepContext, counts_from_stops_that_last) {
   }
   const auto since = make_context(track, kBase).back().since_stop;
   const double step = 0.1 * kBase.left_radius;
-  EXPECT_NEAR(since[0], 94.0 * step, 2.0 * step);
-  EXPECT_NEAR(since[1], 179.0 * step, 2.0 * step);
-  EXPECT_GT(since[2], 100.0);
+  for (std::size_t k = 0; k < kStops.size(); ++k) {
+    if (kStops[k] > 0.3)
+      EXPECT_GT(since[k], 100.0) << kStops[k];
+    else
+      EXPECT_NEAR(since[k], (kStops[k] < 0.11 ? 94.0 : 179.0) * step, 2.0 * step) << kStops[k];
+  }
 }
 
 TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
