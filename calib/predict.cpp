@@ -174,6 +174,7 @@ PoseSample Odometry::update(const TickSample& sample) {
   const std::size_t n = track.t.size();
   const BaseParameters base = to_base(as_span(s.correction.parameters));
   StepContext context = make_context_of_moment(track, base, n - std::min<std::size_t>(n, 3)).back();
+  see_from_the_past(context, track, base);
   context.t = s.correction.time;
   s.drive.advance(context);
 

@@ -131,7 +131,11 @@ class DriveHistory {
 std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const BaseParameters& base,
                                                 std::size_t first = 0);
 
-/// The same with what depends on the drive before.
+/// Where the last interval of the track is the present, changes of its acceleration come from what was
+/// before: half of a window about it would be missing, and their sum over a drive would grow with the noise.
+void see_from_the_past(StepContext& last, const WheelTrack& track, const BaseParameters& base);
+
+/// With what depends on the drive before.
 std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& base);
 
 }  // namespace odomcalib::calib

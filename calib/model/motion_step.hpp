@@ -66,7 +66,7 @@ struct StepContext {
   double left_speed = 0.0, right_speed = 0.0;                ///< wheel rim speed, m/s
   double left_acceleration = 0.0, right_acceleration = 0.0;  ///< m/s^2
   double left_acceleration_change = 0.0,
-         right_acceleration_change = 0.0;  ///< since the interval before, m/s^2
+         right_acceleration_change = 0.0;  ///< over the interval, m/s^2
   double push = 0.0;       ///< forward acceleration over the time up to the end of the interval, m/s^2
   double speed = 0.0;      ///< forward, m/s
   double turn_rate = 0.0;  ///< rad/s

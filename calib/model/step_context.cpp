@@ -78,8 +78,7 @@ double duration_for(const WheelTrack& track, const BaseParameters& base, double 
   return tick <= kCoarse ? if_fine : kSmoothing;
 }
 
-/// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on: so that
-/// odometry, which knows no future, sees the same.
+/// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on.
 struct WheelAccelerations {
   std::vector<double> left, right;
 };
@@ -98,15 +97,13 @@ WheelAccelerations latest_accelerations(const WheelTrack& track, std::size_t fir
   return all;
 }
 
-/// Where an acceleration begins and ends matters to how much it has changed.
-void fill_changes_of_acceleration(std::vector<StepContext>& contexts, const WheelTrack& track,
-                                  std::size_t first, const BaseParameters& base) {
-  constexpr double kSharp = 0.1;  // s
-  const auto wheels = latest_accelerations(track, first, duration_for(track, base, kSharp));
+/// From the smoothed accelerations in the middles of the intervals beside it.
+void fill_changes_of_acceleration(std::vector<StepContext>& contexts) {
   for (std::size_t k = 0; k < contexts.size(); ++k) {
-    const std::size_t before = k > 0 ? k - 1 : k;
-    contexts[k].left_acceleration_change = base.left_radius * (wheels.left[k] - wheels.left[before]);
-    contexts[k].right_acceleration_change = base.right_radius * (wheels.right[k] - wheels.right[before]);
+    const StepContext& before = contexts[k > 0 ? k - 1 : k];
+    const StepContext& after = contexts[k + 1 < contexts.size() ? k + 1 : k];
+    contexts[k].left_acceleration_change = 0.5 * (after.left_acceleration - before.left_acceleration);
+    contexts[k].right_acceleration_change = 0.5 * (after.right_acceleration - before.right_acceleration);
   }
 }
 
@@ -278,10 +275,19 @@ std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const B
     fill_speeds(c, track, window, centre, base);
   }
   fill_accelerations_at_ends(contexts, track, first, base);
-  fill_changes_of_acceleration(contexts, track, first, base);
+  fill_changes_of_acceleration(contexts);
   fill_pushes(contexts, track, first, base);
   delay_sways(contexts);
   return contexts;
+}
+
+void see_from_the_past(StepContext& last, const WheelTrack& track, const BaseParameters& base) {
+  constexpr double kSharp = 0.1;  // s
+  const std::size_t n = track.t.size();
+  const auto wheels =
+      latest_accelerations(track, n - std::min<std::size_t>(n, 3), duration_for(track, base, kSharp));
+  last.left_acceleration_change = base.left_radius * (wheels.left.back() - wheels.left.front());
+  last.right_acceleration_change = base.right_radius * (wheels.right.back() - wheels.right.front());
 }
 
 std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& base) {
