@@ -4,10 +4,9 @@
 namespace odomcalib::calib {
 namespace {
 
-// In a spin the whole contact patch scrubs, rolling forward re-lays it: b (1 + kappa s) with s = |omega| arm
-// /
-// (|omega| arm + |v|), 1 in a spin and towards 0 in a wide arc. The arm is half the track by the textbook;
-// wide and soft patches scrub sooner, narrow and hard ones later.
+// In a spin the whole contact patch scrubs, rolling forward re-lays it: b (1 + kappa s) with
+// s = |omega| arm / (|omega| arm + |v|), 1 in a spin and towards 0 in a wide arc. The arm is half the track
+// by the textbook; wide and soft patches scrub sooner, narrow and hard ones later.
 class TrackDependsOnMotion final : public StepEffect<TrackDependsOnMotion> {
  public:
   explicit TrackDependsOnMotion(double arm) : arm_(arm) {}

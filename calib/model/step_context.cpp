@@ -116,7 +116,8 @@ void fill_pushes(std::vector<StepContext>& contexts, const WheelTrack& track, st
     contexts[k].push = 0.5 * (base.left_radius * wheels.left[k] + base.right_radius * wheels.right[k]);
 }
 
-/// At the samples between two intervals, from the smoothed accelerations in their middles.
+/// At the samples between two intervals, from accelerations in their middles that are smoothed no more than a
+/// mast with a lag of its own allows.
 void fill_accelerations_at_ends(std::vector<StepContext>& contexts, const WheelTrack& track,
                                 std::size_t first, const BaseParameters& base) {
   constexpr double kSharp = 0.12;  // s

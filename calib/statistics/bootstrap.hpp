@@ -46,6 +46,12 @@ struct RatioOfSums {
   [[nodiscard]] double root() const { return std::sqrt(above / std::max(below, 1e-300)); }
 };
 
+inline RatioOfSums total_of(const std::map<std::size_t, RatioOfSums>& by_block) {
+  RatioOfSums total;
+  for (const auto& [block, sums] : by_block) total += sums;
+  return total;
+}
+
 /// @param by_block not empty
 inline BootstrapInterval bootstrap_root(const std::map<std::size_t, RatioOfSums>& by_block, unsigned seed) {
   std::vector<RatioOfSums> blocks;

@@ -83,10 +83,8 @@ Improvement compare(const StretchErrors& before, const StretchErrors& after) {
   const std::size_t count = std::min(before.position.size(), after.position.size());
   for (std::size_t k = 0; k < count; ++k)
     by_block[before.block[k]] += {combined_square(after, k), combined_square(before, k)};
-  RatioOfSums total;
-  for (const auto& [block, sums] : by_block) total += sums;
   const BootstrapInterval interval = bootstrap_root(by_block, kSeed);
-  return {total.root(), interval.upper, interval.lower};
+  return {total_of(by_block).root(), interval.upper, interval.lower};
 }
 
 HeldOutGain held_out_gain(std::span<const FitData> data, const FitResult& before,

@@ -73,9 +73,8 @@ struct WindowErrors {
 
 BoundedError rms_of(const std::map<std::size_t, calib::RatioOfSums>& by_span) {
   constexpr unsigned kSeed = 1;
-  calib::RatioOfSums sum;
-  for (const auto& [span, sums] : by_span) sum += sums;
-  return {sum.root(), by_span.empty() ? 0.0 : calib::bootstrap_root(by_span, kSeed).upper};
+  return {calib::total_of(by_span).root(),
+          by_span.empty() ? 0.0 : calib::bootstrap_root(by_span, kSeed).upper};
 }
 
 /// A single stamp that is later or earlier than all others is no error of odometry; that all are late is.
