@@ -1,5 +1,6 @@
 #include "calib/gate.hpp"
 
+#include <array>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -14,10 +15,17 @@ constexpr double kPlausibleHigh = 2.0;
 constexpr double kWarnChange = 0.10;
 constexpr double kFewestMatched = 0.1;  ///< of the pairs of scans; the others may say something else
 constexpr double kWarnMatched = 0.5;
+constexpr double kWarnResidual = 2.0;  ///< times the noise: most of the error over a pair has another cause
 
 std::string percent(double share) {
   std::ostringstream out;
   out << std::setprecision(3) << 100.0 * share << " %";
+  return out.str();
+}
+
+std::string times(double ratio) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(1) << ratio << " times";
   return out.str();
 }
 
@@ -63,6 +71,19 @@ class Judgement {
       warn(finding);
   }
 
+  void check_residual(const ResidualReport& residual) {
+    if (!residual.after || !residual.noise_floor) return;
+    constexpr std::array kComponents = {"along", "across", "in yaw"};
+    for (std::size_t i = 0; i < kComponents.size(); ++i) {
+      const double ratio = (*residual.after)[i] / (*residual.noise_floor)[i];
+      if (ratio > kWarnResidual)
+        warn("the residual " + std::string(kComponents[i]) + " is " + times(ratio) +
+             " the noise floor: something moves this robot, or delays its data, that was not found; the "
+             "stated "
+             "deviations may be too small");
+    }
+  }
+
   [[nodiscard]] GateResult result() const {
     if (!refusals_.empty()) return {Verdict::refused, refusals_};
     if (!warnings_.empty()) return {Verdict::accepted_with_warnings, warnings_};
@@ -91,6 +112,7 @@ GateResult judge(const Calibration& calibration, const Footing& footing) {
     judgement.check(name, quantity, nominal_value(calibration.robot, name));
   }
   judgement.check_matches(footing.matched, footing.unmatched);
+  judgement.check_residual(calibration.residual);
   if (!footing.converged) judgement.warn("the fit had not settled when its iterations ran out");
   return judgement.result();
 }

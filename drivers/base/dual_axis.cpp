@@ -11,7 +11,8 @@
 namespace odomcalib::drivers {
 namespace {
 
-constexpr double kOwnHeartbeat_s = 0.05;
+// A tenth of the drive's watchdog (M1): what is left of it tolerates a pause of ours.
+constexpr double kOwnHeartbeat_s = 0.02;
 constexpr int kMissedHeartbeats = 3;
 constexpr std::size_t kMostQueued = 1024;  // events or ticks that nobody takes
 constexpr std::uint8_t kOperational = 0x05;

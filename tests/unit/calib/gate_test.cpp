@@ -59,6 +59,18 @@ TEST(Gate, refuses_values_of_the_few_scans_that_happened_to_match) {
   EXPECT_EQ(judge(sound(), Footing{}).verdict, Verdict::accepted) << "places in a map, poses or tuples";
 }
 
+TEST(Gate, warns_of_a_residual_that_noise_does_not_explain) {
+  Calibration calibration = sound();
+  calibration.residual.noise_floor = {{1e-3, 1e-3, 5e-4}};
+  calibration.residual.after = {{1.9e-3, 1e-3, 9e-4}};
+  EXPECT_EQ(judge(calibration, kFirm).verdict, Verdict::accepted);
+  calibration.residual.after = {{1.9e-3, 1e-3, 1.8e-3}};
+  const GateResult gate = judge(calibration, kFirm);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("in yaw is 3.6 times"), std::string::npos) << gate.reasons[0];
+}
+
 TEST(Gate, warns_of_a_fit_that_has_not_settled) {
   EXPECT_EQ(judge(sound(), {false, 400, 20}).verdict, Verdict::accepted_with_warnings);
 }
