@@ -7,6 +7,7 @@
 #include "calib/lidar/lidar_report.hpp"
 #include "calib/report.hpp"
 #include "calib/report_data.hpp"
+#include "calib/tracing/outlier_trace.hpp"
 #include "calib/tracing/tracing_json.hpp"
 #include "calib/validation/held_out.hpp"
 
@@ -57,6 +58,7 @@ class Filler {
     fill_residual();
     fill_effects();
     fill_unnamed();
+    fill_outliers();
     if (!found_.outcome.considered.empty())
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
     store_report_data(make_report_data(found_.session, effects(), found_.outcome.model.fit, plain_),
@@ -78,7 +80,9 @@ class Filler {
   }
 
   [[nodiscard]] Footing footing() const {
-    Footing footing{found_.outcome.model.fit.converged};
+    Footing footing;
+    footing.converged = found_.outcome.model.fit.converged;
+    if (outliers_) footing.left_out = to_text(*outliers_);
     if (!found_.session.reference_is_scans() || found_.every_scan_placed) return footing;
     for (const PairSet& set : found_.session.pair_sets()) {
       footing.matched += set.pairs.size();
@@ -201,8 +205,21 @@ class Filler {
       calibration_.extensions[kLidarCurvesMember] = lidar_curves_to_json(found_.lidar);
   }
 
+  /// What happened in so few pairs that a robust fit leaves them out is no part of the model, but something
+  /// that a user should know.
+  void fill_outliers() {
+    outliers_ = trace_outliers(found_.session.data(), found_.outcome.model.fit);
+    if (!outliers_) return;
+    calibration_.extensions["outliers"] = to_json(*outliers_);
+    if (calibration_.unexplained || outliers_->depends_on.empty()) return;
+    calibration_.unexplained = Unexplained{{}, outliers_->p_value, 0.0};
+    for (const Variable variable : outliers_->depends_on)
+      calibration_.unexplained->depends_on.push_back(to_string(variable));
+  }
+
   const Findings& found_;
   Calibration& calibration_;
+  std::optional<OutlierTrace> outliers_;
   std::optional<FitResult> plain_;
   std::vector<FittedCurve> fitted_curves_;
 };

@@ -10,7 +10,7 @@ class DirectionDependentDiameter final : public StepEffect<DirectionDependentDia
  public:
   [[nodiscard]] std::string name() const override { return "direction_dependent_diameter"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"left_kappa", "1", 5e-3, -0.05, 0.05}, {"right_kappa", "1", 5e-3, -0.05, 0.05}};
+    return {{"left_kappa", "1", 5e-3, -0.2, 0.2}, {"right_kappa", "1", 5e-3, -0.2, 0.2}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"turn_direction_asymmetry", "scan_skew"};

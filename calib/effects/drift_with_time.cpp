@@ -12,8 +12,8 @@ class DriftWithTime final : public StepEffect<DriftWithTime> {
   explicit DriftWithTime(double time_constant) : time_constant_(time_constant) {}
   [[nodiscard]] std::string name() const override { return "drift_with_time"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"common", "1/(100 s)", 1e-3, -0.05, 0.05},
-            {"differential", "1/(100 s)", 1e-3, -0.05, 0.05},
+    return {{"common", "1/(100 s)", 1e-3, -0.2, 0.2},
+            {"differential", "1/(100 s)", 1e-3, -0.2, 0.2},
             {"time_constant", "s", 1e9, 1.0, 1e6, time_constant_, 0.0, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {}; }

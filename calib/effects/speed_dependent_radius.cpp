@@ -14,7 +14,7 @@ class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
   explicit SpeedDependentRadius(double half_speed) : half_speed_(half_speed) {}
   [[nodiscard]] std::string name() const override { return "speed_dependent_radius"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"kappa", "s/m", 0.01, -0.2, 0.2}, {"half_speed", "m/s", 1e9, 0.0, 10.0, half_speed_, 0.0, true}};
+    return {{"kappa", "s/m", 0.01, -1.0, 1.0}, {"half_speed", "m/s", 1e9, 0.0, 10.0, half_speed_, 0.0, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"track_depends_on_motion", "tick_loss"};

@@ -14,7 +14,7 @@ class TickLoss final : public StepEffect<TickLoss> {
     return {{"left_kappa", "1", 0.01, -0.3, 0.3},
             {"right_kappa", "1", 0.01, -0.3, 0.3},
             {"threshold", "m/s", 1e9, 0.02, 5.0, threshold_},
-            {"width", "m/s", 1e9, 0.005, 0.2, kWidth}};
+            {"width", "m/s", 1e9, -0.2, 0.2, kWidth}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"speed_dependent_radius", "track_depends_on_motion"};
@@ -39,12 +39,15 @@ class TickLoss final : public StepEffect<TickLoss> {
   }
 
  private:
-  static constexpr double kWidth = 0.02;  // m/s
+  static constexpr double kWidth = 0.03;      // m/s
+  static constexpr double kSharpest = 0.01;  // m/s
 
+  /// However sharp the step is, the speed that is compared with it is a mean.
   template <typename T>
   static T above(double speed, const T& threshold, const T& width) {
     using std::exp;
-    const T steps = (threshold - speed) / width;
+    using std::sqrt;
+    const T steps = (threshold - speed) / sqrt(width * width + kSharpest * kSharpest);
     return 1.0 / (1.0 + exp(steps));
   }
   double threshold_;

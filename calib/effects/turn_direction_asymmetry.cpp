@@ -10,7 +10,7 @@ class TurnDirectionAsymmetry final : public StepEffect<TurnDirectionAsymmetry> {
  public:
   [[nodiscard]] std::string name() const override { return "turn_direction_asymmetry"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"kappa", "1", 5e-3, -0.1, 0.1}};
+    return {{"kappa", "1", 5e-3, -0.3, 0.3}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"scan_skew", "direction_dependent_diameter"};

@@ -239,7 +239,8 @@ void set_covariance(std::span<const FitData> data, const Stack& stack, const std
 void count_outliers(const std::vector<double>& squared, FitResult& fit) {
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   for (Eigen::Index k = 0; k < fit.residuals.rows(); ++k) {
-    if (squared[static_cast<std::size_t>(k)] > kOutlier * kOutlier) {
+    fit.outlier.push_back(squared[static_cast<std::size_t>(k)] > kOutlier * kOutlier);
+    if (fit.outlier.back()) {
       ++fit.discarded;
       continue;
     }

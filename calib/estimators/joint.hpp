@@ -39,6 +39,7 @@ struct FitResult {
   double cost = 0.0;                  ///< robust -2 log likelihood up to a constant, on `noise`
   std::size_t used = 0;
   std::size_t discarded = 0;  ///< outliers: more than 5 sigma
+  std::vector<bool> outlier;  ///< per pair
   bool converged = false;
 };
 

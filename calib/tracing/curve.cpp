@@ -115,14 +115,15 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   /// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
   /// bad.
   [[nodiscard]] double largest_size() const {
-    return typical_size() * (is_distance_since(curve_.law.variable) ? 100.0 : 10.0);
+    return typical_size() * (is_distance_since(curve_.law.variable) ? 100.0 : 10.0 * strength());
   }
+  [[nodiscard]] double strength() const { return curve_.strong ? 6.0 : 1.0; }
   /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a curve must
   /// do no harm in other drives.
   [[nodiscard]] double prior(std::size_t function) const {
     // Where turns of one speed cannot tell which, each radian leaves the same way.
     const bool is_refinement = curve_.law.carrier == Carrier::turn_path && function > 0;
-    const double usual = (is_refinement ? 1.0 : 4.0) * typical_size();
+    const double usual = (is_refinement ? 1.0 : 4.0) * typical_size() * strength();
     if (!is_distance_since(curve_.law.variable)) return usual;
     // What is lost between one knot and the next is as much everywhere, the way between them half as long.
     return std::min(std::ldexp(usual, kFadeKnots - 1 - static_cast<int>(function)), largest_size());
@@ -275,13 +276,15 @@ bool is_unsigned(Carrier carrier) {
   return carrier == Carrier::both_path || carrier == Carrier::sideways_path || carrier == Carrier::yaw_path;
 }
 
-/// Periods closer than this many cycles per recording look alike.
+/// Of both wheels, as the day goes, or of one, as its brake or its motor does. Periods closer than kStep
+/// cycles per recording look alike.
 void add_periods(double duration, std::vector<Curve>& curves) {
   constexpr double kShortest = 8.0;  // s
   constexpr double kFewestCycles = 1.5;
   constexpr double kStep = 0.7;  // cycles
   for (double cycles = kFewestCycles; duration / cycles > kShortest; cycles += kStep)
-    curves.push_back({{Variable::time, Carrier::both_travel}, 0.0, duration, duration / cycles, 0});
+    for (const auto carrier : {Carrier::both_travel, Carrier::left_travel, Carrier::right_travel})
+      curves.push_back({{Variable::time, carrier}, 0.0, duration, duration / cycles, 0});
 }
 
 /// Of what lies on the floor; wheels sink in, both alike.
@@ -394,6 +397,11 @@ std::size_t basis_size(const Curve& curve) { return basis(curve, StepContext{}).
 
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve) {
   return std::make_shared<CurveEffect>(curve);
+}
+
+Curve strong(Curve curve) {
+  curve.strong = true;
+  return curve;
 }
 
 Curve centred(Curve curve, std::span<const DriveModel* const> models) {

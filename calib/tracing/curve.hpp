@@ -45,6 +45,7 @@ struct Curve {
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
   bool constant = false;              ///< of heading only: with a constant as the first function
   bool patches = false;               ///< of position only
+  bool strong = false;  ///< a tenth and more, which few robots do and only plain data should be believed
   bool operator==(const Curve&) const = default;
   [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
 };
@@ -78,6 +79,9 @@ std::size_t basis_size(const Curve& curve);
 BasisValues functions_in(const Curve& curve, const StepContext& context);
 
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve);
+
+/// The same curve, expected to be large.
+Curve strong(Curve curve);
 
 /// The same curve about its mean over these drives.
 Curve centred(Curve curve, std::span<const DriveModel* const> models);

@@ -3,7 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <numeric>
+#include <sstream>
 
 #include "calib/tracing/score.hpp"
 
@@ -18,15 +20,34 @@ Eigen::VectorXd last_parameters(const Effect& effect, const FitResult& fit) {
 /// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
 bool is_size(const EffectParameter& parameter) { return parameter.start == 0.0 && !parameter.fixed; }
 
+std::string outside(const EffectParameter& parameter, double value) {
+  std::ostringstream out;
+  out << std::setprecision(3) << parameter.name << " of " << value;
+  if (parameter.unit != "1") out << ' ' << parameter.unit;
+  out << " is outside its physical range";
+  return out.str();
+}
+
 }  // namespace
 
-bool is_impossible(const Effect& effect, const FitResult& fit) {
+std::string impossibility(const Effect& effect, const FitResult& fit) {
   const Eigen::VectorXd values = last_parameters(effect, fit);
   const auto parameters = effect.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const double value = values(static_cast<Eigen::Index>(k));
-    if (!(value >= parameters[k].lower && value <= parameters[k].upper)) return true;
+    if (!(value >= parameters[k].lower && value <= parameters[k].upper)) return outside(parameters[k], value);
   }
+  return "";
+}
+
+bool is_held_back(const Effect& effect, const FitResult& fit) {
+  constexpr double kNear = 0.6;  // of the bound
+  const Eigen::VectorXd values = last_parameters(effect, fit);
+  const auto parameters = effect.parameters();
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (is_size(parameters[k]) &&
+        !(std::abs(values(static_cast<Eigen::Index>(k))) < kNear * parameters[k].upper))
+      return true;
   return false;
 }
 

@@ -1,13 +1,18 @@
 // Reasons not to add an effect although the data like it.
 #pragma once
 
+#include <string>
+
 #include "calib/estimators/joint.hpp"
 #include "calib/tracing/curve.hpp"
 
 namespace odomcalib::calib {
 
-/// The effect, whose parameters are the fit's last, is outside its physical bounds.
-bool is_impossible(const Effect& effect, const FitResult& fit);
+/// Which parameter of the effect, the fit's last, is outside its physical bounds; empty when none is.
+std::string impossibility(const Effect& effect, const FitResult& fit);
+
+/// A size is so large for the effect that its prior must have kept it from being larger.
+bool is_held_back(const Effect& effect, const FitResult& fit);
 
 /// Every size is below the share of its typical size that matters to odometry.
 bool is_negligible(const Effect& effect, const FitResult& fit);

@@ -242,7 +242,7 @@ class Search {
     if (candidate.curve && concerns_sensor(*candidate.curve) &&
         is_hidden_by_ticks(*candidate.curve, fit, task_.models()))
       return "ticks so far apart hide as much";
-    if (is_impossible(effect, fit)) return "outside its physical range";
+    if (auto reason = impossibility(effect, fit); !reason.empty()) return reason;
     if (is_negligible(effect, fit)) return "too small to matter";
     return spoils_base(effect, basis_.fit, fit) ? "this drive cannot tell it from the wheels" : "";
   }
@@ -300,8 +300,10 @@ class Search {
   bool accept_curve(const ScoreTable& table, std::size_t index) {
     if (result_.curves.size() >= kMaxCurves) return false;
     auto trial = refit(index);
+    if (trial && is_held_back(*candidates_[index].effect, trial->model.fit))
+      trial = refit_as(index, strong(*candidates_[index].curve));
     if (trial && spoils_base(*candidates_[index].effect, basis_.fit, trial->model.fit))
-      trial = refit_centred(index);
+      trial = refit_as(index, centred(*candidates_[index].curve, task_.models()));
     const auto law_of = completed_by(candidates_[index]);
     const std::vector<Variable> alike = variables_like(candidates_, table, index);
     if (!trial) {
@@ -325,6 +327,8 @@ class Search {
     Candidate& candidate = candidates_[index];
     if (candidate.curve->is_wave()) return std::nullopt;
     auto best = in_best_shape(task_, basis_, *candidate.curve, basis_.fit.noise);
+    if (best && is_held_back(*best->model.effects.back(), best->model.fit))
+      best = in_best_shape(task_, basis_, strong(*candidate.curve), basis_.fit.noise);
     if (!best || best->curve == *candidate.curve) return std::nullopt;
     candidate.curve = std::move(best->curve);
     candidate.effect = best->model.effects.back();
@@ -369,11 +373,10 @@ class Search {
     result_.doubts.push_back(doubt_of_zero(task_, result_.model, newest.curve));
   }
 
-  /// Where the drive cannot tell slow motion from the curve's mean, the curve is taken about its mean.
-  std::optional<Trial> refit_centred(std::size_t index) {
-    Candidate& candidate = candidates_[index];
-    candidate.curve = centred(*candidate.curve, task_.models());
-    candidate.effect = make_curve_effect(*candidate.curve);
+  /// Larger than usual if the data insist; about its mean where the drive cannot tell that from slow motion.
+  std::optional<Trial> refit_as(std::size_t index, const Curve& curve) {
+    candidates_[index].curve = curve;
+    candidates_[index].effect = make_curve_effect(curve);
     return refit(index);
   }
 

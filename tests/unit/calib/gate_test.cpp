@@ -23,7 +23,7 @@ Calibration with_track(double value, double deviation) {
   return calibration;
 }
 
-constexpr Footing kFirm{true, 400, 20};
+const Footing kFirm{true, 400, 20, {}};
 
 TEST(Gate, accepts_what_is_sound_and_leaves_the_lidar_pose_alone) {
   const GateResult gate = judge(sound(), kFirm);
@@ -49,10 +49,10 @@ TEST(Gate, refuses_what_cannot_be_the_robot) {
 }
 
 TEST(Gate, refuses_values_of_the_few_scans_that_happened_to_match) {
-  EXPECT_EQ(judge(sound(), {true, 50, 50}).verdict, Verdict::accepted);
-  EXPECT_EQ(judge(sound(), {true, 49, 51}).verdict, Verdict::accepted_with_warnings);
-  EXPECT_EQ(judge(sound(), {true, 10, 90}).verdict, Verdict::accepted_with_warnings);
-  const GateResult gate = judge(sound(), {true, 9, 91});
+  EXPECT_EQ(judge(sound(), {true, 50, 50, {}}).verdict, Verdict::accepted);
+  EXPECT_EQ(judge(sound(), {true, 49, 51, {}}).verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(judge(sound(), {true, 10, 90, {}}).verdict, Verdict::accepted_with_warnings);
+  const GateResult gate = judge(sound(), {true, 9, 91, {}});
   EXPECT_EQ(gate.verdict, Verdict::refused);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons[0].find("9 of 100"), std::string::npos) << gate.reasons[0];
@@ -71,8 +71,15 @@ TEST(Gate, warns_of_a_residual_that_noise_does_not_explain) {
   EXPECT_NE(gate.reasons[0].find("in yaw is 3.6 times"), std::string::npos) << gate.reasons[0];
 }
 
+TEST(Gate, tells_what_was_left_out) {
+  const GateResult gate = judge(sound(), {true, 400, 20, "24 of 546 pairs contradict all others"});
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("24 of 546"), std::string::npos);
+}
+
 TEST(Gate, warns_of_a_fit_that_has_not_settled) {
-  EXPECT_EQ(judge(sound(), {false, 400, 20}).verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(judge(sound(), {false, 400, 20, {}}).verdict, Verdict::accepted_with_warnings);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "calib/tracing/candidate_columns.hpp"
 #include "calib/tracing/curve.hpp"
 #include "calib/tracing/law_shape.hpp"
+#include "calib/tracing/outlier_trace.hpp"
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/proof.hpp"
 #include "calib/tracing/score.hpp"
@@ -232,6 +233,16 @@ TEST(Tracing, a_narrow_peak_gets_more_knots_and_the_wheel_a_wider_deviation) {
   const double deviation =
       std::hypot(doubt, std::sqrt(result.model.fit.covariance(kLeftRadius, kLeftRadius)));
   EXPECT_NEAR(result.model.fit.parameters(kLeftRadius), kBase.left_radius, 3.0 * deviation);
+}
+
+TEST(Tracing, a_law_that_takes_a_fifth_is_found_as_well) {
+  const DriveModel model = jerky_model();
+  Curve curve{{Variable::left_acceleration, Carrier::left_travel}, -1.0, 1.0};
+  const SearchResult result = searched(measured(model, {make_curve_effect(curve)}, {0.2, 0.0, 0.0, 0.0}));
+  ASSERT_FALSE(result.curves.empty()) << "seed " << kSeed;
+  EXPECT_EQ(result.curves.front().curve.law, curve.law);
+  EXPECT_TRUE(result.curves.front().curve.strong);
+  EXPECT_NEAR(result.model.fit.parameters(kLeftRadius), kBase.left_radius, 2e-4);
 }
 
 TEST(Tracing, what_other_shapes_would_make_of_a_length_is_doubted_by_their_probability) {
@@ -493,6 +504,59 @@ TEST(Curve, about_its_mean_it_has_none_over_the_drive) {
   EXPECT_EQ(read[0].curve.mean, curve.mean);
 }
 
+/// What is known of the outliers when these pairs are wrong by 20 mrad.
+std::optional<OutlierTrace> traced(const DriveModel& model, const std::vector<std::size_t>& wrong) {
+  FitData data = measured(model, {}, {});
+  for (const std::size_t k : wrong) data.pairs[k].motion.yaw += 0.02;
+  const auto fit = fit_joint({&data, 1}, {}, to_vector(kBase));
+  EXPECT_TRUE(fit);
+  return trace_outliers({&data, 1}, fit.value());
+}
+
+/// Every n-th pair of a range.
+std::vector<std::size_t> pairs_between(std::size_t first, std::size_t end, std::size_t step) {
+  std::vector<std::size_t> pairs;
+  for (std::size_t k = first; k < end; k += step) pairs.push_back(k);
+  return pairs;
+}
+
+TEST(OutlierTrace, is_silent_about_noise_and_single_bad_matches) {
+  const DriveModel model = jerky_model();
+  EXPECT_FALSE(traced(model, {}));
+  EXPECT_FALSE(traced(model, {17, 140, 141, 333}));
+}
+
+TEST(OutlierTrace, says_when_something_happened) {
+  const DriveModel model = jerky_model();
+  const auto trace = traced(model, pairs_between(200, 230, 1));
+  ASSERT_TRUE(trace);
+  EXPECT_EQ(trace->outliers, 30U);
+  ASSERT_FALSE(trace->depends_on.empty());
+  EXPECT_EQ(trace->depends_on.front(), Variable::time);
+  EXPECT_NEAR(trace->begin, 100.0, 2.0);
+  EXPECT_NEAR(trace->end, 115.0, 2.0);
+  EXPECT_NE(to_text(*trace).find("30 of 475"), std::string::npos) << to_text(*trace);
+}
+
+TEST(OutlierTrace, names_no_variable_when_outliers_are_anywhere) {
+  const auto trace = traced(jerky_model(), pairs_between(3, 475, 31));
+  ASSERT_TRUE(trace);
+  EXPECT_TRUE(trace->depends_on.empty()) << to_text(*trace);
+}
+
+TEST(OutlierTrace, names_the_motion_that_goes_wrong) {
+  const DriveModel model = jerky_model();
+  const FitData data = measured(model, {}, {});
+  std::vector<std::size_t> fast;
+  for (std::size_t k = 0; k < data.pairs.size(); ++k)
+    if (data.pairs[k].motion.yaw > 0.5) fast.push_back(k);
+  ASSERT_GT(fast.size(), 10U);
+  const auto trace = traced(model, fast);
+  ASSERT_TRUE(trace);
+  ASSERT_FALSE(trace->depends_on.empty());
+  EXPECT_EQ(trace->depends_on.front(), Variable::turn_rate) << to_text(*trace);
+}
+
 TEST(StepContext, remembers_the_last_push_through_steady_motion) {
   WheelTrack track;
   double angle = 0.0, rate = 0.0;
@@ -603,9 +667,10 @@ FitResult fit_with(const std::vector<double>& values, double deviation) {
 
 TEST(Plausibility, bounds_size_and_need_are_judged_both_ways) {
   const auto effect = find_effect("speed_dependent_radius");
-  EXPECT_FALSE(is_impossible(*effect, fit_with({0.02, 0.0}, 1e-3)));
-  EXPECT_TRUE(is_impossible(*effect, fit_with({0.3, 0.0}, 1e-3)));
-  EXPECT_TRUE(is_impossible(*effect, fit_with({std::nan(""), 0.0}, 1e-3)));
+  EXPECT_EQ(impossibility(*effect, fit_with({0.02, 0.0}, 1e-3)), "");
+  EXPECT_EQ(impossibility(*effect, fit_with({1.3, 0.0}, 1e-3)),
+            "kappa of 1.3 s/m is outside its physical range");
+  EXPECT_NE(impossibility(*effect, fit_with({std::nan(""), 0.0}, 1e-3)), "");
   EXPECT_FALSE(is_negligible(*effect, fit_with({0.002, 0.0}, 1e-3)));
   EXPECT_TRUE(is_negligible(*effect, fit_with({0.001, 0.0}, 1e-3)));
   EXPECT_FALSE(is_superfluous(*effect, kBaseCount, fit_with({0.003, 0.0}, 1e-3)));
