@@ -39,7 +39,7 @@ class TickLoss final : public StepEffect<TickLoss> {
   }
 
  private:
-  static constexpr double kWidth = 0.03;      // m/s
+  static constexpr double kWidth = 0.03;     // m/s
   static constexpr double kSharpest = 0.01;  // m/s
 
   /// However sharp the step is, the speed that is compared with it is a mean.
