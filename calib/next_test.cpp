@@ -20,6 +20,7 @@ struct Named {
 /// What the effects' separating_motion() says, as a manoeuvre that can be driven in a small area.
 constexpr std::array kForEffects = {Named{"time_offset", "accelerations"},
                                     Named{"acceleration_slip", "accelerations"},
+                                    Named{"encoder_lag", "accelerations"},
                                     Named{"scan_skew", "turns"},
                                     Named{"speed_dependent_track", "turns"},
                                     Named{"turn_direction_asymmetry", "turns"},

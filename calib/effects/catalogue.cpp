@@ -10,6 +10,7 @@ const EffectList& effect_catalogue() {
   static const EffectList kAll = {
       make_time_offset(),
       make_clock_drift(),
+      make_encoder_lag(),
       make_scan_skew(),
       make_wheel_eccentricity_left(),
       make_wheel_eccentricity_right(),

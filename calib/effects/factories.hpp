@@ -14,6 +14,7 @@ std::shared_ptr<const Effect> make_caster_kick();
 std::shared_ptr<const Effect> make_clock_drift();
 std::shared_ptr<const Effect> make_direction_dependent_diameter();
 std::shared_ptr<const Effect> make_drift_with_time();
+std::shared_ptr<const Effect> make_encoder_lag();
 std::shared_ptr<const Effect> make_floor_slope();
 std::shared_ptr<const Effect> make_lateral_slip();
 std::shared_ptr<const Effect> make_scan_skew();

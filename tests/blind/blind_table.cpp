@@ -49,6 +49,7 @@ const std::map<std::string, std::set<std::string>>& variables_of_names() {
       {"caster_kick", {"since_reversal"}},
       {"direction_dependent_diameter", {"left_speed", "right_speed"}},
       {"drift_with_time", {"time"}},
+      {"encoder_lag", {"left_acceleration", "right_acceleration"}},
       {"floor_slope", {"heading"}},
       {"lateral_slip", {"lateral_acceleration"}},
       {"speed_dependent_radius", {"left_speed", "right_speed"}},

@@ -341,6 +341,25 @@ TEST(Tracing, a_filter_of_the_encoder_is_a_delay_that_smooths) {
   EXPECT_LT(fit.value().rms.norm(), 0.5 * delayed.value().rms.norm());
 }
 
+TEST(Tracing, a_wheel_whose_counts_are_older_than_the_others_is_named) {
+  constexpr double kLag = 0.025;  // s
+  const DriveModel model = jerky_model();
+  WheelTrack late = model.track();
+  for (std::size_t k = 1; k < late.left.size(); ++k)
+    late.left[k] -= kLag / (late.t[k] - late.t[k - 1]) * (model.track().left[k] - model.track().left[k - 1]);
+  auto context = make_context_of_moment(late, kBase, 0);
+  const DriveModel seen(std::move(late), std::move(context));
+  FitData data = measured(model, {}, {});
+  data.model = &seen;
+  const auto fit = fit_joint({&data, 1}, {find_effect("time_offset")}, to_vector(kBase, 2));
+  ASSERT_TRUE(fit) << "seed " << kSeed;
+  const SearchResult result = search_effects({&data, 1}, {find_effect("time_offset")}, fit.value(),
+                                             std::vector<bool>(kBaseCount, false), [](double) {});
+  ASSERT_FALSE(result.findings.empty());
+  EXPECT_EQ(result.findings.front().effect->name(), "encoder_lag");
+  EXPECT_NEAR(result.model.fit.parameters(kBaseCount + 2), kLag, 3e-3);
+}
+
 TEST(Tracing, columns_of_curves_are_their_derivatives) {
   const DriveModel model = lively_model();
   const FitData data = measured(model, {}, {});
