@@ -54,7 +54,8 @@ double value_of(Variable variable, const StepContext& context, std::size_t memor
 
 /// `travel` is signed and reverses with the motion, `path` is unsigned. Left, right, both: relative to the
 /// travel of those wheels. Track: relative. Sideways: m per m of the base. Yaw path: rad per m of the base.
-/// Turn path: m ahead per rad of turning either way. Sensor yaw: rad by which the sensor has turned on the
+/// Turn path: m ahead per rad of turning either way. Turn side: m to the left per rad of turning to the left,
+/// as if the centre of turning lay ahead by f. Sensor yaw: rad by which the sensor has turned on the
 /// base; f is its growth over the interval, so that it comes and goes with the variable.
 enum class Carrier {
   left_travel,
@@ -68,6 +69,7 @@ enum class Carrier {
   sideways_path,
   yaw_path,
   turn_path,
+  turn_side,
   sensor_yaw,
 };
 inline constexpr Carrier kLastCarrier = Carrier::sensor_yaw;
@@ -115,6 +117,9 @@ void carry(Carrier carrier, const StepContext& c, const T& f, WheelStep<T>& step
     case Carrier::turn_path:
       step.left += f * turn;
       step.right += f * turn;
+      break;
+    case Carrier::turn_side:
+      step.side -= f * (c.turn_rate * c.dt);
       break;
     case Carrier::sensor_yaw:
       step.yaw += f;

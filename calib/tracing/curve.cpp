@@ -40,13 +40,13 @@ Carriers carriers_of(Variable variable) {
     case Variable::turn_acceleration:
       return {sensor_yaw};
     case Variable::speed:
-      return {both_travel, track, sideways};
+      return {both_travel, track, sideways, turn_side};
     case Variable::turn_rate:
-      return {both_travel, left_travel, right_travel, track, sideways, turn_path};
+      return {both_travel, left_travel, right_travel, track, sideways, turn_path, turn_side};
     case Variable::lateral_acceleration:
       return {sideways, sideways_path, track};
     case Variable::time:
-      return {both_travel, left_travel, right_travel, track, sideways};
+      return {both_travel, left_travel, right_travel, track, sideways, turn_side};
     case Variable::heading:
     case Variable::position:
       return {both_travel, left_travel, right_travel, both_path, sideways_path, yaw_path};
@@ -110,14 +110,19 @@ class CurveEffect final : public StepEffect<CurveEffect> {
     if (curve_.law.variable == Variable::heading || curve_.law.variable == Variable::position) return 0.015;
     // An error of the encoder's angle shows in its rate, n times as large for the n-th harmonic.
     if (curve_.harmonic > 0) return 5e-3 * curve_.harmonic;
-    return curve_.law.carrier == Carrier::turn_path ? 1e-3 : 5e-3;
+    const bool per_turn =
+        curve_.law.carrier == Carrier::turn_path || curve_.law.carrier == Carrier::turn_side;
+    return per_turn ? 1e-3 : 5e-3;
   }
   /// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
   /// bad.
   [[nodiscard]] double largest_size() const {
     return typical_size() * (is_distance_since(curve_.law.variable) ? 100.0 : 10.0 * strength());
   }
-  [[nodiscard]] double strength() const { return curve_.strong ? 6.0 : 1.0; }
+  /// What fades may be as large as it will anyway.
+  [[nodiscard]] double strength() const {
+    return curve_.strong && !is_distance_since(curve_.law.variable) ? 6.0 : 1.0;
+  }
   /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a curve must
   /// do no harm in other drives.
   [[nodiscard]] double prior(std::size_t function) const {
@@ -329,6 +334,7 @@ double amount(Carrier carrier, const StepContext& c) {
       return std::abs(c.right_delta);
     case Carrier::track:
     case Carrier::turn_path:
+    case Carrier::turn_side:
       return std::abs(c.turn_rate) * c.dt;
     default:
       return std::abs(c.speed) * c.dt;

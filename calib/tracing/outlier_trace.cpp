@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kFewest = 5;      ///< events; fewer have everything in common
 constexpr double kFewestShare = 0.015;  ///< of all pairs
-constexpr double kLevel = 0.002;        ///< family-wise
+constexpr double kLevel = 0.001;        ///< family-wise: better than all draws
 constexpr double kAlike = 0.8;          ///< of the best gain: a variable that may as well be the one
 constexpr std::size_t kMostNamed = 3;
 constexpr std::size_t kSlices = 4;  ///< of each coordinate of a place

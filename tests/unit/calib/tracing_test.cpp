@@ -341,6 +341,15 @@ TEST(Tracing, a_filter_of_the_encoder_is_a_delay_that_smooths) {
   EXPECT_LT(fit.value().rms.norm(), 0.5 * delayed.value().rms.norm());
 }
 
+TEST(Tracing, a_centre_of_turning_that_moves_is_flagged) {
+  const DriveModel model = jerky_model();
+  const Curve curve{{Variable::speed, Carrier::turn_side}, -0.4, 0.4};
+  const SearchResult result =
+      searched(measured(model, {make_curve_effect(curve)}, {0.002, 0.004, 0.006, 0.008, 0.0, 0.0}));
+  ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
+  EXPECT_EQ(result.curves.front().curve.law, curve.law);
+}
+
 TEST(Tracing, a_wheel_whose_counts_are_older_than_the_others_is_named) {
   constexpr double kLag = 0.025;  // s
   const DriveModel model = jerky_model();
@@ -645,7 +654,8 @@ TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
     };
     const auto forth = change(ahead), reverse = change(back);
     const bool signed_by_motion = carrier == Carrier::left_travel || carrier == Carrier::right_travel ||
-                                  carrier == Carrier::both_travel || carrier == Carrier::sideways;
+                                  carrier == Carrier::both_travel || carrier == Carrier::sideways ||
+                                  carrier == Carrier::turn_side;
     double largest = 0.0;
     for (std::size_t k = 0; k < forth.size(); ++k) {
       EXPECT_NEAR(reverse[k], signed_by_motion ? -forth[k] : forth[k], 1e-15) << to_string(carrier);
