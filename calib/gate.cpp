@@ -73,14 +73,12 @@ class Judgement {
 
   void check_residual(const ResidualReport& residual) {
     if (!residual.after || !residual.noise_floor) return;
-    constexpr std::array kComponents = {"along", "across", "in yaw"};
+    constexpr std::array kComponents = {"in x of the sensor", "in y of the sensor", "in yaw"};
     for (std::size_t i = 0; i < kComponents.size(); ++i) {
       const double ratio = (*residual.after)[i] / (*residual.noise_floor)[i];
       if (ratio > kWarnResidual)
         warn("the residual " + std::string(kComponents[i]) + " is " + times(ratio) +
-             " the noise floor: something moves this robot, or delays its data, that was not found; the "
-             "stated "
-             "deviations may be too small");
+             " the noise floor: something was not found, and the stated deviations may be too small");
     }
   }
 

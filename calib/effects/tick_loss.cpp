@@ -42,7 +42,7 @@ class TickLoss final : public StepEffect<TickLoss> {
   static constexpr double kWidth = 0.03;     // m/s
   static constexpr double kSharpest = 0.01;  // m/s
 
-  /// However sharp the step is, the speed that is compared with it is a mean.
+  /// However sharp the step is, the speed that is compared with it is a mean. The width's sign says nothing.
   template <typename T>
   static T above(double speed, const T& threshold, const T& width) {
     using std::exp;
