@@ -72,12 +72,22 @@ class Search {
   /// One step; false when nothing more is justified.
   bool advance() {
     if (has_changed_) look_again();
-    const auto name = may_name() ? best_name(*table_) : std::nullopt;
     const auto curve = best_curve(*table_);
-    if (name && !(curve && curve_beats(*table_, *name, *curve)) && accept_name(*table_, *name)) return true;
+    const auto name = may_name() ? best_name_beside(curve) : std::nullopt;
+    if (name && accept_name(*table_, *name)) return true;
     const auto clock = curve && depends_on_history(candidates_[*curve]) ? best_clock() : std::nullopt;
     if (clock) return accept_name(*table_, *clock);
     return curve && accept_curve(*table_, *curve);
+  }
+
+  /// The best name, unless the curve is clearly better: then one on the curve's own ground, which may be the
+  /// second best of two effects.
+  std::optional<Trial> best_name_beside(std::optional<std::size_t> curve) {
+    const auto name = best_name(*table_);
+    if (!name || !curve || !curve_beats(*table_, *name, *curve)) return name;
+    const Law& law = candidates_[*curve].curve->law;
+    const auto own = best_trial([&](const Candidate& c) { return contains(c.effect->laws(), law); });
+    return own && !curve_beats(*table_, *own, *curve) ? own : std::nullopt;
   }
 
   /// What repeats itself along the floor, when nothing else is left to say.
@@ -109,12 +119,8 @@ class Search {
   /// Where motions begin, clocks that disagree look like anything that goes with beginnings. A clock cannot
   /// spoil odometry, so it is asked first.
   [[nodiscard]] std::optional<Trial> best_clock() const {
-    std::optional<Trial> best;
-    for (const Trial& trial : trials_)
-      if (is_open(trial.candidate) && candidates_[trial.candidate].effect->storage() == Storage::driver &&
-          trial.gain > 0.0 && (!best || trial.gain > best->gain))
-        best = trial;
-    return best;
+    const auto best = best_trial([](const Candidate& c) { return c.effect->storage() == Storage::driver; });
+    return best && best->gain > 0.0 ? best : std::nullopt;
   }
 
   [[nodiscard]] bool may_name() const {
@@ -143,7 +149,7 @@ class Search {
                   !is_rest_of_a_law(table, k);
          }))
       if (tried.size() < kRefits && tried.insert(candidates_[k].key).second) try_out(k);
-    const auto best = best_trial("");
+    const auto best = best_trial([](const Candidate&) { return true; });
     return best ? shaped(table, candidates_[best->candidate].key) : best;
   }
 
@@ -152,7 +158,7 @@ class Search {
     std::size_t shapes = 0;
     for (const std::size_t k : by_score(table, [&](std::size_t k) { return candidates_[k].key == key; }))
       if (shapes++ < kRefits) try_out(k);
-    return best_trial(key);
+    return best_trial([&](const Candidate& c) { return c.key == key; });
   }
 
   /// Candidates that are left and wanted, the most promising first.
@@ -167,11 +173,12 @@ class Search {
     return order;
   }
 
-  /// @param key of its candidate; empty: any
-  [[nodiscard]] std::optional<Trial> best_trial(const std::string& key) const {
+  /// Of those tried on the model as it is.
+  template <typename Wanted>
+  [[nodiscard]] std::optional<Trial> best_trial(const Wanted& wanted) const {
     const Trial* best = nullptr;
     for (const Trial& trial : trials_)
-      if (is_open(trial.candidate) && (key.empty() || candidates_[trial.candidate].key == key) &&
+      if (is_open(trial.candidate) && wanted(candidates_[trial.candidate]) &&
           (best == nullptr || trial.gain > best->gain))
         best = &trial;
     return best == nullptr ? std::nullopt : std::optional(*best);

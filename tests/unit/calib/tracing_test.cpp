@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "calib/effects/catalogue.hpp"
 #include "calib/model/placed_effects.hpp"
@@ -143,6 +144,18 @@ TEST(Tracing, names_what_is_in_the_catalogue_and_finds_its_size) {
           << c.name << " " << k;
     }
   }
+}
+
+TEST(Tracing, a_curve_on_the_ground_of_the_second_best_name_takes_no_name_from_it) {
+  const DriveModel model = lively_model();
+  // A wheel out of round by more than its first harmonic, on a carpet that explains a little more than that.
+  const auto wheel = make_curve_effect({{Variable::left_phase, Carrier::left_travel}});
+  const SearchResult result = searched(
+      measured(model, {find_effect("carpet"), wheel}, {0.014, 0.0, 0.01, 0.01, 0.007, 0.0, 0.0, 0.0}));
+  std::set<std::string> names;
+  for (const Finding& finding : result.findings) names.insert(finding.effect->name());
+  EXPECT_EQ(names, (std::set<std::string>{"carpet", "wheel_eccentricity"})) << "seed " << kSeed;
+  for (const AddedCurve& curve : result.curves) EXPECT_NE(curve.law_of, nullptr);
 }
 
 TEST(Tracing, shapes_that_are_tried_are_not_fitted) {
