@@ -211,7 +211,7 @@ class Filler {
     outliers_ = trace_outliers(found_.session.data(), found_.outcome.model.fit);
     if (!outliers_) return;
     calibration_.extensions["outliers"] = to_json(*outliers_);
-    if (calibration_.unexplained || outliers_->depends_on.empty()) return;
+    if (!found_.was_searched || calibration_.unexplained || outliers_->depends_on.empty()) return;
     calibration_.unexplained = Unexplained{{}, outliers_->p_value, 0.0};
     for (const Variable variable : outliers_->depends_on)
       calibration_.unexplained->depends_on.push_back(to_string(variable));

@@ -359,7 +359,7 @@ class Solver {
 
   void fill() {
     report("validating", 0.0);
-    fill_calibration({*session_, outcome_, lidar_, every_scan_placed_}, calibration_);
+    fill_calibration({*session_, outcome_, lidar_, automatic_, every_scan_placed_}, calibration_);
     report("validating", 1.0);
   }
 
