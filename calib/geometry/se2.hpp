@@ -18,6 +18,9 @@ T wrap_angle(const T& angle) {
   return angle - 2.0 * kPi * turns;
 }
 
+/// Angle in [0, 2 pi).
+inline double angle_of_turn(double angle) { return angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi)); }
+
 /// A pose or a motion: x, y [m], yaw [rad]. Yaw is kept unwrapped so that multi-turn motions stay readable.
 template <typename T>
 struct Pose2 {

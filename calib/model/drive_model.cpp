@@ -1,5 +1,6 @@
 #include "calib/model/drive_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <stdexcept>
@@ -39,6 +40,12 @@ std::size_t count_parameters(const EffectList& effects) {
 
 DriveModel::DriveModel(WheelTrack track, std::vector<StepContext> context)
     : track_(std::move(track)), context_(std::move(context)) {}
+
+std::span<const StepContext> DriveModel::context_within(const Interval& interval) const {
+  const std::size_t first = track_.interval_at(interval.begin);
+  const std::size_t last = std::max(first, track_.interval_at(interval.end));
+  return std::span(context_).subspan(first, last - first + 1);
+}
 
 void DriveModel::locate(std::span<const Fix> fixes, std::span<const double> parameters,
                         const EffectList& effects) {

@@ -73,6 +73,8 @@ class DriveModel {
 
   [[nodiscard]] const WheelTrack& track() const { return track_; }
   [[nodiscard]] const std::vector<StepContext>& context() const { return context_; }
+  /// Of the tick intervals that a measured motion touches: one at least.
+  [[nodiscard]] std::span<const StepContext> context_within(const Interval& interval) const;
 
   /// Observes every interval anew with these base parameters. Heading and place are the latest fix (in time
   /// order) and dead reckoning from there on; without fixes dead reckoning alone.

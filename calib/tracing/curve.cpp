@@ -119,17 +119,14 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   [[nodiscard]] double largest_size() const {
     return typical_size() * (is_distance_since(curve_.law.variable) ? 100.0 : 10.0 * strength());
   }
-  /// What fades may be as large as it will anyway.
-  [[nodiscard]] double strength() const {
-    return curve_.strong && !is_distance_since(curve_.law.variable) ? 6.0 : 1.0;
-  }
+  [[nodiscard]] double strength() const { return curve_.strong ? 6.0 : 1.0; }
   /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a curve must
   /// do no harm in other drives.
   [[nodiscard]] double prior(std::size_t function) const {
     // Where turns of one speed cannot tell which, each radian leaves the same way.
     const bool is_refinement = curve_.law.carrier == Carrier::turn_path && function > 0;
-    const double usual = (is_refinement ? 1.0 : 4.0) * typical_size() * strength();
-    if (!is_distance_since(curve_.law.variable)) return usual;
+    const double usual = (is_refinement ? 1.0 : 4.0) * typical_size();
+    if (!is_distance_since(curve_.law.variable)) return usual * strength();
     // What is lost between one knot and the next is as much everywhere, the way between them half as long.
     return std::min(std::ldexp(usual, kFadeKnots - 1 - static_cast<int>(function)), largest_size());
   }

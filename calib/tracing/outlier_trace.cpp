@@ -55,18 +55,12 @@ double farthest(Variable variable) {
 
 /// Mean over a pair; of an angle, in its middle.
 double value_in(Variable variable, const DriveModel& model, const Interval& interval, bool of_y) {
-  const std::size_t first = model.track().interval_at(interval.begin);
-  const std::size_t last = std::max(first, model.track().interval_at(interval.end));
-  const auto& context = model.context();
-  if (is_angle(variable)) {
-    const double angle = value_of(variable, context[(first + last) / 2]);
-    return angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi));
-  }
+  const auto context = model.context_within(interval);
+  if (is_angle(variable)) return angle_of_turn(value_of(variable, context[(context.size() - 1) / 2]));
   const double most = farthest(variable);
   double sum = 0.0;
-  for (std::size_t k = first; k <= last; ++k)
-    sum += of_y ? context[k].y : std::min(value_of(variable, context[k]), most);
-  return sum / static_cast<double>(last - first + 1);
+  for (const StepContext& c : context) sum += of_y ? c.y : std::min(value_of(variable, c), most);
+  return sum / static_cast<double>(context.size());
 }
 
 std::vector<double> values_of(Variable variable, std::span<const FitData> data, bool of_y = false) {
@@ -96,7 +90,8 @@ std::vector<Binned> all_variables(std::span<const FitData> data) {
   return all;
 }
 
-double entropy(double part, double whole) {
+/// Of a rate of `part` in `whole`, at its maximum.
+double log_likelihood(double part, double whole) {
   return part > 0.0 && part < whole
              ? part * std::log(part / whole) + (whole - part) * std::log(1.0 - part / whole)
              : 0.0;
@@ -115,11 +110,11 @@ double gain(const Counts& events, const Counts& pairs) {
   double of_bins = 0.0;
   double used = 0.0;
   for (std::size_t b = 0; b < kBins; ++b) {
-    of_bins += entropy(events.at(b), pairs.at(b));
+    of_bins += log_likelihood(events.at(b), pairs.at(b));
     used += pairs.at(b) > 0.0 ? 1.0 : 0.0;
   }
   const double all = std::accumulate(pairs.begin(), pairs.end(), 0.0);
-  const double one = entropy(std::accumulate(events.begin(), events.end(), 0.0), all);
+  const double one = log_likelihood(std::accumulate(events.begin(), events.end(), 0.0), all);
   return 2.0 * (of_bins - one) - (used - 1.0);
 }
 

@@ -98,17 +98,15 @@ struct Samples {
 };
 
 std::array<double, kVariables.size()> variables_of(const DriveModel& model, const Interval& interval) {
-  const std::size_t first = model.track().interval_at(interval.begin);
-  const std::size_t last = std::max(first, model.track().interval_at(interval.end));
+  const auto context = model.context_within(interval);
   std::array<double, kVariables.size()> values{};
   for (std::size_t v = 0; v < kVariables.size(); ++v) {
     if (kVariables.at(v).over == Variable::middle) {
-      const double angle = kVariables.at(v).of(model.context()[(first + last) / 2]);
-      values.at(v) = angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi));
+      values.at(v) = angle_of_turn(kVariables.at(v).of(context[(context.size() - 1) / 2]));
       continue;
     }
-    for (std::size_t k = first; k <= last; ++k) values.at(v) += kVariables.at(v).of(model.context()[k]);
-    if (kVariables.at(v).over == Variable::mean) values.at(v) /= static_cast<double>(last - first + 1);
+    for (const StepContext& c : context) values.at(v) += kVariables.at(v).of(c);
+    if (kVariables.at(v).over == Variable::mean) values.at(v) /= static_cast<double>(context.size());
   }
   return values;
 }
