@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <numbers>
 #include <sstream>
 
 namespace odomcalib::calib {
@@ -15,11 +16,18 @@ constexpr double kPlausibleHigh = 2.0;
 constexpr double kWarnChange = 0.10;
 constexpr double kFewestMatched = 0.1;  ///< of the pairs of scans; the others may say something else
 constexpr double kWarnMatched = 0.5;
+constexpr double kWarnYaw = std::numbers::pi / 9.0;  ///< rad
 constexpr double kWarnResidual = 2.0;  ///< times the noise: most of the error over a pair has another cause
 
 std::string percent(double share) {
   std::ostringstream out;
   out << std::setprecision(3) << 100.0 * share << " %";
+  return out.str();
+}
+
+std::string degrees(double angle) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(0) << angle * 180.0 / std::numbers::pi << " degrees";
   return out.str();
 }
 
@@ -58,6 +66,14 @@ class Judgement {
     else if (relative > kWarnRelativeDeviation)
       warn(name + " is determined to " + percent(relative) + " only; a longer recording would help");
     if (nominal > 0.0) check_against_nominal(name, quantity.value / nominal);
+  }
+
+  /// Both may be right: what is called front decides.
+  void check_lidar_yaw(double yaw, double nominal) {
+    const double apart = std::remainder(yaw - nominal, 2.0 * std::numbers::pi);
+    if (std::abs(apart) > kWarnYaw)
+      warn("lidar_yaw differs from its nominal value by " + degrees(apart) +
+           ": correct lidar_pose, or check which end of the robot counts forward");
   }
 
   void check_matches(std::size_t matched, std::size_t unmatched) {
@@ -106,6 +122,8 @@ class Judgement {
 GateResult judge(const Calibration& calibration, const Footing& footing) {
   Judgement judgement;
   for (const auto& [name, quantity] : calibration.parameters) {
+    if (name == "lidar_yaw" && calibration.robot.lidar_pose)
+      judgement.check_lidar_yaw(quantity.value, (*calibration.robot.lidar_pose)[2]);
     if (name.starts_with("lidar_")) continue;
     judgement.check(name, quantity, nominal_value(calibration.robot, name));
   }

@@ -12,6 +12,7 @@
 #include "calib/session/lidar_evidence.hpp"
 #include "calib/session/location.hpp"
 #include "calib/session/placed_pairs.hpp"
+#include "calib/session/sign_check.hpp"
 #include "calib/session/start_values.hpp"
 #include "calib/tracing/search.hpp"
 #include "calib/validation/held_out.hpp"
@@ -38,7 +39,7 @@ class Solver {
     if (!session) return refuse(session.error());
     session_ = std::make_unique<Session>(std::move(session).value());
     if (auto error = choose_effects()) return refuse(*error);
-    start();
+    if (auto error = start()) return refuse(*error);
     auto fit = settle();
     if (fit) fit = correct_lidar(std::move(fit));
     if (fit) fit = locate(std::move(fit));
@@ -105,13 +106,17 @@ class Solver {
     return first_parameter(effects_, place_of(name));
   }
 
-  /// First matches with nominal values; then the clocks' delay and what the recording does not state.
-  void start() {
+  /// First matches with nominal values; then the clocks' delay, and what the recording does not state. Signs
+  /// are asked before anything is fitted.
+  std::optional<Error> start() {
     report("matching", 0.0);
     parameters_ = to_vector(session_->nominal());
     session_->measure(parameters_, {}, PairOptions{});
     if (automatic_ && recordings_.front().increments.empty()) effects_.push_back(find_effect("time_offset"));
     const ClockStart clock = has(kOffset) ? search_clock(session_->data()) : ClockStart{};
+    if (auto error = check_signs(wheel_motions(session_->data(), clock.delay), calibration_.robot,
+                                 session_->reference_is_base()))
+      return error;
     if (automatic_ && clock.rate != 0.0) effects_.push_back(find_effect(kDrift));
     parameters_ = to_vector(start_values(*session_, clock.delay), count_parameters(effects_));
     const std::vector<double> own = start_of(effects_);
@@ -119,6 +124,7 @@ class Solver {
         Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
     if (has(kOffset)) parameters_(first_of(kOffset)) = clock.delay;
     if (has(kDrift)) parameters_(first_of(kDrift)) = clock.rate;
+    return std::nullopt;
   }
 
   /// Fits, matches again with the fitted parameters (guess and de-skew), and fits again. Noise of a match

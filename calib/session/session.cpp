@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "calib/session/recording_check.hpp"
 #include "calib/wheels/fine_track.hpp"
 #include "calib/wheels/nominal_base.hpp"
 
@@ -19,20 +20,6 @@ BaseParameters start_of(const RobotDescription& robot) {
   if (!(base.right_radius > 0.0)) base.right_radius = kUnknownRadius;
   if (!(base.track_width > 0.0)) base.track_width = kUnknownTrackWidth;
   return base;
-}
-
-std::optional<Error> check_streams(const Recording& recording) {
-  if (!recording.increments.empty()) return std::nullopt;
-  if (recording.ticks.size() < 2)
-    return Error{ErrorCode::empty, "fewer than two tick samples", recording.name,
-                 "check that the controller's ticks were recorded"};
-  if (recording.scans.size() < 2 && recording.poses.size() < 2)
-    return Error{ErrorCode::empty, "neither scans nor reference poses", recording.name,
-                 "check that the lidar was recorded"};
-  if (!(recording.robot.ticks_per_rev > 0.0))
-    return Error{ErrorCode::missing_units, "ticks_per_rev is missing", recording.name,
-                 "add it to the robot line"};
-  return std::nullopt;
 }
 
 bool same_robot(const RobotDescription& a, const RobotDescription& b) {
@@ -55,7 +42,7 @@ Result<Session> Session::open(std::span<const Recording> recordings) {
   session.recordings_ = recordings;
   session.nominal_ = start_of(recordings.front().robot);
   for (const Recording& recording : recordings) {
-    if (auto error = check_streams(recording)) return *error;
+    if (auto error = check_recording(recording)) return *error;
     if (!same_robot(recording.robot, recordings.front().robot))
       return Error{ErrorCode::format, "nominal values differ from those of " + recordings.front().name,
                    recording.name, "solve recordings of different robots separately"};

@@ -18,8 +18,7 @@ namespace odomcalib::calib {
 
 class Session {
  public:
-  /// Errors: empty (nothing to measure with, says which stream is missing), missing_units, format (robots
-  /// differ).
+  /// Errors: those of check_recording; format also when robots differ.
   static Result<Session> open(std::span<const Recording> recordings);
 
   [[nodiscard]] std::span<const Recording> recordings() const { return recordings_; }

@@ -48,6 +48,20 @@ TEST(Gate, refuses_what_cannot_be_the_robot) {
   EXPECT_EQ(judge(with_track(-0.4, 1e-4), kFirm).verdict, Verdict::refused);
 }
 
+TEST(Gate, warns_of_a_lidar_that_looks_elsewhere_than_its_description_says) {
+  const auto with_yaw = [](double yaw) {
+    Calibration calibration = sound();
+    calibration.robot.lidar_pose = {0.1, 0.0, 3.1};
+    calibration.parameters.push_back({"lidar_yaw", {yaw, 1e-3, "rad"}});
+    return judge(calibration, kFirm);
+  };
+  EXPECT_EQ(with_yaw(-3.0).verdict, Verdict::accepted);
+  const GateResult gate = with_yaw(0.0);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("-178 degrees"), std::string::npos) << gate.reasons[0];
+}
+
 TEST(Gate, refuses_values_of_the_few_scans_that_happened_to_match) {
   EXPECT_EQ(judge(sound(), {true, 50, 50, {}}).verdict, Verdict::accepted);
   EXPECT_EQ(judge(sound(), {true, 49, 51, {}}).verdict, Verdict::accepted_with_warnings);
