@@ -35,20 +35,41 @@ std::optional<std::size_t> partner_of(const ScanSurfaces& scans, std::size_t fro
 }
 
 /// Pairs of scans, spread over the recording.
-std::vector<HeadingPair> choose(const ScanSurfaces& scans, std::size_t most) {
-  std::vector<HeadingPair> chosen;
-  const std::size_t count = scans.times().size();
-  std::vector<bool> used(count, false);
-  const std::size_t stride = std::max<std::size_t>(1, count / (2 * most));
-  for (std::size_t k = 0; k < count && chosen.size() < most; k += stride) {
-    if (used[k]) continue;
-    const auto partner = partner_of(scans, k, kTurns[chosen.size() % kTurns.size()], used);
-    if (!partner || scans.gap_between(k, *partner) != nullptr) continue;
-    used[k] = used[*partner] = true;
-    chosen.push_back({k, *partner, {}});
+class Choice {
+ public:
+  Choice(const ScanSurfaces& scans, std::size_t most)
+      : scans_(scans), most_(most), used_(scans.times().size(), false) {}
+
+  /// All turns in equal numbers; a drive that has too few of some is asked for any of them.
+  std::vector<HeadingPair> run() {
+    go_through([&](std::size_t from) { add(from, kTurns[chosen_.size() % kTurns.size()]); });
+    go_through([&](std::size_t from) {
+      for (const double turn : kTurns)
+        if (!used_[from]) add(from, turn);
+    });
+    return std::move(chosen_);
   }
-  return chosen;
-}
+
+ private:
+  template <typename Visit>
+  void go_through(const Visit& visit) {
+    const std::size_t stride = std::max<std::size_t>(1, used_.size() / (2 * most_));
+    for (std::size_t k = 0; k < used_.size() && chosen_.size() < most_; k += stride)
+      if (!used_[k]) visit(k);
+  }
+
+  void add(std::size_t from, double turn) {
+    const auto partner = partner_of(scans_, from, turn, used_);
+    if (!partner || scans_.gap_between(from, *partner) != nullptr) return;
+    used_[from] = used_[*partner] = true;
+    chosen_.push_back({from, *partner, {}});
+  }
+
+  const ScanSurfaces& scans_;
+  std::size_t most_;
+  std::vector<bool> used_;
+  std::vector<HeadingPair> chosen_;
+};
 
 /// A straight surface that the first scan knows from all its readings, seen from one of the sensors.
 /// Regressors made from single readings would carry those readings' noise, which is the residual's.
@@ -157,7 +178,8 @@ void fill(const ScanSurfaces& scans, HeadingPair& pair) {
 
 std::vector<HeadingPair> heading_pairs(const ScanSurfaces& scans, std::size_t most) {
   constexpr std::size_t kFewest = 40;  // points
-  std::vector<HeadingPair> pairs = choose(scans, most);
+  std::vector<HeadingPair> pairs = Choice(scans, most).run();
+  std::sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
   for (HeadingPair& pair : pairs) fill(scans, pair);
   std::erase_if(pairs, [](const HeadingPair& pair) { return pair.points.size() < kFewest; });
   return pairs;

@@ -38,7 +38,8 @@ std::vector<HeadingPair> heading_pairs(const Session& session, const Eigen::Vect
   for (std::size_t i = 0; i < session.recordings().size(); ++i) {
     const ScanSurfaces scans(session.recordings()[i], *session.data()[i].model, p, effects,
                              session.pair_sets()[i].range_noise);
-    auto pairs = heading_pairs(scans, kMostPairs / session.recordings().size());
+    const std::size_t most = std::max<std::size_t>(1, kMostPairs / session.recordings().size());
+    auto pairs = heading_pairs(scans, most);
     std::move(pairs.begin(), pairs.end(), std::back_inserter(all));
   }
   return all;

@@ -296,10 +296,13 @@ class Search {
 
   bool accept_name(const ScoreTable& table, const Trial& best) {
     const Candidate candidate = candidates_[best.candidate];
-    const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, rivals_of(best));
+    const std::vector<std::size_t> rivals = rivals_of(best);
+    const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, rivals);
+    const std::vector<Eigen::VectorXd> doubts = doubts_of_rivals(best, rivals);
     const auto proof = accept(table, best);
     if (!proof) return true;
     result_.findings.push_back({candidate.effect, aliases, *proof});
+    add_doubts(doubts);
     retire_superfluous();
     return true;
   }
@@ -437,6 +440,20 @@ class Search {
           are_too_close(*table_, best.candidate, k))
         rivals.push_back(k);
     return rivals;
+  }
+
+  /// What each name that may be the right one instead would make of the base parameters.
+  std::vector<Eigen::VectorXd> doubts_of_rivals(const Trial& best, const std::vector<std::size_t>& rivals) {
+    const std::string name = candidates_[best.candidate].effect->name();
+    for (const std::size_t rival : rivals) try_out(rival);
+    std::vector<Eigen::VectorXd> doubts;
+    for (const Trial& trial : trials_) {
+      const Effect& effect = *candidates_[trial.candidate].effect;
+      const bool is_rival = std::find(rivals.begin(), rivals.end(), trial.candidate) != rivals.end();
+      if (is_rival && effect.name() != name && impossibility(effect, trial.model.fit).empty())
+        doubts.emplace_back(trial.model.base() - best.model.base());
+    }
+    return doubts;
   }
 
   FitTask task_;
