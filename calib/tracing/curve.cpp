@@ -437,6 +437,10 @@ double spread_of(const Curve& curve, std::span<const double> coefficients,
   return std::sqrt(sum / std::max(total, 1e-12));
 }
 
+bool leaves_mean_to_wheels(const Curve& curve, std::span<const DriveModel* const> models) {
+  return curve.law.variable == Variable::heading && is_unsigned(curve.law.carrier) && !goes_both_ways(models);
+}
+
 std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
   std::vector<Curve> curves;
   const bool both_ways = goes_both_ways(models);

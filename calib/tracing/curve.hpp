@@ -90,6 +90,9 @@ Curve centred(Curve curve, std::span<const DriveModel* const> models);
 double spread_of(const Curve& curve, std::span<const double> coefficients,
                  std::span<const DriveModel* const> models);
 
+/// Driven one way only, the mean of a pull over the headings is a difference of the wheels.
+bool leaves_mean_to_wheels(const Curve& curve, std::span<const DriveModel* const> models);
+
 /// The same law in other shapes: more knots, other ways to understand what happened before.
 std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models);
 

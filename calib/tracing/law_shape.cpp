@@ -27,10 +27,12 @@ std::vector<BaseIndex> lengths_of(Carrier carrier) {
   }
 }
 
-bool scales_a_length(const Effect& effect) {
+/// A steady turn along the path is what unequal wheels do.
+bool may_pass_for_a_length(const Effect& effect) {
   const std::vector<Law> laws = effect.laws();
-  return std::any_of(laws.begin(), laws.end(),
-                     [](const Law& law) { return !lengths_of(law.carrier).empty(); });
+  return std::any_of(laws.begin(), laws.end(), [](const Law& law) {
+    return law.carrier == Carrier::yaw_path || !lengths_of(law.carrier).empty();
+  });
 }
 
 /// Parameters of the model with the effect's shape that of the variant; nullopt if they are the model's own.
@@ -131,10 +133,16 @@ bool is_better(const FitTask& task, const FittedModel& given, const FittedModel&
 Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, const Curve& curve) {
   Eigen::VectorXd doubt = Eigen::VectorXd::Zero(kBaseCount);
   // What was kept of the past has no natural zero either: neither side of it is the robot as it was measured.
-  if (curve.mean.empty() && !is_memory(curve.law.variable)) return doubt;
+  const bool leaves_mean = leaves_mean_to_wheels(curve, task.models());
+  if (curve.mean.empty() && !is_memory(curve.law.variable) && !leaves_mean) return doubt;
   const Eigen::VectorXd own = model.fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
   const double spread = spread_of(curve, as_span(own), task.models());
   for (const auto k : lengths_of(curve.law.carrier)) doubt(k) = spread * model.fit.parameters(k);
+  if (leaves_mean && curve.law.carrier == Carrier::yaw_path) {
+    const double wheel = 0.5 * model.fit.parameters(kTrackWidth) * spread;  // m for each metre of way
+    doubt(kLeftRadius) = -wheel * model.fit.parameters(kLeftRadius);
+    doubt(kRightRadius) = wheel * model.fit.parameters(kRightRadius);
+  }
   return doubt;
 }
 
@@ -165,7 +173,7 @@ std::vector<Eigen::VectorXd> doubts_of_shape(const FitTask& task, const FittedMo
                                              std::size_t index) {
   const Effect& effect = *model.effects[index];
   std::vector<Eigen::VectorXd> doubts;
-  if (!scales_a_length(effect)) return doubts;
+  if (!may_pass_for_a_length(effect)) return doubts;
   std::vector<double> likelihoods;
   double all = 1.0;
   for (const auto& variant : effect.variants()) {

@@ -254,6 +254,11 @@ class Search {
     return spoils_base(effect, basis_.fit, fit) ? "this drive cannot tell it from the wheels" : "";
   }
 
+  /// Too small to be told, not too small to have moved the lengths.
+  [[nodiscard]] bool is_plain_but_small(const Candidate& candidate, const FitResult& fit) const {
+    return is_negligible(*candidate.effect, fit) && !spoils_base(*candidate.effect, basis_.fit, fit);
+  }
+
   /// Adds the candidate if it is plausible and proves itself; otherwise strikes it off the list.
   std::optional<Proof> accept(const ScoreTable& table, const Trial& trial) {
     const Candidate& candidate = candidates_[trial.candidate];
@@ -262,9 +267,11 @@ class Search {
     proof.family_p_value = score.family_p_value;
     std::optional<Trial> settled;
     std::string reason = implausibility(candidate, trial.model.fit);
+    const Eigen::VectorXd change = trial.model.base() - basis_.base();
+    if (is_plain_but_small(candidate, trial.model.fit)) result_.doubts.push_back(change);
     if (reason.empty()) {
       reason = failure(table, trial, proof, settled);
-      if (!reason.empty() && !candidate.curve) unproved_.push_back(trial.model.base() - basis_.base());
+      if (!reason.empty() && !candidate.curve) unproved_.push_back(change);
     }
     result_.considered.push_back(
         {candidate.effect->name(), score.statistic, score.family_p_value, reason.empty() ? "added" : reason});

@@ -44,7 +44,8 @@ struct SearchResult {
   std::vector<AddedCurve> curves;
   std::vector<Considered> considered;  ///< in the order tried
   /// What nobody knows about a law is unknown of the base parameters too: by how much they move with another
-  /// shape of a curve, with another zero, and by extrapolation to where no effect is.
+  /// shape, another zero or another name of the set, by extrapolation to where no effect is, and with what
+  /// was too small to be told.
   std::vector<Eigen::VectorXd> doubts;
 
   [[nodiscard]] bool has_unnamed() const;

@@ -51,6 +51,7 @@ int main(int argc, char** argv) try {
   app.add_flag("--catalogue", options.only_catalogue, "only effects that the catalogue has");
   app.add_flag("--any-machine", options.any_machine,
                "other lidars, encoders and sizes than the usual robot's");
+  app.add_flag("--tour", options.tour, "drives at work, forward only, instead of drives for calibration");
   std::set<std::string> names;
   for (const auto& kind : odomcalib::sim::effect_kinds()) names.insert(kind.name);
   app.add_option("--only", options.only, "only these effects, for a closer look")

@@ -7,6 +7,7 @@
 #include "calib/solve.hpp"
 #include "tests/integration/accuracy_runs.hpp"
 #include "tests/sim/effects/effect.hpp"
+#include "tests/sim/world/rooms.hpp"
 #include "tests/sim/world/simulate.hpp"
 
 namespace odomcalib {
@@ -93,24 +94,39 @@ bool is_told(const Calibration& result, const std::string& name) {
          (result.unexplained && holds(result.unexplained->depends_on));
 }
 
-void expect_found(const Injected& injected, const std::vector<sim::Manoeuvre>& manoeuvres) {
-  sim::SimulationConfig config = sim::standard_config(5);
+struct Solved {
+  Calibration result;
+  sim::Geometry truth;
+};
+
+/// A robot with the effect, after such a drive of five minutes at most.
+Solved solved(const Injected& injected, sim::SimulationConfig config, const sim::Drive& drive) {
   const sim::EffectKind* kind = sim::find_effect(injected.simulated);
-  ASSERT_NE(kind, nullptr);
+  EXPECT_NE(kind, nullptr) << injected.simulated;
+  if (kind == nullptr) return {};
   sim::Random random(5);
   config.disturbances = {kind->make(injected.size, random)};
-  config.duration = std::min(290.0, sim::total_duration(manoeuvres));
-  const sim::SimulatedRun run = sim::simulate_recording(config, sim::follow(config.nominal, manoeuvres));
-  ASSERT_GT(run.least_clearance, 0.2);
-  const Calibration result = calib::solve({&run.recording, 1}, {});
-  ASSERT_NE(result.verdict, Verdict::refused) << result.reasons[0];
-  std::string found;
-  for (const EffectResult& effect : result.effects) found += effect.name + " ";
-  EXPECT_TRUE(is_told(result, injected.name))
-      << "found: " << found << (result.unexplained ? "and a curve" : "");
-  EXPECT_LE(result.effects.size(), 1U) << "more than what is there: " << found;
-  for (const double sigma : testing::length_errors_in_sigmas(result, run.truth))
+  const sim::SimulatedRun run = sim::simulate_recording(config, drive);
+  EXPECT_GT(run.least_clearance, 0.2);
+  return {calib::solve({&run.recording, 1}, {}), run.truth};
+}
+
+void expect_wheels_right(const Solved& solved) {
+  ASSERT_NE(solved.result.verdict, Verdict::refused) << solved.result.reasons[0];
+  for (const double sigma : testing::length_errors_in_sigmas(solved.result, solved.truth))
     EXPECT_LT(std::abs(sigma), 4.0);
+}
+
+void expect_found(const Injected& injected, const std::vector<sim::Manoeuvre>& manoeuvres) {
+  sim::SimulationConfig config = sim::standard_config(5);
+  config.duration = std::min(290.0, sim::total_duration(manoeuvres));
+  const Solved drive = solved(injected, config, sim::follow(config.nominal, manoeuvres));
+  expect_wheels_right(drive);
+  std::string found;
+  for (const EffectResult& effect : drive.result.effects) found += effect.name + " ";
+  EXPECT_TRUE(is_told(drive.result, injected.name))
+      << "found: " << found << (drive.result.unexplained ? "and a curve" : "");
+  EXPECT_LE(drive.result.effects.size(), 1U) << "more than what is there: " << found;
 }
 
 class NamesTheEffect : public ::testing::TestWithParam<Injected> {};
@@ -141,6 +157,25 @@ INSTANTIATE_TEST_SUITE_P(Simulated, LazyDrive,
                          ::testing::Values(Injected{"turn_drag", 0.006, "turn_direction_asymmetry"},
                                            Injected{"leaning_head", 0.08, "lidar_tilt"},
                                            Injected{"head_disc_off_centre", 0.035, "bearing"}),
+                         [](const auto& tested) { return std::string(tested.param.simulated); });
+
+/// As robots drive at work, where much hides in the lengths: then their deviations say so.
+class Tour : public ::testing::TestWithParam<Injected> {};
+
+TEST_P(Tour, keeps_the_wheels_right) {
+  for (const std::uint64_t seed : {5U, 6U}) {
+    sim::SimulationConfig config = sim::standard_config(seed);
+    config.room = sim::random_room(seed, 2.7);
+    config.duration = 240.0;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    expect_wheels_right(solved(GetParam(), config, sim::tour_drive(config.nominal, seed)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Simulated, Tour,
+                         ::testing::Values(Injected{"caster_swing", 0.015, ""},
+                                           Injected{"mast_flex", 0.004, ""},
+                                           Injected{"cable_pull", 0.033, ""}),
                          [](const auto& tested) { return std::string(tested.param.simulated); });
 
 }  // namespace

@@ -13,8 +13,9 @@ namespace {
 
 constexpr double kEnoughClearance = 0.25;  // m; nearer the robot would have touched a wall
 constexpr int kAttempts = 20;
-constexpr double kRest = 0.8;       // s, braking included: robots that are calibrated stand still at times
-constexpr double kLongest = 300.0;  // s
+constexpr double kRest = 0.8;        // s, braking included: robots that are calibrated stand still at times
+constexpr double kLongest = 300.0;   // s
+constexpr double kTourRadius = 2.7;  // m, free of furniture: a robot comes to stand half a metre too far
 
 BlindEffect describe(const EffectKind& kind, double size) {
   return {kind.name, kind.catalogue_name, kind.depends_on, size, kind.unit};
@@ -72,7 +73,11 @@ std::vector<Manoeuvre> shuffled_pattern(Random& random) {
   return out;
 }
 
-Drive draw_drive(Random& random, const Geometry& nominal, BlindAnswer& answer) {
+Drive draw_drive(Random& random, const Geometry& nominal, const BlindOptions& options, BlindAnswer& answer) {
+  if (options.tour) {
+    answer.drive = "tour";
+    return tour_drive(nominal, random());
+  }
   const double kind = uniform(random, 0.0, 1.0);
   answer.drive = kind < 0.5 ? "guided" : kind < 0.85 ? "shuffled" : "random";
   if (answer.drive == "guided") return follow(nominal, guided_pattern(kRest));
@@ -89,12 +94,12 @@ Geometry draw_nominal(Random& random) {
   return nominal;
 }
 
-SimulationConfig draw_config(Random& random, std::uint64_t seed) {
+SimulationConfig draw_config(Random& random, std::uint64_t seed, const BlindOptions& options) {
   SimulationConfig config = standard_config(seed);
   config.duration = std::min(kLongest, total_duration(guided_pattern(kRest)));
   config.nominal = draw_nominal(random);
   config.truth = draw_truth(config.nominal, seed);
-  config.room = random_room(seed);
+  config.room = options.tour ? random_room(seed, kTourRadius) : random_room(seed);
   config.body.start = {0.0, 0.0, any_angle(random)};
   config.body.slip_noise = uniform(random, 0.0002, 0.0006);
   config.body.motor.acceleration = config.body.motor.deceleration =
@@ -156,9 +161,9 @@ Draw draw(std::uint64_t campaign, unsigned number, int attempt, const BlindOptio
   Draw out;
   out.answer.campaign = campaign;
   out.answer.number = number;
-  out.config = draw_config(random, random());
+  out.config = draw_config(random, random(), options);
   if (options.any_machine) draw_machine(random, out.config);
-  out.drive = draw_drive(random, out.config.nominal, out.answer);
+  out.drive = draw_drive(random, out.config.nominal, options, out.answer);
   out.config.disturbances = draw_effects(random, options, out.answer);
   out.answer.truth = effective(out.config);
   return out;
@@ -181,13 +186,15 @@ Attempt first_clear_attempt(std::uint64_t campaign, unsigned number, const Blind
   return attempt;
 }
 
-/// Random arcs for ten minutes, with other noise; the whole circle of headings and all speeds. Less, and the
+/// Another drive of ten minutes, with other noise; the whole circle of headings and all speeds. Less, and the
 /// ratio of two errors would be uncertain by a fifth.
-SimulatedRun fresh_drive(Draw one) {
+SimulatedRun fresh_drive(Draw one, const BlindOptions& options) {
   constexpr double kDuration = 600.0;  // s
   one.config.seed += 1000003;
   one.config.duration = kDuration;
-  return simulate_recording(one.config, random_drive(one.config.nominal, one.config.seed, 0.9));
+  const Geometry& nominal = one.config.nominal;
+  return simulate_recording(one.config, options.tour ? tour_drive(nominal, one.config.seed)
+                                                     : random_drive(nominal, one.config.seed, 0.9));
 }
 
 Draw without_effects(Draw one) {
@@ -211,8 +218,8 @@ BlindProof make_blind_proof(std::uint64_t campaign, unsigned number, const Blind
   BlindProof proof;
   const Draw twin = without_effects(again());
   proof.twin = simulate_recording(twin.config, twin.drive);
-  proof.fresh = fresh_drive(again());
-  proof.fresh_twin = fresh_drive(without_effects(again()));
+  proof.fresh = fresh_drive(again(), options);
+  proof.fresh_twin = fresh_drive(without_effects(again()), options);
   return proof;
 }
 

@@ -40,6 +40,7 @@ struct BlindOptions {
   bool only_catalogue = false;
   std::vector<std::string> only;  ///< kinds by name; empty: all
   bool any_machine = false;       ///< other lidars, encoders, sizes and durations than the usual robot's
+  bool tour = false;              ///< drives at work instead of drives for calibration, in larger rooms
 };
 
 /// Same campaign and number, same case. The recording's names give nothing away but campaign and number.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 
 namespace odomcalib::sim {
@@ -73,6 +74,56 @@ struct Wanderer {
   WheelCommand operator()(double t, const Pose& odometry) {
     if (t >= until) {
       choose(odometry);
+      until = t + now.duration;
+    }
+    return wheel_command(nominal, now.speed, now.yaw_rate);
+  }
+};
+
+/// Forward to where it likes; where the area ends it turns on the spot and goes on.
+struct Tourist {
+  Geometry nominal;
+  double radius;
+  std::mt19937_64 random;
+  Manoeuvre now;
+  double until = 0.0;
+  std::optional<double> wanted_yaw;
+
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  }
+
+  [[nodiscard]] bool leaves(const Pose& pose) const {
+    constexpr double kAhead = 0.5;  // m
+    const Pose ahead = compose(pose, {kAhead, 0.0, 0.0});
+    const double distance = std::hypot(ahead.x, ahead.y);
+    return distance > radius && distance > std::hypot(pose.x, pose.y);
+  }
+
+  void choose() {
+    const double kind = uniform(0.0, 1.0);
+    now = {uniform(0.15, 0.5), kind < 0.4 ? 0.0 : uniform(-0.5, 0.5), uniform(1.5, 5.0)};
+    if (kind > 0.9) now.speed = now.yaw_rate = 0.0;
+  }
+
+  /// rad/s, slower towards the end; zero when it is there.
+  [[nodiscard]] double turn_rate(const Pose& pose) const {
+    constexpr double kFastest = 0.8, kSlowest = 0.15, kThere = 0.05;
+    const double left = std::remainder(*wanted_yaw - pose.yaw, 2.0 * std::numbers::pi);
+    return std::abs(left) < kThere ? 0.0 : std::copysign(std::min(kFastest, kSlowest + std::abs(left)), left);
+  }
+
+  WheelCommand operator()(double t, const Pose& odometry) {
+    if (!wanted_yaw && leaves(odometry))
+      wanted_yaw = std::atan2(-odometry.y, -odometry.x) + uniform(-0.7, 0.7);
+    if (wanted_yaw) {
+      const double rate = turn_rate(odometry);
+      if (rate != 0.0) return wheel_command(nominal, 0.0, rate);
+      wanted_yaw.reset();
+      until = t;
+    }
+    if (t >= until) {
+      choose();
       until = t + now.duration;
     }
     return wheel_command(nominal, now.speed, now.yaw_rate);
@@ -150,6 +201,12 @@ Drive random_drive(const Geometry& nominal, std::uint64_t seed, double radius) {
   auto wanderer = std::make_shared<Wanderer>(
       Wanderer{nominal, radius, std::mt19937_64(seed ^ 0x6472697665ULL), Manoeuvre{}, 0.0});
   return [wanderer](double t, const Pose& odometry) { return (*wanderer)(t, odometry); };
+}
+
+Drive tour_drive(const Geometry& nominal, std::uint64_t seed, double radius) {
+  auto tourist = std::make_shared<Tourist>(
+      Tourist{nominal, radius, std::mt19937_64(seed ^ 0x746f7572ULL), Manoeuvre{}, 0.0, std::nullopt});
+  return [tourist](double t, const Pose& odometry) { return (*tourist)(t, odometry); };
 }
 
 }  // namespace odomcalib::sim

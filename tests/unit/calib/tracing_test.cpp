@@ -203,6 +203,16 @@ TEST(Tracing, a_mast_that_sways_is_flagged_and_kept_out_of_odometry) {
   EXPECT_EQ(result.curves[0].effect->storage(), Storage::driver);
 }
 
+TEST(Tracing, what_is_plain_but_too_small_to_be_told_stays_a_doubt_about_the_lengths) {
+  const DriveModel model = jerky_model();
+  const Curve sway{{Variable::turn_acceleration, Carrier::sensor_yaw}, -3.0, 3.0};
+  const SearchResult result = searched(measured(model, {make_curve_effect(sway)}, {0.001, 0.0}));
+  EXPECT_TRUE(result.curves.empty()) << "seed " << kSeed;
+  ASSERT_FALSE(result.considered.empty()) << "seed " << kSeed;
+  EXPECT_EQ(result.considered.front().outcome, "too small to matter");
+  EXPECT_GT(doubt_of(result), 1e-6);
+}
+
 TEST(Tracing, a_mast_that_follows_late_gets_its_lag) {
   const DriveModel model = jerky_model();
   Curve sway{{Variable::turn_acceleration, Carrier::sensor_yaw}, -3.0, 3.0};

@@ -152,6 +152,29 @@ TEST(Simulate, a_random_drive_that_has_come_too_far_comes_back) {
   }
 }
 
+TEST(Simulate, a_tour_goes_forward_only_and_stays_where_odometry_says_it_may) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SimulationConfig config = standard_config(seed);
+    config.lidar.beams_per_turn = 10;
+    config.duration = 300.0;
+    double farthest = 0.0;
+    const Drive watched = [&, tour = tour_drive(config.nominal, seed)](double t, const Pose& odometry) {
+      farthest = std::max(farthest, std::hypot(odometry.x, odometry.y));
+      return tour(t, odometry);
+    };
+    const auto path = simulate_recording(config, watched).path;
+    double ahead = 0.0, back = 0.0;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+      const Pose &a = path[k].pose, &b = path[k + 1].pose;
+      const double step = std::cos(a.yaw) * (b.x - a.x) + std::sin(a.yaw) * (b.y - a.y);
+      (step > 0.0 ? ahead : back) += std::abs(step);
+    }
+    EXPECT_GT(ahead, 30.0) << "m, seed " << seed;
+    EXPECT_LT(back, 0.01 * ahead) << "m, seed " << seed;
+    EXPECT_LT(farthest, 2.5) << "m, seed " << seed;
+  }
+}
+
 TEST(Simulate, guided_pattern_excites_both_signs_of_everything_in_about_five_minutes) {
   const double duration = total_duration(guided_pattern());
   EXPECT_GT(duration, 240.0);
