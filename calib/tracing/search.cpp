@@ -83,7 +83,7 @@ class Search {
   /// The best name, unless the curve is clearly better: then one on the curve's own ground, which may be the
   /// second best of two effects.
   std::optional<Trial> best_name_beside(std::optional<std::size_t> curve) {
-    const auto name = best_name(*table_);
+    auto name = best_name(*table_);
     if (!name || !curve || !curve_beats(*table_, *name, *curve)) return name;
     const Law& law = candidates_[*curve].curve->law;
     const auto own = best_trial([&](const Candidate& c) { return contains(c.effect->laws(), law); });

@@ -73,11 +73,11 @@ Builder builder_for(const PatternOptions& options) {
 void straights_on_four_headings(Builder& build) {
   const double d = 0.8 * build.half;
   build.face(0.5 * kPi);
-  build.out_and_back(d, 0.3);
-  build.out_and_back(-0.5 * d, 0.1);
+  build.out_and_back(d, 0.28);
+  build.out_and_back(-0.5 * d, 0.13);
   build.face(kPi);
-  build.out_and_back(d, 0.2);
-  build.out_and_back(-d, 0.3);
+  build.out_and_back(d, 0.17);
+  build.out_and_back(-d, 0.25);
   build.face(-0.5 * kPi);
   build.out_and_back(d, 0.1, 0.3);
   build.face(0.0);

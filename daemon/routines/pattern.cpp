@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+/// A law of speed is known where the robot drove: with the straights on four headings these are seven speeds.
 void slow_and_fast_straights(Builder& build) {
   build.out_and_back(0.5 * build.half, 0.1);
   build.out_and_back(0.8 * build.half, 0.3);
@@ -19,8 +20,10 @@ void slow_and_fast_straights(Builder& build) {
 
 void all_spins(Builder& build) {
   build.both_spins(2.0 * kPi, 0.6);
-  build.both_spins(kPi, 0.3);
-  build.both_spins(0.4 * kPi, 0.15);
+  build.both_spins(0.5 * kPi, 0.45);
+  build.both_spins(0.5 * kPi, 0.3);
+  build.both_spins(0.4 * kPi, 0.22);
+  build.both_spins(0.3 * kPi, 0.15);
 }
 
 void all_arcs(Builder& build) {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <ctime>
 #include <string>
+#include <vector>
 
 #include "calib/solve.hpp"
 #include "tests/sim/world/ray_bound.hpp"
@@ -39,6 +40,25 @@ inline std::array<double, 3> length_errors_in_sigmas(const Calibration& result, 
     errors[k] = (q.value - values[k]) / q.std;
   }
   return errors;
+}
+
+/// Whether a name, one that the data cannot tell from it, or a variable is told.
+inline bool is_told(const Calibration& result, const std::string& name) {
+  const auto holds = [&](const std::vector<std::string>& list) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  return std::any_of(result.effects.begin(), result.effects.end(),
+                     [&](const EffectResult& e) { return e.name == name || holds(e.aliases); }) ||
+         (result.unexplained && holds(result.unexplained->depends_on));
+}
+
+/// Names and variables, for messages.
+inline std::string told(const Calibration& result) {
+  std::string out = "told:";
+  for (const EffectResult& effect : result.effects) out += " " + effect.name;
+  if (result.unexplained)
+    for (const std::string& variable : result.unexplained->depends_on) out += " f(" + variable + ")";
+  return out;
 }
 
 class AccuracyTable {

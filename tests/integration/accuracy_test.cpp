@@ -84,16 +84,6 @@ struct Injected {
 
 std::ostream& operator<<(std::ostream& out, const Injected& injected) { return out << injected.simulated; }
 
-/// Whether a name, one that the data cannot tell from it, or a variable is told.
-bool is_told(const Calibration& result, const std::string& name) {
-  const auto holds = [&](const std::vector<std::string>& list) {
-    return std::find(list.begin(), list.end(), name) != list.end();
-  };
-  return std::any_of(result.effects.begin(), result.effects.end(),
-                     [&](const EffectResult& e) { return e.name == name || holds(e.aliases); }) ||
-         (result.unexplained && holds(result.unexplained->depends_on));
-}
-
 struct Solved {
   Calibration result;
   sim::Geometry truth;
@@ -122,11 +112,8 @@ void expect_found(const Injected& injected, const std::vector<sim::Manoeuvre>& m
   config.duration = std::min(290.0, sim::total_duration(manoeuvres));
   const Solved drive = solved(injected, config, sim::follow(config.nominal, manoeuvres));
   expect_wheels_right(drive);
-  std::string found;
-  for (const EffectResult& effect : drive.result.effects) found += effect.name + " ";
-  EXPECT_TRUE(is_told(drive.result, injected.name))
-      << "found: " << found << (drive.result.unexplained ? "and a curve" : "");
-  EXPECT_LE(drive.result.effects.size(), 1U) << "more than what is there: " << found;
+  EXPECT_TRUE(testing::is_told(drive.result, injected.name)) << testing::told(drive.result);
+  EXPECT_LE(drive.result.effects.size(), 1U) << "more than what is there: " << testing::told(drive.result);
 }
 
 class NamesTheEffect : public ::testing::TestWithParam<Injected> {};
