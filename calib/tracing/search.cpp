@@ -271,7 +271,7 @@ class Search {
     if (is_plain_but_small(candidate, trial.model.fit)) result_.doubts.push_back(change);
     if (reason.empty()) {
       reason = failure(table, trial, proof, settled);
-      if (!reason.empty() && !candidate.curve) unproved_.push_back(change);
+      if (!reason.empty()) unproved_.push_back(change);
     }
     result_.considered.push_back(
         {candidate.effect->name(), score.statistic, score.family_p_value, reason.empty() ? "added" : reason});

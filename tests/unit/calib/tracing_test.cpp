@@ -121,6 +121,19 @@ TEST(Tracing, a_name_that_is_plain_in_one_stretch_only_stays_a_doubt_about_the_l
   EXPECT_EQ(doubt_of(searched(measured(model, {}, {}))), 0.0);
 }
 
+TEST(Tracing, so_does_a_curve_that_is_plain_in_one_half_only) {
+  const DriveModel model = jerky_model();
+  const Curve law{{Variable::left_acceleration, Carrier::left_travel}, -1.0, 1.0};
+  FitData data = measured(model, {}, {});
+  const FitData with = measured(model, {make_curve_effect(law)}, {0.03, 0.0, 0.0, 0.0});
+  std::copy(with.pairs.begin(), with.pairs.begin() + 120, data.pairs.begin());
+  const SearchResult result = searched(data);
+  EXPECT_TRUE(result.curves.empty());
+  ASSERT_FALSE(result.considered.empty()) << "seed " << kSeed;
+  EXPECT_EQ(result.considered.front().outcome, "no gain on held-out data");
+  EXPECT_GT(doubt_of(result), 1e-6);
+}
+
 TEST(Tracing, names_what_is_in_the_catalogue_and_finds_its_size) {
   struct Case {
     const char* name;
