@@ -26,7 +26,7 @@ std::size_t SectorIndex::sector_of(const Eigen::Vector2d& direction) {
   const double x = direction.x(), y = direction.y();
   const double slope = x / (std::abs(x) + std::abs(y));
   const double turned = y < 0.0 ? 1.0 + slope : 3.0 - slope;
-  return static_cast<std::size_t>(turned * (kSectors / 4)) % kSectors;
+  return static_cast<std::size_t>(turned * (0.25 * kSectors)) % kSectors;
 }
 
 // From any origin within `reach` a point of the wall lies no farther aside than asin(reach / distance) from

@@ -460,6 +460,12 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
         curves.push_back(curve);
         curves.back().memory = kSwayLags.size() - 1;
       }
+      // What stays until the opposite push hardly resembles what fades.
+      for (std::size_t memory = 0; memory < memories_of(variable); ++memory)
+        if (is_relay(variable, memory)) {
+          curves.push_back(curve);
+          curves.back().memory = memory;
+        }
       // A drive seldom shows all headings; one wave round the circle is what few of them can tell.
       if (variable == Variable::heading) add_harmonics(curve, 1, 1, curves);
     }
