@@ -271,7 +271,8 @@ class Search {
     if (is_plain_but_small(candidate, trial.model.fit)) result_.doubts.push_back(change);
     if (reason.empty()) {
       reason = failure(table, trial, proof, settled);
-      if (!reason.empty()) unproved_.push_back(change);
+      const bool is_plain = !candidate.curve || score.family_p_value <= kNamedLevel;
+      if (!reason.empty() && is_plain) unproved_.push_back(change);
     }
     result_.considered.push_back(
         {candidate.effect->name(), score.statistic, score.family_p_value, reason.empty() ? "added" : reason});
@@ -471,8 +472,8 @@ class Search {
   bool has_changed_ = true;    ///< the model or the candidates, since the table was made
   SearchResult result_;
   FittedModel basis_;  ///< that candidates are tested on
-  /// What plausible names would make of the base parameters that the last model could neither show nor rule
-  /// out.
+  /// What plausible names and plain curves would make of the base parameters that the last model could
+  /// neither show nor rule out.
   std::vector<Eigen::VectorXd> unproved_;
 };
 
