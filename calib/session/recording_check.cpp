@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -73,26 +74,32 @@ std::optional<Error> clocks_apart(const Recording& recording, const Stream& tick
                "stamp both with the same clock"};
 }
 
-/// Counts that differ by no more are those of a wheel that stands.
-constexpr std::int64_t kStanding = 2;
-
 template <typename Count>
 bool stands(const Recording& recording, Count count) {
+  constexpr std::int64_t kStanding = 2;  // counts that differ by no more are those of a wheel that stands
   const auto [low, high] =
       std::minmax_element(recording.ticks.begin(), recording.ticks.end(),
                           [&](const auto& a, const auto& b) { return count(a) < count(b); });
   return count(*high) - count(*low) <= kStanding;
 }
 
-std::optional<Error> standing_counts(const Recording& recording) {
-  const bool left = stands(recording, [](const TickSample& s) { return s.left; });
-  const bool right = stands(recording, [](const TickSample& s) { return s.right; });
+/// One recording may well be of a turn about a wheel.
+template <typename Count>
+bool always_stands(std::span<const Recording> recordings, Count count) {
+  return std::all_of(recordings.begin(), recordings.end(),
+                     [&](const Recording& r) { return r.increments.empty() && stands(r, count); });
+}
+
+std::optional<Error> standing_counts(std::span<const Recording> recordings) {
+  const bool left = always_stands(recordings, [](const TickSample& s) { return s.left; });
+  const bool right = always_stands(recordings, [](const TickSample& s) { return s.right; });
   if (!left && !right) return std::nullopt;
+  const std::string& name = recordings.front().name;
   if (left && right)
-    return Error{ErrorCode::empty, "neither wheel turned", recording.name,
+    return Error{ErrorCode::empty, "neither wheel turned", name,
                  "record while the robot drives, or check both encoders"};
   const std::string side = left ? "left" : "right";
-  return Error{ErrorCode::empty, "the counts of the " + side + " wheel never change", recording.name,
+  return Error{ErrorCode::empty, "the counts of the " + side + " wheel never change", name,
                "check that wheel's encoder and its cable, or drive with both wheels"};
 }
 
@@ -139,9 +146,7 @@ std::optional<Error> wrong_scans(const Recording& recording) {
   return no_readings(recording);
 }
 
-}  // namespace
-
-std::optional<Error> check_recording(const Recording& recording) {
+std::optional<Error> check_one(const Recording& recording) {
   if (!recording.increments.empty()) return std::nullopt;
   if (auto error = missing_stream(recording)) return error;
   const bool by_poses = !recording.poses.empty();
@@ -150,8 +155,15 @@ std::optional<Error> check_recording(const Recording& recording) {
   for (const Stream* one : {&ticks, &reference})
     if (auto error = too_seldom(recording, *one)) return error;
   if (auto error = clocks_apart(recording, ticks, reference)) return error;
-  if (auto error = standing_counts(recording)) return error;
   return by_poses ? std::nullopt : wrong_scans(recording);
+}
+
+}  // namespace
+
+std::optional<Error> check_recordings(std::span<const Recording> recordings) {
+  for (const Recording& recording : recordings)
+    if (auto error = check_one(recording)) return error;
+  return standing_counts(recordings);
 }
 
 }  // namespace odomcalib::calib

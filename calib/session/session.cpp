@@ -38,11 +38,11 @@ double wheel_angle(const WheelTrack& track, const std::vector<double>& angle, do
 Result<Session> Session::open(std::span<const Recording> recordings) {
   if (recordings.empty())
     return Error{ErrorCode::usage, "no recording given", "", "name at least one recording"};
+  if (auto error = check_recordings(recordings)) return *error;
   Session session;
   session.recordings_ = recordings;
   session.nominal_ = start_of(recordings.front().robot);
   for (const Recording& recording : recordings) {
-    if (auto error = check_recording(recording)) return *error;
     if (!same_robot(recording.robot, recordings.front().robot))
       return Error{ErrorCode::format, "nominal values differ from those of " + recordings.front().name,
                    recording.name, "solve recordings of different robots separately"};

@@ -18,7 +18,7 @@ namespace odomcalib::calib {
 
 class Session {
  public:
-  /// Errors: those of check_recording; format also when robots differ.
+  /// Errors: those of check_recordings; format also when robots differ.
   static Result<Session> open(std::span<const Recording> recordings);
 
   [[nodiscard]] std::span<const Recording> recordings() const { return recordings_; }

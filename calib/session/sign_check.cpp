@@ -158,7 +158,7 @@ std::optional<Error> standing_reference(std::span<const WheelMotion> motions, co
   const Movement all = movement(motions, robot);
   if (!(all.seen < kHardly * all.rolled)) return std::nullopt;
   return Error{ErrorCode::refused, "the wheels turned, but the robot hardly moved", "",
-               "check that the wheels are on the floor and that the lidar sends new scans"};
+               "check that the wheels are on the floor and that scans or reference poses are new each time"};
 }
 
 }  // namespace

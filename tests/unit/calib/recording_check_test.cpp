@@ -99,7 +99,7 @@ class RecordingCheck : public ::testing::TestWithParam<Mistake> {};
 TEST_P(RecordingCheck, tells_the_mistake_the_place_and_the_remedy) {
   Recording recording = sound();
   GetParam().make(recording);
-  const auto error = check_recording(recording);
+  const auto error = check_recordings({&recording, 1});
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code, GetParam().code);
   EXPECT_NE(error->what.find(GetParam().what), std::string::npos) << error->text();
@@ -111,21 +111,26 @@ INSTANTIATE_TEST_SUITE_P(Mistakes, RecordingCheck, ::testing::ValuesIn(kMistakes
                          [](const auto& mistake) { return mistake.param.name; });
 
 TEST(RecordingCheckPasses, what_is_unusual_but_sound) {
-  EXPECT_FALSE(check_recording(sound()));
+  const Recording usual = sound();
+  EXPECT_FALSE(check_recordings({&usual, 1}));
   Recording slow = sound();
   stretch_times(slow.ticks, 50.0);
   stretch_times(slow.scans, 10.0);
-  EXPECT_FALSE(check_recording(slow)) << "one sample a second";
+  EXPECT_FALSE(check_recordings({&slow, 1})) << "one sample a second";
   Recording crawling = sound();
   for (TickSample& tick : crawling.ticks) tick.left /= 1000;
-  EXPECT_FALSE(check_recording(crawling)) << "three counts";
+  EXPECT_FALSE(check_recordings({&crawling, 1})) << "three counts";
   Recording half_blind = sound();
   for (std::size_t k = 1; k < half_blind.scans.size(); ++k) half_blind.scans[k].ranges.assign(360, 0.0F);
-  EXPECT_FALSE(check_recording(half_blind)) << "matching says how many pairs it could use";
+  EXPECT_FALSE(check_recordings({&half_blind, 1})) << "matching says how many pairs it could use";
+  std::vector<Recording> about_each_wheel = {sound(), sound()};
+  for (TickSample& tick : about_each_wheel[0].ticks) tick.left = 0;
+  for (TickSample& tick : about_each_wheel[1].ticks) tick.right = 0;
+  EXPECT_FALSE(check_recordings(about_each_wheel)) << "two recordings, a wheel stands in each";
   Recording by_poses = sound();
   by_poses.scans.clear();
   by_poses.poses = {{0.0, 0.0, 0.0, 0.0}, {1.0, 0.1, 0.0, 0.0}};
-  EXPECT_FALSE(check_recording(by_poses));
+  EXPECT_FALSE(check_recordings({&by_poses, 1}));
 }
 
 }  // namespace
