@@ -3,8 +3,9 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
-#include <numbers>
 #include <sstream>
+
+#include "calib/session/sign_check.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -16,7 +17,6 @@ constexpr double kPlausibleHigh = 2.0;
 constexpr double kWarnChange = 0.10;
 constexpr double kFewestMatched = 0.1;  ///< of the pairs of scans; the others may say something else
 constexpr double kWarnMatched = 0.5;
-constexpr double kWarnYaw = std::numbers::pi / 9.0;  ///< rad
 constexpr double kWarnResidual = 2.0;  ///< times the noise: most of the error over a pair has another cause
 
 std::string percent(double share) {
@@ -27,7 +27,7 @@ std::string percent(double share) {
 
 std::string degrees(double angle) {
   std::ostringstream out;
-  out << std::fixed << std::setprecision(0) << angle * 180.0 / std::numbers::pi << " degrees";
+  out << std::fixed << std::setprecision(0) << angle * 180.0 / kPi << " degrees";
   return out.str();
 }
 
@@ -70,8 +70,8 @@ class Judgement {
 
   /// Both may be right: what is called front decides.
   void check_lidar_yaw(double yaw, double nominal) {
-    const double apart = std::remainder(yaw - nominal, 2.0 * std::numbers::pi);
-    if (std::abs(apart) > kWarnYaw)
+    const double apart = wrap_angle(yaw - nominal);
+    if (std::abs(apart) > kFarYaw)
       warn("lidar_yaw differs from its nominal value by " + degrees(apart) +
            ": correct lidar_pose, or check which end of the robot counts forward");
   }

@@ -17,6 +17,9 @@ struct Discarded {
   std::size_t count = 0;
 };
 
+/// Reason of beams that are no distance this lidar can measure.
+inline constexpr const char* kOutsideLimits = "outside range_min and range_max";
+
 struct Recording {
   std::string name;  ///< file name without folder
   std::string

@@ -141,7 +141,7 @@ void RecordingBuilder::add_scan(Scan scan) {
   if (!in_time("scan", scan, scan_clocks_[scan.sensor], recording_.scans)) return;
   const auto problems = clean_scan(scan);
   discard("beam", "not a number", problems.not_a_number);
-  discard("beam", "outside range_min and range_max", problems.out_of_limits);
+  discard("beam", kOutsideLimits, problems.out_of_limits);
   recording_.scans.push_back(std::move(scan));
 }
 

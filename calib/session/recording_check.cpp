@@ -119,8 +119,7 @@ std::optional<Error> wrong_angles(const Recording& recording) {
 std::size_t readings_outside(const Recording& recording) {
   std::size_t count = 0;
   for (const Discarded& discarded : recording.discarded)
-    if (discarded.what == "beam" && discarded.reason == "outside range_min and range_max")
-      count += discarded.count;
+    if (discarded.what == "beam" && discarded.reason == kOutsideLimits) count += discarded.count;
   return count;
 }
 
@@ -136,7 +135,7 @@ std::optional<Error> no_readings(const Recording& recording) {
                  "check what covers the lidar, and that nothing nearer than its range_min surrounds it"};
   const Scan& scan = recording.scans.front();
   return Error{ErrorCode::format,
-               "all " + std::to_string(outside) + " readings lie outside range_min and range_max, " +
+               "all " + std::to_string(outside) + " readings lie " + kOutsideLimits + ", " +
                    number(scan.range_min) + " and " + number(scan.range_max) + " m",
                recording.name, "ranges and their limits must be in metres"};
 }

@@ -50,13 +50,10 @@ std::vector<Wires> all_wires(bool of_base) {
   return all;
 }
 
-/// Farther from its nominal value, a lidar's yaw is a fault of its own, rad (20 degrees).
-constexpr double kFarYaw = std::numbers::pi / 9.0;
-
 bool looks_elsewhere(const BaseParameters& found, const RobotDescription& robot, bool of_base) {
-  if (of_base) return std::abs(found.mount.yaw) > kFarYaw;
-  if (!robot.lidar_pose) return false;
-  return std::abs(std::remainder(found.mount.yaw - (*robot.lidar_pose)[2], 2.0 * std::numbers::pi)) > kFarYaw;
+  if (!of_base && !robot.lidar_pose) return false;
+  const double nominal = of_base ? 0.0 : (*robot.lidar_pose)[2];
+  return std::abs(wrap_angle(found.mount.yaw - nominal)) > kFarYaw;
 }
 
 /// Lengths stand clear of zero, on either side.
@@ -87,17 +84,23 @@ struct Explanation {
   }
 };
 
+/// Nothing when signs speak against these wires, or the motion does not determine them.
+std::optional<Explanation> explanation(std::span<const WheelMotion> motions, const Wires& wires,
+                                       const RobotDescription& robot, bool of_base) {
+  const auto fit = solve_closed_form(put_right(motions, wires));
+  if (!fit || !is_clear(fit.value()) || !is_positive(fit.value().parameters)) return std::nullopt;
+  return Explanation{wires, looks_elsewhere(fit.value().parameters, robot, of_base)};
+}
+
 /// All with the fewest faults. Empty when the motion does not determine signs.
 std::vector<Explanation> explanations(std::span<const WheelMotion> motions, const RobotDescription& robot,
                                       bool of_base) {
   std::vector<Explanation> best;
   for (const Wires& wires : all_wires(of_base)) {
-    const auto fit = solve_closed_form(put_right(motions, wires));
-    if (!fit || !is_clear(fit.value()) || !is_positive(fit.value().parameters)) continue;
-    const Explanation one{wires, looks_elsewhere(fit.value().parameters, robot, of_base)};
-    if (!best.empty() && one.faults() > best.front().faults()) continue;
-    if (!best.empty() && one.faults() < best.front().faults()) best.clear();
-    best.push_back(one);
+    const auto one = explanation(motions, wires, robot, of_base);
+    if (!one || (!best.empty() && one->faults() > best.front().faults())) continue;
+    if (!best.empty() && one->faults() < best.front().faults()) best.clear();
+    best.push_back(*one);
   }
   return best;
 }
@@ -120,13 +123,12 @@ std::string text_of(const Explanation& one, bool of_base) {
   return out;
 }
 
-/// Wires in order: nothing to put right but the heading, which is estimated.
-bool is_in_order(const Explanation& one) { return one.faults() == static_cast<int>(one.elsewhere); }
-
 std::optional<Error> wrong_signs(std::span<const WheelMotion> motions, const RobotDescription& robot,
                                  bool of_base) {
+  // With wires as they should be nothing has to be put right but the heading, which is estimated.
+  if (explanation(motions, Wires{}, robot, of_base)) return std::nullopt;
   const auto found = explanations(motions, robot, of_base);
-  if (found.empty() || std::any_of(found.begin(), found.end(), is_in_order)) return std::nullopt;
+  if (found.empty()) return std::nullopt;
   std::string what =
       "wheels and " + std::string(of_base ? "reference" : "lidar") + " contradict each other: ";
   for (const Explanation& one : found)

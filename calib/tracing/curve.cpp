@@ -438,7 +438,7 @@ double spread_of(const Curve& curve, std::span<const double> coefficients,
 }
 
 bool leaves_mean_to_wheels(const Curve& curve, std::span<const DriveModel* const> models) {
-  return curve.law.variable == Variable::heading && is_unsigned(curve.law.carrier) && !goes_both_ways(models);
+  return curve.law == Law{Variable::heading, Carrier::yaw_path} && !goes_both_ways(models);
 }
 
 std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {

@@ -132,13 +132,13 @@ bool is_better(const FitTask& task, const FittedModel& given, const FittedModel&
 
 Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, const Curve& curve) {
   Eigen::VectorXd doubt = Eigen::VectorXd::Zero(kBaseCount);
-  // What was kept of the past has no natural zero either: neither side of it is the robot as it was measured.
   const bool leaves_mean = leaves_mean_to_wheels(curve, task.models());
+  // What was kept of the past has no natural zero either: neither side of it is the robot as it was measured.
   if (curve.mean.empty() && !is_memory(curve.law.variable) && !leaves_mean) return doubt;
   const Eigen::VectorXd own = model.fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
   const double spread = spread_of(curve, as_span(own), task.models());
   for (const auto k : lengths_of(curve.law.carrier)) doubt(k) = spread * model.fit.parameters(k);
-  if (leaves_mean && curve.law.carrier == Carrier::yaw_path) {
+  if (leaves_mean) {
     const double wheel = 0.5 * model.fit.parameters(kTrackWidth) * spread;  // m for each metre of way
     doubt(kLeftRadius) = -wheel * model.fit.parameters(kLeftRadius);
     doubt(kRightRadius) = wheel * model.fit.parameters(kRightRadius);

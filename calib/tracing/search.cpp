@@ -306,11 +306,10 @@ class Search {
     const Candidate candidate = candidates_[best.candidate];
     const std::vector<std::size_t> rivals = rivals_of(best);
     const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, rivals);
-    const std::vector<Eigen::VectorXd> doubts = doubts_of_rivals(best, rivals);
     const auto proof = accept(table, best);
     if (!proof) return true;
     result_.findings.push_back({candidate.effect, aliases, *proof});
-    add_doubts(doubts);
+    add_doubts(doubts_of_rivals(best, rivals));
     retire_superfluous();
     return true;
   }

@@ -152,7 +152,7 @@ class Tour : public ::testing::TestWithParam<Injected> {};
 TEST_P(Tour, keeps_the_wheels_right) {
   for (const std::uint64_t seed : {5U, 6U}) {
     sim::SimulationConfig config = sim::standard_config(seed);
-    config.room = sim::random_room(seed, 2.7);
+    config.room = sim::random_room(seed, sim::kTourRoom);
     config.duration = 240.0;
     SCOPED_TRACE("seed " + std::to_string(seed));
     expect_wheels_right(solved(GetParam(), config, sim::tour_drive(config.nominal, seed)));

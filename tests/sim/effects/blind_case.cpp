@@ -13,9 +13,8 @@ namespace {
 
 constexpr double kEnoughClearance = 0.25;  // m; nearer the robot would have touched a wall
 constexpr int kAttempts = 20;
-constexpr double kRest = 0.8;        // s, braking included: robots that are calibrated stand still at times
-constexpr double kLongest = 300.0;   // s
-constexpr double kTourRadius = 2.7;  // m, free of furniture: a robot comes to stand half a metre too far
+constexpr double kRest = 0.8;       // s, braking included: robots that are calibrated stand still at times
+constexpr double kLongest = 300.0;  // s
 
 BlindEffect describe(const EffectKind& kind, double size) {
   return {kind.name, kind.catalogue_name, kind.depends_on, size, kind.unit};
@@ -99,7 +98,7 @@ SimulationConfig draw_config(Random& random, std::uint64_t seed, const BlindOpti
   config.duration = std::min(kLongest, total_duration(guided_pattern(kRest)));
   config.nominal = draw_nominal(random);
   config.truth = draw_truth(config.nominal, seed);
-  config.room = options.tour ? random_room(seed, kTourRadius) : random_room(seed);
+  config.room = options.tour ? random_room(seed, kTourRoom) : random_room(seed);
   config.body.start = {0.0, 0.0, any_angle(random)};
   config.body.slip_noise = uniform(random, 0.0002, 0.0006);
   config.body.motor.acceleration = config.body.motor.deceleration =

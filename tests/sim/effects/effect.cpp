@@ -37,10 +37,6 @@ DrawnEffect draw_effect(Random& random, double size_factor) {
   return drawn;
 }
 
-double uniform(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
 std::size_t any_side(Random& random) { return random() % 2 == 0 ? kLeft : kRight; }
 
 double any_angle(Random& random) { return uniform(random, -std::numbers::pi, std::numbers::pi); }

@@ -5,15 +5,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "tests/sim/world/disturbance.hpp"
+#include "tests/sim/world/random.hpp"
 
 namespace odomcalib::sim {
-
-using Random = std::mt19937_64;
 
 /// What is known about a kind of effect.
 struct EffectKind {
@@ -50,7 +48,6 @@ std::vector<EffectKind> time_effects();
 std::vector<EffectKind> lidar_effects();
 
 // Helpers of the implementations.
-double uniform(Random& random, double low, double high);
 std::size_t any_side(Random& random);
 /// An angle anywhere on the circle, rad.
 double any_angle(Random& random);

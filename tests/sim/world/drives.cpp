@@ -7,6 +7,8 @@
 #include <optional>
 #include <random>
 
+#include "tests/sim/world/random.hpp"
+
 namespace odomcalib::sim {
 
 namespace {
@@ -35,21 +37,18 @@ struct Pattern {
 struct Wanderer {
   Geometry nominal;
   double radius;
-  std::mt19937_64 random;
+  Random random;
   Manoeuvre now;
   double until = 0.0;
 
-  double uniform(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  }
-
   Manoeuvre candidate() {
     const int kind = std::uniform_int_distribution<int>(0, 9)(random);
-    const double way = uniform(0.0, 1.0) < 0.6 ? 1.0 : -1.0, hand = uniform(0.0, 1.0) < 0.5 ? 1.0 : -1.0;
-    if (kind == 0) return {0.0, 0.0, uniform(0.3, 0.8)};
-    if (kind <= 3) return {0.0, hand * uniform(0.3, 1.3), uniform(1.0, 3.0)};
-    if (kind <= 6) return {way * uniform(0.1, 0.5), 0.0, uniform(1.0, 4.0)};
-    return {way * uniform(0.1, 0.4), hand * uniform(0.2, 1.0), uniform(1.0, 4.0)};
+    const double way = uniform(random, 0.0, 1.0) < 0.6 ? 1.0 : -1.0,
+                 hand = uniform(random, 0.0, 1.0) < 0.5 ? 1.0 : -1.0;
+    if (kind == 0) return {0.0, 0.0, uniform(random, 0.3, 0.8)};
+    if (kind <= 3) return {0.0, hand * uniform(random, 0.3, 1.3), uniform(random, 1.0, 3.0)};
+    if (kind <= 6) return {way * uniform(random, 0.1, 0.5), 0.0, uniform(random, 1.0, 4.0)};
+    return {way * uniform(random, 0.1, 0.4), hand * uniform(random, 0.2, 1.0), uniform(random, 1.0, 4.0)};
   }
 
   /// From outside, it may come back in.
@@ -84,14 +83,10 @@ struct Wanderer {
 struct Tourist {
   Geometry nominal;
   double radius;
-  std::mt19937_64 random;
+  Random random;
   Manoeuvre now;
   double until = 0.0;
   std::optional<double> wanted_yaw;
-
-  double uniform(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  }
 
   [[nodiscard]] bool leaves(const Pose& pose) const {
     constexpr double kAhead = 0.5;  // m
@@ -101,8 +96,9 @@ struct Tourist {
   }
 
   void choose() {
-    const double kind = uniform(0.0, 1.0);
-    now = {uniform(0.15, 0.5), kind < 0.4 ? 0.0 : uniform(-0.5, 0.5), uniform(1.5, 5.0)};
+    const double kind = uniform(random, 0.0, 1.0);
+    now = {uniform(random, 0.15, 0.5), kind < 0.4 ? 0.0 : uniform(random, -0.5, 0.5),
+           uniform(random, 1.5, 5.0)};
     if (kind > 0.9) now.speed = now.yaw_rate = 0.0;
   }
 
@@ -115,7 +111,7 @@ struct Tourist {
 
   WheelCommand operator()(double t, const Pose& odometry) {
     if (!wanted_yaw && leaves(odometry))
-      wanted_yaw = std::atan2(-odometry.y, -odometry.x) + uniform(-0.7, 0.7);
+      wanted_yaw = std::atan2(-odometry.y, -odometry.x) + uniform(random, -0.7, 0.7);
     if (wanted_yaw) {
       const double rate = turn_rate(odometry);
       if (rate != 0.0) return wheel_command(nominal, 0.0, rate);
@@ -198,14 +194,14 @@ std::vector<Manoeuvre> lazy_pattern() {
 }
 
 Drive random_drive(const Geometry& nominal, std::uint64_t seed, double radius) {
-  auto wanderer = std::make_shared<Wanderer>(
-      Wanderer{nominal, radius, std::mt19937_64(seed ^ 0x6472697665ULL), Manoeuvre{}, 0.0});
+  auto wanderer =
+      std::make_shared<Wanderer>(Wanderer{nominal, radius, Random(seed ^ 0x6472697665ULL), Manoeuvre{}, 0.0});
   return [wanderer](double t, const Pose& odometry) { return (*wanderer)(t, odometry); };
 }
 
 Drive tour_drive(const Geometry& nominal, std::uint64_t seed, double radius) {
   auto tourist = std::make_shared<Tourist>(
-      Tourist{nominal, radius, std::mt19937_64(seed ^ 0x746f7572ULL), Manoeuvre{}, 0.0, std::nullopt});
+      Tourist{nominal, radius, Random(seed ^ 0x746f7572ULL), Manoeuvre{}, 0.0, std::nullopt});
   return [tourist](double t, const Pose& odometry) { return (*tourist)(t, odometry); };
 }
 

@@ -38,6 +38,9 @@ std::vector<Manoeuvre> lazy_pattern();
 /// Random arcs of 1 to 4 s that stay within `radius` of the start as odometry sees it.
 Drive random_drive(const Geometry& nominal, std::uint64_t seed, double radius = 1.2);
 
+/// Radius that has to be free about a tour's start, m: a robot comes to stand half a metre too far.
+inline constexpr double kTourRoom = 2.7;
+
 /// As robots drive at work: forward in arcs at all speeds, turning on the spot where the area ends.
 Drive tour_drive(const Geometry& nominal, std::uint64_t seed, double radius = 2.2);
 

@@ -1,17 +1,12 @@
 #include "tests/sim/world/rooms.hpp"
 
 #include <numbers>
-#include <random>
+
+#include "tests/sim/world/random.hpp"
 
 namespace odomcalib::sim {
 
 namespace {
-
-using Random = std::mt19937_64;
-
-double uniform(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
 
 /// Rectangle with some corners cut off at random slants.
 std::vector<Vec2> random_outline(Random& random, double west, double east, double south, double north) {
