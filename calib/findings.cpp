@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/curves/basis.hpp"
 #include "calib/gate.hpp"
 #include "calib/lidar/lidar_report.hpp"
 #include "calib/report.hpp"

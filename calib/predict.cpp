@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 
+#include "calib/curves/curve_effect.hpp"
 #include "calib/effects/catalogue.hpp"
 #include "calib/effects/reference_effect.hpp"
 #include "calib/lidar/lidar_effect.hpp"

@@ -43,6 +43,11 @@ bool begins_with_the_recording(Variable variable) {
          variable == Variable::right_phase;
 }
 
+bool is_signed_speed(Variable variable) {
+  return variable == Variable::left_speed || variable == Variable::right_speed ||
+         variable == Variable::speed || variable == Variable::turn_rate;
+}
+
 bool is_angle(Variable variable) {
   return variable == Variable::left_phase || variable == Variable::right_phase ||
          variable == Variable::heading;

@@ -36,6 +36,8 @@ std::string to_string(Variable variable);
 bool belongs_to_the_place(Variable variable);
 /// Counted from where each recording begins: recordings of one robot share no zero of it.
 bool begins_with_the_recording(Variable variable);
+/// A speed or turn rate whose sign is the direction.
+bool is_signed_speed(Variable variable);
 bool is_angle(Variable variable);
 /// What the robot did last, however long ago.
 bool is_memory(Variable variable);

@@ -4,9 +4,12 @@
 #include <limits>
 #include <set>
 
+#include "calib/curves/candidate_curves.hpp"
+#include "calib/curves/curve_effect.hpp"
+#include "calib/curves/curve_on_drives.hpp"
+#include "calib/curves/wave_curves.hpp"
 #include "calib/effects/catalogue.hpp"
 #include "calib/model/placed_effects.hpp"
-#include "calib/tracing/wave_curves.hpp"
 
 namespace odomcalib::calib {
 namespace {

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/tracing/curve.hpp"
+#include "calib/curves/curve.hpp"
+#include "calib/model/drive_model.hpp"
 
 namespace odomcalib::calib {
 

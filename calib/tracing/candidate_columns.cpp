@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "calib/curves/basis.hpp"
 #include "calib/effects/step_effect.hpp"
 #include "calib/estimators/stack.hpp"
 #include "calib/model/sensitivity.hpp"

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/curves/basis.hpp"
+#include "calib/curves/candidate_curves.hpp"
+#include "calib/curves/curve_effect.hpp"
+#include "calib/curves/curve_on_drives.hpp"
 #include "calib/effects/reference_effect.hpp"
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/proof.hpp"

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "calib/tracing/curve.hpp"
+#include "calib/curves/curve.hpp"
 #include "calib/tracing/fitted_model.hpp"
 
 namespace odomcalib::calib {

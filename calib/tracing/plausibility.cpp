@@ -7,6 +7,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "calib/curves/basis.hpp"
 #include "calib/tracing/score.hpp"
 
 namespace odomcalib::calib {

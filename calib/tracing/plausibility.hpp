@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "calib/curves/curve.hpp"
 #include "calib/estimators/joint.hpp"
-#include "calib/tracing/curve.hpp"
 
 namespace odomcalib::calib {
 

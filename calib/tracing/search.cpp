@@ -6,35 +6,26 @@
 #include <optional>
 #include <set>
 
+#include "calib/curves/curve_effect.hpp"
+#include "calib/curves/curve_on_drives.hpp"
 #include "calib/tracing/candidate.hpp"
 #include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/likeness.hpp"
 #include "calib/tracing/plausibility.hpp"
-#include "calib/tracing/score.hpp"
+#include "calib/tracing/search_round.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
-/// Family-wise; a nominal 1 % test exceeds 1 % of robots in many campaigns.
-constexpr double kNamedLevel = 0.0009;
 /// A delay hardly shows in odometry and cannot spoil it; what changes odometry must be beyond doubt.
 constexpr double kClockLevel = 0.003;
 constexpr double kUnnamedLevel = 0.0025;
 constexpr std::size_t kMaxFindings = 3;
 constexpr std::size_t kMaxCurves = 4;
-constexpr int kMaxSteps = 12;       ///< additions and failed proofs together
-constexpr std::size_t kRefits = 4;  ///< candidates refitted jointly per step
-constexpr double kAmbiguity = 6.0;  ///< units of BIC
-constexpr double kSameLaw = 0.5;    ///< share of a curve's statistic that a name with that law must reach
+constexpr int kMaxSteps = 12;  ///< additions and failed proofs together
 /// Family-wise level at which the data outside a fold must point to a candidate that all data together have
 /// chosen.
 constexpr double kFoldLevel = 0.05;
-
-struct Trial {
-  std::size_t candidate = 0;
-  FittedModel model;  ///< with the candidate as the last effect
-  double gain = 0.0;  ///< drop of -2 log L minus q log(3 n)
-};
 
 class Search {
  public:
@@ -57,6 +48,9 @@ class Search {
   }
 
  private:
+  /// That candidates are tested on.
+  [[nodiscard]] const FittedModel& basis() const { return round_->basis(); }
+
   void add_doubts(const std::vector<Eigen::VectorXd>& doubts) {
     result_.doubts.insert(result_.doubts.end(), doubts.begin(), doubts.end());
   }
@@ -72,67 +66,60 @@ class Search {
   /// One step; false when nothing more is justified.
   bool advance() {
     if (has_changed_) look_again();
-    const auto curve = best_curve(*table_);
+    const auto curve = best_curve();
     const auto name = may_name() ? best_name_beside(curve) : std::nullopt;
-    if (name && accept_name(*table_, *name)) return true;
+    if (name && accept_name(*name)) return true;
     const auto clock = curve && depends_on_history(candidates_[*curve]) ? best_clock() : std::nullopt;
-    if (clock) return accept_name(*table_, *clock);
-    return curve && accept_curve(*table_, *curve);
+    if (clock) return accept_name(*clock);
+    return curve && accept_curve(*curve);
   }
 
   /// The best name, unless the curve is clearly better: then one on the curve's own ground, which may be the
   /// second best of two effects.
   std::optional<Trial> best_name_beside(std::optional<std::size_t> curve) {
-    auto name = best_name(*table_);
-    if (!name || !curve || !curve_beats(*table_, *name, *curve)) return name;
+    auto name = best_name();
+    if (!name || !curve || !round_->curve_beats(*curve, name->candidate)) return name;
     const Law& law = candidates_[*curve].curve->law;
-    const auto own = best_trial([&](const Candidate& c) { return contains(c.effect->laws(), law); });
-    return own && !curve_beats(*table_, *own, *curve) ? own : std::nullopt;
+    const auto own =
+        round_->best_trial([&](std::size_t k) { return contains(candidates_[k].effect->laws(), law); });
+    return own && !round_->curve_beats(*curve, own->candidate) ? own : std::nullopt;
   }
 
   /// What repeats itself along the floor, when nothing else is left to say.
   void ask_the_floor() {
     candidates_ = floor_waves(task_.models());
-    table_.reset();
+    round_.reset();
     has_changed_ = true;
   }
 
   /// Waves are many, and what was nothing before one of them was found is not asked again.
   void strike_hopeless_waves() {
     constexpr double kHopeless = 0.05;  // family-wise
-    for (std::size_t k = 0; table_ && k < candidates_.size(); ++k)
+    for (std::size_t k = 0; round_ && k < candidates_.size(); ++k)
       if (candidates_[k].curve && candidates_[k].curve->is_wave() &&
-          table_->scores()[k].family_p_value > kHopeless)
+          round_->score(k).family_p_value > kHopeless)
         candidates_[k].struck = true;
   }
 
   /// Scores of all that is left, on the model as it is now.
   void look_again() {
-    basis_ = {result_.model.effects, widened_where_outlying(task_, result_.model)};
     strike_hopeless_waves();
     std::erase_if(candidates_, [](const Candidate& c) { return c.struck; });
-    table_.emplace(task_.data, basis_.effects, basis_.fit, task_.fixed(basis_.effects), candidates_);
-    trials_.clear();
+    round_.emplace(task_, FittedModel{result_.model.effects, widened_where_outlying(task_, result_.model)},
+                   candidates_);
     has_changed_ = false;
   }
 
   /// Where motions begin, clocks that disagree look like anything that goes with beginnings. A clock cannot
   /// spoil odometry, so it is asked first.
   [[nodiscard]] std::optional<Trial> best_clock() const {
-    const auto best = best_trial([](const Candidate& c) { return c.effect->storage() == Storage::driver; });
+    const auto best = round_->best_trial(
+        [&](std::size_t k) { return candidates_[k].effect->storage() == Storage::driver; });
     return best && best->gain > 0.0 ? best : std::nullopt;
   }
 
   [[nodiscard]] bool may_name() const {
     return result_.findings.size() < kMaxFindings && !result_.has_unnamed();
-  }
-
-  [[nodiscard]] double penalty(std::size_t degrees) const {
-    return static_cast<double>(degrees) * schwarz(basis_.fit);
-  }
-
-  [[nodiscard]] double penalised(const Score& score) const {
-    return score.statistic - penalty(score.degrees);
   }
 
   [[nodiscard]] double level(const Candidate& candidate) const {
@@ -141,62 +128,23 @@ class Search {
     return candidate.effect->storage() == Storage::driver ? kClockLevel : kNamedLevel;
   }
 
+  [[nodiscard]] bool passes(std::size_t candidate) const {
+    return round_->score(candidate).family_p_value <= level(candidates_[candidate]);
+  }
+
   /// Joint refits of the most promising names on the noise model of the current fit.
-  std::optional<Trial> best_name(const ScoreTable& table) {
+  std::optional<Trial> best_name() {
     std::set<std::string> tried;
-    for (const std::size_t k : by_score(table, [&](std::size_t k) {
-           return !candidates_[k].curve && table.scores()[k].family_p_value <= level(candidates_[k]) &&
-                  !is_rest_of_a_law(table, k);
-         }))
-      if (tried.size() < kRefits && tried.insert(candidates_[k].key).second) try_out(k);
-    const auto best = best_trial([](const Candidate&) { return true; });
-    return best ? shaped(table, candidates_[best->candidate].key) : best;
-  }
-
-  /// Which shape of a law is right, its score at size zero hardly tells.
-  std::optional<Trial> shaped(const ScoreTable& table, const std::string& key) {
-    std::size_t shapes = 0;
-    for (const std::size_t k : by_score(table, [&](std::size_t k) { return candidates_[k].key == key; }))
-      if (shapes++ < kRefits) try_out(k);
-    return best_trial([&](const Candidate& c) { return c.key == key; });
-  }
-
-  /// Candidates that are left and wanted, the most promising first.
-  template <typename Wanted>
-  [[nodiscard]] std::vector<std::size_t> by_score(const ScoreTable& table, const Wanted& wanted) const {
-    std::vector<std::size_t> order;
-    for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (is_open(k) && wanted(k)) order.push_back(k);
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return penalised(table.scores()[a]) > penalised(table.scores()[b]);
-    });
-    return order;
-  }
-
-  /// Of those tried on the model as it is.
-  template <typename Wanted>
-  [[nodiscard]] std::optional<Trial> best_trial(const Wanted& wanted) const {
-    const Trial* best = nullptr;
-    for (const Trial& trial : trials_)
-      if (is_open(trial.candidate) && wanted(candidates_[trial.candidate]) &&
-          (best == nullptr || trial.gain > best->gain))
-        best = &trial;
-    return best == nullptr ? std::nullopt : std::optional(*best);
-  }
-
-  [[nodiscard]] bool is_open(std::size_t candidate) const { return !candidates_[candidate].struck; }
-
-  /// Once as long as the model stays as it is.
-  void try_out(std::size_t candidate) {
-    const bool was_tried =
-        std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) { return t.candidate == candidate; });
-    if (was_tried) return;
-    if (auto trial = refit(candidate)) trials_.push_back(std::move(*trial));
+    for (const std::size_t k : round_->by_score(
+             [&](std::size_t k) { return !candidates_[k].curve && passes(k) && !is_rest_of_a_law(k); }))
+      if (tried.size() < SearchRound::kRefits && tried.insert(candidates_[k].key).second) round_->try_out(k);
+    const auto best = round_->best_trial([](std::size_t) { return true; });
+    return best ? round_->best_shape(candidates_[best->candidate].key) : best;
   }
 
   /// What a finding leaves on its own ground is the rest of its law, unless a second name explains nearly all
   /// that a free curve would.
-  [[nodiscard]] bool is_rest_of_a_law(const ScoreTable& table, std::size_t candidate) const {
+  [[nodiscard]] bool is_rest_of_a_law(std::size_t candidate) const {
     const std::vector<Law> laws = candidates_[candidate].effect->laws();
     const auto is_taken = [&](const Law& law) {
       return std::any_of(result_.findings.begin(), result_.findings.end(),
@@ -204,44 +152,16 @@ class Search {
     };
     if (std::none_of(laws.begin(), laws.end(), is_taken)) return false;
     double of_curves = 0.0;
-    for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (is_open(k) && candidates_[k].curve && contains(laws, candidates_[k].curve->law) &&
-          is_taken(candidates_[k].curve->law))
-        of_curves += table.scores()[k].statistic;
-    return table.scores()[candidate].statistic < kNearlyAll * of_curves;
+    for (const std::size_t k :
+         round_->by_score([&](std::size_t k) { return candidates_[k].curve.has_value(); }))
+      if (const Law& law = candidates_[k].curve->law; contains(laws, law) && is_taken(law))
+        of_curves += round_->score(k).statistic;
+    return round_->score(candidate).statistic < kNearlyAll * of_curves;
   }
 
-  /// @param noise per recording; empty: estimated anew
-  std::optional<Trial> refit(std::size_t index, const std::vector<NoiseModel>& noise) {
-    const auto& effect = candidates_[index].effect;
-    auto model = with_effect(task_, basis_, effect, noise);
-    if (!model) return std::nullopt;
-    const double gain = basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect)) -
-                        (has_textbook_shape(effect) ? 0.0 : kAkaike);
-    return Trial{index, std::move(*model), gain};
-  }
-  std::optional<Trial> refit(std::size_t index) { return refit(index, basis_.fit.noise); }
-
-  [[nodiscard]] std::optional<std::size_t> best_curve(const ScoreTable& table) const {
-    std::optional<std::size_t> best;
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      if (!is_open(k) || !candidates_[k].curve || table.scores()[k].family_p_value > level(candidates_[k]))
-        continue;
-      if (!best || penalised(table.scores()[k]) > penalised(table.scores()[*best])) best = k;
-    }
-    return best;
-  }
-
-  /// A curve on the name's own ground that explains no more than about twice as much is the same finding with
-  /// a freer law.
-  bool curve_beats(const ScoreTable& table, const Trial& name, std::size_t curve) const {
-    const Score& free_form = table.scores()[curve];
-    const Score& named = table.scores()[name.candidate];
-    if (penalised(free_form) - penalised(named) <= kAmbiguity) return false;
-    const bool same_ground =
-        contains(candidates_[name.candidate].effect->laws(), candidates_[curve].curve->law) ||
-        table.correlation(name.candidate, curve) > kAlias;
-    return !(same_ground && named.statistic > kSameLaw * free_form.statistic);
+  [[nodiscard]] std::optional<std::size_t> best_curve() const {
+    const auto curves = round_->by_score([&](std::size_t k) { return candidates_[k].curve && passes(k); });
+    return curves.empty() ? std::nullopt : std::optional(curves.front());
   }
 
   [[nodiscard]] std::string implausibility(const Candidate& candidate, const FitResult& fit) const {
@@ -251,26 +171,26 @@ class Search {
       return "ticks so far apart hide as much";
     if (auto reason = impossibility(effect, fit); !reason.empty()) return reason;
     if (is_negligible(effect, fit)) return "too small to matter";
-    return spoils_base(effect, basis_.fit, fit) ? "this drive cannot tell it from the wheels" : "";
+    return spoils_base(effect, basis().fit, fit) ? "this drive cannot tell it from the wheels" : "";
   }
 
   /// Too small to be told, not too small to have moved the lengths.
   [[nodiscard]] bool is_plain_but_small(const Candidate& candidate, const FitResult& fit) const {
-    return is_negligible(*candidate.effect, fit) && !spoils_base(*candidate.effect, basis_.fit, fit);
+    return is_negligible(*candidate.effect, fit) && !spoils_base(*candidate.effect, basis().fit, fit);
   }
 
   /// Adds the candidate if it is plausible and proves itself; otherwise strikes it off the list.
-  std::optional<Proof> accept(const ScoreTable& table, const Trial& trial) {
+  std::optional<Proof> accept(const Trial& trial) {
     const Candidate& candidate = candidates_[trial.candidate];
-    const Score& score = table.scores()[trial.candidate];
+    const Score& score = round_->score(trial.candidate);
     Proof proof;
     proof.family_p_value = score.family_p_value;
     std::optional<Trial> settled;
     std::string reason = implausibility(candidate, trial.model.fit);
-    const Eigen::VectorXd change = trial.model.base() - basis_.base();
+    const Eigen::VectorXd change = trial.model.base() - basis().base();
     if (is_plain_but_small(candidate, trial.model.fit)) result_.doubts.push_back(change);
     if (reason.empty()) {
-      reason = failure(table, trial, proof, settled);
+      reason = failure(trial, proof, settled);
       const bool is_plain = !candidate.curve || score.family_p_value <= kNamedLevel;
       if (!reason.empty() && is_plain) unproved_.push_back(change);
     }
@@ -284,15 +204,14 @@ class Search {
 
   /// How the trial fails its proof; empty when it does not.
   /// @param settled the trial on its own noise then
-  std::string failure(const ScoreTable& table, const Trial& trial, Proof& proof,
-                      std::optional<Trial>& settled) {
-    const FoldFlags selected = table.selected_without(trial.candidate, kFoldLevel);
+  std::string failure(const Trial& trial, Proof& proof, std::optional<Trial>& settled) {
+    const FoldFlags selected = round_->table().selected_without(trial.candidate, kFoldLevel);
     std::string reason =
-        objection(task_, basis_, trial.model, selected, largest_ratio(candidates_[trial.candidate]), proof);
+        objection(task_, basis(), trial.model, selected, largest_ratio(candidates_[trial.candidate]), proof);
     if (!reason.empty()) return reason;
-    settled = refit(trial.candidate, {});
+    settled = round_->refit(trial.candidate, {});
     if (!settled) return "the fit does not settle";
-    return spoils_drives(task_, basis_, settled->model) ? "drives get worse" : "";
+    return spoils_drives(task_, basis(), settled->model) ? "drives get worse" : "";
   }
 
   /// The search starts again from it.
@@ -302,35 +221,35 @@ class Search {
     unproved_.clear();
   }
 
-  bool accept_name(const ScoreTable& table, const Trial& best) {
+  bool accept_name(const Trial& best) {
     const Candidate candidate = candidates_[best.candidate];
-    const std::vector<std::size_t> rivals = rivals_of(best);
+    const std::vector<std::size_t> rivals = round_->rivals_of(best);
     const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, rivals);
-    const auto proof = accept(table, best);
+    const auto proof = accept(best);
     if (!proof) return true;
     result_.findings.push_back({candidate.effect, aliases, *proof});
-    add_doubts(doubts_of_rivals(best, rivals));
+    add_doubts(round_->doubts_of(rivals, best));
     retire_superfluous();
     return true;
   }
 
-  bool accept_curve(const ScoreTable& table, std::size_t index) {
+  bool accept_curve(std::size_t index) {
     if (result_.curves.size() >= kMaxCurves) return false;
-    auto trial = refit(index);
+    auto trial = round_->refit(index);
     if (trial && is_held_back(*candidates_[index].effect, trial->model.fit))
       trial = refit_as(index, strong(*candidates_[index].curve));
-    if (trial && spoils_base(*candidates_[index].effect, basis_.fit, trial->model.fit))
+    if (trial && spoils_base(*candidates_[index].effect, basis().fit, trial->model.fit))
       trial = refit_as(index, centred(*candidates_[index].curve, task_.models()));
     const auto law_of = completed_by(candidates_[index]);
-    const std::vector<Variable> alike = variables_like(candidates_, table, index);
+    const std::vector<Variable> alike = variables_like(candidates_, round_->table(), index);
     if (!trial) {
       strike(candidates_[index].key);
       return true;
     }
-    auto proof = accept(table, *trial);
+    auto proof = accept(*trial);
     if (!proof && law_of && !is_completed(law_of))
-      replace(law_of, candidates_[index], table.scores()[index], alike);
-    if (!proof && !law_of) proof = accept_reshaped(table, index);
+      replace(law_of, candidates_[index], round_->score(index), alike);
+    if (!proof && !law_of) proof = accept_reshaped(index);
     if (!proof) return true;
     const Candidate& candidate = candidates_[index];
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
@@ -340,16 +259,16 @@ class Search {
   }
 
   /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.
-  std::optional<Proof> accept_reshaped(const ScoreTable& table, std::size_t index) {
+  std::optional<Proof> accept_reshaped(std::size_t index) {
     Candidate& candidate = candidates_[index];
     if (candidate.curve->is_wave()) return std::nullopt;
-    auto best = in_best_shape(task_, basis_, *candidate.curve, basis_.fit.noise);
+    auto best = in_best_shape(task_, basis(), *candidate.curve, basis().fit.noise);
     if (best && is_held_back(*best->model.effects.back(), best->model.fit))
-      best = in_best_shape(task_, basis_, strong(*candidate.curve), basis_.fit.noise);
+      best = in_best_shape(task_, basis(), strong(*candidate.curve), basis().fit.noise);
     if (!best || best->curve == *candidate.curve) return std::nullopt;
     candidate.curve = std::move(best->curve);
     candidate.effect = best->model.effects.back();
-    return accept(table, Trial{index, std::move(best->model)});
+    return accept(Trial{index, std::move(best->model)});
   }
 
   /// A free law that cannot stand on the name's, but foretells held-out data better in its place: then the
@@ -365,7 +284,7 @@ class Search {
     Proof proof;
     proof.family_p_value = score.family_p_value;
     if (!free || explains_nearly_all(task_, result_.model, index, free->model) ||
-        !is_better(task_, result_.model, free->model, schwarz(basis_.fit)) ||
+        !is_better(task_, result_.model, free->model, schwarz(basis().fit)) ||
         !objection(task_, *without, free->model, all_folds(), largest_ratio(candidate), proof).empty())
       return;
     std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
@@ -394,7 +313,7 @@ class Search {
   std::optional<Trial> refit_as(std::size_t index, const Curve& curve) {
     candidates_[index].curve = curve;
     candidates_[index].effect = make_curve_effect(curve);
-    return refit(index);
+    return round_->refit(index);
   }
 
   /// The finding whose law this curve would replace, if any.
@@ -429,7 +348,7 @@ class Search {
       if (finding == result_.findings.end() || is_completed(finding->effect)) continue;
       auto fewer = without_effect(task_, model, e, model.fit.noise);
       if (!fewer || !(is_superfluous(*model.effects[e], first, model.fit) ||
-                      !is_better(task_, *fewer, model, schwarz(basis_.fit))))
+                      !is_better(task_, *fewer, model, schwarz(basis().fit))))
         continue;
       adopt(std::move(*fewer));
       result_.findings.erase(finding);
@@ -437,40 +356,12 @@ class Search {
     }
   }
 
-  /// Names within a few units of BIC of the best.
-  [[nodiscard]] std::vector<std::size_t> rivals_of(const Trial& best) const {
-    std::vector<std::size_t> rivals;
-    for (const Trial& trial : trials_)
-      if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity) rivals.push_back(trial.candidate);
-    for (std::size_t k = 0; k < candidates_.size(); ++k)
-      if (is_open(k) && !candidates_[k].curve && table_->scores()[k].family_p_value <= kNamedLevel &&
-          are_too_close(*table_, best.candidate, k))
-        rivals.push_back(k);
-    return rivals;
-  }
-
-  /// What each name that may be the right one instead would make of the base parameters.
-  std::vector<Eigen::VectorXd> doubts_of_rivals(const Trial& best, const std::vector<std::size_t>& rivals) {
-    const std::string name = candidates_[best.candidate].effect->name();
-    for (const std::size_t rival : rivals) try_out(rival);
-    std::vector<Eigen::VectorXd> doubts;
-    for (const Trial& trial : trials_) {
-      const Effect& effect = *candidates_[trial.candidate].effect;
-      const bool is_rival = std::find(rivals.begin(), rivals.end(), trial.candidate) != rivals.end();
-      if (is_rival && effect.name() != name && impossibility(effect, trial.model.fit).empty())
-        doubts.emplace_back(trial.model.base() - best.model.base());
-    }
-    return doubts;
-  }
-
   FitTask task_;
   std::function<void(double)> progress_;
   std::vector<Candidate> candidates_;
-  std::optional<ScoreTable> table_;
-  std::vector<Trial> trials_;  ///< refits on the model that the table belongs to
-  bool has_changed_ = true;    ///< the model or the candidates, since the table was made
+  std::optional<SearchRound> round_;
+  bool has_changed_ = true;  ///< the model or the candidates, since the round began
   SearchResult result_;
-  FittedModel basis_;  ///< that candidates are tested on
   /// What plausible names and plain curves would make of the base parameters that the last model could
   /// neither show nor rule out.
   std::vector<Eigen::VectorXd> unproved_;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/tracing/curve.hpp"
+#include "calib/curves/curve.hpp"
 #include "calib/tracing/fitted_model.hpp"
 #include "calib/tracing/proof.hpp"
 

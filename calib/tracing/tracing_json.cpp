@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "calib/curves/basis.hpp"
+
 namespace odomcalib::calib {
 namespace {
 

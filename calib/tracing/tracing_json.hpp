@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/tracing/curve.hpp"
+#include "calib/curves/curve.hpp"
 #include "calib/tracing/search.hpp"
 
 namespace odomcalib::calib {

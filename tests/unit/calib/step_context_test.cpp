@@ -108,5 +108,52 @@ TEST(RelaxedTurnRate, follows_over_its_way_and_has_the_sign_of_the_force) {
   }
 }
 
+TEST(StepContext, remembers_the_last_push_through_steady_motion) {
+  WheelTrack track;
+  double angle = 0.0, rate = 0.0;
+  for (int k = 0; k <= 400; ++k) {  // speeds up for 1 s, goes on steadily, slows down for 0.5 s, goes on
+    const double t = 0.02 * k;
+    const double acceleration = t < 1.0 ? 5.0 : t > 4.0 && t < 4.5 ? -5.0 : 0.0;
+    rate += 0.02 * acceleration;
+    angle += 0.02 * rate;
+    track.t.push_back(t);
+    track.left.push_back(angle);
+    track.right.push_back(angle);
+    track.segment.push_back(0);
+  }
+  const auto context = make_context(track, kBase);
+  EXPECT_EQ(context.front().previous_push[kUsualMemory], 0.0);
+  EXPECT_GT(context[190].previous_push[kUsualMemory], 0.8);
+  EXPECT_LT(context[350].previous_push[kUsualMemory], -0.5);
+  const double push = 5.0 * kBase.left_radius;
+  for (std::size_t k = 0; k < kPushes.size(); ++k) {
+    const double stays = kPushes[k] < push ? 1.0 : 0.0;
+    EXPECT_EQ(context[190].previous_push[kMemorySpans.size() + k], stays) << kPushes[k];
+    EXPECT_EQ(context.back().previous_push[kMemorySpans.size() + k], -stays) << kPushes[k];
+  }
+}
+
+TEST(StepContext, counts_from_stops_that_last) {
+  WheelTrack track;
+  double angle = 0.0;
+  for (int k = 0; k <= 400; ++k) {  // stands for 0.3 s at 4 s, for 0.1 s at 6 s
+    const double t = 0.02 * k;
+    const bool stands = (t > 4.0 && t < 4.31) || (t > 6.0 && t < 6.11);
+    if (!stands) angle += 0.1;
+    track.t.push_back(t);
+    track.left.push_back(angle);
+    track.right.push_back(angle);
+    track.segment.push_back(0);
+  }
+  const auto since = make_context(track, kBase).back().since_stop;
+  const double step = 0.1 * kBase.left_radius;
+  for (std::size_t k = 0; k < kStops.size(); ++k) {
+    if (kStops[k] > 0.3)
+      EXPECT_GT(since[k], 100.0) << kStops[k];
+    else
+      EXPECT_NEAR(since[k], (kStops[k] < 0.11 ? 94.0 : 179.0) * step, 2.0 * step) << kStops[k];
+  }
+}
+
 }  // namespace
 }  // namespace odomcalib::calib

@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "calib/tracing/curve.hpp"
+#include "calib/curves/curve.hpp"
+#include "calib/model/drive_model.hpp"
 
 namespace odomcalib::calib {
 

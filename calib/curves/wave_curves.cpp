@@ -1,4 +1,4 @@
-#include "calib/tracing/wave_curves.hpp"
+#include "calib/curves/wave_curves.hpp"
 
 #include <algorithm>
 #include <cmath>

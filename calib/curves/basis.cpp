@@ -1,0 +1,187 @@
+#include "calib/curves/basis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "calib/geometry/se2.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr std::size_t kDegrees = 4;
+constexpr double kNearestLength = 0.03;  ///< m of the base
+constexpr double kNearestAngle = 0.2;    ///< rad of a wheel
+
+/// Sway of a mast: both directions alike, more than linear at most by a square.
+BasisValues sway_functions(const Curve& curve, double z) {
+  const double relative = std::clamp(z / std::max(std::abs(curve.low), std::abs(curve.high)), -1.0, 1.0);
+  return {relative, relative * std::abs(relative)};
+}
+
+/// Of each function over the interval.
+BasisValues growth(const Curve& curve, const StepContext& c) {
+  BasisValues after = sway_functions(curve, c.turn_acceleration_after[curve.memory]);
+  const BasisValues before = sway_functions(curve, c.turn_acceleration_before[curve.memory]);
+  for (std::size_t k = 0; k < after.size(); ++k) after[k] -= before[k];
+  return after;
+}
+
+double scaled(const Curve& curve, double z) {
+  return std::clamp(2.0 * (z - curve.low) / (curve.high - curve.low) - 1.0, -1.0, 1.0);
+}
+
+/// Cosines and sines of multiples, by rotating on from one to the next.
+BasisValues harmonics(double angle, int first, int last) {
+  BasisValues functions;
+  const std::complex<double> turn = std::polar(1.0, angle);
+  std::complex<double> here = first == 1 ? turn : std::polar(1.0, first * angle);
+  for (int k = first; k <= last; ++k, here *= turn) {
+    functions.push_back(here.real());
+    functions.push_back(here.imag());
+  }
+  return functions;
+}
+
+/// Direction as a step, smooth over a few percent of the range so that noise about zero does not flip it.
+double direction_of(double relative) { return std::tanh(relative / 0.03); }
+
+/// Cubic B-spline with unit knots about zero (Schoenberg, Quart. Appl. Math. 4, 1946).
+double cubic_bump(double x) {
+  const double a = std::abs(x);
+  if (a >= 2.0) return 0.0;
+  const double tail = 2.0 - a, core = 1.0 - a;
+  return (tail * tail * tail - (a < 1.0 ? 4.0 * core * core * core : 0.0)) / 6.0;
+}
+
+/// 1 at the knot, 0 from its neighbours on.
+double hat(double steps) { return std::max(0.0, 1.0 - std::abs(steps)); }
+
+/// Bilinear, one knot after another along x for each along y.
+BasisValues patches(const Curve& curve, double x, double y) {
+  const auto place = [&](double z) { return 0.5 * (scaled(curve, z) + 1.0) * (kPatches - 1); };
+  const double along = place(x), across = place(y);
+  BasisValues functions;
+  for (int j = 0; j < kPatches; ++j)
+    for (int i = 0; i < kPatches; ++i) functions.push_back(hat(along - i) * hat(across - j));
+  return functions;
+}
+
+BasisValues hats(int knots, double place) {
+  BasisValues functions;
+  for (int k = 1; k <= knots; ++k) functions.push_back(hat(place - k));
+  return functions;
+}
+
+/// Of the splines about knots 1 to one past the last, four differ from zero.
+BasisValues cubic_splines(int knots, double place) {
+  BasisValues functions(static_cast<std::size_t>(knots) + 1);
+  const int before = static_cast<int>(place) - 1;
+  for (int k = std::max(before, 1); k <= std::min(before + 3, knots + 1); ++k)
+    functions[static_cast<std::size_t>(k) - 1] = cubic_bump(place - k);
+  functions[0] -= cubic_bump(1.0);  // zero at rest
+  return functions;
+}
+
+/// Those of the magnitude, the direction, and the direction times the magnitude.
+BasisValues speed_functions(const Curve& curve, double z) {
+  const double relative = std::clamp(z / std::max(std::abs(curve.low), std::abs(curve.high)), -1.0, 1.0);
+  const double direction = direction_of(relative), magnitude = std::abs(relative);
+  if (curve.law.carrier == Carrier::turn_path) return {1.0, magnitude, direction, relative};
+  // A law is found by few straight pieces; one that bends is described by many splines.
+  const double place = curve.knots * magnitude;
+  BasisValues functions =
+      curve.knots == kKnots.front() ? hats(curve.knots, place) : cubic_splines(curve.knots, place);
+  functions.push_back(direction);
+  functions.push_back(relative);
+  return functions;
+}
+
+/// Hats over the logarithm of the distance, the first flat towards zero; nothing beyond the last knot's
+/// double.
+BasisValues fading(Variable variable, double distance) {
+  const bool of_wheel =
+      variable == Variable::left_since_reversal || variable == Variable::right_since_reversal;
+  const double nearest = of_wheel ? kNearestAngle : kNearestLength;
+  const double place = std::log2(std::max(distance, nearest) / nearest);
+  BasisValues functions;
+  for (int k = 0; k < kFadeKnots; ++k) functions.push_back(hat(place - k));
+  return functions;
+}
+
+/// Legendre polynomials of degree 1 to kDegrees by Bonnet's recursion.
+BasisValues legendre(double x) {
+  BasisValues functions;
+  double before = 1.0;
+  double here = x;
+  for (std::size_t n = 1; n <= kDegrees; ++n) {
+    functions.push_back(here);
+    const double order = static_cast<double>(n);
+    const double next = ((2.0 * order + 1.0) * x * here - order * before) / (order + 1.0);
+    before = here;
+    here = next;
+  }
+  return functions;
+}
+
+/// Zero at rest, so that the base parameters keep their meaning of slow, steady motion.
+BasisValues zero_at_rest(const Curve& curve, double z) {
+  BasisValues functions = legendre(scaled(curve, z));
+  const BasisValues at_rest = legendre(scaled(curve, 0.0));
+  for (std::size_t k = 0; k < functions.size(); ++k) functions[k] -= at_rest[k];
+  return functions;
+}
+
+BasisValues with_constant(const BasisValues& functions) {
+  BasisValues all{1.0};
+  for (const double f : functions) all.push_back(f);
+  return all;
+}
+
+/// A level that comes and goes, and a slope that lengthens one way and shortens the other.
+BasisValues wave_functions(const Curve& curve, const StepContext& c) {
+  const auto [a, b] = curve.wave;
+  const double waves = a * c.x + b * c.y;
+  // More than a thousand waves are asked at every step; single precision of a turn is a ten millionth of one.
+  const std::complex<float> here =
+      std::polar(1.0F, static_cast<float>(2.0 * kPi * (waves - std::floor(waves))));
+  const double across = (a * std::cos(c.heading) + b * std::sin(c.heading)) / std::sqrt(a * a + b * b);
+  const double cosine = static_cast<double>(here.real()), sine = static_cast<double>(here.imag());
+  return {cosine, sine, across * cosine, across * sine};
+}
+
+BasisValues raw_basis(const Curve& curve, const StepContext& c) {
+  const Variable variable = curve.law.variable;
+  const double z = value_of(variable, c, curve.memory);
+  if (concerns_sensor(curve)) return sway_functions(curve, z);
+  if (curve.constant) return with_constant(harmonics(z, 1, kHarmonics));
+  if (is_angle(variable))
+    return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
+  if (is_distance_since(variable)) return fading(variable, z);
+  if (is_relay(variable, curve.memory)) return {z};
+  if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);
+  if (variable == Variable::time) return legendre(scaled(curve, z));
+  if (curve.is_wave()) return wave_functions(curve, c);
+  if (curve.patches) return patches(curve, c.x, c.y);
+  if (variable == Variable::position) {
+    const double x = scaled(curve, c.x), y = scaled(curve, c.y);
+    return {x, y, x * x, x * y, y * y};
+  }
+  return is_signed_speed(variable) ? speed_functions(curve, z) : zero_at_rest(curve, z);
+}
+
+}  // namespace
+
+BasisValues basis(const Curve& curve, const StepContext& c) {
+  BasisValues functions = raw_basis(curve, c);
+  for (std::size_t k = 0; k < curve.mean.size(); ++k) functions[k] -= curve.mean[k];
+  return functions;
+}
+
+BasisValues functions_in(const Curve& curve, const StepContext& c) {
+  return concerns_sensor(curve) ? growth(curve, c) : basis(curve, c);
+}
+
+std::size_t basis_size(const Curve& curve) { return basis(curve, StepContext{}).size(); }
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,39 @@
+// The functions that curves are sums of.
+#pragma once
+
+#include <array>
+#include <initializer_list>
+
+#include "calib/curves/curve.hpp"
+
+namespace odomcalib::calib {
+
+/// A curve's functions' values. They are asked for each tick interval of each fit, so they stay off the
+/// heap.
+class BasisValues {
+ public:
+  BasisValues() = default;
+  /// All zero.
+  explicit BasisValues(std::size_t count) : count_(count) {}
+  BasisValues(std::initializer_list<double> values) {
+    for (const double value : values) push_back(value);
+  }
+  void push_back(double value) { values_[count_++] = value; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  double& operator[](std::size_t k) { return values_[k]; }
+  double operator[](std::size_t k) const { return values_[k]; }
+  [[nodiscard]] const double* begin() const { return values_.data(); }
+  [[nodiscard]] const double* end() const { return values_.data() + count_; }
+
+ private:
+  std::array<double, kKnots.back() + 3> values_{};
+  std::size_t count_ = 0;
+};
+
+BasisValues basis(const Curve& curve, const StepContext& context);
+std::size_t basis_size(const Curve& curve);
+
+/// What the coefficients are multiplied by in an interval: the basis, or on the sensor's yaw its growth.
+BasisValues functions_in(const Curve& curve, const StepContext& context);
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,141 @@
+#include "calib/curves/candidate_curves.hpp"
+
+#include <tuple>
+
+#include "calib/curves/curve_on_drives.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr int kHighestHarmonic = 8;  ///< poles of encoder magnets, lugs, spokes
+
+using Carriers = std::vector<Carrier>;
+
+/// A wheel's own variables act on that wheel; a pair that no mechanism links only adds false alarms.
+Carriers carriers_of(Variable variable) {
+  using enum Carrier;
+  switch (variable) {
+    case Variable::left_speed:
+    case Variable::left_phase:
+    case Variable::left_since_reversal:
+      return {left_travel};
+    case Variable::right_speed:
+    case Variable::right_phase:
+    case Variable::right_since_reversal:
+      return {right_travel};
+    case Variable::left_acceleration:
+      return {left_travel, left_path};
+    case Variable::right_acceleration:
+      return {right_travel, right_path};
+    case Variable::turn_acceleration:
+      return {sensor_yaw};
+    case Variable::speed:
+      return {both_travel, track, sideways, turn_side};
+    case Variable::turn_rate:
+      return {both_travel, left_travel, right_travel, track, sideways, turn_path, turn_side};
+    case Variable::lateral_acceleration:
+      return {sideways, sideways_path, track};
+    case Variable::time:
+      return {both_travel, left_travel, right_travel, track, sideways, turn_side};
+    case Variable::heading:
+    case Variable::position:
+      return {both_travel, left_travel, right_travel, both_path, sideways_path, yaw_path};
+    case Variable::since_reversal:
+    case Variable::since_stop:
+    case Variable::previous_turn:
+      return {both_travel, left_travel, right_travel, track, sideways_path, yaw_path};
+    case Variable::previous_push:
+      return {both_travel, left_travel, right_travel, track};
+  }
+  return {};
+}
+
+bool is_unsigned(Carrier carrier) {
+  return carrier == Carrier::both_path || carrier == Carrier::sideways_path || carrier == Carrier::yaw_path;
+}
+
+/// Of both wheels, as the day goes, or of one, as its brake or its motor does. Periods closer than kStep
+/// cycles per recording look alike.
+void add_periods(double duration, std::vector<Curve>& curves) {
+  constexpr double kShortest = 8.0;  // s
+  constexpr double kFewestCycles = 1.5;
+  constexpr double kStep = 0.7;  // cycles
+  for (double cycles = kFewestCycles; duration / cycles > kShortest; cycles += kStep)
+    for (const auto carrier : {Carrier::both_travel, Carrier::left_travel, Carrier::right_travel})
+      curves.push_back({{Variable::time, carrier}, 0.0, duration, duration / cycles, 0});
+}
+
+/// Of what lies on the floor; wheels sink in, both alike.
+void add_patches(double low, double high, std::vector<Curve>& curves) {
+  curves.push_back({{Variable::position, Carrier::both_travel}, low, high});
+  curves.back().patches = true;
+}
+
+void add_harmonics(const Curve& curve, int first, int last, std::vector<Curve>& curves) {
+  for (int harmonic = first; harmonic <= last; ++harmonic) {
+    curves.push_back(curve);
+    curves.back().harmonic = harmonic;
+  }
+}
+
+}  // namespace
+
+std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
+  std::vector<Curve> curves;
+  const bool both_ways = goes_both_ways(models);
+  for (int v = 0; v <= static_cast<int>(kLastVariable); ++v) {
+    const auto variable = static_cast<Variable>(v);
+    if (models.size() > 1 && begins_with_the_recording(variable)) continue;
+    const auto [low, high] = range_of(variable, models);
+    if (!(high - low > 1e-6)) continue;
+    for (const Carrier carrier : carriers_of(variable)) {
+      Curve curve{{variable, carrier}, low, high, 0.0, 0};
+      curve.constant = variable == Variable::heading && is_unsigned(carrier) && both_ways;
+      curves.push_back(curve);
+      curve.constant = false;
+      if (variable == Variable::left_phase || variable == Variable::right_phase)
+        add_harmonics(curve, kHarmonics + 1, kHighestHarmonic, curves);
+      if (variable == Variable::turn_acceleration) {  // what comes late may look like what went before
+        curves.push_back(curve);
+        curves.back().memory = kSwayLags.size() - 1;
+      }
+      // What stays until the opposite push hardly resembles what fades.
+      for (std::size_t memory = 0; memory < memories_of(variable); ++memory)
+        if (is_relay(variable, memory)) {
+          curves.push_back(curve);
+          curves.back().memory = memory;
+        }
+      // A drive seldom shows all headings; one wave round the circle is what few of them can tell.
+      if (variable == Variable::heading) add_harmonics(curve, 1, 1, curves);
+    }
+    if (variable == Variable::time) add_periods(high - low, curves);
+    if (variable == Variable::position) add_patches(low, high, curves);
+  }
+  return curves;
+}
+
+std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models) {
+  std::vector<Curve> shapes;
+  const bool has_knots = is_signed_speed(curve.law.variable) && curve.law.carrier != Carrier::turn_path;
+  for (const int knots : kKnots) {
+    if (!has_knots || knots <= curve.knots) continue;
+    shapes.push_back(curve);
+    shapes.back().knots = knots;
+  }
+  if (curve.law.variable == Variable::position && !curve.is_wave() && !curve.patches) {
+    shapes.push_back(curve);
+    shapes.back().patches = true;
+  }
+  const std::size_t memories = memories_of(curve.law.variable);
+  for (std::size_t memory = 0; memories > kUsualMemory + 1 && memory < memories; ++memory) {
+    if (memory == curve.memory) continue;
+    shapes.push_back(curve);
+    shapes.back().memory = memory;
+    std::tie(shapes.back().low, shapes.back().high) = range_of(curve.law.variable, models, memory);
+  }
+  for (Curve& shape : shapes)
+    if (!shape.mean.empty()) shape = centred(std::move(shape), models);
+  return shapes;
+}
+
+}  // namespace odomcalib::calib

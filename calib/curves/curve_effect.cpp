@@ -1,0 +1,78 @@
+#include "calib/curves/curve_effect.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/curves/basis.hpp"
+#include "calib/effects/step_effect.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+class CurveEffect final : public StepEffect<CurveEffect> {
+ public:
+  explicit CurveEffect(const Curve& curve) : curve_(curve) {}
+  [[nodiscard]] std::string name() const override {
+    return "curve of " + to_string(curve_.law.variable) + " on " + to_string(curve_.law.carrier);
+  }
+  [[nodiscard]] std::vector<EffectParameter> parameters() const override {
+    std::vector<EffectParameter> list;
+    for (std::size_t k = 0; k < basis_size(curve_); ++k) {
+      std::string name(1, 'c');
+      list.push_back({name.append(std::to_string(k + 1)), "1", typical_size(), -largest_size(),
+                      largest_size(), 0.0, prior(k)});
+    }
+    return list;
+  }
+  [[nodiscard]] Storage storage() const override {
+    if (concerns_sensor(curve_)) return Storage::driver;
+    return belongs_to_the_place(curve_.law.variable) ? Storage::nowhere : Storage::host;
+  }
+
+  template <typename T>
+  void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) const {
+    const BasisValues functions = functions_in(curve_, c);
+    T f(0.0);
+    for (std::size_t k = 0; k < functions.size(); ++k) f += p[k] * functions[k];
+    carry(curve_.law.carrier, c, f, step);
+  }
+
+ private:
+  /// Relative; rad per m; m per rad.
+  [[nodiscard]] double typical_size() const {
+    if (curve_.law.carrier == Carrier::yaw_path || concerns_sensor(curve_)) return 0.02;
+    // What a scan matcher's own bias in one room amounts to is a part of this.
+    if (curve_.law.variable == Variable::heading || curve_.law.variable == Variable::position) return 0.015;
+    // An error of the encoder's angle shows in its rate, n times as large for the n-th harmonic.
+    if (curve_.harmonic > 0) return 5e-3 * curve_.harmonic;
+    const bool per_turn =
+        curve_.law.carrier == Carrier::turn_path || curve_.law.carrier == Carrier::turn_side;
+    return per_turn ? 1e-3 : 5e-3;
+  }
+  /// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
+  /// bad.
+  [[nodiscard]] double largest_size() const {
+    return typical_size() * (is_distance_since(curve_.law.variable) ? 100.0 : 10.0 * strength());
+  }
+  [[nodiscard]] double strength() const { return curve_.strong ? 6.0 : 1.0; }
+  /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a curve must
+  /// do no harm in other drives.
+  [[nodiscard]] double prior(std::size_t function) const {
+    // Where turns of one speed cannot tell which, each radian leaves the same way.
+    const bool is_refinement = curve_.law.carrier == Carrier::turn_path && function > 0;
+    const double usual = (is_refinement ? 1.0 : 4.0) * typical_size();
+    if (!is_distance_since(curve_.law.variable)) return usual * strength();
+    // What is lost between one knot and the next is as much everywhere, the way between them half as long.
+    return std::min(std::ldexp(usual, kFadeKnots - 1 - static_cast<int>(function)), largest_size());
+  }
+
+  Curve curve_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Effect> make_curve_effect(const Curve& curve) {
+  return std::make_shared<CurveEffect>(curve);
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,98 @@
+#include "calib/curves/curve_on_drives.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "calib/curves/basis.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kMoving = 0.01;  ///< m/s of either wheel; standing still shows nothing
+
+/// How much motion of the carrier an interval holds.
+double amount(Carrier carrier, const StepContext& c) {
+  switch (carrier) {
+    case Carrier::left_travel:
+    case Carrier::left_path:
+      return std::abs(c.left_delta);
+    case Carrier::right_travel:
+    case Carrier::right_path:
+      return std::abs(c.right_delta);
+    case Carrier::track:
+    case Carrier::turn_path:
+    case Carrier::turn_side:
+      return std::abs(c.turn_rate) * c.dt;
+    default:
+      return std::abs(c.speed) * c.dt;
+  }
+}
+
+}  // namespace
+
+/// 0.5 and 99.5 % quantiles of the variable while the wheels turn; equal when it does not vary.
+std::pair<double, double> range_of(Variable variable, std::span<const DriveModel* const> models,
+                                   std::size_t memory) {
+  std::vector<double> values;
+  for (const DriveModel* model : models)
+    for (const StepContext& c : model->context()) {
+      if (std::abs(c.left_speed) <= kMoving && std::abs(c.right_speed) <= kMoving) continue;
+      values.push_back(value_of(variable, c, memory));
+      if (variable == Variable::position) values.push_back(c.y);
+    }
+  if (values.size() < 10) return {0.0, 0.0};
+  const auto at = [&](double share) {
+    const auto nth =
+        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
+  };
+  const double low = at(0.005);
+  return {low, at(0.995)};
+}
+
+/// What an unsigned way adds to a signed one, a drive that goes only one way cannot tell from the wheels.
+bool goes_both_ways(std::span<const DriveModel* const> models) {
+  constexpr double kLeast = 0.2;  // of the way
+  double ahead = 0.0, back = 0.0;
+  for (const DriveModel* model : models)
+    for (const StepContext& c : model->context()) (c.speed > 0.0 ? ahead : back) += std::abs(c.speed) * c.dt;
+  return std::min(ahead, back) > kLeast * (ahead + back);
+}
+
+Curve centred(Curve curve, std::span<const DriveModel* const> models) {
+  std::vector<double> sum(basis_size(curve), 0.0);
+  curve.mean.clear();
+  double total = 0.0;
+  for (const DriveModel* model : models)
+    for (const StepContext& c : model->context()) {
+      const double weight = amount(curve.law.carrier, c);
+      const BasisValues functions = basis(curve, c);
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * functions[k];
+      total += weight;
+    }
+  for (double& value : sum) value /= std::max(total, 1e-12);
+  curve.mean = std::move(sum);
+  return curve;
+}
+
+double spread_of(const Curve& curve, std::span<const double> coefficients,
+                 std::span<const DriveModel* const> models) {
+  double sum = 0.0, total = 0.0;
+  for (const DriveModel* model : models)
+    for (const StepContext& c : model->context()) {
+      const BasisValues functions = basis(curve, c);
+      const double f = std::inner_product(functions.begin(), functions.end(), coefficients.begin(), 0.0);
+      const double weight = amount(curve.law.carrier, c);
+      sum += weight * f * f;
+      total += weight;
+    }
+  return std::sqrt(sum / std::max(total, 1e-12));
+}
+
+bool leaves_mean_to_wheels(const Curve& curve, std::span<const DriveModel* const> models) {
+  return curve.law == Law{Variable::heading, Carrier::yaw_path} && !goes_both_ways(models);
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,29 @@
+// What drives show of a curve: the range of its variable, its mean, its spread.
+#pragma once
+
+#include <span>
+#include <utility>
+
+#include "calib/curves/curve.hpp"
+#include "calib/model/drive_model.hpp"
+
+namespace odomcalib::calib {
+
+/// 0.5 and 99.5 % quantiles of the variable while the wheels turn; equal when it does not vary.
+std::pair<double, double> range_of(Variable variable, std::span<const DriveModel* const> models,
+                                   std::size_t memory = kUsualMemory);
+
+/// What an unsigned way adds to a signed one, a drive that goes only one way cannot tell from the wheels.
+bool goes_both_ways(std::span<const DriveModel* const> models);
+
+/// The same curve about its mean over these drives.
+Curve centred(Curve curve, std::span<const DriveModel* const> models);
+
+/// Root mean square of the curve over the motion of its carrier in these drives.
+double spread_of(const Curve& curve, std::span<const double> coefficients,
+                 std::span<const DriveModel* const> models);
+
+/// Driven one way only, the mean of a pull over the headings is a difference of the wheels.
+bool leaves_mean_to_wheels(const Curve& curve, std::span<const DriveModel* const> models);
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,181 @@
+// What curves can describe, and how they act.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numeric>
+
+#include "calib/curves/basis.hpp"
+#include "calib/curves/candidate_curves.hpp"
+#include "calib/curves/curve.hpp"
+#include "calib/curves/curve_on_drives.hpp"
+#include "calib/tracing/tracing_json.hpp"
+#include "tests/unit/calib/tracing_support.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+TEST(Curve, is_zero_at_rest_but_on_the_turn_path) {
+  for (int v = 0; v <= static_cast<int>(kLastVariable); ++v) {
+    const auto variable = static_cast<Variable>(v);
+    if (begins_with_the_recording(variable) || is_distance_since(variable)) continue;
+    const Curve curve{{variable, Carrier::both_travel}, -0.7, 0.9, 0.0, 0};
+    for (const double f : basis(curve, StepContext{})) EXPECT_NEAR(f, 0.0, 1e-12) << to_string(variable);
+  }
+  const Curve turn{{Variable::turn_rate, Carrier::turn_path}, -1.0, 1.0, 0.0, 0};
+  EXPECT_EQ(basis(turn, StepContext{})[0], 1.0);
+}
+
+TEST(Curve, of_a_speed_is_zero_at_rest_with_any_knots) {
+  for (const int knots : kKnots) {
+    const Curve curve{{Variable::speed, Carrier::both_travel}, -0.5, 0.5, 0.0, 0, {}, knots};
+    for (const double f : basis(curve, StepContext{})) EXPECT_NEAR(f, 0.0, 1e-12) << knots;
+  }
+}
+
+/// Largest error of the curve that is nearest to a smooth bump, relative to its height.
+double misfit_of_bump(const Curve& curve) {
+  constexpr int kSpeeds = 200;
+  const auto functions = static_cast<Eigen::Index>(basis_size(curve));
+  Eigen::MatrixXd columns(kSpeeds, functions);
+  Eigen::VectorXd bump(kSpeeds);
+  for (int k = 0; k < kSpeeds; ++k) {
+    StepContext c;
+    c.speed = 0.5 * (k + 1) / kSpeeds;
+    const BasisValues values = basis(curve, c);
+    columns.row(k) = Eigen::Map<const Eigen::RowVectorXd>(values.begin(), functions);
+    bump(k) = std::exp(-std::pow((c.speed - 0.27) / 0.06, 2));
+  }
+  const Eigen::VectorXd nearest = columns.colPivHouseholderQr().solve(bump);
+  return (columns * nearest - bump).cwiseAbs().maxCoeff();
+}
+
+TEST(Curve, more_knots_describe_a_bump_better) {
+  const Curve coarse{{Variable::speed, Carrier::both_travel}, -0.5, 0.5};
+  const auto shapes = other_shapes(coarse, {});
+  ASSERT_EQ(shapes.size(), kKnots.size() - 1);
+  EXPECT_EQ(shapes.back().knots, kKnots.back());
+  EXPECT_TRUE(other_shapes(shapes.back(), {}).empty());
+  EXPECT_TRUE(other_shapes({{Variable::heading, Carrier::both_travel}, -1.0, 1.0}, {}).empty());
+  double before = misfit_of_bump(coarse);
+  for (const Curve& shape : shapes) {
+    const double misfit = misfit_of_bump(shape);
+    EXPECT_LT(misfit, 0.5 * before) << shape.knots;
+    before = misfit;
+  }
+  EXPECT_LT(before, 0.01);
+}
+
+/// Of the best sum of the curve's functions and a constant to what is 1 in a square and 0 elsewhere.
+double misfit_of_rug(const Curve& curve) {
+  constexpr int kSteps = 30;  // each way
+  const auto functions = static_cast<Eigen::Index>(basis_size(curve));
+  Eigen::MatrixXd columns(kSteps * kSteps, functions + 1);
+  Eigen::VectorXd rug(kSteps * kSteps);
+  for (Eigen::Index k = 0; k < rug.size(); ++k) {
+    StepContext c;
+    const Eigen::Index column = k % kSteps, row = k / kSteps;
+    c.x = -1.0 + 2.0 * static_cast<double>(column) / (kSteps - 1);
+    c.y = -1.0 + 2.0 * static_cast<double>(row) / (kSteps - 1);
+    const BasisValues values = basis(curve, c);
+    columns.row(k) << 1.0, Eigen::Map<const Eigen::RowVectorXd>(values.begin(), functions);
+    rug(k) = std::max(std::abs(c.x - 0.4), std::abs(c.y - 0.3)) < 0.35 ? 1.0 : 0.0;
+  }
+  const Eigen::VectorXd nearest = columns.completeOrthogonalDecomposition().solve(rug);
+  return (columns * nearest - rug).norm() / rug.norm();
+}
+
+TEST(Curve, patches_describe_a_rug_better_than_polynomials) {
+  const Curve smooth{{Variable::position, Carrier::both_travel}, -1.0, 1.0};
+  const auto shapes = other_shapes(smooth, {});
+  ASSERT_EQ(shapes.size(), 1U);
+  EXPECT_TRUE(shapes[0].patches);
+  EXPECT_LT(misfit_of_rug(shapes[0]), 0.8 * misfit_of_rug(smooth));
+  for (const double place : {-3.0, -0.9, 0.0, 0.37, 1.0, 8.0}) {
+    StepContext c;
+    c.x = place;
+    c.y = -0.7 * place;
+    const BasisValues values = basis(shapes[0], c);
+    EXPECT_NEAR(std::accumulate(values.begin(), values.end(), 0.0), 1.0, 1e-12) << place;
+  }
+}
+
+TEST(Curve, its_spread_is_that_of_the_law_over_the_drive) {
+  const DriveModel model = lively_model();
+  const DriveModel* models[] = {&model};
+  const Curve wave{{Variable::left_phase, Carrier::left_travel}, 0.0, 1.0, 0.0, 5};
+  // Root mean square of a sine, as the wheel passes all its angles alike.
+  EXPECT_NEAR(spread_of(wave, std::vector<double>{0.01, 0.0}, models), 0.01 / std::sqrt(2.0), 2e-4);
+}
+
+TEST(Curve, about_its_mean_it_has_none_over_the_drive) {
+  const DriveModel model = lively_model();
+  const DriveModel* models[] = {&model};
+  const Curve curve = centred({{Variable::left_speed, Carrier::left_travel}, -0.8, 0.8, 0.0, 0}, models);
+  std::vector<double> sum(basis_size(curve), 0.0);
+  double way = 0.0;
+  for (const StepContext& c : model.context()) {
+    way += std::abs(c.left_delta);
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += std::abs(c.left_delta) * basis(curve, c)[k];
+  }
+  for (const double value : sum) EXPECT_NEAR(value / way, 0.0, 1e-12);
+  const std::vector<FittedCurve> written = {{curve, std::vector<double>(sum.size(), 0.01), ""}};
+  const auto read = curves_from_json(curves_to_json(written));
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].curve.mean, curve.mean);
+}
+
+TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
+  StepContext ahead;
+  ahead.dt = 0.02;
+  ahead.speed = 0.3;
+  ahead.turn_rate = 0.5;
+  ahead.left_delta = ahead.right_delta = 0.08;
+  StepContext back = ahead;
+  back.speed = -0.3;
+  back.turn_rate = -0.5;
+  back.left_delta = back.right_delta = -0.08;
+  for (int c = 0; c <= static_cast<int>(kLastCarrier); ++c) {
+    const auto carrier = static_cast<Carrier>(c);
+    const auto change = [&](const StepContext& context) {
+      WheelStep<double> step{0.006, 0.006};
+      if (context.speed < 0.0) step.left = step.right = -0.006;
+      const WheelStep<double> before = step;
+      carry(carrier, context, 0.01, step);
+      return std::array{step.left - before.left, step.right - before.right, step.side, step.yaw,
+                        step.track - 1.0};
+    };
+    const auto forth = change(ahead), reverse = change(back);
+    const bool signed_by_motion = carrier == Carrier::left_travel || carrier == Carrier::right_travel ||
+                                  carrier == Carrier::both_travel || carrier == Carrier::sideways ||
+                                  carrier == Carrier::turn_side;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < forth.size(); ++k) {
+      EXPECT_NEAR(reverse[k], signed_by_motion ? -forth[k] : forth[k], 1e-15) << to_string(carrier);
+      largest = std::max(largest, std::abs(forth[k]));
+    }
+    EXPECT_GT(largest, 0.0) << to_string(carrier);
+  }
+}
+
+TEST(Curve, survives_the_calibration_file) {
+  const Curve curve{{Variable::time, Carrier::both_travel}, 0.0, 290.0, 61.5, 0};
+  Curve tiles{{Variable::position, Carrier::both_travel}};
+  tiles.wave = {3.0, -0.5};
+  const Curve rug = other_shapes({{Variable::position, Carrier::both_travel}, -1.0, 1.0}, {}).front();
+  const auto read = curves_from_json(curves_to_json({{curve, {0.01, -0.02}, "drift_with_time"},
+                                                     {tiles, {0.01, 0.0, 0.0, 0.0}, ""},
+                                                     {rug, std::vector<double>(16, 0.01), ""}}));
+  ASSERT_EQ(read.size(), 3U);
+  EXPECT_EQ(read[2].curve, rug);
+  EXPECT_EQ(read[1].curve.wave, tiles.wave);
+  EXPECT_EQ(read[0].curve.law, curve.law);
+  EXPECT_EQ(read[0].curve.period, curve.period);
+  EXPECT_EQ(read[0].coefficients, (std::vector<double>{0.01, -0.02}));
+  EXPECT_EQ(read[0].law_of, "drift_with_time");
+  EXPECT_TRUE(curves_from_json(R"([{"variable":"mood","carrier":"track","low":0,"high":1}])").empty());
+  EXPECT_TRUE(curves_from_json("[{").empty());
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
