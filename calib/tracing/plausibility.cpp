@@ -84,9 +84,13 @@ bool is_hidden_by_ticks(const Curve& curve, const FitResult& fit, std::span<cons
 }
 
 bool spoils_base(const Effect& effect, const FitResult& before, const FitResult& after) {
+  constexpr double kHarmless = 1e-3;  // of a length: a millimetre in a metre
   const double most = effect.storage() == Storage::nowhere ? 10.0 : 3.0;  // times a standard deviation
-  for (const auto k : {kLeftRadius, kRightRadius, kTrackWidth})
-    if (after.covariance(k, k) > most * most * before.covariance(k, k)) return true;
+  for (const auto k : {kLeftRadius, kRightRadius, kTrackWidth}) {
+    const double deviation = std::sqrt(after.covariance(k, k));
+    if (deviation > kHarmless * after.parameters(k) && deviation > most * std::sqrt(before.covariance(k, k)))
+      return true;
+  }
   return false;
 }
 

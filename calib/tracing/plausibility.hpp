@@ -23,7 +23,7 @@ bool is_hidden_by_ticks(const Curve& curve, const FitResult& fit, std::span<cons
 
 /// This drive cannot tell the addition from the wheels: it would trade a known geometry for a guess. (With
 /// what changes by the day the wheels of one moment are less well known than their mean, which up to ten
-/// times is no fault.)
+/// times is no fault; nor is a length that is still known to a thousandth.)
 bool spoils_base(const Effect& effect, const FitResult& before, const FitResult& after);
 
 /// The effect, whose parameters begin at `first`, is no longer needed beside what was added after it: its

@@ -50,6 +50,9 @@ TEST(Plausibility, bounds_size_and_need_are_judged_both_ways) {
   EXPECT_TRUE(is_superfluous(*effect, kBaseCount, fit_with({0.001, 0.0}, 1e-3)));
   EXPECT_FALSE(spoils_base(*effect, fit_with({0.0, 0.0}, 1e-3), fit_with({0.0, 0.0}, 2.9e-3)));
   EXPECT_TRUE(spoils_base(*effect, fit_with({0.0, 0.0}, 1e-3), fit_with({0.0, 0.0}, 3.1e-3)));
+  EXPECT_FALSE(spoils_base(*effect, fit_with({0.0, 0.0}, 1e-5), fit_with({0.0, 0.0}, 7e-5)))
+      << "still less than a thousandth of a length";
+  EXPECT_TRUE(spoils_base(*effect, fit_with({0.0, 0.0}, 1e-5), fit_with({0.0, 0.0}, 9e-5)));
   EXPECT_FALSE(
       spoils_base(*find_effect("drift_with_time"), fit_with({0.0, 0.0}, 1e-3), fit_with({0.0, 0.0}, 9e-3)));
 }
