@@ -60,6 +60,7 @@ class Filler {
     fill_effects();
     fill_unnamed();
     fill_outliers();
+    if (found_.stamps.any()) calibration_.extensions["stamps"] = to_json(found_.stamps);
     if (!found_.outcome.considered.empty())
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
     store_report_data(make_report_data(found_.session, effects(), found_.outcome.model.fit, plain_),
@@ -83,7 +84,8 @@ class Filler {
   [[nodiscard]] Footing footing() const {
     Footing footing;
     footing.converged = found_.outcome.model.fit.converged;
-    if (outliers_) footing.left_out = to_text(*outliers_);
+    if (outliers_) footing.remarks.push_back(to_text(*outliers_));
+    for (const std::string& remark : remarks_on(found_.stamps)) footing.remarks.push_back(remark);
     if (!found_.session.reference_is_scans() || found_.every_scan_placed) return footing;
     for (const PairSet& set : found_.session.pair_sets()) {
       footing.matched += set.pairs.size();
@@ -148,13 +150,17 @@ class Filler {
     for (const auto& effect : effects()) {
       const auto curve = std::find_if(found_.outcome.curves.begin(), found_.outcome.curves.end(),
                                       [&](const AddedCurve& c) { return c.effect == effect; });
-      if (curve == found_.outcome.curves.end())
-        calibration_.effects.push_back(describe(*effect, index));
-      else
+      if (curve != found_.outcome.curves.end())
         fitted_curves_.push_back(fitted(*curve, index));
+      else if (!contains(found_.outcome.quiet, effect))
+        calibration_.effects.push_back(describe(*effect, index));
       index += static_cast<Eigen::Index>(effect->parameters().size());
     }
     if (!fitted_curves_.empty()) calibration_.extensions[kCurvesMember] = curves_to_json(fitted_curves_);
+  }
+
+  static bool contains(const EffectList& list, const std::shared_ptr<const Effect>& effect) {
+    return std::find(list.begin(), list.end(), effect) != list.end();
   }
 
   [[nodiscard]] FittedCurve fitted(const AddedCurve& added, Eigen::Index index) const {

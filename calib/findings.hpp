@@ -6,6 +6,7 @@
 
 #include "calib/lidar/lidar_trace.hpp"
 #include "calib/session/session.hpp"
+#include "calib/stamps/stamp_report.hpp"
 #include "calib/tracing/search.hpp"
 #include "proto/calibration.hpp"
 
@@ -15,6 +16,7 @@ struct Findings {
   const Session& session;  ///< with the pairs that the outcome was fitted to
   const SearchResult& outcome;
   const std::vector<LidarFinding>& lidar;
+  StampJitter stamps;
   bool was_searched = false;       ///< for effects that nobody named
   bool every_scan_placed = false;  ///< the parameters come from the whole path, not from matches of keyframes
 };

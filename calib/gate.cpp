@@ -129,7 +129,7 @@ GateResult judge(const Calibration& calibration, const Footing& footing) {
   }
   judgement.check_matches(footing.matched, footing.unmatched);
   judgement.check_residual(calibration.residual);
-  if (!footing.left_out.empty()) judgement.warn(footing.left_out);
+  for (const std::string& remark : footing.remarks) judgement.warn(remark);
   if (!footing.converged) judgement.warn("the fit had not settled when its iterations ran out");
   return judgement.result();
 }

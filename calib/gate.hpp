@@ -17,9 +17,9 @@ struct GateResult {
 /// What the values stand on.
 struct Footing {
   bool converged = true;
-  std::size_t matched = 0;    ///< pairs of scans, where the values come from these
-  std::size_t unmatched = 0;  ///< pairs that gave no motion
-  std::string left_out;       ///< what is known of pairs that the fit left out; empty: too few to speak of
+  std::size_t matched = 0;           ///< pairs of scans, where the values come from these
+  std::size_t unmatched = 0;         ///< pairs that gave no motion
+  std::vector<std::string> remarks;  ///< what else a user should know: sentences
 };
 
 /// Refuses implausible or badly determined values, or those of the few scans that happened to match, and says

@@ -9,6 +9,7 @@
 #include "calib/effects/reference_effect.hpp"
 #include "calib/lidar/lidar_effect.hpp"
 #include "calib/model/drive_model.hpp"
+#include "calib/stamps/uneven_stamps.hpp"
 #include "calib/tracing/tracing_json.hpp"
 
 namespace odomcalib::calib {
@@ -127,7 +128,11 @@ Calibration nominal_calibration(const RobotDescription& robot) {
 
 std::vector<PoseSample> predict(const Recording& recording, const Calibration& calibration) {
   std::vector<PoseSample> poses;
-  const WheelTrack track = wheel_track_from_ticks(recording);
+  Recording counted;
+  counted.robot = recording.robot;
+  counted.ticks = recording.ticks;
+  if (const auto even = even_ticks(recording)) set_stamps(counted.ticks, even->t);
+  const WheelTrack track = wheel_track_from_ticks(counted);
   if (track.empty()) return poses;
   const Correction correction = correction_of(calibration);
   std::vector<StepContext> context = make_context(track, to_base(as_span(correction.parameters)));
@@ -135,9 +140,10 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
   const DriveModel model(track, std::move(context));
   const std::vector<Pose> base = model.trajectory(as_span(correction.parameters), correction.effects).poses();
   std::size_t k = 0;
-  for (const TickSample& sample : recording.ticks) {
-    while (k + 1 < track.t.size() && track.t[k + 1] <= sample.t) ++k;  // repeated stamps keep the pose
-    poses.push_back({sample.t, base[k].x, base[k].y, wrap_angle(base[k].yaw)});
+  for (std::size_t i = 0; i < recording.ticks.size(); ++i) {
+    // Repeated stamps keep the pose.
+    while (k + 1 < track.t.size() && track.t[k + 1] <= counted.ticks[i].t) ++k;
+    poses.push_back({recording.ticks[i].t, base[k].x, base[k].y, wrap_angle(base[k].yaw)});
   }
   return poses;
 }

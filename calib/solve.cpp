@@ -14,6 +14,7 @@
 #include "calib/session/placed_pairs.hpp"
 #include "calib/session/sign_check.hpp"
 #include "calib/session/start_values.hpp"
+#include "calib/stamps/uneven_stamps.hpp"
 #include "calib/tracing/search.hpp"
 #include "calib/validation/held_out.hpp"
 
@@ -21,7 +22,7 @@ namespace odomcalib::calib {
 namespace {
 
 /// A time offset counts as present when its estimate is this many standard deviations from zero ...
-constexpr double kOffsetSignificance = 4.0;
+constexpr double kSignificance = 4.0;
 /// ... and longer than what a careful driver leaves, s.
 constexpr double kNegligibleOffset = 3e-3;
 const std::string kOffset = "time_offset", kDrift = "clock_drift";
@@ -35,12 +36,12 @@ class Solver {
 
   Calibration run() {
     if (!recordings_.empty()) calibration_.robot = recordings_.front().robot;
-    auto session = Session::open(recordings_);
-    if (!session) return refuse(session.error());
-    session_ = std::make_unique<Session>(std::move(session).value());
+    even_out_ticks();
+    if (auto error = open()) return refuse(*error);
     if (auto error = choose_effects()) return refuse(*error);
     if (auto error = start()) return refuse(*error);
     auto fit = settle();
+    if (fit) fit = even_out_scans(std::move(fit));
     if (fit) fit = correct_lidar(std::move(fit));
     if (fit) fit = locate(std::move(fit));
     calibration_.data = data_use(*session_);
@@ -71,6 +72,46 @@ class Solver {
     calibration_.reasons = {error.text()};
     if (calibration_.data.empty() && session_) calibration_.data = data_use(*session_);
     return calibration_;
+  }
+
+  std::optional<Error> open() {
+    auto session = Session::open(recordings_);
+    if (!session) return session.error();
+    session_ = std::make_unique<Session>(std::move(session).value());
+    return std::nullopt;
+  }
+
+  /// A copy of the recordings, made once, that stamps may be changed in.
+  Recording& own(std::size_t recording) {
+    if (evened_.empty()) evened_.assign(recordings_.begin(), recordings_.end());
+    return evened_[recording];
+  }
+
+  void even_out_ticks() {
+    const auto given = recordings_;
+    for (std::size_t i = 0; i < given.size(); ++i)
+      if (const auto even = even_ticks(given[i])) {
+        set_stamps(own(i).ticks, even->t);
+        stamps_.ticks = std::max(stamps_.ticks, even->jitter);
+      }
+    if (!evened_.empty()) recordings_ = evened_;
+  }
+
+  /// Scans that were taken evenly and stamped unevenly are measured anew, at even times.
+  Result<FitResult> even_out_scans(Result<FitResult> fit) {
+    if (!session_->reference_is_scans()) return fit;
+    const auto given = recordings_;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      const auto even = even_scans(given[i], session_->data()[i], effects_, parameters_);
+      if (!even) continue;
+      set_stamps(own(i).scans, even->t);
+      stamps_.scans = std::max(stamps_.scans, even->jitter);
+    }
+    if (stamps_.scans == 0.0) return fit;
+    recordings_ = evened_;
+    if (auto error = open()) return *error;
+    session_->measure(parameters_, effects_, PairOptions{});
+    return settle();
   }
 
   /// "auto" and "none" stand alone; otherwise every name must be known.
@@ -150,11 +191,20 @@ class Solver {
     return fit_joint(session_->data(), effects_, parameters_, options);
   }
 
+  /// Any parameter of the effect is many standard deviations from zero.
+  [[nodiscard]] bool is_plain(const std::string& name, const FitResult& fit) const {
+    const std::size_t count = effects_[place_of(name)]->parameters().size();
+    const Eigen::Index first = first_of(name);
+    for (Eigen::Index k = first; k < first + static_cast<Eigen::Index>(count); ++k)
+      if (std::abs(fit.parameters(k)) > kSignificance * std::sqrt(fit.covariance(k, k))) return true;
+    return false;
+  }
+
   [[nodiscard]] bool is_idle(const std::string& name, const FitResult& fit) const {
     const Eigen::Index k = first_of(name);
     const double negligible = name == kOffset ? kNegligibleOffset : 0.0;
     const double deviation = std::sqrt(fit.covariance(k, k));
-    return std::abs(fit.parameters(k)) <= std::max(kOffsetSignificance * deviation, negligible);
+    return std::abs(fit.parameters(k)) <= std::max(kSignificance * deviation, negligible);
   }
 
   /// Clocks that run apart need a delay to run apart from.
@@ -303,10 +353,15 @@ class Solver {
     retire_idle_offset();
   }
 
-  /// The delay was fitted before anything else was known; what it stood for may have got its own name.
+  /// The delay was fitted before anything else was known; what it stood for may have got its own name. One
+  /// that is plain but short stays without being told.
   void retire_idle_offset() {
     if (outcome_.findings.empty() && outcome_.curves.empty()) return;
     if (!has(kOffset) || !is_idle(kOffset, outcome_.model.fit)) return;
+    if (is_plain(kOffset, outcome_.model.fit)) {
+      outcome_.quiet.push_back(effects_[place_of(kOffset)]);
+      return;
+    }
     const FitTask task{session_->data(), session_->fixed(0)};
     if (auto fewer = without_effect(task, outcome_.model, place_of(kOffset), {}))
       outcome_.model = std::move(*fewer);
@@ -365,7 +420,7 @@ class Solver {
 
   void fill() {
     report("validating", 0.0);
-    fill_calibration({*session_, outcome_, lidar_, automatic_, every_scan_placed_}, calibration_);
+    fill_calibration({*session_, outcome_, lidar_, stamps_, automatic_, every_scan_placed_}, calibration_);
     report("validating", 1.0);
   }
 
@@ -384,6 +439,8 @@ class Solver {
   Eigen::VectorXd placed_with_;  ///< parameters that the paths were made with; empty: they are to be made
   std::vector<LidarEffectPtr> asked_of_lidar_;
   std::vector<LidarFinding> lidar_;
+  std::vector<Recording> evened_;  ///< with even stamps; empty where those given are right
+  StampJitter stamps_;
   std::vector<Recording> corrected_;  ///< without the lidar's errors; what the session measures then
 };
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace odomcalib::calib {
@@ -15,6 +17,12 @@ inline double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Standard deviation about a centre by the median absolute one, of a non-empty list.
+inline double deviation_about(double centre, std::vector<double> values) {
+  for (double& value : values) value = std::abs(value - centre);
+  return kMadToSigma * median_of(std::move(values));
 }
 
 }  // namespace odomcalib::calib

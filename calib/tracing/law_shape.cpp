@@ -94,7 +94,7 @@ std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, co
     Eigen::VectorXd start = Eigen::VectorXd::Zero(kept + static_cast<Eigen::Index>(basis_size(shape)));
     start.head(kept) = model.fit.parameters.head(kept);
     auto fit = task.fit(effects, start, model.fit.noise);
-    if (!fit || spoils_base(*effects.back(), model.fit, *fit)) continue;
+    if (!fit || curve_spoils_base(*effects.back(), model.fit, *fit)) continue;
     all.push_back({shape, {std::move(effects), std::move(*fit)}});
   }
   return all;
@@ -113,7 +113,7 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
   for (const Curve& shape : shapes) {
     const auto effect = make_curve_effect(shape);
     auto fitted = with_effect(task, model, effect, noise);
-    if (!fitted || spoils_base(*effect, model.fit, fitted->fit)) continue;
+    if (!fitted || curve_spoils_base(*effect, model.fit, fitted->fit)) continue;
     if (!best || misfit(*fitted) < misfit(best->model)) best = {shape, std::move(*fitted)};
   }
   return best;

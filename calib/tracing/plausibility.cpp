@@ -53,12 +53,17 @@ bool is_held_back(const Effect& effect, const FitResult& fit) {
 }
 
 bool is_negligible(const Effect& effect, const FitResult& fit) {
-  const Eigen::VectorXd values = last_parameters(effect, fit);
+  return is_negligible(effect, static_cast<std::size_t>(fit.parameters.size()) - effect.parameters().size(),
+                       fit);
+}
+
+bool is_negligible(const Effect& effect, std::size_t first, const FitResult& fit) {
   const auto parameters = effect.parameters();
   double largest = 0.0;
   for (std::size_t k = 0; k < parameters.size(); ++k)
     if (is_size(parameters[k]))
-      largest = std::max(largest, std::abs(values(static_cast<Eigen::Index>(k))) / parameters[k].scale);
+      largest = std::max(
+          largest, std::abs(fit.parameters(static_cast<Eigen::Index>(first + k))) / parameters[k].scale);
   return largest < kNegligibleShare;
 }
 
@@ -92,6 +97,13 @@ bool spoils_base(const Effect& effect, const FitResult& before, const FitResult&
       return true;
   }
   return false;
+}
+
+bool curve_spoils_base(const Effect& curve, const FitResult& before, const FitResult& after) {
+  constexpr double kFar = 0.25;
+  for (const auto k : {kLeftRadius, kRightRadius, kTrackWidth})
+    if (std::abs(after.parameters(k) - before.parameters(k)) > kFar * before.parameters(k)) return true;
+  return spoils_base(curve, before, after);
 }
 
 bool is_superfluous(const Effect& effect, std::size_t first, const FitResult& fit) {

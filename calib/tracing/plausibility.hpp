@@ -15,6 +15,8 @@ std::string impossibility(const Effect& effect, const FitResult& fit);
 bool is_held_back(const Effect& effect, const FitResult& fit);
 
 /// Every size is below the share of its typical size that matters to odometry.
+/// @param first of the effect's parameters; without it they are the fit's last
+bool is_negligible(const Effect& effect, std::size_t first, const FitResult& fit);
 bool is_negligible(const Effect& effect, const FitResult& fit);
 
 /// A sway of the sensor, the curve's coefficients being the fit's last, that is no larger than what ticks
@@ -25,6 +27,10 @@ bool is_hidden_by_ticks(const Curve& curve, const FitResult& fit, std::span<cons
 /// what changes by the day the wheels of one moment are less well known than their mean, which up to ten
 /// times is no fault; nor is a length that is still known to a thousandth.)
 bool spoils_base(const Effect& effect, const FitResult& before, const FitResult& after);
+
+/// Or it makes other lengths of them by a quarter, which a name may have to (a track that scrubs) but no law
+/// without one should be believed.
+bool curve_spoils_base(const Effect& curve, const FitResult& before, const FitResult& after);
 
 /// The effect, whose parameters begin at `first`, is no longer needed beside what was added after it: its
 /// Wald statistic is not significant at 5 %.

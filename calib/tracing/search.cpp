@@ -44,6 +44,7 @@ class Search {
       add_doubts(doubts_of_shape(task_, result_.model, e));
     }
     add_doubts(unproved_);
+    tell_what_has_grown();
     return std::move(result_);
   }
 
@@ -113,8 +114,7 @@ class Search {
   /// Where motions begin, clocks that disagree look like anything that goes with beginnings. A clock cannot
   /// spoil odometry, so it is asked first.
   [[nodiscard]] std::optional<Trial> best_clock() const {
-    const auto best = round_->best_trial(
-        [&](std::size_t k) { return candidates_[k].effect->storage() == Storage::driver; });
+    const auto best = round_->best_trial([&](std::size_t k) { return is_clock(candidates_[k]); });
     return best && best->gain > 0.0 ? best : std::nullopt;
   }
 
@@ -125,7 +125,12 @@ class Search {
   [[nodiscard]] double level(const Candidate& candidate) const {
     if (candidate.curve)
       return completes(candidate) || must_be_worthwhile(candidate) ? kNamedLevel : kUnnamedLevel;
-    return candidate.effect->storage() == Storage::driver ? kClockLevel : kNamedLevel;
+    return is_clock(candidate) ? kClockLevel : kNamedLevel;
+  }
+
+  /// Cannot spoil odometry.
+  [[nodiscard]] static bool is_clock(const Candidate& candidate) {
+    return candidate.effect->storage() == Storage::driver;
   }
 
   [[nodiscard]] bool passes(std::size_t candidate) const {
@@ -171,7 +176,9 @@ class Search {
       return "ticks so far apart hide as much";
     if (auto reason = impossibility(effect, fit); !reason.empty()) return reason;
     if (is_negligible(effect, fit)) return "too small to matter";
-    return spoils_base(effect, basis().fit, fit) ? "this drive cannot tell it from the wheels" : "";
+    const bool spoils =
+        candidate.curve ? curve_spoils_base(effect, basis().fit, fit) : spoils_base(effect, basis().fit, fit);
+    return spoils ? "this drive cannot tell it from the wheels" : "";
   }
 
   /// Too small to be told, not too small to have moved the lengths.
@@ -188,18 +195,44 @@ class Search {
     std::optional<Trial> settled;
     std::string reason = implausibility(candidate, trial.model.fit);
     const Eigen::VectorXd change = trial.model.base() - basis().base();
-    if (is_plain_but_small(candidate, trial.model.fit)) result_.doubts.push_back(change);
+    const bool is_small = is_plain_but_small(candidate, trial.model.fit);
+    if (is_small && !candidate.curve && is_clock(candidate)) return keep_quietly(trial, reason);
+    if (is_small) result_.doubts.push_back(change);
     if (reason.empty()) {
       reason = failure(trial, proof, settled);
       const bool is_plain = !candidate.curve || score.family_p_value <= kNamedLevel;
       if (!reason.empty() && is_plain) unproved_.push_back(change);
     }
-    result_.considered.push_back(
-        {candidate.effect->name(), score.statistic, score.family_p_value, reason.empty() ? "added" : reason});
+    consider(trial, reason.empty() ? "added" : reason);
     strike(candidate.key);
     if (!reason.empty()) return std::nullopt;
     adopt(std::move(settled->model));
     return proof;
+  }
+
+  void consider(const Trial& trial, const std::string& outcome) {
+    const Score& score = round_->score(trial.candidate);
+    result_.considered.push_back(
+        {candidates_[trial.candidate].effect->name(), score.statistic, score.family_p_value, outcome});
+  }
+
+  /// With what was added later a quiet effect may have become one that matters.
+  void tell_what_has_grown() {
+    const FittedModel& model = result_.model;
+    for (std::size_t e = 0; e < model.effects.size(); ++e)
+      if (const auto first = static_cast<std::size_t>(first_parameter(model.effects, e));
+          !is_negligible(*model.effects[e], first, model.fit))
+        std::erase(result_.quiet, model.effects[e]);
+  }
+
+  /// Stays in the model unnamed: a millisecond matters to nobody, but left out it would look like slip.
+  std::optional<Proof> keep_quietly(const Trial& trial, const std::string& reason) {
+    consider(trial, reason);
+    strike(candidates_[trial.candidate].key);
+    result_.quiet.push_back(candidates_[trial.candidate].effect);
+    const auto settled = round_->refit(trial.candidate, {});
+    adopt(settled ? settled->model : trial.model);
+    return std::nullopt;
   }
 
   /// How the trial fails its proof; empty when it does not.
@@ -238,7 +271,7 @@ class Search {
     auto trial = round_->refit(index);
     if (trial && is_held_back(*candidates_[index].effect, trial->model.fit))
       trial = refit_as(index, strong(*candidates_[index].curve));
-    if (trial && spoils_base(*candidates_[index].effect, basis().fit, trial->model.fit))
+    if (trial && curve_spoils_base(*candidates_[index].effect, basis().fit, trial->model.fit))
       trial = refit_as(index, centred(*candidates_[index].curve, task_.models()));
     const auto law_of = completed_by(candidates_[index]);
     const std::vector<Variable> alike = variables_like(candidates_, round_->table(), index);

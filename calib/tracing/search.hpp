@@ -42,6 +42,7 @@ struct SearchResult {
   FittedModel model;  ///< effects given, then what was added
   std::vector<Finding> findings;
   std::vector<AddedCurve> curves;
+  EffectList quiet;                    ///< in the model, but too small to be told
   std::vector<Considered> considered;  ///< in the order tried
   /// What nobody knows about a law is unknown of the base parameters too: by how much they move with another
   /// shape, another zero or another name of the set, by extrapolation to where no effect is, and with what

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 
 #include "calib/solve.hpp"
 #include "tests/integration/accuracy_runs.hpp"
@@ -15,6 +16,7 @@ namespace odomcalib {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr unsigned kSeed = 815;
 
 const sim::SimulatedRun& plain_run() {
   static const sim::SimulatedRun run = [] {
@@ -134,17 +136,36 @@ void lose_samples(Recording& recording) {
   std::erase_if(recording.scans, [&](const Scan&) { return ++k % 5 == 0; });
 }
 
+/// A driver that sends both on when it gets round to it.
+template <typename Sample>
+void jitter(std::vector<Sample>& samples, double deviation) {
+  std::mt19937 engine(kSeed);
+  std::normal_distribution<double> late(0.0, deviation);
+  for (Sample& sample : samples) sample.t += late(engine);
+  std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.t < b.t; });
+}
+
+/// Four samples arrive together, when the last of them was taken.
+void burst(Recording& recording) {
+  constexpr std::size_t kAtOnce = 4;
+  auto& ticks = recording.ticks;
+  for (std::size_t k = 0; k + kAtOnce <= ticks.size(); k += kAtOnce)
+    for (std::size_t j = 0; j < kAtOnce; ++j)
+      ticks[k + j].t = ticks[k + kAtOnce - 1].t + 1e-4 * static_cast<double>(j);
+}
+
 class Edited : public ::testing::TestWithParam<Edit> {};
 
 TEST_P(Edited, is_told_and_keeps_the_wheels_right) {
   Recording recording = plain_run().recording;
   GetParam().make(recording);
   const Calibration result = calib::solve({&recording, 1}, {});
+  SCOPED_TRACE("seed " + std::to_string(kSeed));
   ASSERT_FALSE(result.parameters.empty()) << result.reasons[0];
   if (GetParam().told.empty()) {
     EXPECT_EQ(result.verdict, Verdict::accepted);
-    EXPECT_TRUE(result.effects.empty());
-    EXPECT_FALSE(result.unexplained);
+    EXPECT_TRUE(result.effects.empty()) << testing::told(result);
+    EXPECT_FALSE(result.unexplained) << testing::told(result);
   } else {
     EXPECT_TRUE(testing::is_told(result, GetParam().told)) << testing::told(result);
   }
@@ -171,7 +192,15 @@ INSTANTIATE_TEST_SUITE_P(
             "slips_for_a_while", [](const Interval& i) { return i.t > 145.0 && i.t < 162.0 ? 1.05 : 1.0; },
             "time"),
         Edit{"play", give_play, "backlash"}, Edit{"gear", bend_gear, "left_phase"},
-        Edit{"late_left_counts", delay_left, "encoder_lag"}, Edit{"turned_head", turn_head, "time"}),
+        Edit{"late_left_counts", delay_left, "encoder_lag"}, Edit{"turned_head", turn_head, "time"},
+        Edit{"a_little_late",
+             [](Recording& r) {
+               for (Scan& scan : r.scans) scan.t += 1.5e-3;
+             },
+             ""},
+        Edit{"tick_stamps_jitter", [](Recording& r) { jitter(r.ticks, 3e-3); }, ""},
+        Edit{"scan_stamps_jitter", [](Recording& r) { jitter(r.scans, 4e-3); }, ""},
+        Edit{"ticks_in_bursts", burst, "time_offset"}),
     [](const auto& edited) { return edited.param.name; });
 
 }  // namespace

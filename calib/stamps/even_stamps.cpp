@@ -1,0 +1,96 @@
+#include "calib/stamps/even_stamps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "calib/statistics/median.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr std::size_t kFewest = 50;
+constexpr double kEven = 3e-4;        // s; nothing moves so fast that it mattered
+constexpr std::size_t kReach = 12;    // samples to either side
+constexpr std::size_t kLong = 100;    // samples over which a period is measured
+constexpr double kFewLost = 1.2;      // times the usual interval: what the mean one may be to count lost ones
+constexpr double kUnambiguous = 0.2;  // of an interval: spread that leaves no doubt how many it spans
+
+/// Of an index, over long stretches.
+double period_of(const std::vector<double>& stamps, const std::vector<double>& index) {
+  const std::size_t length = std::min(kLong, stamps.size() / 3);
+  std::vector<double> slopes;
+  for (std::size_t k = length; k < stamps.size(); ++k)
+    slopes.push_back((stamps[k] - stamps[k - length]) / (index[k] - index[k - length]));
+  return median_of(std::move(slopes));
+}
+
+std::vector<double> numbered(std::size_t count) {
+  std::vector<double> index(count);
+  for (std::size_t k = 0; k < count; ++k) index[k] = static_cast<double>(k);
+  return index;
+}
+
+/// Counts lost samples in where intervals are regular enough to tell; otherwise one after the other.
+std::vector<double> indices_of(const std::vector<double>& stamps) {
+  std::vector<double> index = numbered(stamps.size());
+  std::vector<double> intervals;
+  for (std::size_t k = 1; k < stamps.size(); ++k) intervals.push_back(stamps[k] - stamps[k - 1]);
+  const double usual = median_of(intervals);
+  if (period_of(stamps, index) > kFewLost * usual || deviation_about(usual, intervals) > kUnambiguous * usual)
+    return index;
+  for (std::size_t k = 1; k < stamps.size(); ++k)
+    index[k] = index[k - 1] + std::max(1.0, std::round(intervals[k - 1] / usual));
+  return index;
+}
+
+/// Mean of what lies within three deviations of the median: whatever follows a step is not part of it.
+double middle_of(const std::vector<double>& values) {
+  const double median = median_of(values);
+  const double limit = 3.0 * deviation_about(median, values);
+  double sum = 0.0, count = 0.0;
+  for (const double value : values)
+    if (std::abs(value - median) <= limit) {
+      sum += value;
+      count += 1.0;
+    }
+  return sum / count;
+}
+
+/// Over kReach samples to either side, fewer at the ends.
+std::vector<double> running_middle(const std::vector<double>& values) {
+  std::vector<double> middles;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const std::size_t reach = std::min({kReach, k, values.size() - 1 - k});
+    const auto here = values.begin() + static_cast<std::ptrdiff_t>(k);
+    const auto width = static_cast<std::ptrdiff_t>(reach);
+    middles.push_back(middle_of({here - width, here + width + 1}));
+  }
+  return middles;
+}
+
+double jitter_of(const std::vector<double>& stamps, const std::vector<double>& even) {
+  std::vector<double> apart;
+  for (std::size_t k = 0; k < stamps.size(); ++k) apart.push_back(stamps[k] - even[k]);
+  return deviation_about(0.0, std::move(apart));
+}
+
+}  // namespace
+
+std::optional<EvenStamps> even_stamps(const std::vector<double>& stamps) {
+  if (stamps.size() < kFewest) return std::nullopt;
+  const std::vector<double> index = indices_of(stamps);
+  const double period = period_of(stamps, index);
+  std::vector<double> even;
+  for (std::size_t k = 0; k < stamps.size(); ++k) even.push_back(stamps[k] - period * index[k]);
+  even = running_middle(even);
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    even[k] += period * index[k];
+    if (k > 0) even[k] = std::max(even[k], even[k - 1]);
+  }
+  const double jitter = jitter_of(stamps, even);
+  if (!(jitter > kEven)) return std::nullopt;
+  return EvenStamps{std::move(even), jitter};
+}
+
+}  // namespace odomcalib::calib
