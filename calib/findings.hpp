@@ -16,7 +16,7 @@ struct Findings {
   const Session& session;  ///< with the pairs that the outcome was fitted to
   const SearchResult& outcome;
   const std::vector<LidarFinding>& lidar;
-  StampJitter stamps;
+  StampReport stamps;
   bool was_searched = false;       ///< for effects that nobody named
   bool every_scan_placed = false;  ///< the parameters come from the whole path, not from matches of keyframes
 };

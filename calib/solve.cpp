@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "calib/effects/catalogue.hpp"
 #include "calib/estimators/path_fit.hpp"
@@ -14,6 +15,7 @@
 #include "calib/session/placed_pairs.hpp"
 #include "calib/session/sign_check.hpp"
 #include "calib/session/start_values.hpp"
+#include "calib/stamps/sweeps.hpp"
 #include "calib/stamps/uneven_stamps.hpp"
 #include "calib/tracing/search.hpp"
 #include "calib/validation/held_out.hpp"
@@ -42,6 +44,7 @@ class Solver {
     if (auto error = start()) return refuse(*error);
     auto fit = settle();
     if (fit) fit = even_out_scans(std::move(fit));
+    if (fit) fit = let_scans_sweep(std::move(fit));
     if (fit) fit = correct_lidar(std::move(fit));
     if (fit) fit = locate(std::move(fit));
     calibration_.data = data_use(*session_);
@@ -109,9 +112,49 @@ class Solver {
     }
     if (stamps_.scans == 0.0) return fit;
     recordings_ = evened_;
+    return measure_anew();
+  }
+
+  /// Scans that do not say when each beam was sent are taken for sweeps of a turning head if that explains
+  /// the motion clearly better.
+  Result<FitResult> let_scans_sweep(Result<FitResult> fit) {
+    auto sweeping = with_sweeps(recordings_);
+    if (sweeping.empty() || !session_->reference_is_scans()) return fit;
+    const auto before = held_out_now(fit.value());
+    const auto given = std::exchange(recordings_, std::span<const Recording>(sweeping));
+    const auto parameters = parameters_;
+    const auto effects = effects_;
+    auto session = std::move(session_);
+    auto better = measure_anew();
+    if (better && has(kOffset)) {
+      take_stamps_for_middles(sweeping);
+      better = measure_anew();
+    }
+    if (better && is_clearly_better(before, held_out_now(better.value()))) {
+      evened_ = std::move(sweeping);
+      stamps_.sweep = *evened_.front().scans.front().time_increment;
+      return better;
+    }
+    recordings_ = given;
+    parameters_ = parameters;
+    effects_ = effects;
+    session_ = std::move(session);
+    return fit;
+  }
+
+  Result<FitResult> measure_anew() {
     if (auto error = open()) return *error;
     session_->measure(parameters_, effects_, PairOptions{});
     return settle();
+  }
+
+  /// Of all three components together.
+  static bool is_clearly_better(const std::optional<HeldOut>& before, const std::optional<HeldOut>& after) {
+    constexpr double kClearly = 0.9;  // product of the ratios
+    if (!before || !after) return false;
+    double ratio = 1.0;
+    for (std::size_t k = 0; k < before->rms.size(); ++k) ratio *= after->rms[k] / before->rms[k];
+    return ratio < kClearly;
   }
 
   /// "auto" and "none" stand alone; otherwise every name must be known.
@@ -439,8 +482,8 @@ class Solver {
   Eigen::VectorXd placed_with_;  ///< parameters that the paths were made with; empty: they are to be made
   std::vector<LidarEffectPtr> asked_of_lidar_;
   std::vector<LidarFinding> lidar_;
-  std::vector<Recording> evened_;  ///< with even stamps; empty where those given are right
-  StampJitter stamps_;
+  std::vector<Recording> evened_;  ///< with other times; empty where those given are right
+  StampReport stamps_;
   std::vector<Recording> corrected_;  ///< without the lidar's errors; what the session measures then
 };
 

@@ -5,11 +5,13 @@
 
 namespace odomcalib::calib {
 
-std::string to_json(const StampJitter& jitter) {
-  return nlohmann::ordered_json{{"ticks", jitter.ticks}, {"scans", jitter.scans}}.dump();
+std::string to_json(const StampReport& report) {
+  return nlohmann::ordered_json{
+      {"ticks", report.ticks}, {"scans", report.scans}, {"time_increment", report.sweep}}
+      .dump();
 }
 
-std::vector<std::string> remarks_on(const StampJitter& jitter) {
+std::vector<std::string> remarks_on(const StampReport& report) {
   constexpr double kWorthALook = 5e-3;  // s
   std::vector<std::string> remarks;
   const auto remark_on = [&](const std::string& what, double seconds) {
@@ -18,8 +20,12 @@ std::vector<std::string> remarks_on(const StampJitter& jitter) {
                         " ms although the motion shows that the " + what +
                         " were taken evenly: even times were used; stamp them where they are made");
   };
-  remark_on("ticks", jitter.ticks);
-  remark_on("scans", jitter.scans);
+  remark_on("ticks", report.ticks);
+  remark_on("scans", report.scans);
+  if (report.sweep > 0.0)
+    remarks.push_back(
+        "scans do not say when their beams were sent; a head that turns once from scan to scan explains the "
+        "motion better, and was assumed: record time_increment");
   return remarks;
 }
 

@@ -6,18 +6,18 @@
 
 namespace odomcalib::calib {
 
-/// Of stamps that were replaced by even ones, s, the largest of all recordings; zero where those given are
-/// right.
-struct StampJitter {
-  double ticks = 0.0;
+/// Times that were replaced, the largest of all recordings, s; zero where those given are right.
+struct StampReport {
+  double ticks = 0.0;  ///< jitter of stamps that were evened out
   double scans = 0.0;
-  [[nodiscard]] bool any() const { return ticks > 0.0 || scans > 0.0; }
+  double sweep = 0.0;  ///< between beams of scans that did not say so
+  [[nodiscard]] bool any() const { return ticks > 0.0 || scans > 0.0 || sweep > 0.0; }
 };
 
-/// {"ticks", "scans"}, s
-std::string to_json(const StampJitter& jitter);
+/// {"ticks", "scans", "time_increment"}, s
+std::string to_json(const StampReport& report);
 
 /// A sentence for each that is worth a look at the driver.
-std::vector<std::string> remarks_on(const StampJitter& jitter);
+std::vector<std::string> remarks_on(const StampReport& report);
 
 }  // namespace odomcalib::calib

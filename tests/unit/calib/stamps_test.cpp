@@ -170,12 +170,12 @@ TEST(EvenScans, are_even_where_motion_says_so) {
 }
 
 TEST(StampReport, remarks_on_what_a_driver_could_mend) {
-  EXPECT_FALSE(StampJitter{}.any());
-  EXPECT_TRUE(remarks_on({4e-3, 4e-3}).empty());
-  const auto remarks = remarks_on({0.0, 16e-3});
+  EXPECT_FALSE(StampReport{}.any());
+  EXPECT_TRUE(remarks_on({4e-3, 4e-3, 0.0}).empty());
+  const auto remarks = remarks_on({0.0, 16e-3, 0.0});
   ASSERT_EQ(remarks.size(), 1U);
   EXPECT_NE(remarks[0].find("scans jitter by 16 ms"), std::string::npos) << remarks[0];
-  EXPECT_EQ(to_json(StampJitter{0.0, 0.016}), R"({"ticks":0.0,"scans":0.016})");
+  EXPECT_EQ(to_json(StampReport{0.0, 0.016, 0.0}), R"({"ticks":0.0,"scans":0.016,"time_increment":0.0})");
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+#include "calib/stamps/sweeps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "calib/geometry/se2.hpp"
+#include "calib/matching/surface.hpp"
+#include "calib/statistics/median.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+bool could_sweep(const Recording& recording) {
+  const auto& scans = recording.scans;
+  return scans.size() > 1 && std::none_of(scans.begin(), scans.end(), [&](const Scan& scan) {
+           return scan.time_increment || !scan.times.empty() || scan.sensor != scans.front().sensor;
+         });
+}
+
+/// s
+double usual_interval(const std::vector<Scan>& scans) {
+  std::vector<double> intervals;
+  intervals.reserve(scans.size());
+  for (std::size_t k = 1; k < scans.size(); ++k) intervals.push_back(scans[k].t - scans[k - 1].t);
+  return median_of(std::move(intervals));
+}
+
+double angle_between_beams(const Scan& scan) {
+  const std::size_t beams = scan.ranges.size();
+  return beams < 2 ? 0.0 : std::abs(scan.angle(beams - 1) - scan.angle(0)) / static_cast<double>(beams - 1);
+}
+
+void let_sweep(Recording& recording) {
+  const double turn = usual_interval(recording.scans);
+  for (Scan& scan : recording.scans) scan.time_increment = turn * angle_between_beams(scan) / (2.0 * kPi);
+}
+
+}  // namespace
+
+std::vector<Recording> with_sweeps(std::span<const Recording> recordings) {
+  if (!std::all_of(recordings.begin(), recordings.end(), could_sweep)) return {};
+  std::vector<Recording> sweeping(recordings.begin(), recordings.end());
+  for (Recording& recording : sweeping) let_sweep(recording);
+  return sweeping;
+}
+
+void take_stamps_for_middles(std::vector<Recording>& recordings) {
+  for (Recording& recording : recordings)
+    for (Scan& scan : recording.scans) scan.t -= reference_time(scan);
+}
+
+}  // namespace odomcalib::calib
