@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/geometry/se2.hpp"
 #include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
@@ -11,9 +12,9 @@ namespace {
 
 constexpr std::size_t kFewest = 50;
 constexpr double kEven = 3e-4;        // s; nothing moves so fast that it mattered
-constexpr std::size_t kReach = 12;    // samples to either side
+constexpr std::size_t kReach = 30;    // samples to either side
 constexpr std::size_t kLong = 100;    // samples over which a period is measured
-constexpr double kFewLost = 1.2;      // times the usual interval: what the mean one may be to count lost ones
+constexpr double kFewLost = 3.0;      // times the usual interval: what the mean one may be to count lost ones
 constexpr double kUnambiguous = 0.2;  // of an interval: spread that leaves no doubt how many it spans
 
 /// Of an index, over long stretches.
@@ -31,6 +32,24 @@ std::vector<double> numbered(std::size_t count) {
   return index;
 }
 
+/// How many periods lie before each sample. One that comes late and is followed by others at once was held up
+/// with them: no more samples are missing than the time of all together allows.
+std::vector<double> steps_of(const std::vector<double>& intervals, double usual) {
+  constexpr double kHeldUp = 1.5, kAtOnce = 0.5;  // times the usual interval
+  std::vector<double> steps;
+  for (std::size_t k = 0; k < intervals.size();) {
+    double total = intervals[k], count = 1.0;
+    std::size_t next = k + 1;
+    if (intervals[k] > kHeldUp * usual)
+      for (; next < intervals.size() && intervals[next] < kAtOnce * usual; ++next, ++count)
+        total += intervals[next];
+    steps.push_back(std::max(count, std::round(total / usual)) - (count - 1.0));
+    steps.resize(next, 1.0);
+    k = next;
+  }
+  return steps;
+}
+
 /// Counts lost samples in where intervals are regular enough to tell; otherwise one after the other.
 std::vector<double> indices_of(const std::vector<double>& stamps) {
   std::vector<double> index = numbered(stamps.size());
@@ -39,8 +58,8 @@ std::vector<double> indices_of(const std::vector<double>& stamps) {
   const double usual = median_of(intervals);
   if (period_of(stamps, index) > kFewLost * usual || deviation_about(usual, intervals) > kUnambiguous * usual)
     return index;
-  for (std::size_t k = 1; k < stamps.size(); ++k)
-    index[k] = index[k - 1] + std::max(1.0, std::round(intervals[k - 1] / usual));
+  const std::vector<double> steps = steps_of(intervals, usual);
+  for (std::size_t k = 1; k < stamps.size(); ++k) index[k] = index[k - 1] + steps[k - 1];
   return index;
 }
 
@@ -69,10 +88,11 @@ std::vector<double> running_middle(const std::vector<double>& values) {
   return middles;
 }
 
+/// By the mean absolute deviation, which single late ones enter as well.
 double jitter_of(const std::vector<double>& stamps, const std::vector<double>& even) {
-  std::vector<double> apart;
-  for (std::size_t k = 0; k < stamps.size(); ++k) apart.push_back(stamps[k] - even[k]);
-  return deviation_about(0.0, std::move(apart));
+  double sum = 0.0;
+  for (std::size_t k = 0; k < stamps.size(); ++k) sum += std::abs(stamps[k] - even[k]);
+  return std::sqrt(kPi / 2.0) * sum / static_cast<double>(stamps.size());
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace odomcalib::calib {
 
 struct EvenStamps {
   std::vector<double> t;  ///< s, one for each stamp, never decreasing
-  double jitter = 0.0;    ///< s, standard deviation of the stamps from these, by their median absolute one
+  double jitter = 0.0;    ///< s, standard deviation of the stamps from these, by their mean absolute one
 };
 
 /// Spreads stamps evenly: index times period, and a running robust mean of what is left, which follows a

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib/stamps/stamp_contest.hpp"
+#include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -20,10 +21,19 @@ std::vector<double> stamps_of(const std::vector<Sample>& samples) {
   return stamps;
 }
 
-/// The same counts once more, at the same time, while the robot moves: sent twice.
-bool is_repeat(const std::vector<TickSample>& ticks, std::size_t k, double usual) {
+/// Of intervals between stamps, that of two samples which come at once, s; zero where most do anyway.
+double at_once(const std::vector<TickSample>& ticks) {
   constexpr double kAtOnce = 0.1;  // of the usual interval
-  if (k < 2 || ticks[k].t - ticks[k - 1].t > kAtOnce * usual) return false;
+  std::vector<double> intervals;
+  for (std::size_t k = 1; k < ticks.size(); ++k) intervals.push_back(ticks[k].t - ticks[k - 1].t);
+  if (intervals.empty()) return 0.0;
+  const double mean = (ticks.back().t - ticks.front().t) / static_cast<double>(intervals.size());
+  return median_of(std::move(intervals)) > kAtOnce * mean ? kAtOnce * mean : 0.0;
+}
+
+/// The same counts once more, at the same time, while the robot moves: sent twice.
+bool is_repeat(const std::vector<TickSample>& ticks, std::size_t k, double soon) {
+  if (k < 2 || ticks[k].t - ticks[k - 1].t >= soon) return false;
   const auto moves = [&](std::size_t a, std::size_t b) {
     return ticks[a].left != ticks[b].left || ticks[a].right != ticks[b].right;
   };
@@ -33,10 +43,9 @@ bool is_repeat(const std::vector<TickSample>& ticks, std::size_t k, double usual
 /// Numbers of the others.
 std::vector<std::size_t> without_repeats(const std::vector<TickSample>& ticks) {
   std::vector<std::size_t> kept;
-  const double usual =
-      ticks.empty() ? 0.0 : (ticks.back().t - ticks.front().t) / static_cast<double>(ticks.size());
+  const double soon = at_once(ticks);
   for (std::size_t k = 0; k < ticks.size(); ++k)
-    if (!is_repeat(ticks, k, usual)) kept.push_back(k);
+    if (!is_repeat(ticks, k, soon)) kept.push_back(k);
   return kept;
 }
 

@@ -68,6 +68,16 @@ TEST(EvenStamps, keep_lost_samples_and_pauses) {
   EXPECT_LT(spread(even->t, truth), 0.6 * spread(given, truth)) << "seed " << kSeed;
 }
 
+TEST(EvenStamps, count_what_was_held_up_once) {
+  const auto truth = evenly(2000);
+  std::vector<double> given = truth;
+  for (std::size_t k = 10; k + 3 < given.size(); k += 25)  // 55 ms late, and the next two with it
+    for (std::size_t j = 0; j < 3; ++j) given[k + j] = truth[k] + 0.055 + 1e-4 * static_cast<double>(j);
+  const auto even = even_stamps(given);
+  ASSERT_TRUE(even);
+  EXPECT_LT(spread(even->t, truth), 0.02 * spread(given, truth));
+}
+
 TEST(EvenStamps, spread_what_arrives_in_bursts) {
   const auto truth = evenly(2000);
   std::vector<double> given;
