@@ -56,7 +56,8 @@ std::vector<double> indices_of(const std::vector<double>& stamps) {
   std::vector<double> intervals;
   for (std::size_t k = 1; k < stamps.size(); ++k) intervals.push_back(stamps[k] - stamps[k - 1]);
   const double usual = median_of(intervals);
-  if (period_of(stamps, index) > kFewLost * usual || deviation_about(usual, intervals) > kUnambiguous * usual)
+  if (!(usual > 0.0) || period_of(stamps, index) > kFewLost * usual ||
+      deviation_about(usual, intervals) > kUnambiguous * usual)
     return index;
   const std::vector<double> steps = steps_of(intervals, usual);
   for (std::size_t k = 1; k < stamps.size(); ++k) index[k] = index[k - 1] + steps[k - 1];
@@ -76,7 +77,7 @@ double middle_of(const std::vector<double>& values) {
   return sum / count;
 }
 
-/// Over kReach samples to either side, fewer at the ends.
+/// Of up to kReach samples on either side, as many on both.
 std::vector<double> running_middle(const std::vector<double>& values) {
   std::vector<double> middles;
   for (std::size_t k = 0; k < values.size(); ++k) {

@@ -46,6 +46,7 @@ TEST(EvenStamps, nothing_to_do_where_they_are_even_or_few) {
   EXPECT_FALSE(even_stamps(evenly(1000)));
   EXPECT_FALSE(even_stamps(late(evenly(40), 3e-3)));
   EXPECT_FALSE(even_stamps({}));
+  EXPECT_FALSE(even_stamps(std::vector<double>(100, 7.0))) << "a clock that stands";
 }
 
 TEST(EvenStamps, find_the_pace_under_jitter) {
