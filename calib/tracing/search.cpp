@@ -287,8 +287,18 @@ class Search {
     const Candidate& candidate = candidates_[index];
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
     settle_shape_of_newest_curve();
+    strike_what_a_mast_does();
     retire_superfluous();
     return true;
+  }
+
+  /// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
+  void strike_what_a_mast_does() {
+    if (!concerns_sensor(result_.curves.back().curve)) return;
+    for (Candidate& candidate : candidates_)
+      if (candidate.curve && (candidate.curve->law.carrier == Carrier::turn_side ||
+                              candidate.curve->law.carrier == Carrier::sideways))
+        candidate.struck = true;
   }
 
   /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.

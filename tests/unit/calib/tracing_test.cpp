@@ -317,6 +317,16 @@ TEST(Tracing, a_centre_of_turning_that_moves_is_flagged) {
   EXPECT_EQ(result.curves.front().curve.law, curve.law);
 }
 
+TEST(Tracing, but_beside_a_mast_that_sways_it_is_the_head_that_moves) {
+  const DriveModel model = jerky_model();
+  const Curve sway{{Variable::turn_acceleration, Carrier::sensor_yaw}, -3.0, 3.0};
+  const Curve sideways{{Variable::speed, Carrier::turn_side}, -0.4, 0.4};
+  const SearchResult result = searched(measured(model, {make_curve_effect(sway), make_curve_effect(sideways)},
+                                                {0.03, 0.0, 0.002, 0.004, 0.006, 0.008, 0.0, 0.0}));
+  ASSERT_FALSE(result.curves.empty()) << "seed " << kSeed;
+  for (const AddedCurve& added : result.curves) EXPECT_NE(added.curve.law.carrier, Carrier::turn_side);
+}
+
 TEST(Tracing, a_wheel_whose_counts_are_older_than_the_others_is_named) {
   constexpr double kLag = 0.025;  // s
   const DriveModel model = jerky_model();
