@@ -39,7 +39,7 @@ class Solver {
   Calibration run() {
     if (!recordings_.empty()) calibration_.robot = recordings_.front().robot;
     even_out_ticks();
-    if (auto error = open()) return refuse(*error);
+    if (auto error = open(recordings_)) return refuse(*error);
     if (auto error = choose_effects()) return refuse(*error);
     if (auto error = start()) return refuse(*error);
     auto fit = settle();
@@ -77,8 +77,8 @@ class Solver {
     return calibration_;
   }
 
-  std::optional<Error> open() {
-    auto session = Session::open(recordings_);
+  std::optional<Error> open(std::span<const Recording> recordings) {
+    auto session = Session::open(recordings);
     if (!session) return session.error();
     session_ = std::make_unique<Session>(std::move(session).value());
     return std::nullopt;
@@ -112,7 +112,7 @@ class Solver {
     }
     if (stamps_.scans == 0.0) return fit;
     recordings_ = evened_;
-    return measure_anew();
+    return measure_anew(recordings_);
   }
 
   /// Scans that do not say when each beam was sent are taken for sweeps of a turning head if that explains
@@ -120,30 +120,26 @@ class Solver {
   Result<FitResult> let_scans_sweep(Result<FitResult> fit) {
     auto sweeping = with_sweeps(recordings_);
     if (sweeping.empty() || !session_->reference_is_scans()) return fit;
-    const auto before = held_out_now(fit.value());
-    const auto given = std::exchange(recordings_, std::span<const Recording>(sweeping));
-    const auto parameters = parameters_;
-    const auto effects = effects_;
+    const State before = state(fit.value(), lidar_.size());
     auto session = std::move(session_);
-    auto better = measure_anew();
+    auto better = measure_anew(sweeping);
     if (better && has(kOffset)) {
       take_stamps_for_middles(sweeping);
-      better = measure_anew();
+      better = measure_anew(sweeping);
     }
-    if (better && is_clearly_better(before, held_out_now(better.value()))) {
+    if (better && is_clearly_better(before.held_out, held_out_now(better.value()))) {
       evened_ = std::move(sweeping);
+      recordings_ = evened_;
       stamps_.sweep = *evened_.front().scans.front().time_increment;
       return better;
     }
-    recordings_ = given;
-    parameters_ = parameters;
-    effects_ = effects;
+    go_back_to(before);
     session_ = std::move(session);
     return fit;
   }
 
-  Result<FitResult> measure_anew() {
-    if (auto error = open()) return *error;
+  Result<FitResult> measure_anew(std::span<const Recording> recordings) {
+    if (auto error = open(recordings)) return *error;
     session_->measure(parameters_, effects_, PairOptions{});
     return settle();
   }
@@ -302,7 +298,7 @@ class Solver {
     return unless_worse(std::move(better), before);
   }
 
-  /// What is gone back to when a correction of the lidar turns out to be none.
+  /// What is gone back to when a correction turns out to be none.
   struct State {
     Eigen::VectorXd parameters;
     EffectList effects;
@@ -322,10 +318,14 @@ class Solver {
   Result<FitResult> unless_worse(Result<FitResult> better, const State& before) {
     const bool asked = !asked_of_lidar_.empty();
     if (better && (asked || !is_worse(before.held_out, held_out_now(better.value())))) return better;
+    go_back_to(before);
+    return fit_corrected();
+  }
+
+  void go_back_to(const State& before) {
     parameters_ = before.parameters;
     effects_ = before.effects;
     lidar_ = before.lidar;
-    return fit_corrected();
   }
 
   [[nodiscard]] std::optional<HeldOut> held_out_now(const FitResult& fit) const {
@@ -342,11 +342,7 @@ class Solver {
 
   Result<FitResult> fit_corrected() {
     corrected_ = corrected(recordings_, lidar_);
-    auto session = Session::open(corrected_);
-    if (!session) return session.error();
-    session_ = std::make_unique<Session>(std::move(session).value());
-    session_->measure(parameters_, effects_, PairOptions{});
-    return settle();
+    return measure_anew(corrected_);
   }
 
   /// From here on effects of the floor know the place, and matches that slide are replaced. What depends on

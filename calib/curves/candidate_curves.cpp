@@ -93,8 +93,7 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
       curve.constant = variable == Variable::heading && is_unsigned(carrier) && both_ways;
       curves.push_back(curve);
       curve.constant = false;
-      if (variable == Variable::left_phase || variable == Variable::right_phase)
-        add_harmonics(curve, kHarmonics + 1, kHighestHarmonic, curves);
+      if (is_phase(variable)) add_harmonics(curve, kHarmonics + 1, kHighestHarmonic, curves);
       if (variable == Variable::turn_acceleration) {  // what comes late may look like what went before
         curves.push_back(curve);
         curves.back().memory = kSwayLags.size() - 1;

@@ -31,7 +31,6 @@ double amount(Carrier carrier, const StepContext& c) {
 
 }  // namespace
 
-/// 0.5 and 99.5 % quantiles of the variable while the wheels turn; equal when it does not vary.
 std::pair<double, double> range_of(Variable variable, std::span<const DriveModel* const> models,
                                    std::size_t memory) {
   std::vector<double> values;
@@ -52,7 +51,6 @@ std::pair<double, double> range_of(Variable variable, std::span<const DriveModel
   return {low, at(0.995)};
 }
 
-/// What an unsigned way adds to a signed one, a drive that goes only one way cannot tell from the wheels.
 bool goes_both_ways(std::span<const DriveModel* const> models) {
   constexpr double kLeast = 0.2;  // of the way
   double ahead = 0.0, back = 0.0;

@@ -48,10 +48,11 @@ bool is_signed_speed(Variable variable) {
          variable == Variable::speed || variable == Variable::turn_rate;
 }
 
-bool is_angle(Variable variable) {
-  return variable == Variable::left_phase || variable == Variable::right_phase ||
-         variable == Variable::heading;
+bool is_phase(Variable variable) {
+  return variable == Variable::left_phase || variable == Variable::right_phase;
 }
+
+bool is_angle(Variable variable) { return is_phase(variable) || variable == Variable::heading; }
 
 bool is_memory(Variable variable) {
   return variable == Variable::previous_turn || variable == Variable::previous_push;

@@ -38,6 +38,8 @@ bool belongs_to_the_place(Variable variable);
 bool begins_with_the_recording(Variable variable);
 /// A speed or turn rate whose sign is the direction.
 bool is_signed_speed(Variable variable);
+/// Of a wheel.
+bool is_phase(Variable variable);
 bool is_angle(Variable variable);
 /// What the robot did last, however long ago.
 bool is_memory(Variable variable);

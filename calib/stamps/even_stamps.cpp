@@ -53,8 +53,7 @@ std::vector<double> steps_of(const std::vector<double>& intervals, double usual)
 /// Counts lost samples in where intervals are regular enough to tell; otherwise one after the other.
 std::vector<double> indices_of(const std::vector<double>& stamps) {
   std::vector<double> index = numbered(stamps.size());
-  std::vector<double> intervals;
-  for (std::size_t k = 1; k < stamps.size(); ++k) intervals.push_back(stamps[k] - stamps[k - 1]);
+  const std::vector<double> intervals = differences_of(stamps);
   const double usual = median_of(intervals);
   if (!(usual > 0.0) || period_of(stamps, index) > kFewLost * usual ||
       deviation_about(usual, intervals) > kUnambiguous * usual)

@@ -19,6 +19,14 @@ struct EvenStamps {
 /// @return nothing when there are fewer than 50, or when they are even to 0.3 ms
 std::optional<EvenStamps> even_stamps(const std::vector<double>& stamps);
 
+template <typename Sample>
+std::vector<double> stamps_of(const std::vector<Sample>& samples) {
+  std::vector<double> stamps;
+  stamps.reserve(samples.size());
+  for (const Sample& sample : samples) stamps.push_back(sample.t);
+  return stamps;
+}
+
 /// @param samples as many as stamps
 template <typename Sample>
 void set_stamps(std::vector<Sample>& samples, const std::vector<double>& stamps) {

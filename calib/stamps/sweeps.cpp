@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "calib/geometry/se2.hpp"
 #include "calib/matching/surface.hpp"
+#include "calib/stamps/even_stamps.hpp"
 #include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
@@ -18,21 +18,13 @@ bool could_sweep(const Recording& recording) {
          });
 }
 
-/// s
-double usual_interval(const std::vector<Scan>& scans) {
-  std::vector<double> intervals;
-  intervals.reserve(scans.size());
-  for (std::size_t k = 1; k < scans.size(); ++k) intervals.push_back(scans[k].t - scans[k - 1].t);
-  return median_of(std::move(intervals));
-}
-
 double angle_between_beams(const Scan& scan) {
   const std::size_t beams = scan.ranges.size();
   return beams < 2 ? 0.0 : std::abs(scan.angle(beams - 1) - scan.angle(0)) / static_cast<double>(beams - 1);
 }
 
 void let_sweep(Recording& recording) {
-  const double turn = usual_interval(recording.scans);
+  const double turn = median_of(differences_of(stamps_of(recording.scans)));  // s
   for (Scan& scan : recording.scans) scan.time_increment = turn * angle_between_beams(scan) / (2.0 * kPi);
 }
 

@@ -13,19 +13,10 @@
 namespace odomcalib::calib {
 namespace {
 
-template <typename Sample>
-std::vector<double> stamps_of(const std::vector<Sample>& samples) {
-  std::vector<double> stamps;
-  stamps.reserve(samples.size());
-  for (const Sample& sample : samples) stamps.push_back(sample.t);
-  return stamps;
-}
-
 /// Of intervals between stamps, that of two samples which come at once, s; zero where most do anyway.
 double at_once(const std::vector<TickSample>& ticks) {
   constexpr double kAtOnce = 0.1;  // of the usual interval
-  std::vector<double> intervals;
-  for (std::size_t k = 1; k < ticks.size(); ++k) intervals.push_back(ticks[k].t - ticks[k - 1].t);
+  std::vector<double> intervals = differences_of(stamps_of(ticks));
   if (intervals.empty()) return 0.0;
   const double mean = (ticks.back().t - ticks.front().t) / static_cast<double>(intervals.size());
   return median_of(std::move(intervals)) > kAtOnce * mean ? kAtOnce * mean : 0.0;

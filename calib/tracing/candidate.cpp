@@ -26,10 +26,6 @@ std::string key_of(const Effect& effect, const Curve& curve) {
          (curve.patches ? "/patches" : "");
 }
 
-bool is_phase(Variable variable) {
-  return variable == Variable::left_phase || variable == Variable::right_phase;
-}
-
 bool belongs_to_one_recording(const Effect& effect) {
   const auto laws = effect.laws();
   return std::any_of(laws.begin(), laws.end(),

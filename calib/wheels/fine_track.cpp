@@ -20,8 +20,7 @@ std::vector<double> part_of(const std::vector<double>& all, std::size_t begin, s
 }
 
 double median_period(const WheelTrack& track) {
-  std::vector<double> periods;
-  for (std::size_t k = 1; k < track.t.size(); ++k) periods.push_back(track.t[k] - track.t[k - 1]);
+  std::vector<double> periods = differences_of(track.t);
   return periods.empty() ? 0.0 : median_of(std::move(periods));
 }
 

@@ -145,24 +145,20 @@ TEST(EvenTicks, sent_twice_happened_once) {
   EXPECT_NEAR(even->t[1000 + 7] - even->t[1000 + 5], kPeriod, 1e-3) << "one of the three is a repeat";
 }
 
-/// Scans every half second, stamped as given; motions are those between the times at which they were taken.
+std::vector<Interval> between(const std::vector<double>& times) {
+  std::vector<Interval> intervals;
+  for (std::size_t k = 0; k + 1 < times.size(); ++k) intervals.push_back({times[k], times[k + 1]});
+  return intervals;
+}
+
+/// Scans stamped as given; motions are those between the times at which they were taken.
 FitData scanned(const DriveModel& model, const std::vector<double>& taken, const std::vector<double>& stamps,
                 Recording& recording) {
-  FitData data{&model, {}};
-  std::mt19937 engine(kSeed);
-  std::normal_distribution<double> noise(0.0, 5e-4);
   recording.scans.resize(stamps.size());
   set_stamps(recording.scans, stamps);
-  std::vector<Interval> intervals;
-  for (std::size_t k = 0; k + 1 < taken.size(); ++k) intervals.push_back({taken[k], taken[k + 1]});
-  const Eigen::VectorXd base = to_vector(kBase);
-  const auto motions = model.predict(as_span(base), {}, intervals);
-  for (std::size_t k = 0; k < motions.size(); ++k)
-    data.pairs.push_back(
-        {{stamps[k], stamps[k + 1]},
-         {motions[k].x + noise(engine), motions[k].y + noise(engine), motions[k].yaw + noise(engine)},
-         Eigen::Vector3d::Constant(25e-8).asDiagonal(),
-         k > 0});
+  FitData data = measured(model, {}, {}, between(taken));
+  const std::vector<Interval> stamped = between(stamps);
+  for (std::size_t k = 0; k < stamped.size(); ++k) data.pairs[k].interval = stamped[k];
   return data;
 }
 

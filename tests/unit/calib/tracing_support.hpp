@@ -53,12 +53,10 @@ inline DriveModel jerky_model() {
 }
 
 /// What a sensor with 0.5 mm and 0.5 mrad of noise would have measured, had the robot these effects.
-inline FitData measured(const DriveModel& model, const EffectList& effects,
-                        const std::vector<double>& values) {
+inline FitData measured(const DriveModel& model, const EffectList& effects, const std::vector<double>& values,
+                        const std::vector<Interval>& intervals) {
   Eigen::VectorXd p = to_vector(kBase, values.size());
   std::copy(values.begin(), values.end(), p.data() + kBaseCount);
-  std::vector<Interval> intervals;
-  for (double t = 0.513; t < 238.0; t += 0.5) intervals.push_back({t, t + 0.5});
   const auto motions = model.predict(as_span(p), effects, intervals);
   std::mt19937 engine(kSeed);
   std::normal_distribution<double> noise(0.0, 5e-4);
@@ -71,6 +69,14 @@ inline FitData measured(const DriveModel& model, const EffectList& effects,
                           false});
   }
   return data;
+}
+
+/// Every half second.
+inline FitData measured(const DriveModel& model, const EffectList& effects,
+                        const std::vector<double>& values) {
+  std::vector<Interval> intervals;
+  for (double t = 0.513; t < 238.0; t += 0.5) intervals.push_back({t, t + 0.5});
+  return measured(model, effects, values, intervals);
 }
 
 }  // namespace odomcalib::calib
