@@ -78,7 +78,11 @@ bool SearchRound::curve_beats(std::size_t curve, std::size_t name) const {
   if (penalised(curve) - penalised(name) <= kAmbiguity) return false;
   const bool same_ground = contains(candidates_[name].effect->laws(), candidates_[curve].curve->law) ||
                            table_.correlation(name, curve) > kAlias;
-  return !(same_ground && score(name).statistic > kSameLaw * score(curve).statistic);
+  const auto has_key_of_name = [&](std::size_t k) { return candidates_[k].key == candidates_[name].key; };
+  const double of_best_shape = score(by_score(has_key_of_name).front()).statistic;
+  const double of_curve = score(curve).statistic;
+  return !(same_ground &&
+           (score(name).statistic > kSameLaw * of_curve || of_best_shape > kNearlyAll * of_curve));
 }
 
 std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {

@@ -49,7 +49,8 @@ class SearchRound {
   /// Candidates that are left and wanted, the most promising first.
   [[nodiscard]] std::vector<std::size_t> by_score(const Wanted& wanted) const;
   /// A curve on the name's own ground that explains no more than about twice as much is the same finding with
-  /// a freer law.
+  /// a freer law; so is one that explains hardly more than the name in another shape than it was refitted
+  /// from.
   [[nodiscard]] bool curve_beats(std::size_t curve, std::size_t name) const;
 
   /// Names within a few units of BIC of the best.

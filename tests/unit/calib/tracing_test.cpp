@@ -102,6 +102,18 @@ TEST(Tracing, a_curve_on_the_ground_of_the_second_best_name_takes_no_name_from_i
   for (const AddedCurve& curve : result.curves) EXPECT_NE(curve.law_of, nullptr);
 }
 
+// A refit may begin in a shape that scores little and come to one that was not among those that were scored.
+TEST(Tracing, a_name_is_held_against_curves_in_the_best_of_its_shapes) {
+  const DriveModel model = jerky_model();
+  for (const double threshold : {0.16, 0.22, 0.28}) {
+    const auto data = measured(model, {find_effect("tick_loss")}, {0.02, 0.0, threshold, 0.005});
+    const SearchResult result = searched(data);
+    ASSERT_EQ(result.findings.size(), 1U) << threshold << " seed " << kSeed;
+    EXPECT_EQ(result.findings[0].effect->name(), "tick_loss");
+    EXPECT_FALSE(result.has_unnamed()) << threshold;
+  }
+}
+
 TEST(Tracing, shapes_that_are_tried_are_not_fitted) {
   for (const char* name : {"drift_with_time", "caster_kick"}) {
     const auto parameters = find_effect(name)->parameters();
