@@ -1,6 +1,7 @@
 #include "daemon/routines/manoeuvres.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace odomcalib::routines {
@@ -40,6 +41,12 @@ void arcs(Builder& build) {
   build.four_arcs(wide, 0.35 * kPi, 0.3 / wide);
 }
 
+/// How long a robot has to stand until something sticks only stops of different lengths can tell.
+void vary_rests(Builder& build) {
+  constexpr std::array<double, 7> kRests = {0.2, 0.45, 0.3, 0.15, 0.6, 0.25, 0.35};  // s
+  for (std::size_t k = 0; k < build.moves.size(); ++k) build.moves[k].settle = kRests[k % kRests.size()];
+}
+
 /// Starts and stops at low and at high speed, forward and backward, and in turns.
 void accelerations(Builder& build) {
   for (const double speed : {0.3, 0.1, 0.3}) {
@@ -48,6 +55,7 @@ void accelerations(Builder& build) {
   }
   build.both_spins(0.5 * kPi, 0.6);
   build.both_spins(0.3 * kPi, 0.2);
+  vary_rests(build);
 }
 
 /// Every wheel reverses often, slowly and fast, with and without the robot's direction of travel.

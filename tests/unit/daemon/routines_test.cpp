@@ -205,6 +205,16 @@ INSTANTIATE_TEST_SUITE_P(Names, Manoeuvre,
                                          "reversals", "headings"),
                          [](const auto& name) { return std::string(name.param); });
 
+TEST(Accelerations, rest_for_many_different_times) {
+  std::set<double> rests;
+  const auto plan = manoeuvre_plan("accelerations", {});
+  ASSERT_TRUE(plan.has_value());
+  for (const Move& move : plan->moves) rests.insert(move.settle);
+  EXPECT_GE(rests.size(), 6U);
+  EXPECT_LT(*rests.begin(), 0.2);
+  EXPECT_GT(*rests.rbegin(), 0.5);
+}
+
 TEST(ManoeuvreNames, others_are_refused) { EXPECT_FALSE(manoeuvre_plan("pirouette", {}).has_value()); }
 
 TEST(Pattern, takes_about_four_minutes_and_the_quick_one_less_than_half) {
