@@ -7,6 +7,7 @@
 namespace odomcalib::calib {
 namespace {
 
+constexpr std::size_t kEvery = 3;    ///< relay is asked for: the others are found by their neighbours
 constexpr int kHighestHarmonic = 8;  ///< poles of encoder magnets, lugs, spokes
 
 using Carriers = std::vector<Carrier>;
@@ -100,7 +101,7 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
       }
       // What stays until the opposite push hardly resembles what fades.
       for (std::size_t memory = 0; memory < memories_of(variable); ++memory)
-        if (is_relay(variable, memory)) {
+        if (is_relay(variable, memory) && (memory - kMemorySpans.size()) % kEvery == 0) {
           curves.push_back(curve);
           curves.back().memory = memory;
         }

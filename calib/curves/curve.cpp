@@ -4,6 +4,10 @@ namespace odomcalib::calib {
 
 bool concerns_sensor(const Curve& curve) { return curve.law.carrier == Carrier::sensor_yaw; }
 
+bool takes_an_event(const Curve& curve) {
+  return curve.law.variable == Variable::since_stop || is_relay(curve.law.variable, curve.memory);
+}
+
 Curve strong(Curve curve) {
   curve.strong = true;
   return curve;

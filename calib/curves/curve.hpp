@@ -53,6 +53,9 @@ struct Curve {
 /// A dependence of the sensor's place on the base: none of odometry's.
 bool concerns_sensor(const Curve& curve);
 
+/// Begins with a stop or a push, of which it is not known how long or how hard it has to be.
+bool takes_an_event(const Curve& curve);
+
 /// The same curve, expected to be large.
 Curve strong(Curve curve);
 

@@ -119,6 +119,7 @@ class DriveHistory {
   Wheel left_, right_;
   double direction_ = 0.0;
   double since_reversal_ = kFarBack;
+  double pace_ = 0.0;
   double stood_ = 0.0;  ///< s
   std::array<double, kStops.size()> since_stop_;
   std::array<double, kRelaxations.size()> relaxed_turn_rate_{}, relaxed_lateral_acceleration_{};

@@ -33,12 +33,14 @@ using Memory = std::array<double, kMemorySpans.size()>;
 
 /// m/s^2; what a push of such strength moved stays until one the other way (the relay of Krasnosel'skii and
 /// Pokrovskii, Systems with Hysteresis, 1989, section 28, its thresholds symmetrical).
-inline constexpr std::array<double, 5> kPushes = {0.1, 0.17, 0.3, 0.5, 0.9};
+inline constexpr std::array<double, 13> kPushes = {0.1,  0.12, 0.145, 0.17, 0.205, 0.25, 0.3,
+                                                   0.36, 0.43, 0.5,   0.6,  0.75,  0.9};
 /// Means as in Memory, then relays.
 using PushMemory = std::array<double, kMemorySpans.size() + kPushes.size()>;
 
-/// s; how long a robot has to stand until something sticks is not known either.
-inline constexpr std::array<double, 5> kStops = {0.1, 0.14, 0.2, 0.28, 0.4};
+/// s; how long a robot has to stand until something sticks is not known either. Shorter stops are reversals.
+inline constexpr std::array<double, 14> kStops = {0.12,  0.14, 0.155, 0.17, 0.19, 0.21, 0.23,
+                                                  0.255, 0.28, 0.31,  0.34, 0.37, 0.41, 0.45};
 
 /// m; trails of casters are not known either ...
 inline constexpr std::array<double, 6> kCasterTrails = {0.02, 0.028, 0.04, 0.057, 0.08, 0.113};
@@ -67,9 +69,11 @@ struct StepContext {
   double left_acceleration = 0.0, right_acceleration = 0.0;  ///< m/s^2
   double left_acceleration_change = 0.0,
          right_acceleration_change = 0.0;  ///< over the interval, m/s^2
-  double push = 0.0;       ///< forward acceleration over the time up to the end of the interval, m/s^2
-  double speed = 0.0;      ///< forward, m/s
-  double turn_rate = 0.0;  ///< rad/s
+  double pace = 0.0;          ///< mean speed of the rims of late, in units of the least that is no standing
+  double push = 0.0;          ///< forward acceleration, m/s^2
+  double hardest_push = 0.0;  ///< which it will come to before it falls below the least of kPushes, m/s^2
+  double speed = 0.0;         ///< forward, m/s
+  double turn_rate = 0.0;     ///< rad/s
   Sways turn_acceleration_before{}, turn_acceleration_after{};  ///< rad/s^2, at begin and end, late by each
   /// What makes tyres slip sideways, its sign that of the force, lagging by each of kRelaxations: the turn
   /// rate, rad/s, and the lateral acceleration, m/s^2. Not smoothed: the tyres do that.

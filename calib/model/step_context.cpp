@@ -97,6 +97,19 @@ WheelAccelerations latest_accelerations(const WheelTrack& track, std::size_t fir
   return all;
 }
 
+/// The same over the time about the middle of each interval.
+WheelAccelerations centred_accelerations(const WheelTrack& track, std::size_t first, double duration) {
+  WheelAccelerations all;
+  Window window;
+  for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
+    const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
+    window = window_around(track, k, window, centre, duration);
+    all.left.push_back(local_derivatives(track.t, track.left, window.low, window.high, centre).second);
+    all.right.push_back(local_derivatives(track.t, track.right, window.low, window.high, centre).second);
+  }
+  return all;
+}
+
 /// From the smoothed accelerations in the middles of the intervals beside it.
 void fill_changes_of_acceleration(std::vector<StepContext>& contexts) {
   for (std::size_t k = 0; k < contexts.size(); ++k) {
@@ -107,13 +120,56 @@ void fill_changes_of_acceleration(std::vector<StepContext>& contexts) {
   }
 }
 
-/// A push may be short, but what lies beyond a threshold must not be noise.
+/// A robot that slows down ever more gently stands from no certain time on, but passes a slow speed at one; a
+/// count or two by which its wheels settle are no motion.
+void fill_paces(std::vector<StepContext>& contexts, const WheelTrack& track, std::size_t first,
+                const BaseParameters& base) {
+  constexpr double kSlow = 0.003;        // m/s
+  constexpr std::size_t kIntervals = 3;  // the last of them the one in question: odometry knows no later ones
+  constexpr double kFew = 1.5;           // counts in them, mean of both wheels
+  const double count = track.tick_angle * std::max(base.left_radius, base.right_radius);
+  for (std::size_t j = 0; j < contexts.size(); ++j) {
+    std::size_t from = first + j;
+    const std::size_t to = from + 1;
+    while (to - from < kIntervals && from > 0 && track.segment[from - 1] == track.segment[to]) --from;
+    double way = 0.0;
+    for (std::size_t k = from; k < to; ++k)
+      way += 0.5 * (base.left_radius * std::abs(track.left[k + 1] - track.left[k]) +
+                    base.right_radius * std::abs(track.right[k + 1] - track.right[k]));
+    contexts[j].pace = way / std::max(kSlow * (track.t[to] - track.t[from]), kFew * count);
+  }
+}
+
+/// A push may be short, but what lies beyond a threshold must not be noise: the curvature of a parabola
+/// through values of deviation s, one every dt over a time T, has the deviation sqrt(720 dt / T^5) s.
+double duration_of_push(const WheelTrack& track, const BaseParameters& base) {
+  constexpr double kTolerated = 0.03;  // m/s^2
+  constexpr double kFewest = 3.1;      // intervals that a curvature needs, with some leeway
+  constexpr double kShortest = 0.08;   // s; stamps are no better than to a millisecond
+  const double dt =
+      (track.t.back() - track.t.front()) / std::max(1.0, static_cast<double>(track.t.size() - 1));
+  const double count = track.tick_angle * std::max(base.left_radius, base.right_radius);
+  const double variance = count * count / 12.0 / 2.0;  // of both wheels' mean
+  const double wanted = std::pow(720.0 * dt * variance / (kTolerated * kTolerated), 0.2);
+  return std::max(std::clamp(wanted, kShortest, kSmoothing), kFewest * dt);
+}
+
+double push_of(const WheelAccelerations& wheels, std::size_t k, const BaseParameters& base) {
+  return 0.5 * (base.left_radius * wheels.left[k] + base.right_radius * wheels.right[k]);
+}
+
+/// What a hard push moves it moves when it begins, however hard it has to be.
 void fill_pushes(std::vector<StepContext>& contexts, const WheelTrack& track, std::size_t first,
                  const BaseParameters& base) {
-  constexpr double kShort = 0.16;  // s
-  const auto wheels = latest_accelerations(track, first, duration_for(track, base, kShort));
-  for (std::size_t k = 0; k < contexts.size(); ++k)
-    contexts[k].push = 0.5 * (base.left_radius * wheels.left[k] + base.right_radius * wheels.right[k]);
+  const auto wheels = centred_accelerations(track, first, duration_of_push(track, base));
+  double hardest = 0.0;
+  for (std::size_t k = contexts.size(); k-- > 0;) {
+    const double push = push_of(wheels, k, base);
+    const bool goes_on = std::abs(push) > kPushes.front() && push * hardest > 0.0;
+    hardest = goes_on && std::abs(hardest) > std::abs(push) ? hardest : push;
+    contexts[k].push = push;
+    contexts[k].hardest_push = hardest;
+  }
 }
 
 /// At the samples between two intervals, from accelerations in their middles that are smoothed no more than a
@@ -121,21 +177,13 @@ void fill_pushes(std::vector<StepContext>& contexts, const WheelTrack& track, st
 void fill_accelerations_at_ends(std::vector<StepContext>& contexts, const WheelTrack& track,
                                 std::size_t first, const BaseParameters& base) {
   constexpr double kSharp = 0.12;  // s
-  const double duration = duration_for(track, base, kSharp);
-  std::vector<double> in_middle;
-  Window window;
-  for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
-    const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
-    window = window_around(track, k, window, centre, duration);
-    const auto second = [&](const std::vector<double>& wheel) {
-      return local_derivatives(track.t, wheel, window.low, window.high, centre).second;
-    };
-    in_middle.push_back((base.right_radius * second(track.right) - base.left_radius * second(track.left)) /
-                        base.track_width);
-  }
+  const auto wheels = centred_accelerations(track, first, duration_for(track, base, kSharp));
+  const auto in_middle = [&](std::size_t k) {
+    return (base.right_radius * wheels.right[k] - base.left_radius * wheels.left[k]) / base.track_width;
+  };
   for (std::size_t k = 0; k < contexts.size(); ++k) {
-    const double before = in_middle[k > 0 ? k - 1 : k], own = in_middle[k],
-                 after = in_middle[k + 1 < contexts.size() ? k + 1 : k];
+    const double before = in_middle(k > 0 ? k - 1 : k), own = in_middle(k),
+                 after = in_middle(k + 1 < contexts.size() ? k + 1 : k);
     contexts[k].turn_acceleration_before.fill(0.5 * (before + own));
     contexts[k].turn_acceleration_after.fill(0.5 * (own + after));
   }
@@ -151,6 +199,12 @@ void delay_sways(std::vector<StepContext>& contexts) {
       bend[k] -= std::expm1(-c.dt / kSwayLags[k]) * (c.turn_acceleration_after[k] - bend[k]);
       c.turn_acceleration_after[k] = bend[k];
     }
+}
+
+/// Of a time in which a quantity goes from one value to another.
+double share_below_one(double from, double to) {
+  if ((from < 1.0) == (to < 1.0)) return from < 1.0 ? 1.0 : 0.0;
+  return (1.0 - std::min(from, to)) / std::abs(to - from);
 }
 
 /// Means of a motion's sign move on by the motion, in units of the usual span.
@@ -228,8 +282,9 @@ void DriveHistory::relax_turn(StepContext& c, const Pose& step) {
 }
 
 void DriveHistory::remember_stop(StepContext& c) {
-  const bool standing = c.left_delta == 0.0 && c.right_delta == 0.0;
-  stood_ = standing ? stood_ + c.dt : 0.0;
+  if (pace_ >= 1.0) stood_ = 0.0;
+  stood_ += c.dt * share_below_one(pace_, c.pace);
+  pace_ = c.pace;
   for (std::size_t k = 0; k < kStops.size(); ++k)
     if (stood_ > kStops[k]) since_stop_[k] = 0.0;
   c.since_stop = since_stop_;
@@ -241,14 +296,11 @@ void DriveHistory::remember_stop(StepContext& c) {
 /// Noise of the acceleration at steady speed must not wash the memory out.
 void DriveHistory::remember_push(StepContext& c) {
   constexpr double kMemory = 0.1;  // m/s
-  constexpr double kLeast = 0.1;   // m/s^2
   c.previous_push = previous_push_;
-  const double acceleration = c.push;
-  if (std::abs(acceleration) < kLeast) return;
-  remember(previous_push_, acceleration * c.dt / kMemory);
+  if (std::abs(c.push) > kPushes.front()) remember(previous_push_, c.push * c.dt / kMemory);
   for (std::size_t k = 0; k < kPushes.size(); ++k)
-    if (std::abs(acceleration) > kPushes[k])
-      previous_push_[kMemorySpans.size() + k] = std::copysign(1.0, acceleration);
+    if (std::abs(c.hardest_push) > kPushes[k])
+      previous_push_[kMemorySpans.size() + k] = std::copysign(1.0, c.hardest_push);
 }
 
 void DriveHistory::remember_turn(StepContext& c, double yaw) {
@@ -278,6 +330,7 @@ std::vector<StepContext> make_context_of_moment(const WheelTrack& track, const B
   fill_accelerations_at_ends(contexts, track, first, base);
   fill_changes_of_acceleration(contexts);
   fill_pushes(contexts, track, first, base);
+  fill_paces(contexts, track, first, base);
   delay_sways(contexts);
   return contexts;
 }
@@ -289,6 +342,9 @@ void see_from_the_past(StepContext& last, const WheelTrack& track, const BasePar
       latest_accelerations(track, n - std::min<std::size_t>(n, 3), duration_for(track, base, kSharp));
   last.left_acceleration_change = base.left_radius * (wheels.left.back() - wheels.left.front());
   last.right_acceleration_change = base.right_radius * (wheels.right.back() - wheels.right.front());
+  const auto pushing =
+      latest_accelerations(track, n - std::min<std::size_t>(n, 3), duration_of_push(track, base));
+  last.push = last.hardest_push = push_of(pushing, pushing.left.size() - 1, base);
 }
 
 std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& base) {

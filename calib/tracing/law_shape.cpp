@@ -91,13 +91,28 @@ std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, co
   for (const Curve& shape : other_shapes(curve, models)) {
     EffectList effects = model.effects;
     effects.back() = make_curve_effect(shape);
-    Eigen::VectorXd start = Eigen::VectorXd::Zero(kept + static_cast<Eigen::Index>(basis_size(shape)));
-    start.head(kept) = model.fit.parameters.head(kept);
+    Eigen::VectorXd start = model.fit.parameters;
+    // As many functions say much the same; which pairs are outliers hangs on where the fit begins.
+    if (basis_size(shape) != basis_size(curve)) {
+      start = Eigen::VectorXd::Zero(kept + static_cast<Eigen::Index>(basis_size(shape)));
+      start.head(kept) = model.fit.parameters.head(kept);
+    }
     auto fit = task.fit(effects, start, model.fit.noise);
     if (!fit || curve_spoils_base(*effects.back(), model.fit, *fit)) continue;
     all.push_back({shape, {std::move(effects), std::move(*fit)}});
   }
   return all;
+}
+
+const Reshaped& most_sensible_event(const std::vector<Reshaped>& shapes, double enough) {
+  std::vector<const Reshaped*> alike;
+  for (const Reshaped& shape : shapes)
+    if (takes_an_event(shape.curve) && shape.model.fit.cost < enough) alike.push_back(&shape);
+  std::sort(alike.begin(), alike.end(),
+            [](const Reshaped* a, const Reshaped* b) { return a->curve.memory < b->curve.memory; });
+  const Curve& least = alike.front()->curve;
+  const bool was_none_too_short = least.law.variable == Variable::since_stop && least.memory == 0;
+  return *alike[was_none_too_short ? alike.size() - 1 : alike.size() / 2];
 }
 
 std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& model, const Curve& curve,

@@ -17,6 +17,12 @@ struct Reshaped {
 /// @param model whose last effect is the curve's
 std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, const Curve& curve);
 
+/// How long a stop or how hard a push it takes, of the curves whose -2 log L is below `enough`: the middle of
+/// what the events of this drive leave open. Where no stop was too short the longest, so that nothing is made
+/// up of stops shorter than any that was seen.
+/// @param shapes of one curve; one that takes an event is below
+const Reshaped& most_sensible_event(const std::vector<Reshaped>& shapes, double enough);
+
 /// What a parameter has to take off -2 log L when what it belongs to is proved already (Akaike, IEEE Trans.
 /// Autom. Control 19, 1974).
 inline constexpr double kAkaike = 2.0;

@@ -338,18 +338,34 @@ class Search {
   }
 
   /// A law with a narrow peak needs more knots than finding it did, one of the past another memory. What
-  /// other shapes or another zero would make of the base parameters is not known about them.
+  /// other shapes that are nearly as likely, or another zero, would make of the base parameters is not known
+  /// about them.
   void settle_shape_of_newest_curve() {
-    AddedCurve& newest = result_.curves.back();
-    const FittedModel first = result_.model;
-    for (Reshaped& other : reshaped(task_, first, newest.curve)) {
-      result_.doubts.emplace_back(other.model.base() - first.base());
-      if (!is_better(task_, result_.model, other.model, kAkaike)) continue;
-      result_.model = std::move(other.model);
-      newest.curve = std::move(other.curve);
-      newest.effect = result_.model.effects.back();
-    }
-    result_.doubts.push_back(doubt_of_zero(task_, result_.model, newest.curve));
+    fit_anew_on_own_noise();
+    const Reshaped first{result_.curves.back().curve, result_.model};
+    std::vector<Reshaped> shapes = reshaped(task_, first.model, first.curve);
+    for (const Reshaped& other : shapes)
+      if (is_better(task_, result_.model, other.model, kAkaike)) take_shape(other);
+    shapes.push_back(first);
+    if (takes_an_event(result_.curves.back().curve))
+      take_shape(most_sensible_event(shapes, result_.model.fit.cost + kAkaike));
+    for (const Reshaped& other : shapes)
+      if (other.model.fit.cost < result_.model.fit.cost + schwarz(result_.model.fit))
+        result_.doubts.emplace_back(other.model.base() - result_.model.base());
+    result_.doubts.push_back(doubt_of_zero(task_, result_.model, result_.curves.back().curve));
+  }
+
+  /// Costs compare on the same noise only; while noise was estimated, that of the step before was used.
+  void fit_anew_on_own_noise() {
+    FittedModel& model = result_.model;
+    if (auto again = task_.fit(model.effects, model.fit.parameters, model.fit.noise))
+      model.fit = std::move(*again);
+  }
+
+  void take_shape(const Reshaped& shape) {
+    result_.model = shape.model;
+    result_.curves.back().curve = shape.curve;
+    result_.curves.back().effect = shape.model.effects.back();
   }
 
   /// Larger than usual if the data insist; about its mean where the drive cannot tell that from slow motion.

@@ -9,6 +9,7 @@
 #include "calib/curves/candidate_curves.hpp"
 #include "calib/curves/curve.hpp"
 #include "calib/curves/curve_on_drives.hpp"
+#include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/tracing_json.hpp"
 #include "tests/unit/calib/tracing_support.hpp"
 
@@ -175,6 +176,34 @@ TEST(Curve, survives_the_calibration_file) {
   EXPECT_EQ(read[0].law_of, "drift_with_time");
   EXPECT_TRUE(curves_from_json(R"([{"variable":"mood","carrier":"track","low":0,"high":1}])").empty());
   EXPECT_TRUE(curves_from_json("[{").empty());
+}
+
+/// A curve of an event in all that it may take, of which these are as likely as the best.
+std::vector<Reshaped> in_shapes(Variable variable, std::size_t first, std::size_t count,
+                                std::initializer_list<std::size_t> likely) {
+  std::vector<Reshaped> shapes(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    shapes[k].curve = {{variable, Carrier::both_travel}};
+    shapes[k].curve.memory = first + k;
+    shapes[k].model.fit.cost = 900.0;
+  }
+  for (const std::size_t k : likely) shapes[k].model.fit.cost = 501.0;
+  return shapes;
+}
+
+TEST(Curve, of_an_event_takes_the_middle_of_what_is_open) {
+  const std::size_t relays = kMemorySpans.size();
+  const auto chosen = [](const std::vector<Reshaped>& shapes) {
+    return most_sensible_event(shapes, 502.0).curve.memory;
+  };
+  EXPECT_EQ(chosen(in_shapes(Variable::since_stop, 0, kStops.size(), {4, 6, 5})), 5U);
+  EXPECT_EQ(chosen(in_shapes(Variable::since_stop, 0, kStops.size(), {7})), 7U);
+  // No stop was too short: what shorter ones do was not seen.
+  EXPECT_EQ(chosen(in_shapes(Variable::since_stop, 0, kStops.size(), {0, 1, 2, 3})), 3U);
+  EXPECT_EQ(chosen(in_shapes(Variable::previous_push, relays, kPushes.size(), {0, 1, 2})), relays + 1);
+  // What fades is another matter.
+  EXPECT_EQ(chosen(in_shapes(Variable::previous_push, 0, relays + kPushes.size(), {0, relays + 3})),
+            relays + 3);
 }
 
 }  // namespace

@@ -108,6 +108,23 @@ TEST(RelaxedTurnRate, follows_over_its_way_and_has_the_sign_of_the_force) {
   }
 }
 
+/// Both wheels for eight seconds.
+/// @param rate of the wheels, rad/s, at a time
+template <typename Rate>
+WheelTrack driven_at(Rate rate) {
+  WheelTrack track;
+  double angle = 0.0;
+  for (int k = 0; k <= 400; ++k) {
+    const double t = 0.02 * k;
+    angle += 0.02 * rate(t);
+    track.t.push_back(t);
+    track.left.push_back(angle);
+    track.right.push_back(angle);
+    track.segment.push_back(0);
+  }
+  return track;
+}
+
 TEST(StepContext, remembers_the_last_push_through_steady_motion) {
   WheelTrack track;
   double angle = 0.0, rate = 0.0;
@@ -133,25 +150,59 @@ TEST(StepContext, remembers_the_last_push_through_steady_motion) {
   }
 }
 
+// Else how hard a push has to be would be told by when it got so hard, not by which pushes did.
+TEST(StepContext, a_push_moves_a_seat_when_it_begins_however_hard_it_has_to_be) {
+  const WheelTrack track = driven_at([](double t) {  // 0.6 m/s^2 are reached in half a second, and left again
+    const double along = std::clamp((t - 4.0) / 0.5, 0.0, 2.0);
+    return 1.0 + 4.0 * (along < 1.0 ? 0.5 * along * along : 1.0 - 0.5 * std::pow(2.0 - along, 2));
+  });
+  const auto context = make_context(track, kBase);
+  const auto moved_at = [&](std::size_t push) {
+    const auto is_moved = [&](const StepContext& c) {
+      return c.previous_push[kMemorySpans.size() + push] > 0.0;
+    };
+    return std::find_if(context.begin(), context.end(), is_moved) - context.begin();
+  };
+  EXPECT_NEAR(static_cast<double>(moved_at(0)), 205.0, 5.0);
+  for (std::size_t k = 1; kPushes[k] < 0.5; ++k) EXPECT_EQ(moved_at(k), moved_at(0)) << kPushes[k];
+  EXPECT_EQ(static_cast<std::size_t>(moved_at(kPushes.size() - 1)), context.size());
+}
+
 TEST(StepContext, counts_from_stops_that_last) {
-  WheelTrack track;
-  double angle = 0.0;
-  for (int k = 0; k <= 400; ++k) {  // stands for 0.3 s at 4 s, for 0.1 s at 6 s
-    const double t = 0.02 * k;
-    const bool stands = (t > 4.0 && t < 4.31) || (t > 6.0 && t < 6.11);
-    if (!stands) angle += 0.1;
-    track.t.push_back(t);
-    track.left.push_back(angle);
-    track.right.push_back(angle);
-    track.segment.push_back(0);
-  }
+  const WheelTrack track =
+      driven_at([](double t) { return (t > 4.0 && t < 4.31) || (t > 6.0 && t < 6.11) ? 0.0 : 5.0; });
   const auto since = make_context(track, kBase).back().since_stop;
   const double step = 0.1 * kBase.left_radius;
   for (std::size_t k = 0; k < kStops.size(); ++k) {
-    if (kStops[k] > 0.3)
+    if (kStops[k] > 0.3) {
       EXPECT_GT(since[k], 100.0) << kStops[k];
-    else
-      EXPECT_NEAR(since[k], (kStops[k] < 0.11 ? 94.0 : 179.0) * step, 2.0 * step) << kStops[k];
+    } else if (kStops[k] < 0.25) {  // a sudden start is seen an interval early, a sudden stop late
+      EXPECT_NEAR(since[k], 179.0 * step, 2.0 * step) << kStops[k];
+    }
+  }
+}
+
+// The last counts of a robot that comes to rest ever more slowly, or that rocks, came anywhere in the stop.
+TEST(StepContext, tells_stops_of_different_lengths_however_the_robot_comes_to_rest) {
+  constexpr double kCount = 0.002;  // rad
+  const auto measured = [&](double stop, double phase) {
+    WheelTrack track = driven_at([&](double t) {
+      return t < 4.0 ? 5.0 : t < 4.2 + stop ? 5.0 * std::exp((4.0 - t) / 0.03) : 5.0;
+    });
+    for (auto* wheel : {&track.left, &track.right})
+      for (double& angle : *wheel) angle = kCount * std::floor(angle / kCount + phase);
+    for (std::size_t k = 212; k < 214; ++k) track.left[k] += kCount;
+    track.tick_angle = kCount;
+    const auto since = make_context(track, kBase).back().since_stop;
+    return std::count_if(since.begin(), since.end(), [](double s) { return s < 100.0; });
+  };
+  std::ptrdiff_t before = 0;
+  for (const double stop : {0.14, 0.21, 0.28, 0.35}) {
+    std::vector<std::ptrdiff_t> counts;
+    for (const double phase : {0.0, 0.25, 0.5, 0.75}) counts.push_back(measured(stop, phase));
+    const auto [least, most] = std::minmax_element(counts.begin(), counts.end());
+    EXPECT_GT(*least, before) << stop;
+    before = *most;
   }
 }
 
