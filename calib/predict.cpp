@@ -8,7 +8,9 @@
 #include "calib/effects/catalogue.hpp"
 #include "calib/effects/reference_effect.hpp"
 #include "calib/lidar/lidar_effect.hpp"
+#include "calib/model/drive_history.hpp"
 #include "calib/model/drive_model.hpp"
+#include "calib/model/step_context.hpp"
 #include "calib/stamps/uneven_stamps.hpp"
 #include "calib/tracing/tracing_json.hpp"
 

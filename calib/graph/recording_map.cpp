@@ -6,6 +6,7 @@
 
 #include "calib/geometry/vector2.hpp"
 #include "calib/matching/probability_grid.hpp"
+#include "calib/model/step_context.hpp"
 #include "calib/reference/scan_surfaces.hpp"
 #include "calib/wheels/nominal_base.hpp"
 

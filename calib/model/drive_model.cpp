@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "calib/model/part_of_step.hpp"
+#include "calib/model/step_context.hpp"
 #include "calib/model/step_twist.hpp"
 
 namespace odomcalib::calib {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "calib/model/step_context.hpp"
 #include "calib/session/recording_check.hpp"
 #include "calib/wheels/fine_track.hpp"
 #include "calib/wheels/nominal_base.hpp"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/model/step_context.hpp"
 #include "calib/reference/sweep_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
 #include "tests/sim/world/simulate.hpp"

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/model/step_context.hpp"
 
 namespace odomcalib::calib {
 namespace {

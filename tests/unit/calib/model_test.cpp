@@ -1,4 +1,5 @@
 #include "calib/model/drive_model.hpp"
+#include "calib/model/step_context.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Synthetic drives: exact poses with drawn errors, wheels with drawn slip.
 #include "calib/estimators/path_fit.hpp"
+#include "calib/model/step_context.hpp"
 
 #include <gtest/gtest.h>
 

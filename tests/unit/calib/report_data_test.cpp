@@ -7,6 +7,7 @@
 #include <random>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/model/step_context.hpp"
 #include "calib/validation/drive_error.hpp"
 #include "calib/validation/residual_trace.hpp"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calib/effects/catalogue.hpp"
+#include "calib/model/step_context.hpp"
 
 namespace odomcalib::calib {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/model/drive_model.hpp"
+#include "calib/model/step_context.hpp"
 
 namespace odomcalib::calib {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "calib/estimators/joint.hpp"
 #include "calib/model/drive_model.hpp"
+#include "calib/model/step_context.hpp"
 
 namespace odomcalib::calib {
 

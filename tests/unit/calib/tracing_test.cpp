@@ -9,6 +9,7 @@
 #include "calib/curves/curve_effect.hpp"
 #include "calib/effects/catalogue.hpp"
 #include "calib/model/placed_effects.hpp"
+#include "calib/model/step_context.hpp"
 #include "calib/tracing/candidate_columns.hpp"
 #include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/plausibility.hpp"

@@ -1,0 +1,120 @@
+#include "calib/model/drive_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kStanding =
+    0.005;  ///< m/s; below, the direction of travel is undefined and the last one is kept
+
+/// Of a time in which a quantity goes from one value to another.
+double share_below_one(double from, double to) {
+  if ((from < 1.0) == (to < 1.0)) return from < 1.0 ? 1.0 : 0.0;
+  return (1.0 - std::min(from, to)) / std::abs(to - from);
+}
+
+/// Means of a motion's sign move on by the motion, in units of the usual span.
+void remember(std::span<double> memory, double motion) {
+  for (std::size_t k = 0; k < kMemorySpans.size(); ++k)
+    memory[k] -= std::expm1(-std::abs(motion) / kMemorySpans[k]) * (std::copysign(1.0, motion) - memory[k]);
+}
+
+}  // namespace
+
+double DriveHistory::Wheel::advance(double delta) {
+  const double now = delta == 0.0 ? direction : std::copysign(1.0, delta);
+  if (direction != 0.0 && now != direction) since = 0.0;
+  direction = now;
+  const double before = since;
+  since += std::abs(delta);
+  return before;
+}
+
+void DriveHistory::advance(StepContext& c) {
+  const Pose step =
+      wheel_arc(base_.left_radius * c.left_delta, base_.right_radius * c.right_delta, base_.track_width);
+  const double now = std::abs(c.speed) > kStanding ? std::copysign(1.0, c.speed) : direction_;
+  if (direction_ != 0.0 && now != direction_) since_reversal_ = 0.0;
+  direction_ = now;
+  c.direction = direction_;
+  c.since_reversal = since_reversal_;
+  c.way = std::copysign(std::hypot(step.x, step.y), step.x * direction_);
+  since_reversal_ += c.way;
+  c.left_since_reversal = left_.advance(c.left_delta);
+  c.right_since_reversal = right_.advance(c.right_delta);
+  swing_caster(c, step);
+  relax_turn(c, step);
+  remember_stop(c);
+  remember_push(c);
+  remember_turn(c, step.yaw);
+  c.heading = pose_.yaw + step.yaw / 2.0;
+  c.x = pose_.x;
+  c.y = pose_.y;
+  pose_ = compose(pose_, step);
+}
+
+/// A wheel that trails by t turns towards the way s of its pivot: tan(beta / 2) falls as exp(-s / t), beta
+/// the angle between both (Campion, Bastin and D'Andrea-Novel 1996, eq. 4: no slip across the wheel). A lean
+/// turns it on by lean * s / t.
+void DriveHistory::swing_caster(StepContext& c, const Pose& step) {
+  constexpr double kBehind = 0.6;  // track widths; what matters is that a spin moves the pivot sideways
+  const double across = -kBehind * base_.track_width * step.yaw;
+  const double way = std::hypot(step.x, across);
+  const double towards = std::atan2(across, step.x);
+  std::size_t k = 0;
+  for (const double trail : kCasterTrails) {
+    if (!(way > 0.0)) break;
+    const double turns = way / trail, fading = std::exp(-turns);
+    for (const double lean : kCasterLeans) {
+      const double before = wrap_angle(caster_[k] - towards);
+      const double after = 2.0 * std::atan(std::tan(before / 2.0) * fading) + lean * turns;
+      c.caster[k] = 0.5 * (std::sin(before) + std::sin(after));
+      caster_[k++] = towards + after;
+    }
+  }
+  for (double& direction : caster_) direction -= step.yaw;
+}
+
+void DriveHistory::relax_turn(StepContext& c, const Pose& step) {
+  const double turn_rate = c.dt > 0.0 ? std::copysign(step.yaw, step.yaw * step.x) / c.dt : 0.0;
+  const double lateral_acceleration = c.dt > 0.0 ? turn_rate * c.way / c.dt : 0.0;
+  for (std::size_t k = 0; k < kRelaxations.size(); ++k) {
+    const double share = -std::expm1(-c.way / kRelaxations[k]);
+    relaxed_turn_rate_[k] += share * (turn_rate - relaxed_turn_rate_[k]);
+    relaxed_lateral_acceleration_[k] += share * (lateral_acceleration - relaxed_lateral_acceleration_[k]);
+  }
+  c.relaxed_turn_rate = relaxed_turn_rate_;
+  c.relaxed_lateral_acceleration = relaxed_lateral_acceleration_;
+}
+
+void DriveHistory::remember_stop(StepContext& c) {
+  if (pace_ >= 1.0) stood_ = 0.0;
+  stood_ += c.dt * share_below_one(pace_, c.pace);
+  pace_ = c.pace;
+  for (std::size_t k = 0; k < kStops.size(); ++k)
+    if (stood_ > kStops[k]) since_stop_[k] = 0.0;
+  c.since_stop = since_stop_;
+  for (double& since : since_stop_)
+    since +=
+        0.5 * (base_.left_radius * std::abs(c.left_delta) + base_.right_radius * std::abs(c.right_delta));
+}
+
+/// Noise of the acceleration at steady speed must not wash the memory out.
+void DriveHistory::remember_push(StepContext& c) {
+  constexpr double kMemory = 0.1;  // m/s
+  c.previous_push = previous_push_;
+  if (std::abs(c.push) > kPushes.front()) remember(previous_push_, c.push * c.dt / kMemory);
+  for (std::size_t k = 0; k < kPushes.size(); ++k)
+    if (std::abs(c.hardest_push) > kPushes[k])
+      previous_push_[kMemorySpans.size() + k] = std::copysign(1.0, c.hardest_push);
+}
+
+void DriveHistory::remember_turn(StepContext& c, double yaw) {
+  c.previous_turn = previous_turn_;
+  remember(previous_turn_, yaw);
+}
+
+}  // namespace odomcalib::calib
