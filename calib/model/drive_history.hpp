@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "calib/geometry/se2.hpp"
 #include "calib/estimators/wheel_motion.hpp"
+#include "calib/geometry/se2.hpp"
 #include "calib/model/motion_step.hpp"
 
 namespace odomcalib::calib {

@@ -13,15 +13,14 @@ double squared_distance(double weight) {
   return ((kStudentDof + 3.0) / weight) - kStudentDof / kStudentConsistency;
 }
 
-/// How much larger the noise would have to be for the largest twentieth of the residuals to be noise.
-double excess_of_outliers(const FitResult& fit) {
-  constexpr double kShare = 0.95;
-  constexpr double kExpected = 7.815;  // quantile of chi-squared with three degrees of freedom
+/// How much larger the noise would have to be for that share of the residuals to be noise.
+double excess_of_outliers(const FitResult& fit, double share) {
+  constexpr double kExpected = 7.815;  // 95 % quantile of chi-squared with three degrees of freedom
   if (fit.weights.empty()) return 1.0;
   std::vector<double> squared;
   for (const double w : fit.weights) squared.push_back(squared_distance(w));
   const auto nth =
-      squared.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(squared.size() - 1));
+      squared.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(squared.size() - 1));
   std::nth_element(squared.begin(), nth, squared.end());
   return std::sqrt(std::max(*nth, 0.0) / kExpected);
 }
@@ -86,9 +85,9 @@ std::optional<FittedModel> with_effect(const FitTask& task, const FittedModel& m
   return FittedModel{std::move(effects), std::move(*fit)};
 }
 
-FitResult widened_where_outlying(const FitTask& task, const FittedModel& model) {
+FitResult widened_where_outlying(const FitTask& task, const FittedModel& model, double share) {
   constexpr double kTolerated = 1.3;
-  const double excess = excess_of_outliers(model.fit);
+  const double excess = excess_of_outliers(model.fit, share);
   if (excess < kTolerated) return model.fit;
   std::vector<NoiseModel> noise;
   for (const NoiseModel& given : model.fit.noise) noise.push_back(widened(given, excess));

@@ -44,6 +44,7 @@ std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel
 
 /// The same model with wider noise where many pairs are far out: something systematic is there, and robust
 /// weights must not take it for failed matches.
-FitResult widened_where_outlying(const FitTask& task, const FittedModel& model);
+/// @param share of the pairs that has to be noise
+FitResult widened_where_outlying(const FitTask& task, const FittedModel& model, double share);
 
 }  // namespace odomcalib::calib

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <set>
 
@@ -11,6 +12,7 @@
 #include "calib/tracing/candidate.hpp"
 #include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/likeness.hpp"
+#include "calib/tracing/outlier_trace.hpp"
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/search_round.hpp"
 
@@ -20,6 +22,7 @@ namespace {
 /// A delay hardly shows in odometry and cannot spoil it; what changes odometry must be beyond doubt.
 constexpr double kClockLevel = 0.003;
 constexpr double kUnnamedLevel = 0.0025;
+constexpr double kNoiseShare = 0.95;  ///< of pairs that a usual effect does not touch much
 constexpr std::size_t kMaxFindings = 3;
 constexpr std::size_t kMaxCurves = 4;
 constexpr int kMaxSteps = 12;  ///< additions and failed proofs together
@@ -37,6 +40,7 @@ class Search {
 
   SearchResult run() {
     go_on(0.0);
+    ask_the_outliers();
     ask_the_floor();
     go_on(0.5);
     for (std::size_t e = 0; e < result_.model.effects.size(); ++e) {
@@ -86,6 +90,23 @@ class Search {
     return own && !round_->curve_beats(*curve, own->candidate) ? own : std::nullopt;
   }
 
+  /// What happens so seldom that the fit leaves its pairs out no score sees, until they count as noise.
+  void ask_the_outliers() {
+    const auto trace = trace_outliers(task_.data, result_.model.fit);
+    if (!trace) return;
+    const auto goes_with = [&](const Candidate& c) {
+      if (!c.curve || belongs_to_the_place(c.curve->law.variable)) return false;
+      return std::count(trace->depends_on.begin(), trace->depends_on.end(), c.curve->law.variable) > 0;
+    };
+    std::erase_if(candidates_, std::not_fn(goes_with));
+    if (candidates_.empty()) return;
+    noise_share_ = 1.0 - 0.5 * static_cast<double>(trace->outliers) / static_cast<double>(trace->pairs);
+    round_.reset();
+    has_changed_ = true;
+    go_on(0.4);
+    noise_share_ = kNoiseShare;
+  }
+
   /// What repeats itself along the floor, when nothing else is left to say.
   void ask_the_floor() {
     candidates_ = floor_waves(task_.models());
@@ -106,8 +127,9 @@ class Search {
   void look_again() {
     strike_hopeless_waves();
     std::erase_if(candidates_, [](const Candidate& c) { return c.struck; });
-    round_.emplace(task_, FittedModel{result_.model.effects, widened_where_outlying(task_, result_.model)},
-                   candidates_);
+    round_.emplace(
+        task_, FittedModel{result_.model.effects, widened_where_outlying(task_, result_.model, noise_share_)},
+        candidates_);
     has_changed_ = false;
   }
 
@@ -419,6 +441,7 @@ class Search {
   std::function<void(double)> progress_;
   std::vector<Candidate> candidates_;
   std::optional<SearchRound> round_;
+  double noise_share_ = kNoiseShare;
   bool has_changed_ = true;  ///< the model or the candidates, since the round began
   SearchResult result_;
   /// What plausible names and plain curves would make of the base parameters that the last model could

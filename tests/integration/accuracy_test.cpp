@@ -6,6 +6,7 @@
 
 #include "calib/solve.hpp"
 #include "tests/integration/accuracy_runs.hpp"
+#include "tests/sim/effects/blind_case.hpp"
 #include "tests/sim/effects/effect.hpp"
 #include "tests/sim/world/rooms.hpp"
 #include "tests/sim/world/simulate.hpp"
@@ -164,6 +165,18 @@ INSTANTIATE_TEST_SUITE_P(Simulated, Tour,
                                            Injected{"mast_flex", 0.004, ""},
                                            Injected{"cable_pull", 0.033, ""}),
                          [](const auto& tested) { return std::string(tested.param.simulated); });
+
+// Nine starts in five minutes are few enough to be taken for failed matches, and were: flagged, not
+// corrected.
+TEST(Seldom, a_wheel_that_sticks_after_few_stops_is_corrected) {
+  const sim::BlindCase drawn = sim::make_blind_case(381161, 82);
+  ASSERT_EQ(drawn.answer.effects.front().name, "sticky_start");
+  const Calibration result = calib::solve({&drawn.run.recording, 1}, {});
+  EXPECT_TRUE(testing::is_told(result, "since_stop")) << testing::told(result);
+  const auto curves = result.extensions.find("curves");
+  ASSERT_NE(curves, result.extensions.end());
+  EXPECT_NE(curves->second.find("since_stop"), std::string::npos);
+}
 
 }  // namespace
 }  // namespace odomcalib
