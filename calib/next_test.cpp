@@ -42,6 +42,7 @@ constexpr std::array kForVariables = {Named{"left_speed", "straights"},
                                       Named{"lateral_acceleration", "arcs"},
                                       Named{"left_acceleration", "accelerations"},
                                       Named{"right_acceleration", "accelerations"},
+                                      Named{"acceleration", "accelerations"},
                                       Named{"left_phase", "slow_straights"},
                                       Named{"right_phase", "slow_straights"},
                                       Named{"heading", "headings"},
@@ -49,6 +50,7 @@ constexpr std::array kForVariables = {Named{"left_speed", "straights"},
                                       Named{"left_since_reversal", "reversals"},
                                       Named{"right_since_reversal", "reversals"},
                                       Named{"since_stop", "accelerations"},
+                                      Named{"previous_push", "accelerations"},
                                       Named{"previous_turn", "turns"}};
 
 template <typename Table>

@@ -83,6 +83,22 @@ BasisValues cubic_splines(int knots, double place) {
   return functions;
 }
 
+/// Whether direction times the carrier's unsigned way is the signed one, which the base parameters scale.
+bool goes_the_way_of(Variable variable, Carrier carrier) {
+  switch (carrier) {
+    case Carrier::left_path:
+      return variable == Variable::left_speed;
+    case Carrier::right_path:
+      return variable == Variable::right_speed;
+    case Carrier::both_path:
+    case Carrier::sideways_path:
+    case Carrier::yaw_path:
+      return variable == Variable::speed;
+    default:
+      return false;
+  }
+}
+
 /// Those of the magnitude, the direction, and the direction times the magnitude.
 BasisValues speed_functions(const Curve& curve, double z) {
   const double relative = std::clamp(z / std::max(std::abs(curve.low), std::abs(curve.high)), -1.0, 1.0);
@@ -92,7 +108,7 @@ BasisValues speed_functions(const Curve& curve, double z) {
   const double place = curve.knots * magnitude;
   BasisValues functions =
       curve.knots == kKnots.front() ? hats(curve.knots, place) : cubic_splines(curve.knots, place);
-  functions.push_back(direction);
+  functions.push_back(goes_the_way_of(curve.law.variable, curve.law.carrier) ? 1.0 : direction);
   functions.push_back(relative);
   return functions;
 }

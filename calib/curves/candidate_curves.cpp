@@ -12,15 +12,19 @@ constexpr int kHighestHarmonic = 8;  ///< poles of encoder magnets, lugs, spokes
 
 using Carriers = std::vector<Carrier>;
 
-/// A wheel's own variables act on that wheel; a pair that no mechanism links only adds false alarms.
+/// In drives both ways a defect of the signed way and one of the unsigned way are two laws. What one wheel
+/// does moves the base sideways by no mechanism: such a law, found in straights and spins, was nonsense in
+/// circles.
 Carriers carriers_of(Variable variable) {
   using enum Carrier;
   switch (variable) {
     case Variable::left_speed:
+      return {left_travel, left_path, right_travel, right_path};
+    case Variable::right_speed:
+      return {right_travel, right_path, left_travel, left_path};
     case Variable::left_phase:
     case Variable::left_since_reversal:
       return {left_travel};
-    case Variable::right_speed:
     case Variable::right_phase:
     case Variable::right_since_reversal:
       return {right_travel};
@@ -28,16 +32,20 @@ Carriers carriers_of(Variable variable) {
       return {left_travel, left_path};
     case Variable::right_acceleration:
       return {right_travel, right_path};
+    case Variable::acceleration:
+      return {both_travel, both_path, track, sideways_path, yaw_path};
     case Variable::turn_acceleration:
       return {sensor_yaw};
     case Variable::speed:
-      return {both_travel, track, sideways, turn_side};
+      return {both_travel, left_travel, right_travel,  track,   sideways,
+              turn_side,   both_path,   sideways_path, yaw_path};
     case Variable::turn_rate:
-      return {both_travel, left_travel, right_travel, track, sideways, turn_path, turn_side};
+      return {both_travel, left_travel, right_travel, track,      sideways,      turn_path,
+              turn_side,   both_path,   left_path,    right_path, sideways_path, yaw_path};
     case Variable::lateral_acceleration:
-      return {sideways, sideways_path, track};
+      return {sideways, sideways_path, track, both_travel, left_travel, right_travel, both_path, yaw_path};
     case Variable::time:
-      return {both_travel, left_travel, right_travel, track, sideways, turn_side};
+      return {both_travel, left_travel, right_travel, track, sideways, turn_side, scale};
     case Variable::heading:
     case Variable::position:
       return {both_travel, left_travel, right_travel, both_path, sideways_path, yaw_path};

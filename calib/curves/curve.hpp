@@ -26,11 +26,12 @@ inline constexpr int kPatches = 4;
 ///   sine, and both times the cosine of the angle between the heading and the way across the crests;
 /// - a push that stays until the opposite one: its sign;
 /// - speeds and turn rate: piecewise linear in the magnitude at four knots or cubic splines at more, a step
-/// with the direction, and the magnitude times the direction;
+/// with the direction (on the unsigned way that has this direction a constant), and the magnitude times the
+/// direction;
 /// - on the sensor's yaw: the variable and its signed square;
 /// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
-/// A constant is a base parameter's, except on carriers of the unsigned way in drives both ways, and on the
-/// turn path, where it is the first function.
+/// Any other constant is a base parameter's, except on carriers of the unsigned way in drives both ways, and
+/// on the turn path, where it is the first function.
 struct Curve {
   Law law;
   double low = -1.0;

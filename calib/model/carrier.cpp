@@ -12,6 +12,7 @@ std::string to_string(Variable variable) {
                                            "lateral_acceleration",
                                            "left_acceleration",
                                            "right_acceleration",
+                                           "acceleration",
                                            "turn_acceleration",
                                            "left_phase",
                                            "right_phase",
@@ -30,7 +31,7 @@ std::string to_string(Variable variable) {
 std::string to_string(Carrier carrier) {
   static constexpr const char* kNames[] = {
       "left_travel", "right_travel",  "both_travel", "track",     "sideways",  "left_path", "right_path",
-      "both_path",   "sideways_path", "yaw_path",    "turn_path", "turn_side", "sensor_yaw"};
+      "both_path",   "sideways_path", "yaw_path",    "turn_path", "turn_side", "scale",     "sensor_yaw"};
   return kNames[static_cast<std::size_t>(carrier)];
 }
 
@@ -98,6 +99,8 @@ double value_of(Variable variable, const StepContext& c, std::size_t memory) {
       return c.left_acceleration;
     case Variable::right_acceleration:
       return c.right_acceleration;
+    case Variable::acceleration:
+      return 0.5 * (c.left_acceleration + c.right_acceleration);
     case Variable::turn_acceleration:
       return 0.5 * (c.turn_acceleration_before[memory] + c.turn_acceleration_after[memory]);
     case Variable::left_phase:

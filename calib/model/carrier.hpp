@@ -16,6 +16,7 @@ enum class Variable {
   lateral_acceleration,
   left_acceleration,
   right_acceleration,
+  acceleration,  ///< of the base, forward
   turn_acceleration,
   left_phase,
   right_phase,
@@ -59,7 +60,8 @@ double value_of(Variable variable, const StepContext& context, std::size_t memor
 /// `travel` is signed and reverses with the motion, `path` is unsigned. Left, right, both: relative to the
 /// travel of those wheels. Track: relative. Sideways: m per m of the base. Yaw path: rad per m of the base.
 /// Turn path: m ahead per rad of turning either way. Turn side: m to the left per rad of turning to the left,
-/// as if the centre of turning lay ahead by f. Sensor yaw: rad by which the sensor has turned on the
+/// as if the centre of turning lay ahead by f. Scale: relative, of all lengths, which leaves turns as they
+/// are: the lidar's own metre. Sensor yaw: rad by which the sensor has turned on the
 /// base; f is its growth over the interval, so that it comes and goes with the variable.
 enum class Carrier {
   left_travel,
@@ -74,6 +76,7 @@ enum class Carrier {
   yaw_path,
   turn_path,
   turn_side,
+  scale,
   sensor_yaw,
 };
 inline constexpr Carrier kLastCarrier = Carrier::sensor_yaw;
@@ -124,6 +127,11 @@ void carry(Carrier carrier, const StepContext& c, const T& f, WheelStep<T>& step
       break;
     case Carrier::turn_side:
       step.side -= f * (c.turn_rate * c.dt);
+      break;
+    case Carrier::scale:
+      step.left *= 1.0 + f;
+      step.right *= 1.0 + f;
+      step.track *= 1.0 + f;
       break;
     case Carrier::sensor_yaw:
       step.yaw += f;

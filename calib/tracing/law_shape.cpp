@@ -26,6 +26,8 @@ std::vector<BaseIndex> lengths_of(Carrier carrier) {
       return {kLeftRadius, kRightRadius};
     case Carrier::track:
       return {kTrackWidth};
+    case Carrier::scale:
+      return {kLeftRadius, kRightRadius, kTrackWidth};
     default:
       return {};
   }

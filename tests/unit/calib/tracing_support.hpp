@@ -1,5 +1,7 @@
-// Wheels and sensor motions made from the model alone.
+// Wheels and sensor motions made from the model alone, and what the search makes of them.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +13,7 @@
 #include "calib/estimators/joint.hpp"
 #include "calib/model/drive_model.hpp"
 #include "calib/model/step_context.hpp"
+#include "calib/tracing/search.hpp"
 
 namespace odomcalib::calib {
 
@@ -78,6 +81,13 @@ inline FitData measured(const DriveModel& model, const EffectList& effects,
   std::vector<Interval> intervals;
   for (double t = 0.513; t < 238.0; t += 0.5) intervals.push_back({t, t + 0.5});
   return measured(model, effects, values, intervals);
+}
+
+/// What the search makes of it.
+inline SearchResult searched(const FitData& data) {
+  const auto fit = fit_joint({&data, 1}, {}, to_vector(kBase));
+  EXPECT_TRUE(fit) << "seed " << kSeed;
+  return search_effects({&data, 1}, {}, fit.value(), std::vector<bool>(kBaseCount, false), [](double) {});
 }
 
 }  // namespace odomcalib::calib

@@ -19,12 +19,6 @@
 namespace odomcalib::calib {
 namespace {
 
-SearchResult searched(const FitData& data) {
-  const auto fit = fit_joint({&data, 1}, {}, to_vector(kBase));
-  EXPECT_TRUE(fit) << "seed " << kSeed;
-  return search_effects({&data, 1}, {}, fit.value(), std::vector<bool>(kBaseCount, false), [](double) {});
-}
-
 TEST(Tracing, adds_nothing_when_nothing_is_missing) {
   const DriveModel model = lively_model();
   const SearchResult result = searched(measured(model, {}, {}));
