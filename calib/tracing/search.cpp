@@ -15,6 +15,7 @@
 #include "calib/tracing/outlier_trace.hpp"
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/search_round.hpp"
+#include "calib/tracing/wrong_name.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -276,7 +277,22 @@ class Search {
     unproved_.clear();
   }
 
+  /// A law that can bend much should leave nothing to a free one.
+  [[nodiscard]] std::optional<std::size_t> better_curve(const Trial& name) const {
+    const auto& effect = candidates_[name.candidate].effect;
+    if (has_textbook_shape(effect)) return std::nullopt;
+    const std::vector<Law> laws = effect->laws();
+    const auto curves = round_->by_score([&](std::size_t k) {
+      return candidates_[k].curve && passes(k) && contains(laws, candidates_[k].curve->law);
+    });
+    if (curves.empty()) return std::nullopt;
+    const std::size_t last = name.model.effects.size() - 1;
+    const auto free = free_law_instead_of(task_, name.model, last, candidates_[curves.front()]);
+    return free ? std::optional(curves.front()) : std::nullopt;
+  }
+
   bool accept_name(const Trial& best) {
+    if (const auto curve = better_curve(best)) return accept_curve(*curve);
     const Candidate candidate = candidates_[best.candidate];
     const std::vector<std::size_t> rivals = round_->rivals_of(best);
     const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, rivals);
@@ -302,8 +318,7 @@ class Search {
       return true;
     }
     auto proof = accept(*trial);
-    if (!proof && law_of && !is_completed(law_of))
-      replace(law_of, candidates_[index], round_->score(index), alike);
+    if (!proof && law_of && !is_completed(law_of)) replace(law_of, index, alike);
     if (!proof && !law_of) proof = accept_reshaped(index);
     if (!proof) return true;
     const Candidate& candidate = candidates_[index];
@@ -336,26 +351,19 @@ class Search {
     return accept(Trial{index, std::move(best->model)});
   }
 
-  /// A free law that cannot stand on the name's, but foretells held-out data better in its place: then the
-  /// name was the wrong one.
-  void replace(const std::shared_ptr<const Effect>& name, const Candidate& candidate, const Score& score,
+  /// A free law that cannot stand on the name's, but does better in its place, shows that the name was wrong.
+  void replace(const std::shared_ptr<const Effect>& name, std::size_t candidate,
                const std::vector<Variable>& alike) {
     const auto& effects = result_.model.effects;
-    const auto place = std::find(effects.begin(), effects.end(), name);
-    const auto index = static_cast<std::size_t>(place - effects.begin());
-    const auto without = without_effect(task_, result_.model, index, {});
-    if (!without) return;
-    const auto free = in_best_shape(task_, *without, *candidate.curve, result_.model.fit.noise);
-    Proof proof;
-    proof.family_p_value = score.family_p_value;
-    if (!free || explains_nearly_all(task_, result_.model, index, free->model) ||
-        !is_better(task_, result_.model, free->model, schwarz(basis().fit)) ||
-        !objection(task_, *without, free->model, all_folds(), largest_ratio(candidate), proof).empty())
-      return;
+    const auto place = std::find(effects.begin(), effects.end(), name) - effects.begin();
+    auto free =
+        free_law_instead_of(task_, result_.model, static_cast<std::size_t>(place), candidates_[candidate]);
+    if (!free) return;
+    free->proof.family_p_value = round_->score(candidate).family_p_value;
     std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
-    adopt(free->model);
+    adopt(free->law.model);
     result_.considered.back().outcome = "took the place of " + name->name();
-    result_.curves.push_back({free->model.effects.back(), free->curve, proof, nullptr, alike});
+    result_.curves.push_back({result_.model.effects.back(), free->law.curve, free->proof, nullptr, alike});
     settle_shape_of_newest_curve();
   }
 
@@ -419,22 +427,36 @@ class Search {
                        [&](const AddedCurve& curve) { return curve.law_of == name; });
   }
 
-  /// What an earlier finding explained may belong to what was just added.
+  /// A name whose law was completed shares its ground with the curve; the newest curve was just proved.
+  [[nodiscard]] bool may_retire(const std::shared_ptr<const Effect>& effect) const {
+    const auto is_it = [&](const auto& added) { return added.effect == effect; };
+    if (std::any_of(result_.findings.begin(), result_.findings.end(), is_it)) return !is_completed(effect);
+    return effect != result_.model.effects.back() &&
+           std::any_of(result_.curves.begin(), result_.curves.end(), is_it);
+  }
+
+  /// What an earlier finding or curve explained may belong to what was just added.
   void retire_superfluous() {
+    while (retire_one()) {
+    }
+  }
+
+  bool retire_one() {
     const FittedModel& model = result_.model;
     for (std::size_t e = 0; e < model.effects.size(); ++e) {
-      const auto finding = std::find_if(result_.findings.begin(), result_.findings.end(),
-                                        [&](const Finding& f) { return f.effect == model.effects[e]; });
-      const auto first = static_cast<std::size_t>(first_parameter(model.effects, e));
-      if (finding == result_.findings.end() || is_completed(finding->effect)) continue;
+      const auto effect = model.effects[e];
+      if (!may_retire(effect)) continue;
       auto fewer = without_effect(task_, model, e, model.fit.noise);
-      if (!fewer || !(is_superfluous(*model.effects[e], first, model.fit) ||
+      const auto first = static_cast<std::size_t>(first_parameter(model.effects, e));
+      if (!fewer || !(is_superfluous(*effect, first, model.fit) ||
                       !is_better(task_, *fewer, model, schwarz(basis().fit))))
         continue;
       adopt(std::move(*fewer));
-      result_.findings.erase(finding);
-      return;
+      std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == effect; });
+      std::erase_if(result_.curves, [&](const AddedCurve& c) { return c.effect == effect; });
+      return true;
     }
+    return false;
   }
 
   FitTask task_;

@@ -178,5 +178,18 @@ TEST(Seldom, a_wheel_that_sticks_after_few_stops_is_corrected) {
   EXPECT_NE(curves->second.find("since_stop"), std::string::npos);
 }
 
+// A threshold follows one side of a dip, and makes five per cent of a diameter up beyond the other.
+TEST(Dip, is_no_threshold) {
+  sim::BlindOptions options;
+  options.tour = true;
+  const sim::BlindCase drawn = sim::make_blind_case(391152, 2, options);
+  ASSERT_EQ(drawn.answer.effects.front().name, "resonance");
+  const Calibration result = calib::solve({&drawn.run.recording, 1}, {});
+  EXPECT_TRUE(result.effects.empty()) << testing::told(result);
+  EXPECT_TRUE(testing::is_told(result, "right_speed")) << testing::told(result);
+  const double diameter = drawn.answer.truth.right_diameter;
+  EXPECT_NEAR(result.parameters[1].second.value, diameter, 0.02 * diameter);
+}
+
 }  // namespace
 }  // namespace odomcalib
