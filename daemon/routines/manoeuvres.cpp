@@ -47,6 +47,12 @@ void vary_rests(Builder& build) {
   for (std::size_t k = 0; k < build.moves.size(); ++k) build.moves[k].settle = kRests[k % kRests.size()];
 }
 
+/// How hard a push has to be until something gives way only pushes of different strengths can tell.
+void vary_pushes(Builder& build) {
+  constexpr std::array<double, 5> kHastes = {1.0, 0.35, 0.7, 0.25, 0.5};
+  for (std::size_t k = 0; k < build.moves.size(); ++k) build.moves[k].haste = kHastes[k % kHastes.size()];
+}
+
 /// Starts and stops at low and at high speed, forward and backward, and in turns.
 void accelerations(Builder& build) {
   for (const double speed : {0.3, 0.1, 0.3}) {
@@ -56,6 +62,7 @@ void accelerations(Builder& build) {
   build.both_spins(0.5 * kPi, 0.6);
   build.both_spins(0.3 * kPi, 0.2);
   vary_rests(build);
+  vary_pushes(build);
 }
 
 /// Every wheel reverses often, slowly and fast, with and without the robot's direction of travel.

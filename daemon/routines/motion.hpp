@@ -55,6 +55,7 @@ struct Move {
   double pace = 0.0;       ///< m/s or rad/s
   double late_pace = 0.0;  ///< pace of the second half, 0: the same
   double settle = 0.8;     ///< s at rest afterwards
+  double haste = 1.0;      ///< share of the acceleration that the limits allow, a tenth at least
   /// The amount is that of the commands, whatever the odometry says: for wheels whose counts may be wrong.
   bool open_loop = false;
   /// Turn on the spot to this heading of the odometry frame, on the shorter way; direction and amount are

@@ -93,6 +93,7 @@ Profile profile_of(const Move& move, const Limits& limits) {
   if (w > 0.0)
     profile = {std::min(profile.fastest, caps.turn_rate / w),
                std::min(profile.acceleration, caps.turn_acceleration / w)};
+  profile.acceleration *= std::clamp(move.haste, 0.1, 1.0);
   return profile;
 }
 

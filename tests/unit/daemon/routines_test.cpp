@@ -215,6 +215,25 @@ TEST(Accelerations, rest_for_many_different_times) {
   EXPECT_GT(*rests.rbegin(), 0.5);
 }
 
+TEST(Accelerations, push_at_many_different_strengths) {
+  std::set<double> hardest;
+  const auto plan = manoeuvre_plan("accelerations", {});
+  ASSERT_TRUE(plan.has_value());
+  for (const Move& move : plan->moves)
+    if (move.direction.w == 0.0) hardest.insert(profile_of(move, plan->limits).acceleration);
+  EXPECT_GE(hardest.size(), 5U);
+  EXPECT_LT(*hardest.begin(), 0.15);
+  EXPECT_LE(*hardest.rbegin(), kCaps.acceleration);
+}
+
+TEST(Move, no_haste_goes_beyond_the_limits_or_comes_to_nothing) {
+  Move move = straight(1.0, 0.3);
+  for (const auto& [haste, share] : {std::pair{7.0, 1.0}, std::pair{0.5, 0.5}, std::pair{-1.0, 0.1}}) {
+    move.haste = haste;
+    EXPECT_DOUBLE_EQ(profile_of(move, {}).acceleration, share * kCaps.acceleration) << haste;
+  }
+}
+
 TEST(ManoeuvreNames, others_are_refused) { EXPECT_FALSE(manoeuvre_plan("pirouette", {}).has_value()); }
 
 TEST(Pattern, takes_about_four_minutes_and_the_quick_one_less_than_half) {
