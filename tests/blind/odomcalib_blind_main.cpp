@@ -52,6 +52,8 @@ int main(int argc, char** argv) try {
   app.add_flag("--any-machine", options.any_machine,
                "other lidars, encoders and sizes than the usual robot's");
   app.add_flag("--tour", options.tour, "drives at work, forward only, instead of drives for calibration");
+  app.add_flag("--free-laws", options.free_laws,
+               "anything the robot does changes anything it moves by, by no mechanism");
   std::set<std::string> names;
   for (const auto& kind : odomcalib::sim::effect_kinds()) names.insert(kind.name);
   app.add_option("--only", options.only, "only these effects, for a closer look")

@@ -28,7 +28,7 @@ bool may_be_drawn(const EffectKind& kind, const BlindOptions& options) {
 
 std::vector<const EffectKind*> drawable_kinds(const BlindOptions& options) {
   std::vector<const EffectKind*> kinds;
-  for (const EffectKind& kind : effect_kinds())
+  for (const EffectKind& kind : options.free_laws ? free_laws() : effect_kinds())
     if (may_be_drawn(kind, options)) kinds.push_back(&kind);
   return kinds;
 }

@@ -38,6 +38,7 @@ struct BlindOptions {
   double size_factor = 1.0;  ///< scales the range of sizes of every effect
   unsigned effects = 1;      ///< of different kinds, in the recordings that have any
   bool only_catalogue = false;
+  bool free_laws = false;         ///< laws of no mechanism instead of effects
   std::vector<std::string> only;  ///< kinds by name; empty: all
   bool any_machine = false;       ///< other lidars, encoders, sizes and durations than the usual robot's
   bool tour = false;              ///< drives at work instead of drives for calibration, in larger rooms

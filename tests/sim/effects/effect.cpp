@@ -23,8 +23,9 @@ const std::vector<EffectKind>& effect_kinds() {
 }
 
 const EffectKind* find_effect(const std::string& name) {
-  for (const EffectKind& kind : effect_kinds())
-    if (kind.name == name) return &kind;
+  for (const auto* kinds : {&effect_kinds(), &free_laws()})
+    for (const EffectKind& kind : *kinds)
+      if (kind.name == name) return &kind;
   return nullptr;
 }
 

@@ -27,7 +27,9 @@ struct EffectKind {
 
 /// Every kind, in a fixed order. Names are unique.
 const std::vector<EffectKind>& effect_kinds();
-/// Null when there is no such kind.
+/// Kinds of no mechanism, which are in no draw unless it asks for them.
+const std::vector<EffectKind>& free_laws();
+/// Null when there is no such kind, free laws included.
 const EffectKind* find_effect(const std::string& name);
 
 /// An effect drawn at random.

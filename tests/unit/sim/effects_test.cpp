@@ -76,6 +76,15 @@ std::vector<std::string> names() {
   return out;
 }
 
+std::vector<std::string> names_of_free_laws() {
+  std::vector<std::string> out;
+  for (const EffectKind& kind : free_laws()) out.push_back(kind.name);
+  return out;
+}
+
+INSTANTIATE_TEST_SUITE_P(FreeLaws, EveryEffect, testing::ValuesIn(names_of_free_laws()),
+                         [](const auto& test) { return test.param; });
+
 INSTANTIATE_TEST_SUITE_P(Effects, EveryEffect, testing::ValuesIn(names()),
                          [](const auto& test) { return test.param; });
 
