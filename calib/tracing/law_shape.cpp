@@ -84,6 +84,15 @@ class Changes {
   double total_ = 0.0;
 };
 
+/// nullopt if the drive cannot tell it from the wheels.
+std::optional<Reshaped> fitted_in_shape(const FitTask& task, const FittedModel& model, const Curve& shape,
+                                        const std::vector<NoiseModel>& noise) {
+  const auto effect = make_curve_effect(shape);
+  auto fitted = with_effect(task, model, effect, noise);
+  if (!fitted || curve_spoils_base(*effect, model.fit, fitted->fit)) return std::nullopt;
+  return Reshaped{shape, std::move(*fitted)};
+}
+
 }  // namespace
 
 std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, const Curve& curve) {
@@ -121,17 +130,15 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
                                       const std::vector<NoiseModel>& noise) {
   std::vector<Curve> shapes = other_shapes(curve, task.models());
   shapes.push_back(curve);
-  for (std::size_t k = 0, count = shapes.size(); k < count; ++k)
-    if (shapes[k].mean.empty()) shapes.push_back(centred(shapes[k], task.models()));
   std::optional<Reshaped> best;
   const auto misfit = [&](const FittedModel& m) {
     return m.fit.cost + schwarz(m.fit) * static_cast<double>(m.fit.parameters.size());
   };
   for (const Curve& shape : shapes) {
-    const auto effect = make_curve_effect(shape);
-    auto fitted = with_effect(task, model, effect, noise);
-    if (!fitted || curve_spoils_base(*effect, model.fit, fitted->fit)) continue;
-    if (!best || misfit(*fitted) < misfit(best->model)) best = {shape, std::move(*fitted)};
+    auto fitted = fitted_in_shape(task, model, shape, noise);
+    if (!fitted && shape.mean.empty())
+      fitted = fitted_in_shape(task, model, centred(shape, task.models()), noise);
+    if (fitted && (!best || misfit(fitted->model) < misfit(best->model))) best = std::move(fitted);
   }
   return best;
 }
