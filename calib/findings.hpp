@@ -7,7 +7,7 @@
 #include "calib/lidar/lidar_trace.hpp"
 #include "calib/session/session.hpp"
 #include "calib/stamps/stamp_report.hpp"
-#include "calib/tracing/search.hpp"
+#include "calib/tracing/search_result.hpp"
 #include "proto/calibration.hpp"
 
 namespace odomcalib::calib {

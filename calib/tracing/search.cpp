@@ -5,24 +5,23 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <set>
 
 #include "calib/curves/curve_effect.hpp"
 #include "calib/curves/curve_on_drives.hpp"
 #include "calib/tracing/candidate.hpp"
 #include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/likeness.hpp"
+#include "calib/tracing/next_addition.hpp"
 #include "calib/tracing/outlier_trace.hpp"
 #include "calib/tracing/plausibility.hpp"
+#include "calib/tracing/retirement.hpp"
 #include "calib/tracing/search_round.hpp"
+#include "calib/tracing/settled_shape.hpp"
 #include "calib/tracing/wrong_name.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
-/// A delay hardly shows in odometry and cannot spoil it; what changes odometry must be beyond doubt.
-constexpr double kClockLevel = 0.003;
-constexpr double kUnnamedLevel = 0.0025;
 constexpr double kNoiseShare = 0.95;  ///< of pairs that a usual effect does not touch much
 constexpr std::size_t kMaxFindings = 3;
 constexpr std::size_t kMaxCurves = 4;
@@ -40,10 +39,10 @@ class Search {
   }
 
   SearchResult run() {
-    go_on(0.0);
+    go_on(0.0, 0.4);
     ask_the_outliers();
     ask_the_floor();
-    go_on(0.5);
+    go_on(0.5, 1.0);
     for (std::size_t e = 0; e < result_.model.effects.size(); ++e) {
       result_.doubts.push_back(doubt_of_extrapolation(task_, result_.model, e));
       add_doubts(doubts_of_shape(task_, result_.model, e));
@@ -61,10 +60,10 @@ class Search {
     result_.doubts.insert(result_.doubts.end(), doubts.begin(), doubts.end());
   }
 
-  /// @param done share of the whole search
-  void go_on(double done) {
+  /// @param from, to shares of the whole search
+  void go_on(double from, double to) {
     for (int step = 0; step < kMaxSteps; ++step) {
-      progress_(done + 0.5 * step / kMaxSteps);
+      progress_(from + (to - from) * step / kMaxSteps);
       if (!advance()) break;
     }
   }
@@ -72,23 +71,12 @@ class Search {
   /// One step; false when nothing more is justified.
   bool advance() {
     if (has_changed_) look_again();
-    const auto curve = best_curve();
-    const auto name = may_name() ? best_name_beside(curve) : std::nullopt;
+    const auto curve = best_curve(*round_, result_);
+    const auto name = may_name() ? best_name_beside(curve, *round_, result_) : std::nullopt;
     if (name && accept_name(*name)) return true;
-    const auto clock = curve && depends_on_history(candidates_[*curve]) ? best_clock() : std::nullopt;
+    const auto clock = curve && depends_on_history(candidates_[*curve]) ? best_clock(*round_) : std::nullopt;
     if (clock) return accept_name(*clock);
     return curve && accept_curve(*curve);
-  }
-
-  /// The best name, unless the curve is clearly better: then one on the curve's own ground, which may be the
-  /// second best of two effects.
-  std::optional<Trial> best_name_beside(std::optional<std::size_t> curve) {
-    auto name = best_name();
-    if (!name || !curve || !round_->curve_beats(*curve, name->candidate)) return name;
-    const Law& law = candidates_[*curve].curve->law;
-    const auto own =
-        round_->best_trial([&](std::size_t k) { return contains(candidates_[k].effect->laws(), law); });
-    return own && !round_->curve_beats(*curve, own->candidate) ? own : std::nullopt;
   }
 
   /// What happens so seldom that the fit leaves its pairs out no score sees, until they count as noise.
@@ -104,7 +92,7 @@ class Search {
     noise_share_ = 1.0 - 0.5 * static_cast<double>(trace->outliers) / static_cast<double>(trace->pairs);
     round_.reset();
     has_changed_ = true;
-    go_on(0.4);
+    go_on(0.4, 0.5);
     noise_share_ = kNoiseShare;
   }
 
@@ -134,62 +122,8 @@ class Search {
     has_changed_ = false;
   }
 
-  /// Where motions begin, clocks that disagree look like anything that goes with beginnings. A clock cannot
-  /// spoil odometry, so it is asked first.
-  [[nodiscard]] std::optional<Trial> best_clock() const {
-    const auto best = round_->best_trial([&](std::size_t k) { return is_clock(candidates_[k]); });
-    return best && best->gain > 0.0 ? best : std::nullopt;
-  }
-
   [[nodiscard]] bool may_name() const {
     return result_.findings.size() < kMaxFindings && !result_.has_unnamed();
-  }
-
-  [[nodiscard]] double level(const Candidate& candidate) const {
-    if (candidate.curve)
-      return completes(candidate) || must_be_worthwhile(candidate) ? kNamedLevel : kUnnamedLevel;
-    return is_clock(candidate) ? kClockLevel : kNamedLevel;
-  }
-
-  /// Cannot spoil odometry.
-  [[nodiscard]] static bool is_clock(const Candidate& candidate) {
-    return candidate.effect->storage() == Storage::driver;
-  }
-
-  [[nodiscard]] bool passes(std::size_t candidate) const {
-    return round_->score(candidate).family_p_value <= level(candidates_[candidate]);
-  }
-
-  /// Joint refits of the most promising names on the noise model of the current fit.
-  std::optional<Trial> best_name() {
-    std::set<std::string> tried;
-    for (const std::size_t k : round_->by_score(
-             [&](std::size_t k) { return !candidates_[k].curve && passes(k) && !is_rest_of_a_law(k); }))
-      if (tried.size() < SearchRound::kRefits && tried.insert(candidates_[k].key).second) round_->try_out(k);
-    const auto best = round_->best_trial([](std::size_t) { return true; });
-    return best ? round_->best_shape(candidates_[best->candidate].key) : best;
-  }
-
-  /// What a finding leaves on its own ground is the rest of its law, unless a second name explains nearly all
-  /// that a free curve would.
-  [[nodiscard]] bool is_rest_of_a_law(std::size_t candidate) const {
-    const std::vector<Law> laws = candidates_[candidate].effect->laws();
-    const auto is_taken = [&](const Law& law) {
-      return std::any_of(result_.findings.begin(), result_.findings.end(),
-                         [&](const Finding& f) { return contains(f.effect->laws(), law); });
-    };
-    if (std::none_of(laws.begin(), laws.end(), is_taken)) return false;
-    double of_curves = 0.0;
-    for (const std::size_t k :
-         round_->by_score([&](std::size_t k) { return candidates_[k].curve.has_value(); }))
-      if (const Law& law = candidates_[k].curve->law; contains(laws, law) && is_taken(law))
-        of_curves += round_->score(k).statistic;
-    return round_->score(candidate).statistic < kNearlyAll * of_curves;
-  }
-
-  [[nodiscard]] std::optional<std::size_t> best_curve() const {
-    const auto curves = round_->by_score([&](std::size_t k) { return candidates_[k].curve && passes(k); });
-    return curves.empty() ? std::nullopt : std::optional(curves.front());
   }
 
   [[nodiscard]] std::string implausibility(const Candidate& candidate, const FitResult& fit) const {
@@ -270,9 +204,13 @@ class Search {
     return spoils_drives(task_, basis(), settled->model) ? "drives get worse" : "";
   }
 
-  /// The search starts again from it.
   void adopt(FittedModel model) {
     result_.model = std::move(model);
+    start_again();
+  }
+
+  /// From the model as it is now.
+  void start_again() {
     has_changed_ = true;
     unproved_.clear();
   }
@@ -283,7 +221,7 @@ class Search {
     if (has_textbook_shape(effect)) return std::nullopt;
     const std::vector<Law> laws = effect->laws();
     const auto curves = round_->by_score([&](std::size_t k) {
-      return candidates_[k].curve && passes(k) && contains(laws, candidates_[k].curve->law);
+      return candidates_[k].curve && passes(k, *round_, result_) && contains(laws, candidates_[k].curve->law);
     });
     if (curves.empty()) return std::nullopt;
     const std::size_t last = name.model.effects.size() - 1;
@@ -300,7 +238,7 @@ class Search {
     if (!proof) return true;
     result_.findings.push_back({candidate.effect, aliases, *proof});
     add_doubts(round_->doubts_of(rivals, best));
-    retire_superfluous();
+    drop_superfluous();
     return true;
   }
 
@@ -311,21 +249,21 @@ class Search {
       trial = refit_as(index, strong(*candidates_[index].curve));
     if (trial && curve_spoils_base(*candidates_[index].effect, basis().fit, trial->model.fit))
       trial = refit_as(index, centred(*candidates_[index].curve, task_.models()));
-    const auto law_of = completed_by(candidates_[index]);
+    const auto law_of = result_.owner_of(candidates_[index].curve->law);
     const std::vector<Variable> alike = variables_like(candidates_, round_->table(), index);
     if (!trial) {
       strike(candidates_[index].key);
       return true;
     }
     auto proof = accept(*trial);
-    if (!proof && law_of && !is_completed(law_of)) replace(law_of, index, alike);
+    if (!proof && law_of && !result_.is_completed(law_of)) replace(law_of, index, alike);
     if (!proof && !law_of) proof = accept_reshaped(index);
     if (!proof) return true;
     const Candidate& candidate = candidates_[index];
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
-    settle_shape_of_newest_curve();
+    settle_shape_of_newest_curve(task_, result_);
     strike_what_a_mast_does();
-    retire_superfluous();
+    drop_superfluous();
     return true;
   }
 
@@ -360,42 +298,16 @@ class Search {
         free_law_instead_of(task_, result_.model, static_cast<std::size_t>(place), candidates_[candidate]);
     if (!free) return;
     free->proof.family_p_value = round_->score(candidate).family_p_value;
-    std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == name; });
+    result_.forget(name);
     adopt(free->law.model);
     result_.considered.back().outcome = "took the place of " + name->name();
     result_.curves.push_back({result_.model.effects.back(), free->law.curve, free->proof, nullptr, alike});
-    settle_shape_of_newest_curve();
+    settle_shape_of_newest_curve(task_, result_);
   }
 
-  /// A law with a narrow peak needs more knots than finding it did, one of the past another memory. What
-  /// other shapes that are nearly as likely, or another zero, would make of the base parameters is not known
-  /// about them.
-  void settle_shape_of_newest_curve() {
-    fit_anew_on_own_noise();
-    const Reshaped first{result_.curves.back().curve, result_.model};
-    std::vector<Reshaped> shapes = reshaped(task_, first.model, first.curve);
-    for (const Reshaped& other : shapes)
-      if (is_better(task_, result_.model, other.model, kAkaike)) take_shape(other);
-    shapes.push_back(first);
-    if (takes_an_event(result_.curves.back().curve))
-      take_shape(most_sensible_event(shapes, result_.model.fit.cost + kAkaike));
-    for (const Reshaped& other : shapes)
-      if (other.model.fit.cost < result_.model.fit.cost + schwarz(result_.model.fit))
-        result_.doubts.emplace_back(other.model.base() - result_.model.base());
-    result_.doubts.push_back(doubt_of_zero(task_, result_.model, result_.curves.back().curve));
-  }
-
-  /// Costs compare on the same noise only; while noise was estimated, that of the step before was used.
-  void fit_anew_on_own_noise() {
-    FittedModel& model = result_.model;
-    if (auto again = task_.fit(model.effects, model.fit.parameters, model.fit.noise))
-      model.fit = std::move(*again);
-  }
-
-  void take_shape(const Reshaped& shape) {
-    result_.model = shape.model;
-    result_.curves.back().curve = shape.curve;
-    result_.curves.back().effect = shape.model.effects.back();
+  /// What an earlier finding or curve explained may belong to what was just added.
+  void drop_superfluous() {
+    if (retire_superfluous(task_, schwarz(basis().fit), result_)) start_again();
   }
 
   /// Larger than usual if the data insist; about its mean where the drive cannot tell that from slow motion.
@@ -405,58 +317,10 @@ class Search {
     return round_->refit(index);
   }
 
-  /// The finding whose law this curve would replace, if any.
-  [[nodiscard]] std::shared_ptr<const Effect> completed_by(const Candidate& candidate) const {
-    for (const Finding& finding : result_.findings)
-      if (contains(finding.effect->laws(), candidate.curve->law)) return finding.effect;
-    return nullptr;
-  }
-  [[nodiscard]] bool completes(const Candidate& candidate) const {
-    return completed_by(candidate) != nullptr;
-  }
-
   /// A candidate that was added, or failed its proof, is not asked again; the search goes on with the others.
   void strike(const std::string& key) {
     for (Candidate& candidate : candidates_)
       if (candidate.key == key) candidate.struck = true;
-  }
-
-  /// A law that was completed shares its ground with the curve, and keeps its name.
-  [[nodiscard]] bool is_completed(const std::shared_ptr<const Effect>& name) const {
-    return std::any_of(result_.curves.begin(), result_.curves.end(),
-                       [&](const AddedCurve& curve) { return curve.law_of == name; });
-  }
-
-  /// A name whose law was completed shares its ground with the curve; the newest curve was just proved.
-  [[nodiscard]] bool may_retire(const std::shared_ptr<const Effect>& effect) const {
-    const auto is_it = [&](const auto& added) { return added.effect == effect; };
-    if (std::any_of(result_.findings.begin(), result_.findings.end(), is_it)) return !is_completed(effect);
-    return effect != result_.model.effects.back() &&
-           std::any_of(result_.curves.begin(), result_.curves.end(), is_it);
-  }
-
-  /// What an earlier finding or curve explained may belong to what was just added.
-  void retire_superfluous() {
-    while (retire_one()) {
-    }
-  }
-
-  bool retire_one() {
-    const FittedModel& model = result_.model;
-    for (std::size_t e = 0; e < model.effects.size(); ++e) {
-      const auto effect = model.effects[e];
-      if (!may_retire(effect)) continue;
-      auto fewer = without_effect(task_, model, e, model.fit.noise);
-      const auto first = static_cast<std::size_t>(first_parameter(model.effects, e));
-      if (!fewer || !(is_superfluous(*effect, first, model.fit) ||
-                      !is_better(task_, *fewer, model, schwarz(basis().fit))))
-        continue;
-      adopt(std::move(*fewer));
-      std::erase_if(result_.findings, [&](const Finding& f) { return f.effect == effect; });
-      std::erase_if(result_.curves, [&](const AddedCurve& c) { return c.effect == effect; });
-      return true;
-    }
-    return false;
   }
 
   FitTask task_;
@@ -472,10 +336,6 @@ class Search {
 };
 
 }  // namespace
-
-bool SearchResult::has_unnamed() const {
-  return std::any_of(curves.begin(), curves.end(), [](const AddedCurve& c) { return c.law_of == nullptr; });
-}
 
 SearchResult search_effects(std::span<const FitData> data, const EffectList& given, const FitResult& fit,
                             const std::vector<bool>& base_fixed,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calib/curves/curve.hpp"
-#include "calib/tracing/search.hpp"
+#include "calib/tracing/search_result.hpp"
 
 namespace odomcalib::calib {
 
