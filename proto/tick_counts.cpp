@@ -40,11 +40,15 @@ bool fits(const std::vector<TickSample>& ticks, std::int64_t modulus) {
   return inside(0) || inside(-modulus / 2);
 }
 
+/// Over many samples: where a bus hands over several at a time, most intervals are next to nothing.
 double median_interval(const std::vector<TickSample>& ticks) {
+  constexpr std::size_t kMostAtATime = 20;
+  if (ticks.size() < 2) return 0.1;
+  const std::size_t n = std::min(kMostAtATime, ticks.size() - 1);
   std::vector<double> intervals;
-  intervals.reserve(ticks.size());
-  for (std::size_t i = 1; i < ticks.size(); ++i) intervals.push_back(ticks[i].t - ticks[i - 1].t);
-  if (intervals.empty()) return 0.1;
+  intervals.reserve(ticks.size() - n);
+  for (std::size_t i = n; i < ticks.size(); ++i)
+    intervals.push_back((ticks[i].t - ticks[i - n].t) / static_cast<double>(n));
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
   std::nth_element(intervals.begin(), middle, intervals.end());
   return std::max(*middle, 1e-3);

@@ -116,6 +116,19 @@ TEST(TickCounts, are_not_broken_by_jittering_stamps_or_lost_samples) {
   EXPECT_EQ(continue_counts(ticks, test::example_robot()), 0U);
 }
 
+TEST(TickCounts, are_not_broken_by_a_bus_that_hands_over_several_at_a_time) {
+  std::mt19937 random(5);
+  const auto ticks = drive(random, 400, 0, 0);
+  for (const std::size_t batch : {2U, 3U, 5U}) {
+    auto handed_over = ticks;
+    for (std::size_t i = 0; i < ticks.size(); ++i)
+      handed_over[i].t =
+          ticks[std::min(i - i % batch + batch, ticks.size()) - 1].t + 1e-4 * static_cast<double>(i % batch);
+    EXPECT_EQ(continue_counts(handed_over, test::example_robot()), 0U) << batch << " at a time";
+    expect_same_motion(handed_over, ticks);
+  }
+}
+
 TEST(TickCounts, never_join_segments_that_the_source_has_told_apart) {
   std::vector<TickSample> ticks{{0, 0, 0, 3}, {0.1, 10, 10, 3}, {0.2, 20, 20, 7}, {0.3, 30, 30, 7}};
   EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U);
