@@ -6,6 +6,7 @@
 #include "calib/curves/basis.hpp"
 #include "calib/gate.hpp"
 #include "calib/lidar/lidar_report.hpp"
+#include "calib/lidar/metre.hpp"
 #include "calib/report.hpp"
 #include "calib/report_data.hpp"
 #include "calib/tracing/outlier_trace.hpp"
@@ -47,8 +48,8 @@ class Filler {
   void run() {
     const FitResult& fit = found_.outcome.model.fit;
     const std::span<const double> p = as_span(fit.parameters);
-    Eigen::MatrixXd covariance =
-        lengths_may_be_scaled() ? with_matcher_scale(fit.covariance, to_base(p)) : fit.covariance;
+    Eigen::MatrixXd covariance = with_scale_error(fit.covariance, to_base(p), scale_deviation());
+    measured_ = base_quantities(to_base(p), covariance);
     for (const Eigen::VectorXd& doubt : found_.outcome.doubts)
       covariance.topLeftCorner<kBaseCount, kBaseCount>() += doubt * doubt.transpose();
     calibration_.parameters = base_quantities(to_base(p), covariance);
@@ -63,8 +64,9 @@ class Filler {
     if (found_.stamps.any()) calibration_.extensions["stamps"] = to_json(found_.stamps);
     if (!found_.outcome.considered.empty())
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
-    store_report_data(make_report_data(found_.session, effects(), found_.outcome.model.fit, plain_),
-                      calibration_);
+    ReportData report = make_report_data(found_.session, effects(), found_.outcome.model.fit, plain_);
+    report.detectable = found_.outcome.detectable;
+    store_report_data(report, calibration_);
     const GateResult gate = judge(calibration_, footing());
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;
@@ -76,14 +78,16 @@ class Filler {
 
   /// Matches of keyframes are not free of bias; neither is a model with a law that was found to fit, whose
   /// true shape nobody knows (a delay may be a filter). Places in a map are, as far as simulated drives tell.
-  [[nodiscard]] bool lengths_may_be_scaled() const {
-    if (!found_.session.reference_is_scans()) return false;
-    return !found_.every_scan_placed || !effects().empty() || !found_.lidar.empty();
+  [[nodiscard]] double scale_deviation() const {
+    if (!found_.session.reference_is_scans()) return 0.0;
+    if (found_.every_scan_placed && effects().empty() && found_.lidar.empty()) return 0.0;
+    return std::hypot(kMatcherScale, metre_in_doubt(found_.lidar, found_.session.recordings()));
   }
 
   [[nodiscard]] Footing footing() const {
     Footing footing;
     footing.converged = found_.outcome.model.fit.converged;
+    footing.measured = measured_;
     if (outliers_) footing.remarks.push_back(to_text(*outliers_));
     for (const std::string& remark : remarks_on(found_.stamps)) footing.remarks.push_back(remark);
     if (!found_.session.reference_is_scans() || found_.every_scan_placed) return footing;
@@ -228,6 +232,7 @@ class Filler {
   Calibration& calibration_;
   std::optional<OutlierTrace> outliers_;
   std::optional<FitResult> plain_;
+  QuantityList measured_;  ///< with the deviations that the motion leaves
   std::vector<FittedCurve> fitted_curves_;
 };
 

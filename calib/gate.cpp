@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 
 #include "calib/session/sign_check.hpp"
@@ -47,12 +48,19 @@ std::string motion_for(const std::string& name) {
   return name == "track_width" ? "turn on the spot, both ways" : "drive straight lines, forward and backward";
 }
 
+std::optional<double> relative_deviation(const QuantityList& quantities, const std::string& name) {
+  for (const auto& [own, quantity] : quantities)
+    if (own == name) return quantity.std / quantity.value;
+  return std::nullopt;
+}
+
 class Judgement {
  public:
   void refuse(const std::string& reason) { refusals_.push_back(reason); }
   void warn(const std::string& reason) { warnings_.push_back(reason); }
 
-  void check(const std::string& name, const Quantity& quantity, double nominal) {
+  /// @param measured relative deviation that the motion leaves
+  void check(const std::string& name, const Quantity& quantity, double nominal, double measured) {
     if (!std::isfinite(quantity.value) || quantity.value <= 0.0) {
       refuse(name +
              " came out as a non-positive length: left and right wheels may be swapped, or the lidar's "
@@ -61,10 +69,13 @@ class Judgement {
       return;
     }
     const double relative = quantity.std / quantity.value;
-    if (!(quantity.std >= 0.0) || relative > kMaxRelativeDeviation)
-      refuse(name + " is determined to " + percent(relative) + " only; to fix that, " + motion_for(name));
+    if (!(quantity.std >= 0.0) || measured > kMaxRelativeDeviation)
+      refuse(name + " is determined to " + percent(measured) + " only; to fix that, " + motion_for(name));
+    else if (measured > kWarnRelativeDeviation)
+      warn(name + " is determined to " + percent(measured) + " only; a longer recording would help");
     else if (relative > kWarnRelativeDeviation)
-      warn(name + " is determined to " + percent(relative) + " only; a longer recording would help");
+      warn(name + " without what was found is known to " + percent(relative) +
+           " only: how that goes on where it was not seen, this recording does not tell");
     if (nominal > 0.0) check_against_nominal(name, quantity.value / nominal);
   }
 
@@ -125,7 +136,8 @@ GateResult judge(const Calibration& calibration, const Footing& footing) {
     if (name == "lidar_yaw" && calibration.robot.lidar_pose)
       judgement.check_lidar_yaw(quantity.value, (*calibration.robot.lidar_pose)[2]);
     if (name.starts_with("lidar_")) continue;
-    judgement.check(name, quantity, nominal_value(calibration.robot, name));
+    judgement.check(name, quantity, nominal_value(calibration.robot, name),
+                    relative_deviation(footing.measured, name).value_or(quantity.std / quantity.value));
   }
   judgement.check_matches(footing.matched, footing.unmatched);
   judgement.check_residual(calibration.residual);

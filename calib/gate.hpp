@@ -20,6 +20,9 @@ struct Footing {
   std::size_t matched = 0;           ///< pairs of scans, where the values come from these
   std::size_t unmatched = 0;         ///< pairs that gave no motion
   std::vector<std::string> remarks;  ///< what else a user should know: sentences
+  /// Base quantities with the deviations that the motion leaves, without what is unknown of the effects;
+  /// empty: those of the calibration.
+  QuantityList measured = {};
 };
 
 /// Refuses implausible or badly determined values, or those of the few scans that happened to match, and says

@@ -116,13 +116,13 @@ QuantityList base_quantities(const BaseParameters& base, const Eigen::MatrixXd& 
   return list;
 }
 
-Eigen::MatrixXd with_matcher_scale(const Eigen::MatrixXd& covariance, const BaseParameters& base) {
-  constexpr double kScaleDeviation = 2e-4;
+Eigen::MatrixXd with_scale_error(const Eigen::MatrixXd& covariance, const BaseParameters& base,
+                                 double deviation) {
   Eigen::VectorXd lengths = Eigen::VectorXd::Zero(covariance.rows());
   lengths.head<5>() << base.left_radius, base.right_radius, base.track_width, base.mount.x, base.mount.y;
   for (Eigen::Index k = 0; k < lengths.size(); ++k)
     if (!(covariance(k, k) > 0.0)) lengths(k) = 0.0;
-  return covariance + kScaleDeviation * kScaleDeviation * lengths * lengths.transpose();
+  return covariance + deviation * deviation * lengths * lengths.transpose();
 }
 
 std::vector<std::vector<double>> diameter_covariance(const Eigen::MatrixXd& covariance) {

@@ -11,10 +11,15 @@ namespace odomcalib::calib {
 /// @param covariance of the base parameters in radii; fixed ones have zero variance and get no deviation
 QuantityList base_quantities(const BaseParameters& base, const Eigen::MatrixXd& covariance);
 
-/// Adds what the statistics of one recording cannot show: all lengths inherit the scale error of scan
-/// matching, which depends on the room and was 0.02 % over simulated rooms
+/// Relative, of a scan matcher's metre; it depends on the room and was 0.02 % over simulated rooms
 /// (tests/integration/accuracy_test.cpp).
-Eigen::MatrixXd with_matcher_scale(const Eigen::MatrixXd& covariance, const BaseParameters& base);
+inline constexpr double kMatcherScale = 2e-4;
+
+/// Adds what the statistics of one recording cannot show: all lengths inherit the error of the metre they
+/// were measured with.
+/// @param deviation of the metre, relative
+Eigen::MatrixXd with_scale_error(const Eigen::MatrixXd& covariance, const BaseParameters& base,
+                                 double deviation);
 
 /// Covariance of the quantities above from that of the radii.
 std::vector<std::vector<double>> diameter_covariance(const Eigen::MatrixXd& covariance);

@@ -140,7 +140,7 @@ class Solver {
 
   Result<FitResult> measure_anew(std::span<const Recording> recordings) {
     if (auto error = open(recordings)) return *error;
-    session_->measure(parameters_, effects_, PairOptions{});
+    measure();
     return settle();
   }
 
@@ -215,13 +215,26 @@ class Solver {
     for (int pass = 0; pass < 2 && fit; ++pass) {
       parameters_ = fit.value().parameters;
       if (pass == 0) drop_idle_clocks(fit.value());
+      if (is_as_measured()) break;
       report("matching", 0.33 * (pass + 1));
-      session_->measure(parameters_, effects_, PairOptions{});
+      measure();
       report("fitting", 0.5 * (pass + 1));
       fit = fit_now();
     }
     if (fit) parameters_ = fit.value().parameters;
     return fit;
+  }
+
+  void measure() {
+    session_->measure(parameters_, effects_, PairOptions{});
+    measured_with_ = parameters_;
+  }
+
+  /// With parameters so near matches begin at the same guess and scans are de-skewed alike.
+  [[nodiscard]] bool is_as_measured() const {
+    constexpr double kNear = 1e-4;  // m, rad, s
+    return parameters_.size() == measured_with_.size() &&
+           (parameters_ - measured_with_).cwiseAbs().maxCoeff() < kNear;
   }
 
   Result<FitResult> fit_now() {
@@ -290,12 +303,8 @@ class Solver {
       return fit;
     const State before = state(fit.value(), first);
     placed_with_.resize(0);
-    auto better = fit_corrected();
-    if (better && refined) {
-      refine(std::span(lidar_).subspan(first), lidar_pairs());
-      better = fit_corrected();
-    }
-    return unless_worse(std::move(better), before);
+    if (refined && look_through_correction()) refine(std::span(lidar_).subspan(first), lidar_pairs());
+    return unless_worse(fit_corrected(), before);
   }
 
   /// What is gone back to when a correction turns out to be none.
@@ -338,6 +347,16 @@ class Solver {
     for (std::size_t k = 0; k < before->rms.size(); ++k)
       if (after->rms[k] > kTolerated * before->rms[k]) return true;
     return false;
+  }
+
+  /// Measures corrected scans, well enough for a second look at what is left of their errors.
+  bool look_through_correction() {
+    corrected_ = corrected(recordings_, lidar_);
+    if (open(corrected_)) return false;
+    measure();
+    const auto fit = fit_now();
+    if (fit) parameters_ = fit.value().parameters;
+    return static_cast<bool>(fit);
   }
 
   Result<FitResult> fit_corrected() {
@@ -474,8 +493,9 @@ class Solver {
   EffectList effects_;
   SearchResult outcome_;
   Eigen::VectorXd parameters_;
-  std::vector<ScanPath> paths_;  ///< one per recording, or none
-  Eigen::VectorXd placed_with_;  ///< parameters that the paths were made with; empty: they are to be made
+  std::vector<ScanPath> paths_;    ///< one per recording, or none
+  Eigen::VectorXd measured_with_;  ///< parameters of the pairs
+  Eigen::VectorXd placed_with_;    ///< parameters that the paths were made with; empty: they are to be made
   std::vector<LidarEffectPtr> asked_of_lidar_;
   std::vector<LidarFinding> lidar_;
   std::vector<Recording> evened_;  ///< with other times; empty where those given are right

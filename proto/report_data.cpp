@@ -10,6 +10,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kErrorsMember = "drive_errors";
 constexpr const char* kPictureMember = "picture";
+constexpr const char* kDetectableMember = "detectable";
 
 /// Six significant digits: more than a picture shows, and the file stays small.
 Json number(double value) {
@@ -54,6 +55,15 @@ Json to_json(const ResidualTrace& trace) {
   for (const auto& b : trace.bins)
     out["bins"].push_back(row(b.variable, b.before, b.before_error, b.after, b.after_error));
   return out;
+}
+
+Json to_json(const Detectable& effect) {
+  return {{"effect", effect.effect},
+          {"parameter", effect.parameter},
+          {"unit", effect.unit},
+          {"smallest", effect.smallest ? number(*effect.smallest) : Json(nullptr)},
+          {"typical", number(effect.typical)},
+          {"motion", effect.motion}};
 }
 
 Json to_json(const PathTrace& path) {
@@ -129,6 +139,13 @@ ResidualTrace trace_of(const Json& value) {
   return trace;
 }
 
+Detectable detectable_of(const Json& value) {
+  Detectable effect{value.at("effect"), value.at("parameter"),          value.at("unit"),
+                    std::nullopt,       number_of(value.at("typical")), value.at("motion")};
+  if (!value.at("smallest").is_null()) effect.smallest = number_of(value.at("smallest"));
+  return effect;
+}
+
 PathTrace path_of(const Json& value) {
   PathTrace path{value.at("name"), {}};
   for (const auto& point : value.at("points")) {
@@ -156,6 +173,10 @@ ResidualSample sample_of(const Json& value) {
 
 void read_errors(const Json& list, ReportData& data) {
   for (const auto& value : list) data.drive_errors.push_back(error_of(value));
+}
+
+void read_detectable(const Json& list, ReportData& data) {
+  for (const auto& value : list) data.detectable.push_back(detectable_of(value));
 }
 
 void read_picture(const Json& picture, ReportData& data) {
@@ -190,6 +211,7 @@ void store_report_data(const ReportData& data, Calibration& calibration) {
     for (const double value : values) left_out[name].push_back(number(value));
   }
   calibration.extensions[kErrorsMember] = list(data.drive_errors).dump();
+  if (!data.detectable.empty()) calibration.extensions[kDetectableMember] = list(data.detectable).dump();
   calibration.extensions[kPictureMember] = Json{
       {"paths", list(data.paths)},
       {"traces", list(data.traces)},
@@ -201,6 +223,7 @@ void store_report_data(const ReportData& data, Calibration& calibration) {
 ReportData report_data_of(const Calibration& calibration) {
   ReportData data;
   read_member(calibration, kErrorsMember, data, read_errors);
+  read_member(calibration, kDetectableMember, data, read_detectable);
   read_member(calibration, kPictureMember, data, read_picture);
   return data;
 }

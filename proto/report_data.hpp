@@ -1,5 +1,6 @@
 // What a report shows beyond the contract of the calibration file: errors that a user feels, and the points
-// of its pictures. Additive members `drive_errors` and `picture` of the file.
+// of its pictures. Additive members `drive_errors`, `detectable` and
+// `picture` of the file.
 #pragma once
 
 #include <array>
@@ -49,6 +50,14 @@ struct ResidualTrace {
   std::vector<Bin> bins;
 };
 
+/// An effect that was not found, and what size it would have been found at.
+struct Detectable {
+  std::string effect, parameter, unit;
+  std::optional<double> smallest;  ///< absent where no size shows: other parameters take all of it
+  double typical = 0.0;            ///< what robots have; where the smallest is larger, this drive was no test
+  std::string motion;              ///< that shows it
+};
+
 struct PathTrace {
   std::string name;                           ///< odometry (nominal values), calibrated, reference
   std::vector<std::array<double, 2>> points;  ///< m, frame of the base at the start
@@ -72,6 +81,7 @@ struct ResidualSample {
 struct ReportData {
   std::vector<DriveError> drive_errors;
   std::vector<ResidualTrace> traces;
+  std::vector<Detectable> detectable;
   std::vector<PathTrace> paths;
   std::vector<ResidualAxis> axes;
   std::vector<ResidualSample> series;

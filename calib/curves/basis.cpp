@@ -171,11 +171,11 @@ BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   const double z = value_of(variable, c, curve.memory);
   if (concerns_sensor(curve)) return sway_functions(curve, z);
   if (curve.constant) return with_constant(harmonics(z, 1, kHarmonics));
+  if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);
   if (is_angle(variable))
     return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
   if (is_distance_since(variable)) return fading(variable, z);
   if (is_relay(variable, curve.memory)) return {z};
-  if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);
   if (variable == Variable::time) return legendre(scaled(curve, z));
   if (curve.is_wave()) return wave_functions(curve, c);
   if (curve.patches) return patches(curve, c.x, c.y);
@@ -183,7 +183,8 @@ BasisValues raw_basis(const Curve& curve, const StepContext& c) {
     const double x = scaled(curve, c.x), y = scaled(curve, c.y);
     return {x, y, x * x, x * y, y * y};
   }
-  return is_signed_speed(variable) ? speed_functions(curve, z) : zero_at_rest(curve, z);
+  const bool has_knots = is_signed_speed(variable) || curve.knots > kKnots.front();
+  return has_knots ? speed_functions(curve, z) : zero_at_rest(curve, z);
 }
 
 }  // namespace

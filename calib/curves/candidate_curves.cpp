@@ -53,6 +53,8 @@ Carriers carriers_of(Variable variable) {
     case Variable::since_stop:
     case Variable::previous_turn:
       return {both_travel, left_travel, right_travel, track, sideways_path, yaw_path};
+    case Variable::distance:
+      return {};
     case Variable::previous_push:
       return {both_travel, left_travel, right_travel, track};
   }
@@ -85,6 +87,11 @@ void add_harmonics(const Curve& curve, int first, int last, std::vector<Curve>& 
     curves.push_back(curve);
     curves.back().harmonic = harmonic;
   }
+}
+
+bool may_have_knots(const Law& law) {
+  return (is_signed_speed(law.variable) && law.carrier != Carrier::turn_path) ||
+         is_acceleration(law.variable);
 }
 
 }  // namespace
@@ -124,9 +131,8 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
 
 std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models) {
   std::vector<Curve> shapes;
-  const bool has_knots = is_signed_speed(curve.law.variable) && curve.law.carrier != Carrier::turn_path;
   for (const int knots : kKnots) {
-    if (!has_knots || knots <= curve.knots) continue;
+    if (!may_have_knots(curve.law) || knots <= curve.knots) continue;
     shapes.push_back(curve);
     shapes.back().knots = knots;
   }

@@ -4,6 +4,10 @@ namespace odomcalib::calib {
 
 bool concerns_sensor(const Curve& curve) { return curve.law.carrier == Carrier::sensor_yaw; }
 
+bool is_of_one_drive(const Curve& curve) {
+  return belongs_to_the_place(curve.law.variable) || curve.period > 0.0;
+}
+
 bool takes_an_event(const Curve& curve) {
   return curve.law.variable == Variable::since_stop || is_relay(curve.law.variable, curve.memory);
 }

@@ -20,7 +20,7 @@ inline constexpr int kPatches = 4;
 /// f(z) = sum of coefficients times basis functions of the variable z:
 /// - angles: harmonics 1 to 3, or one alone;
 /// - distances since an event: piecewise linear in its logarithm, zero far away;
-/// - time with a period: one cosine and one sine;
+/// - time, a distance or a wheel's angle with a period: one cosine and one sine;
 /// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both; or patches,
 ///   bilinear between kPatches knots each way; or, of a floor that repeats itself, one wave: its cosine and
 ///   sine, and both times the cosine of the angle between the heading and the way across the crests;
@@ -28,6 +28,7 @@ inline constexpr int kPatches = 4;
 /// - speeds and turn rate: piecewise linear in the magnitude at four knots or cubic splines at more, a step
 /// with the direction (on the unsigned way that has this direction a constant), and the magnitude times the
 /// direction;
+/// - accelerations, once found, may take the splines of speeds: a law of the side that is pushed has a step;
 /// - on the sensor's yaw: the variable and its signed square;
 /// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
 /// Any other constant is a base parameter's, except on carriers of the unsigned way in drives both ways, and
@@ -36,12 +37,12 @@ struct Curve {
   Law law;
   double low = -1.0;
   double high = 1.0;
-  double period = 0.0;  ///< s, of time only; 0: none
+  double period = 0.0;  ///< in the unit of the variable; 0: none
   int harmonic = 0;     ///< of angles only: this one alone; 0: the first three
   /// Subtracted from the functions; none: 0. Functions that are zero at rest leave the base parameters the
   /// meaning of slow motion; functions without a mean leave them that of the drive they were fitted to.
   std::vector<double> mean = {};
-  int knots = kKnots.front();         ///< of speeds only
+  int knots = kKnots.front();         ///< of speeds and accelerations only
   std::size_t memory = kUsualMemory;  ///< of what happened before only: which way to understand it
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
   bool constant = false;              ///< of heading only: with a constant as the first function
@@ -53,6 +54,9 @@ struct Curve {
 
 /// A dependence of the sensor's place on the base: none of odometry's.
 bool concerns_sensor(const Curve& curve);
+
+/// Has a phase or an origin that the next drive does not share.
+bool is_of_one_drive(const Curve& curve);
 
 /// Begins with a stop or a push, of which it is not known how long or how hard it has to be.
 bool takes_an_event(const Curve& curve);

@@ -26,7 +26,7 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   }
   [[nodiscard]] Storage storage() const override {
     if (concerns_sensor(curve_)) return Storage::driver;
-    return belongs_to_the_place(curve_.law.variable) ? Storage::nowhere : Storage::host;
+    return is_of_one_drive(curve_) ? Storage::nowhere : Storage::host;
   }
 
   template <typename T>

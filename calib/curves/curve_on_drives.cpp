@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "calib/curves/basis.hpp"
@@ -29,6 +30,15 @@ double amount(Carrier carrier, const StepContext& c) {
   }
 }
 
+bool is_at_rest(const StepContext& c) {
+  return std::abs(c.left_speed) <= kMoving && std::abs(c.right_speed) <= kMoving;
+}
+
+double value_in(const Curve& curve, std::span<const double> coefficients, const StepContext& c) {
+  const BasisValues functions = basis(curve, c);
+  return std::inner_product(functions.begin(), functions.end(), coefficients.begin(), 0.0);
+}
+
 }  // namespace
 
 std::pair<double, double> range_of(Variable variable, std::span<const DriveModel* const> models,
@@ -36,7 +46,7 @@ std::pair<double, double> range_of(Variable variable, std::span<const DriveModel
   std::vector<double> values;
   for (const DriveModel* model : models)
     for (const StepContext& c : model->context()) {
-      if (std::abs(c.left_speed) <= kMoving && std::abs(c.right_speed) <= kMoving) continue;
+      if (is_at_rest(c)) continue;
       values.push_back(value_of(variable, c, memory));
       if (variable == Variable::position) values.push_back(c.y);
     }
@@ -80,13 +90,25 @@ double spread_of(const Curve& curve, std::span<const double> coefficients,
   double sum = 0.0, total = 0.0;
   for (const DriveModel* model : models)
     for (const StepContext& c : model->context()) {
-      const BasisValues functions = basis(curve, c);
-      const double f = std::inner_product(functions.begin(), functions.end(), coefficients.begin(), 0.0);
+      const double f = value_in(curve, coefficients, c);
       const double weight = amount(curve.law.carrier, c);
       sum += weight * f * f;
       total += weight;
     }
   return std::sqrt(sum / std::max(total, 1e-12));
+}
+
+double half_span_of(const Curve& curve, std::span<const double> coefficients,
+                    std::span<const DriveModel* const> models) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const DriveModel* model : models)
+    for (const StepContext& c : model->context()) {
+      if (is_at_rest(c)) continue;
+      const double f = value_in(curve, coefficients, c);
+      low = std::min(low, f);
+      high = std::max(high, f);
+    }
+  return std::max(0.0, 0.5 * (high - low));
 }
 
 bool leaves_mean_to_wheels(const Curve& curve, std::span<const DriveModel* const> models) {

@@ -23,6 +23,10 @@ Curve centred(Curve curve, std::span<const DriveModel* const> models);
 double spread_of(const Curve& curve, std::span<const double> coefficients,
                  std::span<const DriveModel* const> models);
 
+/// Half of what lies between the least and the most of the curve in these drives, where their wheels turn.
+double half_span_of(const Curve& curve, std::span<const double> coefficients,
+                    std::span<const DriveModel* const> models);
+
 /// Driven one way only, the mean of a pull over the headings is a difference of the wheels.
 bool leaves_mean_to_wheels(const Curve& curve, std::span<const DriveModel* const> models);
 

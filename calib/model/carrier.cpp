@@ -19,6 +19,7 @@ std::string to_string(Variable variable) {
                                            "time",
                                            "heading",
                                            "position",
+                                           "distance",
                                            "since_reversal",
                                            "left_since_reversal",
                                            "right_since_reversal",
@@ -40,13 +41,17 @@ bool belongs_to_the_place(Variable variable) {
 }
 
 bool begins_with_the_recording(Variable variable) {
-  return belongs_to_the_place(variable) || variable == Variable::left_phase ||
-         variable == Variable::right_phase;
+  return belongs_to_the_place(variable) || is_phase(variable) || variable == Variable::distance;
 }
 
 bool is_signed_speed(Variable variable) {
   return variable == Variable::left_speed || variable == Variable::right_speed ||
          variable == Variable::speed || variable == Variable::turn_rate;
+}
+
+bool is_acceleration(Variable variable) {
+  return variable == Variable::left_acceleration || variable == Variable::right_acceleration ||
+         variable == Variable::acceleration || variable == Variable::lateral_acceleration;
 }
 
 bool is_phase(Variable variable) {
@@ -113,6 +118,8 @@ double value_of(Variable variable, const StepContext& c, std::size_t memory) {
       return c.heading;
     case Variable::position:
       return c.x;
+    case Variable::distance:
+      return c.distance;
     case Variable::since_reversal:
       return c.since_reversal;
     case Variable::left_since_reversal:

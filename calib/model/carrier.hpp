@@ -23,6 +23,7 @@ enum class Variable {
   time,
   heading,
   position,  ///< x and y together
+  distance,  ///< way so far; of waves only
   since_reversal,
   left_since_reversal,
   right_since_reversal,
@@ -39,6 +40,8 @@ bool belongs_to_the_place(Variable variable);
 bool begins_with_the_recording(Variable variable);
 /// A speed or turn rate whose sign is the direction.
 bool is_signed_speed(Variable variable);
+/// Of a wheel, of the base forward or to the side.
+bool is_acceleration(Variable variable);
 /// Of a wheel.
 bool is_phase(Variable variable);
 bool is_angle(Variable variable);

@@ -43,6 +43,8 @@ void DriveHistory::advance(StepContext& c) {
   c.since_reversal = since_reversal_;
   c.way = std::copysign(std::hypot(step.x, step.y), step.x * direction_);
   since_reversal_ += c.way;
+  c.distance = distance_;
+  distance_ += c.way;
   c.left_since_reversal = left_.advance(c.left_delta);
   c.right_since_reversal = right_.advance(c.right_delta);
   swing_caster(c, step);

@@ -35,6 +35,7 @@ class DriveHistory {
   Wheel left_, right_;
   double direction_ = 0.0;
   double since_reversal_ = kFarBack;
+  double distance_ = 0.0;
   double pace_ = 0.0;
   double stood_ = 0.0;  ///< s
   std::array<double, kStops.size()> since_stop_;

@@ -27,6 +27,8 @@ struct EffectParameter {
   double prior =
       0.0;  ///< deviation of a normal prior about zero; 0: none. What the data do not show stays small
   bool fixed = false;  ///< a shape that is tried at several values instead of being fitted
+  /// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
+  [[nodiscard]] bool is_size() const { return start == 0.0 && !fixed; }
 };
 
 /// Share of an effect's typical size below which it does not matter to odometry and is not claimed: what a

@@ -80,6 +80,7 @@ struct StepContext {
   std::array<double, kRelaxations.size()> relaxed_turn_rate{}, relaxed_lateral_acceleration{};
   double way =
       0.0;  ///< of the base in its direction, m; not smoothed, so that in a spin ticks give either sign
+  double distance = 0.0;             ///< way so far, forward and backward alike, m
   double heading = 0.0;              ///< rad, from the plain model
   double x = 0.0, y = 0.0;           ///< m, from the plain model
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m

@@ -43,11 +43,6 @@ void add_names(const EffectList& given, bool one_recording, std::vector<Candidat
   }
 }
 
-Candidate candidate_of(const Curve& curve) {
-  const auto effect = make_curve_effect(curve);
-  return {effect, curve, key_of(*effect, curve)};
-}
-
 /// Odometry does without what belongs to the place or the day: then the base must be that of the whole drive.
 void add_curves(std::span<const DriveModel* const> models, std::vector<Candidate>& candidates) {
   for (const Curve& free : candidate_curves(models)) {
@@ -58,6 +53,11 @@ void add_curves(std::span<const DriveModel* const> models, std::vector<Candidate
 }
 
 }  // namespace
+
+Candidate candidate_of(const Curve& curve) {
+  const auto effect = make_curve_effect(curve);
+  return {effect, curve, key_of(*effect, curve)};
+}
 
 std::vector<Candidate> all_candidates(const EffectList& present, std::span<const DriveModel* const> models) {
   std::vector<Candidate> candidates;

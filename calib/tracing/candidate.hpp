@@ -24,6 +24,8 @@ struct Candidate {
 /// The catalogue without what the model has already, and the curves that these drives can show.
 std::vector<Candidate> all_candidates(const EffectList& present, std::span<const DriveModel* const> models);
 
+Candidate candidate_of(const Curve& curve);
+
 /// Floors that repeat themselves: tiles, planks, joints. Many, so that they are tried when all else is told.
 std::vector<Candidate> floor_waves(std::span<const DriveModel* const> models);
 

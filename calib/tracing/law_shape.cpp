@@ -84,12 +84,13 @@ class Changes {
   double total_ = 0.0;
 };
 
-/// nullopt if the drive cannot tell it from the wheels.
+/// nullopt if the drive cannot tell it from the wheels, or no robot is that bad.
 std::optional<Reshaped> fitted_in_shape(const FitTask& task, const FittedModel& model, const Curve& shape,
                                         const std::vector<NoiseModel>& noise) {
   const auto effect = make_curve_effect(shape);
   auto fitted = with_effect(task, model, effect, noise);
   if (!fitted || curve_spoils_base(*effect, model.fit, fitted->fit)) return std::nullopt;
+  if (!impossibility(*effect, fitted->fit).empty()) return std::nullopt;
   return Reshaped{shape, std::move(*fitted)};
 }
 
@@ -110,6 +111,7 @@ std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, co
     }
     auto fit = task.fit(effects, start, model.fit.noise);
     if (!fit || curve_spoils_base(*effects.back(), model.fit, *fit)) continue;
+    if (!impossibility(*effects.back(), *fit).empty()) continue;
     all.push_back({shape, {std::move(effects), std::move(*fit)}});
   }
   return all;
@@ -164,7 +166,9 @@ Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, con
   // What was kept of the past has no natural zero either: neither side of it is the robot as it was measured.
   if (curve.mean.empty() && !is_memory(curve.law.variable) && !leaves_mean) return doubt;
   const Eigen::VectorXd own = model.fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
-  const double spread = spread_of(curve, as_span(own), task.models());
+  // What changes as the day goes is often right at one end of it.
+  const bool goes_with_time = curve.law.variable == Variable::time;
+  const double spread = (goes_with_time ? half_span_of : spread_of)(curve, as_span(own), task.models());
   for (const auto k : lengths_of(curve.law.carrier)) doubt(k) = spread * model.fit.parameters(k);
   if (leaves_mean) {
     const double wheel = 0.5 * model.fit.parameters(kTrackWidth) * spread;  // m for each metre of way

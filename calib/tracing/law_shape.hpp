@@ -13,7 +13,7 @@ struct Reshaped {
   Curve curve;
   FittedModel model;  ///< on the noise of the given one
 };
-/// The shapes that the drive can tell from the wheels.
+/// The shapes that the drive can tell from the wheels, of sizes that a robot may have.
 /// @param model whose last effect is the curve's
 std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, const Curve& curve);
 

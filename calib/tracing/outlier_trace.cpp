@@ -84,7 +84,9 @@ std::vector<Binned> all_variables(std::span<const FitData> data) {
   std::vector<Binned> all;
   for (int k = 0; k <= static_cast<int>(kLastVariable); ++k) {
     const auto variable = static_cast<Variable>(k);
-    if (is_memory(variable) || (data.size() > 1 && begins_with_the_recording(variable))) continue;
+    if (is_memory(variable) || variable == Variable::distance ||
+        (data.size() > 1 && begins_with_the_recording(variable)))
+      continue;
     all.push_back(binned(variable, data));
   }
   return all;

@@ -18,9 +18,6 @@ Eigen::VectorXd last_parameters(const Effect& effect, const FitResult& fit) {
   return fit.parameters.tail(static_cast<Eigen::Index>(effect.parameters().size()));
 }
 
-/// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
-bool is_size(const EffectParameter& parameter) { return parameter.start == 0.0 && !parameter.fixed; }
-
 std::string outside(const EffectParameter& parameter, double value) {
   std::ostringstream out;
   out << std::setprecision(3) << parameter.name << " of " << value;
@@ -46,7 +43,7 @@ bool is_held_back(const Effect& effect, const FitResult& fit) {
   const Eigen::VectorXd values = last_parameters(effect, fit);
   const auto parameters = effect.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k)
-    if (is_size(parameters[k]) &&
+    if (parameters[k].is_size() &&
         !(std::abs(values(static_cast<Eigen::Index>(k))) < kNear * parameters[k].upper))
       return true;
   return false;
@@ -61,7 +58,7 @@ bool is_negligible(const Effect& effect, std::size_t first, const FitResult& fit
   const auto parameters = effect.parameters();
   double largest = 0.0;
   for (std::size_t k = 0; k < parameters.size(); ++k)
-    if (is_size(parameters[k]))
+    if (parameters[k].is_size())
       largest = std::max(
           largest, std::abs(fit.parameters(static_cast<Eigen::Index>(first + k))) / parameters[k].scale);
   return largest < kNegligibleShare;
@@ -111,7 +108,7 @@ bool is_superfluous(const Effect& effect, std::size_t first, const FitResult& fi
   std::vector<Eigen::Index> sizes;
   const auto parameters = effect.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k)
-    if (is_size(parameters[k])) sizes.push_back(static_cast<Eigen::Index>(first + k));
+    if (parameters[k].is_size()) sizes.push_back(static_cast<Eigen::Index>(first + k));
   const Eigen::VectorXd value = fit.parameters(sizes);
   const Eigen::MatrixXd covariance = fit.covariance(sizes, sizes);
   const double wald = value.dot(covariance.ldlt().solve(value));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 
@@ -114,6 +115,8 @@ class Projection {
 
 }  // namespace
 
+Eigen::VectorXd clipped(const Eigen::VectorXd& whitened) { return whitened.cwiseMax(-kClip).cwiseMin(kClip); }
+
 double chi_squared_tail(double statistic, std::size_t degrees) {
   if (degrees == 0 || !(statistic > 0.0)) return 1.0;
   return boost::math::gamma_q(static_cast<double>(degrees) / 2.0, std::min(statistic, 1e6) / 2.0);
@@ -125,7 +128,7 @@ double significance(double statistic, Eigen::Index degrees) {
 
 ScoreTable::ScoreTable(std::span<const FitData> data, const EffectList& effects, const FitResult& fit,
                        const std::vector<bool>& fixed, const std::vector<Candidate>& candidates)
-    : residual_(fit.whitened_residual.cwiseMax(-kClip).cwiseMin(kClip)) {
+    : residual_(clipped(fit.whitened_residual)) {
   variance_ = residual_.squaredNorm() / std::max(static_cast<double>(residual_.size()), 1.0);
   Blocks blocks = blocks_of(data);
   borders_ = std::move(blocks.borders);
@@ -145,6 +148,12 @@ void ScoreTable::add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projecte
   score.degrees = static_cast<std::size_t>(bases_.back().cols());
   score.statistic = block_scores_.back().rowwise().sum().squaredNorm() / variance_;
   score.p_value = chi_squared_tail(score.statistic, score.degrees);
+  for (Eigen::Index k = 0; k < raw.cols(); ++k) {
+    const double left = projected.col(k).squaredNorm();
+    score.deviations.push_back(left > kGauge * raw.col(k).squaredNorm()
+                                   ? std::sqrt(variance_ / left)
+                                   : std::numeric_limits<double>::infinity());
+  }
   score.unabsorbed = scale > 0.0 ? projected.squaredNorm() / raw.squaredNorm() : 0.0;
   scores_.push_back(score);
 }

@@ -17,10 +17,14 @@ struct Score {
   double statistic =
       0.0;  ///< T ~ chi-squared with `degrees` under "nothing missing"; expected drop of -2 log L
   std::size_t degrees = 0;
-  double p_value = 1.0;         ///< of this candidate alone
-  double family_p_value = 1.0;  ///< of the largest among all candidates, by sign flips of blocks
+  double p_value = 1.0;            ///< of this candidate alone
+  double family_p_value = 1.0;     ///< of the largest among all candidates, by sign flips of blocks
+  std::vector<double> deviations;  ///< of each parameter alone beside the fitted ones; infinite if absorbed
   double unabsorbed = 0.0;  ///< share of the candidate's signature that the fitted parameters cannot absorb
 };
+
+/// One bad match must not decide.
+Eigen::VectorXd clipped(const Eigen::VectorXd& whitened);
 
 /// Upper tail of the chi-squared distribution.
 double chi_squared_tail(double statistic, std::size_t degrees);

@@ -9,12 +9,14 @@
 #include "calib/curves/curve_effect.hpp"
 #include "calib/curves/curve_on_drives.hpp"
 #include "calib/tracing/candidate.hpp"
+#include "calib/tracing/detectable.hpp"
 #include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/likeness.hpp"
 #include "calib/tracing/next_addition.hpp"
 #include "calib/tracing/outlier_trace.hpp"
 #include "calib/tracing/plausibility.hpp"
 #include "calib/tracing/retirement.hpp"
+#include "calib/tracing/rolling_waves.hpp"
 #include "calib/tracing/search_round.hpp"
 #include "calib/tracing/settled_shape.hpp"
 #include "calib/tracing/wrong_name.hpp"
@@ -41,7 +43,7 @@ class Search {
   SearchResult run() {
     go_on(0.0, 0.4);
     ask_the_outliers();
-    ask_the_floor();
+    ask_for_waves();
     go_on(0.5, 1.0);
     for (std::size_t e = 0; e < result_.model.effects.size(); ++e) {
       result_.doubts.push_back(doubt_of_extrapolation(task_, result_.model, e));
@@ -49,6 +51,7 @@ class Search {
     }
     add_doubts(unproved_);
     tell_what_has_grown();
+    result_.detectable = smallest_detectable(task_, result_.model);
     return std::move(result_);
   }
 
@@ -96,9 +99,10 @@ class Search {
     noise_share_ = kNoiseShare;
   }
 
-  /// What repeats itself along the floor, when nothing else is left to say.
-  void ask_the_floor() {
+  /// What repeats itself along the floor or as something rolls, when nothing else is left to say.
+  void ask_for_waves() {
     candidates_ = floor_waves(task_.models());
+    for (const Candidate& wave : rolling_waves(task_.data, result_.model)) candidates_.push_back(wave);
     round_.reset();
     has_changed_ = true;
   }

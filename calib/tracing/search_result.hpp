@@ -8,6 +8,7 @@
 #include "calib/curves/curve.hpp"
 #include "calib/tracing/fitted_model.hpp"
 #include "calib/tracing/proof.hpp"
+#include "proto/report_data.hpp"
 
 namespace odomcalib::calib {
 
@@ -43,6 +44,7 @@ struct SearchResult {
   std::vector<AddedCurve> curves;
   EffectList quiet;                    ///< in the model, but too small to be told
   std::vector<Considered> considered;  ///< in the order tried
+  std::vector<Detectable> detectable;  ///< of the names that are not in the model
   /// What nobody knows about a law is unknown of the base parameters too: by how much they move with another
   /// shape, another zero or another name of the set, by extrapolation to where no effect is, and with what
   /// was too small to be told.

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 
+#include "calib/predict.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/report_sections.hpp"
 
@@ -90,6 +92,14 @@ Section methods_of(const Calibration& calibration) {
   return section;
 }
 
+/// What belongs to the place or the day, or begins at another phase each time.
+std::set<std::string> not_in_odometry(const Calibration& calibration) {
+  std::set<std::string> names;
+  for (const auto& placement : calib::effect_placements(calibration))
+    if (placement.place == calib::Place::nowhere) names.insert(readable(placement.effect));
+  return names;
+}
+
 Section effects_of(const Calibration& calibration) {
   Section section{"Effects", {}, {{"", "value", "+-2 sigma", "unit", "p", "stored in"}, {}}};
   for (const auto& effect : calibration.effects)
@@ -107,6 +117,11 @@ Section effects_of(const Calibration& calibration) {
     section.lines.push_back(
         fmt::format("unexplained: the residual depends on {} (p {:.2g})", on, rest->p_value));
   }
+  for (const std::string& name : not_in_odometry(calibration))
+    section.lines.push_back(
+        name +
+        ": of this place, day or drive; odometry goes on without it, and \"after\" is what "
+        "knowing it here and now would make of the errors");
   for (const auto& effect : calibration.effects) {
     std::string others;
     for (const auto& alias : effect.aliases) others += (others.empty() ? "" : ", ") + readable(alias);
@@ -174,6 +189,7 @@ Document describe(const Calibration& calibration) {
                                    drive_errors_section(data),
                                    effects_of(calibration),
                                    traces_section(data),
+                                   detectable_section(data),
                                    path_section(data),
                                    residual_of(calibration.residual),
                                    methods_of(calibration),

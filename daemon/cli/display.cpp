@@ -23,6 +23,8 @@ std::string number(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
 }
 
+std::string significant(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; }
+
 std::string shown(const std::optional<double>& value, const std::string& unit) {
   const Display show = display_of(unit);
   return value ? number(*value * show.factor, show.digits) : "-";

@@ -18,6 +18,9 @@ Display display_of(const std::string& unit);
 /// "-" for what is not finite.
 std::string number(double value, int digits);
 
+/// Three significant digits; "-" for what is not finite.
+std::string significant(double value);
+
 /// Value in the shown unit, without it; "-" when absent.
 std::string shown(const std::optional<double>& value, const std::string& unit);
 

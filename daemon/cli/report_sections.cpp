@@ -97,6 +97,22 @@ Section traces_section(const ReportData& data) {
   return section;
 }
 
+Section detectable_section(const ReportData& data) {
+  Section section{"What was not found, and the size at which nine of ten such drives would show it", {}, {}};
+  for (const Detectable& effect : data.detectable) {
+    const Display show = display_of(effect.unit);
+    const bool is_shown = effect.smallest && *effect.smallest < effect.typical;
+    section.table.rows.push_back({readable(effect.effect) + ": " + readable(effect.parameter),
+                                  effect.smallest ? significant(*effect.smallest * show.factor) : "never",
+                                  significant(effect.typical * show.factor), show.unit});
+    if (!is_shown)
+      section.lines.push_back("this drive is no test of " + readable(effect.effect) + "; one has " +
+                              effect.motion);
+  }
+  if (!section.table.rows.empty()) section.table.head = {"", "smallest", "typical", "unit"};
+  return section;
+}
+
 Section path_section(const ReportData& data) {
   Section section{"The drive", {}, {}};
   for (const PathTrace& path : data.paths) {

@@ -40,6 +40,19 @@ TEST(Gate, refuses_a_badly_determined_length_and_names_the_motion_for_it) {
   EXPECT_NE(gate.reasons[0].find("turn on the spot"), std::string::npos) << gate.reasons[0];
 }
 
+TEST(Gate, accepts_what_only_a_law_of_unknown_shape_makes_uncertain_and_says_so) {
+  const Calibration uncertain = with_track(0.4, 0.0121);
+  Footing footing = kFirm;
+  footing.measured = {{"track_width", {0.4, 1e-4, "m"}}};
+  const GateResult gate = judge(uncertain, footing);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons.front().find("track_width without what was found"), std::string::npos)
+      << gate.reasons.front();
+  footing.measured.front().second.std = 0.0121;
+  EXPECT_EQ(judge(uncertain, footing).verdict, Verdict::refused);
+}
+
 TEST(Gate, refuses_what_cannot_be_the_robot) {
   EXPECT_EQ(judge(with_track(0.43, 1e-4), kFirm).verdict, Verdict::accepted);
   EXPECT_EQ(judge(with_track(0.45, 1e-4), kFirm).verdict, Verdict::accepted_with_warnings);

@@ -6,6 +6,7 @@
 
 #include "calib/lidar/lidar_curve.hpp"
 #include "calib/lidar/lidar_trace.hpp"
+#include "calib/lidar/metre.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -83,6 +84,24 @@ TEST(LidarEffect, correction_undoes_the_error) {
       EXPECT_NEAR(mended.angles[k], good.angles[k], 2e-5) << effect->name();
     }
   }
+}
+
+/// Half the slope of the error over all that is seen; none of an offset, or of what scans are corrected by.
+TEST(LidarEffect, that_bends_ranges_leaves_the_metre_in_doubt) {
+  Recording recording;
+  recording.scans.resize(1);
+  recording.scans.front().ranges.assign(100, 1.5F);
+  const auto of_range = lidar_curves()[2];
+  ASSERT_EQ(of_range->variable(), "range");
+  const auto doubt = [&](const LidarEffectPtr& effect, const std::vector<double>& values) {
+    return metre_in_doubt({{effect, values, {}, 0.0, 0.0, 0.0}}, {&recording, 1});
+  };
+  // Hats over log2 of the range: 10 mm at 1 m, none at 2 m.
+  const double slope = -0.01 / (1.5 * std::numbers::ln2);
+  EXPECT_NEAR(doubt(of_range, {0.0, 0.01, 0.0, 0.0}), 0.5 * std::abs(slope), 1e-5);
+  EXPECT_NEAR(doubt(of_range, {0.01, 0.01, 0.01, 0.01}), 0.0, 1e-9);
+  EXPECT_EQ(doubt(make_lidar_tilt(), {0.1, 0.1}), 0.0);
+  EXPECT_EQ(metre_in_doubt({}, {&recording, 1}), 0.0);
 }
 
 TEST(LidarEffect, a_turn_that_begins_anywhere_is_seen_as_one) {

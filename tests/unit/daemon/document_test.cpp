@@ -34,6 +34,9 @@ Calibration example() {
   data.paths = {{"odometry", {{0.0, 0.0}, {1.0, 0.5}}}, {"calibrated", {{0.0, 0.0}, {0.9, 0.4}}}};
   data.traces = {
       {"backlash", "speed", "m/s", "heading", "rad", 0.9, {{0.1, 0.01, 0.0}}, {{0.1, 0.01, 1e-3, 0, 1e-3}}}};
+  data.detectable = {{"backlash", "left_play", "rad", 0.002, 0.02, "reversals"},
+                     {"lateral_slip", "kappa", "s", 0.2, 0.01, "arcs at two speeds"},
+                     {"carpet", "p_x", "1", std::nullopt, 0.015, "lines on four headings"}};
   store_report_data(data, calibration);
   return calibration;
 }
@@ -48,6 +51,15 @@ TEST(Report, text_and_page_say_the_same) {
     EXPECT_THAT(text, HasSubstr(said));
     EXPECT_THAT(page, HasSubstr(said));
   }
+}
+
+TEST(Report, says_what_the_drive_was_no_test_of) {
+  const std::string text = to_text(report(example()));
+  EXPECT_THAT(text, HasSubstr("this drive is no test of lateral slip; one has arcs at two speeds"));
+  EXPECT_THAT(text, HasSubstr("this drive is no test of carpet"));
+  EXPECT_THAT(text, HasSubstr("never"));
+  EXPECT_THAT(text, Not(HasSubstr("no test of backlash")));
+  EXPECT_THAT(text, HasSubstr("0.115"));  // 0.002 rad in degrees
 }
 
 TEST(Report, page_is_self_contained_and_escaped) {
