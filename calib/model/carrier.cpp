@@ -36,6 +36,21 @@ std::string to_string(Carrier carrier) {
   return kNames[static_cast<std::size_t>(carrier)];
 }
 
+Carrier signed_counterpart(Carrier carrier) {
+  switch (carrier) {
+    case Carrier::left_path:
+      return Carrier::left_travel;
+    case Carrier::right_path:
+      return Carrier::right_travel;
+    case Carrier::both_path:
+      return Carrier::both_travel;
+    case Carrier::sideways_path:
+      return Carrier::sideways;
+    default:
+      return carrier;
+  }
+}
+
 bool belongs_to_the_place(Variable variable) {
   return variable == Variable::time || variable == Variable::heading || variable == Variable::position;
 }

@@ -84,6 +84,9 @@ enum class Carrier {
 };
 inline constexpr Carrier kLastCarrier = Carrier::sensor_yaw;
 std::string to_string(Carrier carrier);
+/// Of an unsigned way the signed one: whatever depends on a speed may change either, and only the direction
+/// tells which. Any other carrier is its own.
+Carrier signed_counterpart(Carrier carrier);
 
 /// Lets a defect of size f act on the step.
 template <typename T>

@@ -84,6 +84,11 @@ class Changes {
   double total_ = 0.0;
 };
 
+std::span<const double> values_of(const FittedModel& model, std::size_t index) {
+  const auto first = static_cast<std::size_t>(first_parameter(model.effects, index));
+  return as_span(model.fit.parameters).subspan(first, model.effects[index]->parameters().size());
+}
+
 /// nullopt if the drive cannot tell it from the wheels, or no robot is that bad.
 std::optional<Reshaped> fitted_in_shape(const FitTask& task, const FittedModel& model, const Curve& shape,
                                         const std::vector<NoiseModel>& noise) {
@@ -178,23 +183,22 @@ Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, con
   return doubt;
 }
 
-Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model, std::size_t index) {
-  const Effect& effect = *model.effects[index];
+Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model,
+                                       const std::vector<std::size_t>& law) {
   Eigen::VectorXd doubt = Eigen::VectorXd::Zero(kBaseCount);
-  if (concerns_reference(effect)) return doubt;
-  const auto first = static_cast<std::size_t>(first_parameter(model.effects, index));
-  const auto own = as_span(model.fit.parameters).subspan(first, effect.parameters().size());
+  if (concerns_reference(*model.effects[law.front()])) return doubt;
+  const bool two_states = law.size() > 1 || model.effects[law.front()]->has_two_states();
   Changes left, right, track;
   for (const DriveModel* drive : task.models())
     for (const StepContext& c : drive->context()) {
       WheelStep<double> step{c.left_delta, c.right_delta};
-      effect.apply(c, own, step);
+      for (const std::size_t e : law) model.effects[e]->apply(c, values_of(model, e), step);
       left.add(step.left / c.left_delta - 1.0, std::abs(c.left_delta));
       right.add(step.right / c.right_delta - 1.0, std::abs(c.right_delta));
       track.add(step.track - 1.0, std::abs(c.turn_rate) * c.dt);
     }
   // A law that ends where the data end, instead of going on to zero, is two deviations off.
-  const auto share = [&](Changes& changes) { return 0.5 * changes.unknown(effect.has_two_states()); };
+  const auto share = [&](Changes& changes) { return 0.5 * changes.unknown(two_states); };
   doubt(kLeftRadius) = share(left) * model.fit.parameters(kLeftRadius);
   doubt(kRightRadius) = share(right) * model.fit.parameters(kRightRadius);
   doubt(kTrackWidth) = share(track) * model.fit.parameters(kTrackWidth);

@@ -53,8 +53,11 @@ Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, con
 /// The base parameters are those of a robot without the effect. Where this drive shows it at work everywhere,
 /// as a law of speed does down to the slowest speed, they are extrapolated: by what it does where it does
 /// least. Zero where it is absent, or of either sign, in a tenth of the drive.
-/// @param index of the effect in the model
-Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model, std::size_t index);
+/// @param law effects of the model that make it up: one, or one and the curves that make one law with it. A law
+/// that is not the textbook's has no side of which it is known that nothing happens there, so that all that
+/// lies between its extremes is open.
+Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model,
+                                       const std::vector<std::size_t>& law);
 
 /// What the base parameters would be with the other shapes in which an effect that scales lengths is tried,
 /// each by the root of its probability beside all of them (Hoeting et al., Stat. Sci. 14, 1999, eq. 5).

@@ -46,7 +46,7 @@ class Search {
     ask_for_waves();
     go_on(0.5, 1.0);
     for (std::size_t e = 0; e < result_.model.effects.size(); ++e) {
-      result_.doubts.push_back(doubt_of_extrapolation(task_, result_.model, e));
+      result_.doubts.push_back(doubt_of_extrapolation(task_, result_.model, law_with(e)));
       add_doubts(doubts_of_shape(task_, result_.model, e));
     }
     add_doubts(unproved_);
@@ -61,6 +61,19 @@ class Search {
 
   void add_doubts(const std::vector<Eigen::VectorXd>& doubts) {
     result_.doubts.insert(result_.doubts.end(), doubts.begin(), doubts.end());
+  }
+
+  /// Places in the model of an effect and of the curves that make one law with it.
+  [[nodiscard]] std::vector<std::size_t> law_with(std::size_t index) const {
+    std::vector<std::size_t> law{index};
+    const EffectList& effects = result_.model.effects;
+    for (const AddedCurve& added : result_.curves) {
+      const Law signed_law{added.curve.law.variable, signed_counterpart(added.curve.law.carrier)};
+      if (added.effect == effects[index] || !contains(effects[index]->laws(), signed_law)) continue;
+      law.push_back(static_cast<std::size_t>(std::find(effects.begin(), effects.end(), added.effect) -
+                                             effects.begin()));
+    }
+    return law;
   }
 
   /// @param from, to shares of the whole search

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "calib/curves/basis.hpp"
 #include "calib/curves/candidate_curves.hpp"
 #include "calib/curves/curve_effect.hpp"
 #include "calib/effects/catalogue.hpp"
@@ -253,7 +254,7 @@ TEST(Tracing, lengths_are_extrapolated_to_where_no_effect_is) {
     FittedModel found{{find_effect(name)}, {}};
     found.fit.parameters = to_vector(kBase, values.size());
     std::copy(values.begin(), values.end(), found.fit.parameters.data() + kBaseCount);
-    return doubt_of_extrapolation({{&data, 1}, std::vector<bool>(kBaseCount, false)}, found, 0);
+    return doubt_of_extrapolation({{&data, 1}, std::vector<bool>(kBaseCount, false)}, found, {0});
   };
   const double slow = doubt(model, "speed_dependent_radius", {0.02, 0.0})(kLeftRadius) / kBase.left_radius;
   EXPECT_GT(slow, 1e-5);
@@ -263,6 +264,24 @@ TEST(Tracing, lengths_are_extrapolated_to_where_no_effect_is) {
   EXPECT_EQ(doubt(model, "carpet", {0.01, 0.0})(kLeftRadius), 0.0) << "of either sign";
   EXPECT_NEAR(doubt(model, "turn_direction_asymmetry", {0.01})(kTrackWidth), 0.005 * kBase.track_width, 1e-6)
       << "either way of turning may be the normal one";
+}
+
+/// A wheel that goes 2 % farther whichever way it turns is, as a name and a curve, one of 2 % that shrinks by
+/// four when it rolls back; its diameter may be that of either way, or what lies between.
+TEST(Tracing, a_name_and_an_unsigned_law_beside_it_leave_all_between_their_extremes_open) {
+  const DriveModel model = lively_model();
+  const FitData data = measured(model, {}, {});
+  Curve unsigned_way{{Variable::left_speed, Carrier::left_path}, -0.5, 0.5};
+  FittedModel found{{find_effect("direction_dependent_diameter"), make_curve_effect(unsigned_way)}, {}};
+  std::vector<double> values(2 + basis_size(unsigned_way), 0.0);
+  values[0] = -0.04;
+  found.fit.parameters = to_vector(kBase, values.size());
+  std::copy(values.begin(), values.end(), found.fit.parameters.data() + kBaseCount);
+  const FitTask task{{&data, 1}, std::vector<bool>(kBaseCount, false)};
+  EXPECT_EQ(doubt_of_extrapolation(task, found, {0})(kLeftRadius), 0.0)
+      << "the name alone: forward is normal";
+  EXPECT_NEAR(doubt_of_extrapolation(task, found, {0, 1})(kLeftRadius), 0.02 * kBase.left_radius, 1e-6);
+  EXPECT_EQ(doubt_of_extrapolation(task, found, {0, 1})(kRightRadius), 0.0);
 }
 
 TEST(Tracing, tiles_are_flagged_as_a_matter_of_the_place) {
