@@ -45,6 +45,15 @@ double systematic(const ResidualTrace& trace, double ResidualTrace::Bin::*member
   return std::sqrt(sum / std::max(static_cast<double>(trace.bins.size()), 1.0));
 }
 
+/// A wave of what rolls unseen has no variable that could be drawn.
+std::string dependence_of(const ResidualTrace& trace) {
+  constexpr double kMost = 0.5;
+  if (trace.explained < kMost)
+    return fmt::format("no variable alone shows its pattern; the {} residual over {}", trace.residual,
+                       trace.variable);
+  return fmt::format("the {} residual depends on {}", trace.residual, trace.variable);
+}
+
 std::optional<double> value_of(const Calibration& calibration, const std::string& name) {
   return calibration.parameter(name);
 }
@@ -87,11 +96,10 @@ Section traces_section(const ReportData& data) {
   Section section{"What was found, and what is left of it", {}, {}};
   for (const ResidualTrace& trace : data.traces) {
     const Display show = display_of(trace.residual_unit);
-    section.lines.push_back(
-        fmt::format("{}: the {} residual depends on {}; RMS of its means {} {} without it, {} {} with it",
-                    readable(trace.effect), trace.residual, trace.variable,
-                    number(systematic(trace, &ResidualTrace::Bin::before) * show.factor, 2), show.unit,
-                    number(systematic(trace, &ResidualTrace::Bin::after) * show.factor, 2), show.unit));
+    section.lines.push_back(fmt::format(
+        "{}: {}; RMS of its means {} {} without it, {} {} with it", readable(trace.effect),
+        dependence_of(trace), number(systematic(trace, &ResidualTrace::Bin::before) * show.factor, 2),
+        show.unit, number(systematic(trace, &ResidualTrace::Bin::after) * show.factor, 2), show.unit));
     section.figures.push_back(figure_of_trace(trace));
   }
   return section;
