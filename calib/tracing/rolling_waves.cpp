@@ -16,6 +16,7 @@ namespace {
 constexpr double kShortest = 0.2;      ///< m; less than a pair of scans is long
 constexpr double kLongest = 1.5;       ///< m; what changes slower may be anything
 constexpr double kStep = 0.5;          ///< cycles over the whole way
+constexpr double kMostWaves = 3000;    ///< the shortest are left out where there would be more
 constexpr double kBeyondDoubt = 1e-4;  ///< of a peak as high anywhere, in noise
 
 /// Something that rolls.
@@ -98,9 +99,9 @@ class Periodogram {
 /// place in between a tenth as far.
 /// @param metre of the variable, for a metre of way
 std::optional<double> outstanding(double metre, const Periodogram& periodogram, double whole_way) {
-  const double lowest = 1.0 / (kLongest * metre), highest = 1.0 / (kShortest * metre);
-  const double step = kStep / whole_way;
+  const double lowest = 1.0 / (kLongest * metre), step = kStep / whole_way;
   if (!(step < lowest)) return std::nullopt;
+  const double highest = std::min(1.0 / (kShortest * metre), lowest + kMostWaves * step);
   const auto best_of = [&](double low, double high, double by) {
     std::array<double, 2> best{low, 0.0};
     for (double f = low; f <= high; f += by)
