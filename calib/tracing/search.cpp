@@ -254,6 +254,7 @@ class Search {
     const auto proof = accept(best);
     if (!proof) return true;
     result_.findings.push_back({candidate.effect, aliases, *proof});
+    strike_what_late_beams_do(*candidate.effect);
     add_doubts(round_->doubts_of(rivals, best));
     drop_superfluous();
     return true;
@@ -282,6 +283,17 @@ class Search {
     strike_what_a_mast_does();
     drop_superfluous();
     return true;
+  }
+
+  /// Scans whose beams were sent at other times than stated are bent by turning, and matches of them find
+  /// other ways the faster the robot drives and turns: what looks like a law of turning is no more the
+  /// wheels'.
+  void strike_what_late_beams_do(const Effect& found) {
+    if (found.name() != "scan_skew") return;
+    for (Candidate& candidate : candidates_)
+      if (candidate.curve && (candidate.curve->law.variable == Variable::lateral_acceleration ||
+                              candidate.curve->law.variable == Variable::turn_rate))
+        candidate.struck = true;
   }
 
   /// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
