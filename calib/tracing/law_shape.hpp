@@ -53,9 +53,9 @@ Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, con
 /// The base parameters are those of a robot without the effect. Where this drive shows it at work everywhere,
 /// as a law of speed does down to the slowest speed, they are extrapolated: by what it does where it does
 /// least. Zero where it is absent, or of either sign, in a tenth of the drive.
-/// @param law effects of the model that make it up: one, or one and the curves that make one law with it. A law
-/// that is not the textbook's has no side of which it is known that nothing happens there, so that all that
-/// lies between its extremes is open.
+/// @param law effects of the model that make it up: one, or one and the curves that make one law with it. A
+/// law that is not the textbook's has no side of which it is known that nothing happens there, so that all
+/// that lies between its extremes is open.
 Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model,
                                        const std::vector<std::size_t>& law);
 

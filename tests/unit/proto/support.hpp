@@ -21,7 +21,7 @@ inline RobotDescription example_robot() { return {0.154, 0.154, 0.33, 2000.0, st
 
 /// A file in the test's temporary folder.
 inline std::filesystem::path write_file(const std::string& name, const std::string& bytes) {
-  const auto path = std::filesystem::path(testing::TempDir()) / ("odomcalib_" + name);
+  auto path = std::filesystem::path(testing::TempDir()) / ("odomcalib_" + name);
   std::ofstream(path, std::ios::binary) << bytes;
   return path;
 }
@@ -56,7 +56,9 @@ inline std::filesystem::path shared_data() {
 }  // namespace odomcalib::test
 
 /// For tests on real data: defines `variable`, or skips loudly.
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration takes none
 #define ODOMCALIB_SHARED_FILE(variable, name)                    \
   const auto variable = odomcalib::test::shared_data() / (name); \
   if (!std::filesystem::exists(variable))                        \
   GTEST_SKIP() << "REAL DATA ABSENT: " << variable << " not found; set ODOMCALIB_SHARED to its folder"
+// NOLINTEND(bugprone-macro-parentheses)

@@ -57,8 +57,8 @@ TYPED_TEST(Wrapping, counters_give_the_motion_of_counters_that_never_wrap) {
   std::mt19937 random(seed);
   for (int round = 0; round < 30; ++round) {
     // Near both ends of the narrow counters, so that wraps in both directions happen.
-    const auto start =
-        static_cast<std::int64_t>(std::numeric_limits<std::int32_t>::max()) - 100 + round * 1000;
+    const auto start = static_cast<std::int64_t>(std::numeric_limits<std::int32_t>::max()) - 100 +
+                       std::int64_t{1000} * round;
     const auto truth = drive(random, 1500, start, -start);
     auto ticks = wrapped<TypeParam>(truth);
     EXPECT_EQ(continue_counts(ticks, test::example_robot()), 0U);
@@ -143,6 +143,7 @@ TEST(TickCounts, survive_any_numbers) {
   std::mt19937_64 random(seed);
   for (int round = 0; round < 200; ++round) {
     std::vector<TickSample> ticks;
+    ticks.reserve(20);
     const int shift = static_cast<int>(random() % 60);
     for (int i = 0; i < 20; ++i)
       ticks.push_back({i * 0.1, static_cast<std::int64_t>(random()) >> 10 >> (shift / 2),
