@@ -138,9 +138,14 @@ class Solver {
     return fit;
   }
 
+  std::optional<Error> open_and_measure(std::span<const Recording> recordings) {
+    auto error = open(recordings);
+    if (!error) measure();
+    return error;
+  }
+
   Result<FitResult> measure_anew(std::span<const Recording> recordings) {
-    if (auto error = open(recordings)) return *error;
-    measure();
+    if (auto error = open_and_measure(recordings)) return *error;
     return settle();
   }
 
@@ -352,8 +357,7 @@ class Solver {
   /// Measures corrected scans, well enough for a second look at what is left of their errors.
   bool look_through_correction() {
     corrected_ = corrected(recordings_, lidar_);
-    if (open(corrected_)) return false;
-    measure();
+    if (open_and_measure(corrected_)) return false;
     const auto fit = fit_now();
     if (fit) parameters_ = fit.value().parameters;
     return static_cast<bool>(fit);

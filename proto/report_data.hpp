@@ -1,6 +1,5 @@
 // What a report shows beyond the contract of the calibration file: errors that a user feels, and the points
-// of its pictures. Additive members `drive_errors`, `detectable` and
-// `picture` of the file.
+// of its pictures. Additive members `drive_errors`, `detectable` and `picture` of the file.
 #pragma once
 
 #include <array>

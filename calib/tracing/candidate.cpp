@@ -32,17 +32,6 @@ bool belongs_to_one_recording(const Effect& effect) {
                      [](const Law& law) { return begins_with_the_recording(law.variable); });
 }
 
-void add_names(const EffectList& given, bool one_recording, std::vector<Candidate>& candidates) {
-  std::set<std::string> present;
-  for (const auto& effect : given) present.insert(key_of(*effect));
-  for (const auto& effect : effect_catalogue()) {
-    if (present.count(key_of(*effect)) > 0 || (!one_recording && belongs_to_one_recording(*effect))) continue;
-    EffectList shapes = effect->variants();
-    if (shapes.empty()) shapes.push_back(effect);
-    for (const auto& shape : shapes) candidates.push_back({shape, std::nullopt, key_of(*shape)});
-  }
-}
-
 /// Odometry does without what belongs to the place or the day: then the base must be that of the whole drive.
 void add_curves(std::span<const DriveModel* const> models, std::vector<Candidate>& candidates) {
   for (const Curve& free : candidate_curves(models)) {
@@ -59,9 +48,21 @@ Candidate candidate_of(const Curve& curve) {
   return {effect, curve, key_of(*effect, curve)};
 }
 
+std::vector<Candidate> names_missing(const EffectList& present, bool one_recording) {
+  std::vector<Candidate> names;
+  std::set<std::string> known;
+  for (const auto& effect : present) known.insert(key_of(*effect));
+  for (const auto& effect : effect_catalogue()) {
+    if (known.count(key_of(*effect)) > 0 || (!one_recording && belongs_to_one_recording(*effect))) continue;
+    EffectList shapes = effect->variants();
+    if (shapes.empty()) shapes.push_back(effect);
+    for (const auto& shape : shapes) names.push_back({shape, std::nullopt, key_of(*shape)});
+  }
+  return names;
+}
+
 std::vector<Candidate> all_candidates(const EffectList& present, std::span<const DriveModel* const> models) {
-  std::vector<Candidate> candidates;
-  add_names(present, models.size() == 1, candidates);
+  std::vector<Candidate> candidates = names_missing(present, models.size() == 1);
   add_curves(models, candidates);
   return candidates;
 }

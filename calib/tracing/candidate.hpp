@@ -21,7 +21,11 @@ struct Candidate {
   bool struck = false;  ///< added, or failed its proof: not asked again
 };
 
-/// The catalogue without what the model has already, and the curves that these drives can show.
+/// The catalogue without what the model has already, each effect in all its shapes.
+/// @param one_recording others share no zero of time, heading and the like
+std::vector<Candidate> names_missing(const EffectList& present, bool one_recording);
+
+/// Those, and the curves that these drives can show.
 std::vector<Candidate> all_candidates(const EffectList& present, std::span<const DriveModel* const> models);
 
 Candidate candidate_of(const Curve& curve);

@@ -14,8 +14,8 @@ namespace {
 constexpr double kQuantiles = 4.4 + 1.28;
 
 std::vector<Candidate> textbook_names(const FitTask& task, const FittedModel& model) {
-  std::vector<Candidate> names = all_candidates(model.effects, task.models());
-  std::erase_if(names, [](const Candidate& c) { return c.curve || !has_textbook_shape(c.effect); });
+  std::vector<Candidate> names = names_missing(model.effects, task.data.size() == 1);
+  std::erase_if(names, [](const Candidate& c) { return !has_textbook_shape(c.effect); });
   return names;
 }
 

@@ -89,13 +89,17 @@ std::span<const double> values_of(const FittedModel& model, std::size_t index) {
   return as_span(model.fit.parameters).subspan(first, model.effects[index]->parameters().size());
 }
 
-/// nullopt if the drive cannot tell it from the wheels, or no robot is that bad.
+/// The drive can tell it from the wheels, and robots may be that bad.
+bool is_credible(const Effect& curve, const FitResult& before, const FitResult& after) {
+  return !curve_spoils_base(curve, before, after) && impossibility(curve, after).empty();
+}
+
+/// nullopt if it is not credible.
 std::optional<Reshaped> fitted_in_shape(const FitTask& task, const FittedModel& model, const Curve& shape,
                                         const std::vector<NoiseModel>& noise) {
   const auto effect = make_curve_effect(shape);
   auto fitted = with_effect(task, model, effect, noise);
-  if (!fitted || curve_spoils_base(*effect, model.fit, fitted->fit)) return std::nullopt;
-  if (!impossibility(*effect, fitted->fit).empty()) return std::nullopt;
+  if (!fitted || !is_credible(*effect, model.fit, fitted->fit)) return std::nullopt;
   return Reshaped{shape, std::move(*fitted)};
 }
 
@@ -115,8 +119,7 @@ std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, co
       start.head(kept) = model.fit.parameters.head(kept);
     }
     auto fit = task.fit(effects, start, model.fit.noise);
-    if (!fit || curve_spoils_base(*effects.back(), model.fit, *fit)) continue;
-    if (!impossibility(*effects.back(), *fit).empty()) continue;
+    if (!fit || !is_credible(*effects.back(), model.fit, *fit)) continue;
     all.push_back({shape, {std::move(effects), std::move(*fit)}});
   }
   return all;

@@ -290,19 +290,21 @@ class Search {
   /// wheels'.
   void strike_what_late_beams_do(const Effect& found) {
     if (found.name() != "scan_skew") return;
-    for (Candidate& candidate : candidates_)
-      if (candidate.curve && (candidate.curve->law.variable == Variable::lateral_acceleration ||
-                              candidate.curve->law.variable == Variable::turn_rate))
-        candidate.struck = true;
+    strike_curves([](const Law& law) {
+      return law.variable == Variable::lateral_acceleration || law.variable == Variable::turn_rate;
+    });
   }
 
   /// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
   void strike_what_a_mast_does() {
     if (!concerns_sensor(result_.curves.back().curve)) return;
+    strike_curves(
+        [](const Law& law) { return law.carrier == Carrier::turn_side || law.carrier == Carrier::sideways; });
+  }
+
+  void strike_curves(const std::function<bool(const Law&)>& is_vain) {
     for (Candidate& candidate : candidates_)
-      if (candidate.curve && (candidate.curve->law.carrier == Carrier::turn_side ||
-                              candidate.curve->law.carrier == Carrier::sideways))
-        candidate.struck = true;
+      if (candidate.curve && is_vain(candidate.curve->law)) candidate.struck = true;
   }
 
   /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.
