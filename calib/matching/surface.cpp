@@ -18,8 +18,9 @@ constexpr double kWideNeighbourhood = 2.5;
 constexpr double kFewLines = 0.33;
 constexpr std::size_t kMinLinePoints = 4;
 constexpr double kLineNoiseFactor = 2.0;  ///< accepted rms of a line fit in units of the expected noise
-constexpr double kRelativeGap =
-    3.5;  ///< neighbours further apart than this times the median step are another surface
+/// Neighbours further apart than this times the median step, and than range noise makes them, are another
+/// surface.
+constexpr double kRelativeGap = 3.5;
 constexpr double kMinRangeNoise = 2e-3;  ///< m, real surfaces and beams are no better than this
 constexpr double kMaxRangeNoise = 5e-2;  ///< m
 constexpr double kDefaultRangeNoise = 1e-2;
@@ -73,14 +74,15 @@ double expected_step(const SurfacePoint& a, double angular_step) {
 /// How far the neighbourhood of i reaches to one side before a gap, the size limit or the count limit.
 /// @param farthest m
 std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int direction, double angular_step,
-                  double farthest) {
+                  double farthest, double range_noise) {
   std::size_t k = i;
   for (int n = 0; n < kMaxNeighbours; ++n) {
     if ((direction < 0 && k == 0) || (direction > 0 && k + 1 == points.size())) break;
     const std::size_t next = direction < 0 ? k - 1 : k + 1;
     // A surface seen at a grazing angle spreads its points; beyond about 75 degrees it is not used.
     const double gap = (points[next].position - points[k].position).norm();
-    if (gap > kRelativeGap * expected_step(points[k], angular_step)) break;
+    const double step = kRelativeGap * expected_step(points[k], angular_step);
+    if (gap > std::max(step, gap_by_noise(range_noise))) break;
     if ((points[next].position - points[i].position).norm() > farthest) break;
     k = next;
   }
@@ -97,8 +99,8 @@ bool acceptable(const Line& line, const SurfacePoint& point, double range_noise)
 /// Widest neighbourhood that is still one line: both sides, one side (next to a corner), then a narrower one.
 std::optional<Line> line_within(const std::vector<SurfacePoint>& points, const RunSums& sums, std::size_t i,
                                 double angular_step, double farthest, double range_noise) {
-  const std::size_t low = reach(points, i, -1, angular_step, farthest);
-  const std::size_t high = reach(points, i, +1, angular_step, farthest);
+  const std::size_t low = reach(points, i, -1, angular_step, farthest, range_noise);
+  const std::size_t high = reach(points, i, +1, angular_step, farthest, range_noise);
   const std::pair<std::size_t, std::size_t> windows[] = {
       {low, high}, {low, i}, {i, high}, {i - (i - low) / 2, i + (high - i) / 2}};
   for (const auto& [first, last] : windows) {

@@ -42,6 +42,10 @@ bool is_usable(const Scan& scan, std::size_t beam);
 /// @param range_noise standard deviation of a range, m; decides what still counts as one line
 Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_noise);
 
+/// How far two readings of one surface may lie apart for their noise alone, m: three deviations of their
+/// difference.
+[[nodiscard]] inline double gap_by_noise(double range_noise) { return 4.2 * range_noise; }
+
 /// Standard deviation of the range readings, m, from how straight walls look over two and a half degrees. The
 /// normal part of what is seen counts, so that corners do not, however few and noisy the readings are.
 double estimate_range_noise(std::span<const Scan> scans);

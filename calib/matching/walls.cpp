@@ -40,13 +40,14 @@ double median_step(const Surface& surface) {
   return median_of(std::move(steps));
 }
 
-std::vector<Piece> split_at_gaps(const Surface& surface) {
+std::vector<Piece> split_at_gaps(const Surface& surface, double range_noise) {
   const double step = median_step(surface);
   std::vector<Piece> runs{{0, 0}};
   for (std::size_t i = 1; i < surface.points.size(); ++i) {
     const SurfacePoint& a = surface.points[i - 1];
     const SurfacePoint& b = surface.points[i];
-    const double limit = std::max(kMinGap, kRelativeGap * std::min(a.range, b.range) * step);
+    const double across = kRelativeGap * std::min(a.range, b.range) * step;
+    const double limit = std::max({kMinGap, across, gap_by_noise(range_noise)});
     if ((b.position - a.position).norm() > limit)
       runs.push_back({i, i});
     else
@@ -237,7 +238,7 @@ Walls find_walls(const Surface& surface, double range_noise) {
   found.of_point.assign(surface.points.size(), Walls::kNone);
   if (surface.points.size() < kMinWallPoints) return found;
   std::vector<PieceOfWall> pieces;
-  for (const Piece& run : split_at_gaps(surface)) split(surface, run, range_noise, pieces);
+  for (const Piece& run : split_at_gaps(surface, range_noise)) split(surface, run, range_noise, pieces);
   for (const JoinedPieces& joined : group(pieces, surface)) take(joined, surface, range_noise, found);
   return found;
 }
