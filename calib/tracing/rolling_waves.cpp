@@ -114,6 +114,18 @@ std::optional<double> outstanding(double metre, const Periodogram& periodogram, 
   return chi_squared_tail(statistic, 2) * tried < kBeyondDoubt ? std::optional(frequency) : std::nullopt;
 }
 
+/// Once round with each turn of a wheel has a name; it competes with the wave.
+std::vector<Candidate> with_their_names(std::vector<Candidate> waves, const EffectList& present) {
+  const std::size_t count = waves.size();
+  for (const Candidate& name : names_missing(present, true)) {
+    const auto laws = name.effect->laws();
+    const auto is_its = [&](const Candidate& wave) { return contains(laws, wave.curve->law); };
+    const auto end = waves.begin() + static_cast<std::ptrdiff_t>(count);
+    if (std::any_of(waves.begin(), end, is_its)) waves.push_back(name);
+  }
+  return waves;
+}
+
 }  // namespace
 
 std::vector<Candidate> rolling_waves(std::span<const FitData> data, const FittedModel& model) {
@@ -126,7 +138,7 @@ std::vector<Candidate> rolling_waves(std::span<const FitData> data, const Fitted
     const auto frequency = outstanding(roller.metre, periodogram, way.all);
     if (frequency) candidates.push_back(candidate_of({roller.law, 0.0, way.all, 1.0 / *frequency, 0}));
   }
-  return candidates;
+  return with_their_names(std::move(candidates), model.effects);
 }
 
 }  // namespace odomcalib::calib

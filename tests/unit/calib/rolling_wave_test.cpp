@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "calib/curves/curve_effect.hpp"
+#include "calib/effects/catalogue.hpp"
+#include "calib/tracing/rolling_waves.hpp"
 #include "calib/tracing/search.hpp"
 #include "tests/unit/calib/tracing_support.hpp"
 
@@ -34,6 +36,32 @@ INSTANTIATE_TEST_SUITE_P(
                     Curve{{Variable::left_phase, Carrier::left_travel}, 0.0, 1000.0, 1.7 * 2.0 * kPi},
                     Curve{{Variable::right_phase, Carrier::right_travel}, 0.0, 1000.0, 2.6 * 2.0 * kPi}),
     testing::PrintToStringParamName());
+
+/// Names that the wave found competes with.
+std::vector<std::string> names_beside(const EffectList& effects, const std::vector<double>& values,
+                                      const EffectList& known) {
+  const DriveModel model = jerky_model();
+  const FitData data = measured(model, effects, values);
+  const auto fit = fit_joint({&data, 1}, known, to_vector(kBase, count_parameters(known)));
+  EXPECT_TRUE(fit) << "seed " << kSeed;
+  std::vector<std::string> names;
+  for (const Candidate& candidate : rolling_waves({&data, 1}, {known, fit.value()}))
+    if (!candidate.curve) names.push_back(candidate.key);
+  return names;
+}
+
+TEST(RollingWave, of_a_wheel_competes_with_the_names_of_what_goes_round_with_it) {
+  const EffectList both = find_effects("wheel_eccentricity");
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_EQ(names_beside({both.back()}, {0.02, -0.01}, {}),
+            std::vector<std::string>{"wheel_eccentricity/right_cos"});
+  EXPECT_TRUE(names_beside({both.back()}, {0.02, -0.01}, {both.back()}).empty()) << "no wave is left";
+}
+
+TEST(RollingWave, of_the_base_has_no_name) {
+  const Curve caster{{Variable::distance, Carrier::yaw_path}, 0.0, 100.0, 0.41};
+  EXPECT_TRUE(names_beside({make_curve_effect(caster)}, {0.03, -0.02}, {}).empty());
+}
 
 }  // namespace
 }  // namespace odomcalib::calib
