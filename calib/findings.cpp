@@ -64,9 +64,7 @@ class Filler {
     if (found_.stamps.any()) calibration_.extensions["stamps"] = to_json(found_.stamps);
     if (!found_.outcome.considered.empty())
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
-    ReportData report = make_report_data(found_.session, effects(), found_.outcome.model.fit, plain_);
-    report.detectable = found_.outcome.detectable;
-    store_report_data(report, calibration_);
+    store_report_data(make_report_data(found_.session, found_.outcome, plain_), calibration_);
     const GateResult gate = judge(calibration_, footing());
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;

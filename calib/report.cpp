@@ -167,10 +167,10 @@ MethodResult joint_method(const FitResult& fit) {
   return result;
 }
 
-std::vector<DataUse> data_use(const Session& session) {
+std::vector<DataUse> data_use(std::span<const Recording> recordings, std::span<const PairSet> pairs) {
   std::vector<DataUse> uses;
-  for (std::size_t i = 0; i < session.recordings().size(); ++i) {
-    const Recording& recording = session.recordings()[i];
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Recording& recording = recordings[i];
     DataUse use;
     use.name = recording.name;
     use.sha256 = recording.sha256;
@@ -182,9 +182,9 @@ std::vector<DataUse> data_use(const Session& session) {
                   {"increments", recording.increments.size()}};
     for (const Discarded& d : recording.discarded)
       use.discarded.emplace_back(d.what + ": " + d.reason, d.count);
-    if (i < session.pair_sets().size()) {
-      use.counts.emplace_back("pairs", session.pair_sets()[i].pairs.size());
-      for (const auto& [reason, count] : session.pair_sets()[i].rejected)
+    if (i < pairs.size()) {
+      use.counts.emplace_back("pairs", pairs[i].pairs.size());
+      for (const auto& [reason, count] : pairs[i].rejected)
         use.discarded.emplace_back("pair: " + reason, count);
     }
     uses.push_back(std::move(use));

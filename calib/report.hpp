@@ -32,6 +32,7 @@ std::vector<MethodResult> classical_methods(const Session& session, double delay
 
 MethodResult joint_method(const FitResult& fit);
 
-std::vector<DataUse> data_use(const Session& session);
+/// @param pairs of each recording; none where no pair was measured
+std::vector<DataUse> data_use(std::span<const Recording> recordings, std::span<const PairSet> pairs);
 
 }  // namespace odomcalib::calib

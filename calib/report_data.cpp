@@ -153,15 +153,18 @@ std::vector<std::pair<std::string, std::vector<double>>> left_out_of(const Sessi
 
 }  // namespace
 
-ReportData make_report_data(const Session& session, const EffectList& effects, const FitResult& fit,
+ReportData make_report_data(const Session& session, const SearchResult& found,
                             const std::optional<FitResult>& plain) {
+  const EffectList& effects = found.model.effects;
+  const FitResult& fit = found.model.fit;
   ReportData data;
   const auto fixed = fixed_with(session.fixed(0), effects);
   const JudgedModel full{&fit, fixed, effects};
   const JudgedModel geometry{plain ? &*plain : nullptr, session.fixed(0), {}};
   data.drive_errors =
       drive_errors(session.data(), session.nominal(), plain && !effects.empty() ? &geometry : nullptr, full);
-  data.traces = residual_traces(session.data(), effects, fit, fixed);
+  data.traces = residual_traces(session.data(), effects, fit, fixed, found.quiet);
+  data.detectable = found.detectable;
   data.paths = paths_of(session, effects, fit);
   data.axes = {axis_of(fit, 0, "x", "m"), axis_of(fit, 1, "y", "m"), axis_of(fit, 2, "yaw", "rad")};
   data.series = series_of(session, fit);

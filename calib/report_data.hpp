@@ -5,12 +5,13 @@
 
 #include "calib/estimators/joint.hpp"
 #include "calib/session/session.hpp"
+#include "calib/tracing/search_result.hpp"
 #include "proto/report_data.hpp"
 
 namespace odomcalib::calib {
 
-/// @param fit of the base parameters and `effects`; @param plain of the base parameters alone
-ReportData make_report_data(const Session& session, const EffectList& effects, const FitResult& fit,
+/// @param plain fit of the base parameters alone
+ReportData make_report_data(const Session& session, const SearchResult& found,
                             const std::optional<FitResult>& plain);
 
 }  // namespace odomcalib::calib

@@ -47,7 +47,7 @@ class Solver {
     if (fit) fit = let_scans_sweep(std::move(fit));
     if (fit) fit = correct_lidar(std::move(fit));
     if (fit) fit = locate(std::move(fit));
-    calibration_.data = data_use(*session_);
+    calibration_.data = data_in_use();
     calibration_.methods = classical_methods(*session_, delay(), calibration_);
     if (!fit) {
       MethodResult joint;
@@ -73,8 +73,14 @@ class Solver {
   Calibration refuse(const Error& error) {
     calibration_.verdict = Verdict::refused;
     calibration_.reasons = {error.text()};
-    if (calibration_.data.empty() && session_) calibration_.data = data_use(*session_);
+    calibration_.data = data_in_use();
     return calibration_;
+  }
+
+  /// A recording that cannot be used is told apart by its name and what it holds.
+  [[nodiscard]] std::vector<DataUse> data_in_use() const {
+    if (!session_) return data_use(recordings_, {});
+    return data_use(recordings_, session_->pair_sets());
   }
 
   std::optional<Error> open(std::span<const Recording> recordings) {

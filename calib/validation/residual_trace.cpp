@@ -292,12 +292,15 @@ std::optional<Eigen::VectorXd> fitted_without(std::span<const FitData> data, con
 }  // namespace
 
 std::vector<ResidualTrace> residual_traces(std::span<const FitData> data, const EffectList& effects,
-                                           const FitResult& fit, const std::vector<bool>& fixed) {
+                                           const FitResult& fit, const std::vector<bool>& fixed,
+                                           const EffectList& quiet) {
   std::vector<ResidualTrace> traces;
-  std::size_t first = kBaseCount;
+  std::size_t next = kBaseCount;
   for (const auto& effect : effects) {
+    const std::size_t first = next;
+    next += effect->parameters().size();
+    if (std::find(quiet.begin(), quiet.end(), effect) != quiet.end()) continue;
     const auto without = fitted_without(data, effects, fit, fixed, first, *effect);
-    first += effect->parameters().size();
     if (!without) continue;
     const Samples samples = samples_of(data, effects, fit, *without);
     const View view = best_view(samples);

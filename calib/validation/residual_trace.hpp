@@ -9,11 +9,12 @@
 
 namespace odomcalib::calib {
 
-/// One trace per effect. "Before" is the model refitted without that effect, "after" the full one; the
-/// difference of the two predictions is the effect's pattern. The variable is the one of all observed
-/// variables that describes most of the pattern (correlation ratio over quantile bins), and so is the axis: a
-/// new effect needs no entry here.
+/// One trace per effect but the quiet ones, which are in the model and too small to be told. "Before" is the
+/// model refitted without that effect, "after" the full one; the difference of the two predictions is the
+/// effect's pattern. The variable is the one of all observed variables that describes most of the pattern
+/// (correlation ratio over quantile bins), and so is the axis: a new effect needs no entry here.
 std::vector<ResidualTrace> residual_traces(std::span<const FitData> data, const EffectList& effects,
-                                           const FitResult& fit, const std::vector<bool>& fixed);
+                                           const FitResult& fit, const std::vector<bool>& fixed,
+                                           const EffectList& quiet = {});
 
 }  // namespace odomcalib::calib

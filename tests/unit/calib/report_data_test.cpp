@@ -195,6 +195,15 @@ INSTANTIATE_TEST_SUITE_P(effects, Traces,
                                            Expected{"time_offset", {0.03}, "acceleration", 0.5}),
                          [](const auto& test) { return std::string(test.param.effect); });
 
+TEST(Trace, is_not_shown_of_an_effect_that_is_too_small_to_be_told) {
+  const EffectList effects = {find_effect("time_offset"), find_effect("scan_skew")};
+  const auto world = make_world(effects, {0.03, 0.0, 0.0}, 15);
+  const auto traces =
+      residual_traces(world->data, effects, fitted(*world, effects), none_fixed(effects), {effects.front()});
+  ASSERT_EQ(traces.size(), 1U);
+  EXPECT_EQ(traces.front().effect, "scan_skew");
+}
+
 ReportData example() {
   ReportData data;
   data.drive_errors = {{"straight_metre_length", "m", 9, Bounded{0.02, 0.01, 0.03}, std::nullopt,

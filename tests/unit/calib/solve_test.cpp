@@ -43,6 +43,9 @@ TEST(Solve, a_recording_without_scans_is_refused_with_the_cause) {
   ASSERT_FALSE(result.reasons.empty());
   EXPECT_NE(result.reasons[0].find("neither scans nor reference poses"), std::string::npos);
   EXPECT_TRUE(result.parameters.empty());
+  ASSERT_EQ(result.data.size(), 1U) << "what was refused is told";
+  EXPECT_EQ(result.data.front().name, "no-lidar");
+  EXPECT_EQ(result.data.front().counts.front(), (std::pair<std::string, std::size_t>{"ticks", 2}));
 }
 
 TEST(Solve, an_unknown_effect_is_refused_by_name) {
