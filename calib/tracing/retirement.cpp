@@ -10,12 +10,12 @@
 namespace odomcalib::calib {
 namespace {
 
-/// A name whose law was completed shares its ground with the curve; the newest curve was just proved.
+/// What was added last was just proved; a name whose law was completed shares its ground with the curve.
 bool may_retire(const SearchResult& result, const std::shared_ptr<const Effect>& effect) {
+  if (effect == result.model.effects.back()) return false;
   const auto is_it = [&](const auto& added) { return added.effect == effect; };
   if (std::any_of(result.findings.begin(), result.findings.end(), is_it)) return !result.is_completed(effect);
-  return effect != result.model.effects.back() &&
-         std::any_of(result.curves.begin(), result.curves.end(), is_it);
+  return std::any_of(result.curves.begin(), result.curves.end(), is_it);
 }
 
 /// The model without the effect, if that is as good.

@@ -1,0 +1,53 @@
+// What is taken out of the model again once something else was added.
+#include "calib/tracing/retirement.hpp"
+
+#include <gtest/gtest.h>
+
+#include "calib/effects/catalogue.hpp"
+#include "calib/tracing/law_shape.hpp"
+#include "tests/unit/calib/tracing_support.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+/// A scrub that is plain, and one wheel that rolls a little shorter backwards: too little for Schwarz's
+/// criterion.
+class Retirement : public ::testing::Test {
+ protected:
+  Retirement() { data_ = measured(model_, {plain_, slight_}, {2e-3, 3e-5, 0.0}); }
+
+  /// Both found, in this order.
+  SearchResult found(const EffectList& order) const {
+    SearchResult result;
+    result.model.effects = order;
+    const auto fit = fit_joint({&data_, 1}, order, to_vector(kBase, count_parameters(order)));
+    EXPECT_TRUE(fit) << "seed " << kSeed;
+    result.model.fit = fit.value();
+    for (const auto& effect : order) result.findings.push_back({effect, {}, {}});
+    return result;
+  }
+
+  [[nodiscard]] FitTask task() const { return {{&data_, 1}, std::vector<bool>(kBaseCount, false)}; }
+
+  DriveModel model_ = lively_model();
+  std::shared_ptr<const Effect> plain_ = find_effect("turn_direction_asymmetry");
+  std::shared_ptr<const Effect> slight_ = find_effect("direction_dependent_diameter");
+  FitData data_;
+};
+
+TEST_F(Retirement, spares_what_was_just_proved) {
+  SearchResult result = found({plain_, slight_});
+  EXPECT_FALSE(retire_superfluous(task(), schwarz(result.model.fit), result));
+  EXPECT_EQ(result.findings.size(), 2U);
+}
+
+TEST_F(Retirement, takes_out_what_is_not_worth_its_parameters_any_more) {
+  SearchResult result = found({slight_, plain_});
+  EXPECT_TRUE(retire_superfluous(task(), schwarz(result.model.fit), result));
+  ASSERT_EQ(result.findings.size(), 1U);
+  EXPECT_EQ(result.findings.front().effect, plain_);
+  EXPECT_EQ(result.model.effects.size(), 1U);
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
