@@ -32,7 +32,8 @@ std::string data_text(const CanFrame& frame) {
 
 /// Modes, positions, speeds and torques of CiA 402; packed halves (:03 of some drives) are left as they are.
 bool is_signed(const ObjectAddress& object) {
-  constexpr std::array<std::uint16_t, 7> kSigned = {0x6060, 0x6061, 0x6064, 0x606C, 0x6077, 0x607A, 0x60FF};
+  constexpr std::array<std::uint16_t, 8> kSigned = {0x6060, 0x6061, 0x6063, 0x6064,
+                                                    0x606C, 0x6077, 0x607A, 0x60FF};
   return object.sub <= 2 && std::find(kSigned.begin(), kSigned.end(), object.index) != kSigned.end();
 }
 

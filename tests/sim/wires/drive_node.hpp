@@ -54,8 +54,10 @@ struct DriveNodeOptions {
   double boot_time = 0.2;                                            ///< s from reset to the boot-up message
   double answer_time = 0.0003;                                       ///< s, SDO
   double store_time = 0.05;                                          ///< s, answer to 1010h
-  /// One axis only: 6064:00, 60FF:00, a status word of 16 bits, and 6092:01 as the feed of 100 turns in um.
+  /// One axis only: 6063:00 in increments, 6064:00 in um by the feed constant, 60FF:00, a status word of 16
+  /// bits, and 6092:01 as the feed of 100 turns in um.
   bool single_axis = false;
+  double increments_per_turn = 65536.0;  ///< of a wheel; 6064 of a single axis depends on it
 };
 
 /// Switches for tests; all off by default.
@@ -129,6 +131,7 @@ class DriveNode {
   AbortCode store(std::uint32_t signature);
   [[nodiscard]] std::uint32_t status_word() const;
   [[nodiscard]] std::uint32_t position(std::size_t side) const;
+  [[nodiscard]] std::uint32_t way() const;
   [[nodiscard]] std::uint32_t speed(std::size_t side) const;
   [[nodiscard]] double ramp(std::uint16_t index) const;
 

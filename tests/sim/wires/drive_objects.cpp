@@ -159,9 +159,12 @@ void DriveNode::add_single_axis() {
   Object& status = dictionary_.add_value({0x6041, 0}, 2, 0);
   status.mappable = true;
   status.computed = [this] { return status_word() & 0xFFFFU; };
+  Object& increments = dictionary_.add_value({0x6063, 0}, 4, 0);
+  increments.mappable = true;
+  increments.computed = [this] { return position(0); };
   Object& where = dictionary_.add_value({0x6064, 0}, 4, 0);
   where.mappable = true;
-  where.computed = [this] { return position(0); };
+  where.computed = [this] { return way(); };
   Object& target = dictionary_.add_value({0x60FF, 0}, 4, 0, Access::read_write);
   target.mappable = true;
   target.after_write = [this](std::uint32_t value) {
@@ -230,6 +233,15 @@ std::uint32_t DriveNode::status_word() const {
 std::uint32_t DriveNode::position(std::size_t side) const {
   const std::size_t from = faults.swap_sides ? 1 - side : side;
   return static_cast<std::uint32_t>(wheels_.counts[from] - zero_[from]);
+}
+
+/// In position units, by the book: increments times feed over resolution and turns. Another feed is another
+/// way for the same increments.
+std::uint32_t DriveNode::way() const {
+  const double turns =
+      static_cast<double>(static_cast<std::int32_t>(position(0))) / options_.increments_per_turn;
+  const double um = turns * dictionary_.value({0x6092, 1}) / kFeedTurns;
+  return static_cast<std::uint32_t>(std::llround(um));
 }
 
 std::uint32_t DriveNode::speed(std::size_t side) const {

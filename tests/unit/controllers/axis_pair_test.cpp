@@ -158,6 +158,19 @@ TEST_F(AxisPair, feeds_are_read_written_stored_and_seen_after_a_reset) {
   moving();
 }
 
+TEST_F(AxisPair, counts_of_a_turn_stay_what_they_are_with_another_feed) {
+  ready();
+  ASSERT_TRUE(bench.controller->start_write_parameters({{"left_wheel_diameter", 0.2}}, bench.now).ok());
+  EXPECT_FALSE(job().error);
+  moving();
+  bench.ticks.clear();
+  bench.drive(4.0, 4.0, 2.0);
+  const TickSample &first = bench.ticks[10], &last = bench.ticks.back();
+  const double turns = 4.0 * (last.t - first.t) / kTwoPi;
+  EXPECT_NEAR(static_cast<double>(last.left - first.left) / turns, kCounts, 0.01 * kCounts)
+      << "the host uses the new diameter already";
+}
+
 TEST_F(AxisPair, a_store_that_is_lost_is_found_out_by_the_reset) {
   ready();
   ASSERT_TRUE(bench.controller->start_write_parameters({{"left_wheel_diameter", 0.1512}}, bench.now).ok());

@@ -149,8 +149,8 @@ TEST(Captures, objects_of_the_pair_profile_are_those_of_a_data_sheet) {
 
 TEST(Decode, a_pair_on_sync_gives_ticks_of_one_instant) {
   const std::string log =
-      "(1.000000) can0 602#2F001A0000000000\n(1.000100) can0 602#23001A0120006460\n(1.000200) can0 "
-      "602#2F001A0001000000\n(1.000300) can0 603#2F001A0000000000\n(1.000400) can0 603#23001A0120006460\n"
+      "(1.000000) can0 602#2F001A0000000000\n(1.000100) can0 602#23001A0120006360\n(1.000200) can0 "
+      "602#2F001A0001000000\n(1.000300) can0 603#2F001A0000000000\n(1.000400) can0 603#23001A0120006360\n"
       "(1.000500) can0 603#2F001A0001000000\n(2.000000) can0 080#\n(2.000500) can0 182#64000000\n(2.000500) "
       "can0 "
       "183#9CFFFFFF\n";
