@@ -56,6 +56,7 @@ class FakeController : public drivers::Controller {
   void quick_stop(double) override {}
   bool watchdog_armed() const override { return true; }
   std::optional<drivers::Identity> identity() const override { return std::nullopt; }
+  bool at_rest() const override { return true; }
   RobotDescription description() const override { return {}; }
   drivers::Counters counters() const override { return {}; }
   std::vector<drivers::Capability> capabilities() const override {
