@@ -299,7 +299,10 @@ void Transaction::go_back(const Error& why, drivers::Controller& controller, dou
 }
 
 void Transaction::on_old_written(const Job& job, drivers::Controller& controller, double now) {
-  if (job.error || !holds(job.parameters, report_.before)) return finish(WriteOutcome::unknown);
+  const bool restored = !job.error && holds(job.parameters, report_.before);
+  // What refuses its old value may never have lost it: that is seen, not concluded.
+  if (!restored && !store_begun_) return start(Phase::verify_old, controller, now);
+  if (!restored) return finish(WriteOutcome::unknown);
   report_.in_force = job.parameters;
   const bool stored = store_begun_ && stores_any(controller, report_.before);
   if (stored) return start(Phase::store_old, controller, now);

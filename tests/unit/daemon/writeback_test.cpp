@@ -153,6 +153,28 @@ TEST(Transaction, does_not_take_the_result_of_a_store_for_its_read) {
   EXPECT_TRUE(is_new(memory.stored));
 }
 
+TEST(Transaction, old_values_that_were_never_lost_need_not_be_written_back) {
+  const Folder folder;
+  Memory memory;
+  auto journal = Journal::open(folder.path / "journal");
+  struct Locked : FakeController {
+    using FakeController::FakeController;
+    Result<void> start_write_parameters(const std::vector<drivers::ParameterValue>& values,
+                                        double now) override {
+      fail_at = jobs;
+      mishap = Mishap::abort;
+      return FakeController::start_write_parameters(values, now);
+    }
+  } controller(memory);
+  Transaction transaction(journal.value());
+  ASSERT_TRUE(transaction.write("apply", kNew).ok());
+  const auto report = run(transaction, controller);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(report->outcome, WriteOutcome::rolled_back);
+  EXPECT_EQ(report->error->code, ErrorCode::write_failed);
+  EXPECT_FALSE(journal.value().unfinished().has_value());
+}
+
 TEST(Transaction, asks_for_an_operator_when_neither_set_can_be_reached) {
   const Folder folder;
   Memory memory;
@@ -162,7 +184,7 @@ TEST(Transaction, asks_for_an_operator_when_neither_set_can_be_reached) {
     Result<void> start_write_parameters(const std::vector<drivers::ParameterValue>& values,
                                         double now) override {
       fail_at = jobs;
-      mishap = Mishap::half_written;
+      mishap = jobs == 1 ? Mishap::half_written : Mishap::abort;
       return FakeController::start_write_parameters(values, now);
     }
   } controller(memory);
