@@ -135,7 +135,7 @@ Result<void> Journal::rotate() {
   const std::filesystem::path full = path_.string() + ".1";
   if (::rename(path_.c_str(), full.c_str()) != 0) return failed(path_);
   const int fd = open_file(path_);
-  const auto begun = fd < 0 ? Result<void>(failed(path_)) : sync_folder(path_);
+  auto begun = fd < 0 ? Result<void>(failed(path_)) : sync_folder(path_);
   if (!begun) (void)::rename(full.c_str(), path_.c_str());
   const int unused = begun ? std::exchange(fd_, fd) : fd;
   if (unused >= 0) close(unused);

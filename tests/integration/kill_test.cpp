@@ -59,9 +59,10 @@ struct Deaths {
   bool power_cycled = false;  ///< the drive loses its RAM after the first death
 };
 
-void PrintTo(const Deaths& deaths, std::ostream* out) {
-  *out << deaths.of_writer.records << "+" << deaths.of_writer.requests << " then "
-       << deaths.of_recovery.records << (deaths.power_cycled ? ", power cycle" : "");
+std::ostream& operator<<(std::ostream& out, const Deaths& deaths) {
+  out << deaths.of_writer.records << "+" << deaths.of_writer.requests << " then "
+      << deaths.of_recovery.records;
+  return out << (deaths.power_cycled ? ", power cycle" : "");
 }
 
 class KillAfterRecord : public ::testing::TestWithParam<Deaths> {
