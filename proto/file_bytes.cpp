@@ -47,15 +47,6 @@ bool write_all(int fd, std::string_view bytes) {
   return true;
 }
 
-Result<void> sync_folder(const std::filesystem::path& path) {
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (fd.get() < 0) return io_error("cannot open the folder to sync it", folder);
-  // Some file systems cannot sync a folder (EINVAL); the rename itself has happened.
-  if (::fsync(fd.get()) != 0 && errno != EINVAL) return io_error("cannot sync the folder", folder);
-  return {};
-}
-
 Result<void> write_new_file(const std::filesystem::path& path, int raw_fd, std::string_view bytes) {
   const Descriptor fd(raw_fd);
   // mkstemp makes files that only the owner can read; results are for everybody whom the umask lets in.
@@ -164,6 +155,15 @@ Result<std::string> gzip(std::string_view bytes) {
   deflateEnd(&stream);
   if (code != Z_STREAM_END) return Error{ErrorCode::io, "cannot compress", "", "write without .gz"};
   return out;
+}
+
+Result<void> sync_folder(const std::filesystem::path& path) {
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd.get() < 0) return io_error("cannot open the folder to sync it", folder);
+  // Some file systems cannot sync a folder (EINVAL); the rename itself has happened.
+  if (::fsync(fd.get()) != 0 && errno != EINVAL) return io_error("cannot sync the folder", folder);
+  return {};
 }
 
 Result<void> replace_file(const std::filesystem::path& path, std::string_view bytes) {

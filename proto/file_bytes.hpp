@@ -32,6 +32,9 @@ Unpacked gunzip(std::string_view packed, std::size_t limit = std::size_t{4} << 3
 /// Packs into one gzip member without a time stamp: same input, same bytes.
 Result<std::string> gzip(std::string_view bytes);
 
+/// Puts the folder of `path` on the disk: a file made or renamed in it survives a power cut. Error: io.
+Result<void> sync_folder(const std::filesystem::path& path);
+
 /// Writes to a temporary file beside `path`, syncs, renames and syncs the folder: `path` holds either the old
 /// or the new content, never a part. Error: io.
 Result<void> replace_file(const std::filesystem::path& path, std::string_view bytes);

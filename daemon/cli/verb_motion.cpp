@@ -232,7 +232,7 @@ void add_motions(CLI::App& app, Session& session) {
       ->add_option("NAME=VALUE", options->assignments, "in m, e.g. track_width=0.4033")
       ->required();
   add_action(app, session, options, "rollback", "Restore the values before a write-back", rollback)
-      ->add_option("ID", options->id, "history entry, default: the newest");
+      ->add_option("ID", options->id, "history entry, default: the newest that was committed");
 }
 
 }  // namespace odomcalib::cli

@@ -33,6 +33,7 @@ Service::Impl::Impl(const Config& configuration, Clock& time, Calibrator functio
       journal(std::move(write_journal)),
       transaction(journal),
       history(config.state_dir / "history"),
+      in_force_file(config.state_dir),
       telemetry(config.lcm_enabled ? config.lcm_url : "", config.channel_prefix,
                 config.state_dir / "recordings"),
       obstacles({.footprint = config.footprint, .acceleration = config.limits.acceleration}) {
@@ -40,7 +41,10 @@ Service::Impl::Impl(const Config& configuration, Clock& time, Calibrator functio
   base.watch_frames([this](const drivers::CanFrame& frame) {
     if (telemetry.recorder.active()) telemetry.recorder.write_frame(stamp(frame.t).utime, frame);
   });
-  load_active();
+  // The end of a write-back may have been written down and nothing after it.
+  const auto& last = journal.last();
+  const bool committed = last && last->state == JournalState::commit;
+  (void)settle_calibration(committed ? last->calibration : "");
 }
 
 void Service::Impl::wait(int timeout_ms) {

@@ -283,17 +283,15 @@ void Service::Impl::call_set(const IncomingCall& incoming, const ordered_json& p
 void Service::Impl::call_rollback(const IncomingCall& incoming, const ordered_json& parameters) {
   PendingCall call = pending_of(incoming, parameters);
   if (const auto forbidden = write_forbidden(call.lease)) return refuse(incoming.client, *forbidden);
-  const auto entries = history.entries();
-  const std::string id = text(parameters, "id", entries.empty() ? "" : entries.front().id);
-  const auto entry = history.find(id);
-  if (!entry)
-    return refuse(incoming.client,
-                  {ErrorCode::usage, "no history entry \"" + id + "\"", "", "odomcalibctl history"});
-  // The calibration in force before that entry is the one of the newest older entry that was committed.
-  for (const auto& older : entries)
-    if (older.id < id && older.outcome == "committed" && !call.calibration)
-      call.calibration = older.calibration;
-  start_write(incoming, entry->before, std::move(call), flag(parameters, "dry_run"));
+  const std::string id = text(parameters, "id", "");
+  const auto former = former_values(id);
+  if (!former)
+    return refuse(
+        incoming.client,
+        {ErrorCode::usage, id.empty() ? "no write-back was committed" : "no history entry \"" + id + "\"", "",
+         "odomcalibctl history"});
+  call.calibration = former->calibration;
+  start_write(incoming, former->values, std::move(call), flag(parameters, "dry_run"));
 }
 
 void Service::Impl::call_history(const IncomingCall& incoming, const ordered_json& parameters) {

@@ -22,6 +22,7 @@
 #include "daemon/service/service.hpp"
 #include "daemon/service/solver_job.hpp"
 #include "daemon/service/telemetry.hpp"
+#include "daemon/writeback/calibration_in_force.hpp"
 #include "daemon/writeback/history.hpp"
 #include "daemon/writeback/journal.hpp"
 #include "daemon/writeback/rounding.hpp"
@@ -43,6 +44,12 @@ struct PendingCall {
   RoundingError rounding;                      ///< of what is written
   double until = 0.0;                          ///< s, end of a recording without motion; 0: until Stop
   bool ending = false;                         ///< the recording is being written to its end
+};
+
+/// What a rollback goes back to.
+struct FormerValues {
+  ParameterMap values;
+  std::optional<std::string> calibration;  ///< JSON text; nullopt: none was in force
 };
 
 struct Service::Impl {
@@ -100,9 +107,13 @@ struct Service::Impl {
   std::optional<Error> write_forbidden(const std::string& lease) const;
   void start_write(const IncomingCall& incoming, const ParameterMap& values, PendingCall pending,
                    bool dry_run);
+  void begin_reading();
+  void learn(const WriteReport& report);
   void write_ended(const WriteReport& report);
+  void note_in_history(const WriteReport& report);
+  std::optional<Error> settle_calibration(const std::string& id);
+  std::optional<FormerValues> former_values(const std::string& id) const;
   void load_active();
-  void set_active(const std::optional<std::string>& calibration_json);
 
   // service_status.cpp
   ordered_json status() const;
@@ -128,6 +139,7 @@ struct Service::Impl {
   Journal journal;
   Transaction transaction;
   History history;
+  CalibrationInForce in_force_file;
   Telemetry telemetry;
 
   double now = 0.0;
@@ -159,6 +171,8 @@ struct Service::Impl {
   std::string last_stop;            ///< why the robot was stopped last
   bool parameters_known = false;
   bool operator_needed = false;
+  std::string write_problem = "an interrupted write-back waits for the controller";  ///< operator_needed: why
+  bool recovery_tried = false;  ///< on this connection to the controller
   drivers::ControllerState controller_state = drivers::ControllerState::absent;
   std::uint64_t tick_count = 0, scan_count = 0, late_steps = 0;
   double next_robot = 0.0, next_status = 0.0, next_progress = 0.0, next_command = 0.0, next_read = 0.0;

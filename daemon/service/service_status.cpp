@@ -141,7 +141,8 @@ ordered_json Service::Impl::checks() const {
                        in_force.empty() ? "from the configuration" : "from the controller",
                        "state robot.wheel_diameter, robot.track_width; ticks in the profile"));
   list.push_back(
-      check("write-back", !operator_needed, "nothing unfinished", "connect the controller and restart"));
+      check("write-back", !operator_needed, operator_needed ? write_problem : "nothing unfinished",
+            "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
   std::error_code error;
   const auto space = std::filesystem::space(config.state_dir, error);
   list.push_back(check("disk", !error && space.available > (std::uintmax_t{64} << 20),

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "daemon/service/service_impl.hpp"
-#include "proto/file_bytes.hpp"
 
 namespace odomcalib {
 namespace {
@@ -70,44 +69,49 @@ void Service::Impl::start_write(const IncomingCall& incoming, const ParameterMap
                                       {"parameters", parameters(wanted)}}}});
   }
   const std::string label = call.method == "Rollback" ? "rollback" : "apply";
-  if (auto begun = transaction.write(label, rounded.values); !begun)
+  const std::string journaled = journal.last() ? journal.last()->calibration : "";
+  const auto calibration = call.method == "SetParameters"
+                               ? Result<std::string>(std::string())
+                               : in_force_file.announce(call.calibration, journaled);
+  if (!calibration) return refuse(incoming.client, calibration.error());
+  if (auto begun = transaction.write(label, rounded.values, calibration.value()); !begun)
     return refuse(incoming.client, begun.error());
   pending = std::move(call);
 }
 
 void Service::Impl::serve_writeback() {
-  const bool ready = base.controller().state() == drivers::ControllerState::disabled;
-  if (!parameters_known && ready && !transaction.busy() && now >= next_read) {
-    next_read = now + 2.0;
-    (void)transaction.recover();
-  }
-  // A controller that has gone keeps the transaction waiting for its time-out, not for ever.
+  const auto state = base.controller().state();
+  // What is there when it comes back, and what it holds, is to be seen.
+  if (state == drivers::ControllerState::absent && !transaction.busy())
+    parameters_known = recovery_tried = false;
+  if (state == drivers::ControllerState::disabled && !transaction.busy() && !run && now >= next_read)
+    begin_reading();
   transaction.step(base.controller(), now, clock.wall_us());
   if (const auto report = transaction.take_report()) write_ended(*report);
 }
 
+// One recovery a connection: each may store once, and permanent memory wears out. After it only reads are
+// repeated. It waits for rest (B6 step 2), reading alone does not.
+void Service::Impl::begin_reading() {
+  const bool recover = operator_needed && !recovery_tried;
+  if (recover ? !base.controller().at_rest() : parameters_known) return;
+  next_read = now + 2.0;
+  (void)(recover ? transaction.recover() : transaction.read());
+}
+
 void Service::Impl::write_ended(const WriteReport& report) {
-  if (!report.in_force.empty() || !report.error) in_force = report.in_force;
-  operator_needed = report.outcome == WriteOutcome::unknown;
-  if (!report.error || report.outcome == WriteOutcome::committed) parameters_known = true;
-  next_robot = now;
+  learn(report);
   if (report.outcome == WriteOutcome::read) return;
-  HistoryEntry entry;
-  entry.time = clock.wall_us();
-  entry.action = report.label;
-  entry.outcome = outcome_name(report.outcome);
-  entry.before = report.before;
-  entry.after = report.after;
   const bool committed = report.outcome == WriteOutcome::committed;
-  if (pending && committed) entry.calibration = pending->calibration;
-  if (const auto added = history.add(entry); !added)
-    event(messages::Severity::warning, "history", added.error().text());
-  event(committed ? messages::Severity::info : messages::Severity::fault, "write_back", entry.outcome);
+  if (!report.steps.empty()) note_in_history(report);
+  event(committed ? messages::Severity::info : messages::Severity::fault, "write_back",
+        outcome_name(report.outcome) + (report.error ? ": " + report.error->text() : ""));
+  const auto unsettled = settle_calibration(committed ? report.calibration : "");
   if (!pending) return;
   if (!committed)
     return fail_pending(report.error.value_or(Error{ErrorCode::write_failed, "write-back failed", "", ""}));
-  if (pending->method != "SetParameters") set_active(pending->calibration);
-  finish_pending({{"outcome", entry.outcome},
+  if (unsettled) return fail_pending(*unsettled);
+  finish_pending({{"outcome", outcome_name(report.outcome)},
                   {"steps", report.steps},
                   {"before", report.before},
                   {"after", report.after},
@@ -115,20 +119,73 @@ void Service::Impl::write_ended(const WriteReport& report) {
                   {"parameters", parameters(active)}});
 }
 
-void Service::Impl::set_active(const std::optional<std::string>& calibration_json) {
-  const auto path = config.state_dir / "active.json";
-  std::error_code ignored;
-  if (!calibration_json)
-    std::filesystem::remove(path, ignored);
-  else if (const auto written = replace_file(path, *calibration_json); !written)
-    event(messages::Severity::warning, "active", written.error().text());
+void Service::Impl::learn(const WriteReport& report) {
+  const bool unknown = report.outcome == WriteOutcome::unknown;
+  const bool was_read = !report.in_force.empty() || !report.error;
+  if (was_read) in_force = report.in_force;
+  parameters_known = !unknown && (parameters_known || was_read);
+  recovery_tried = recovery_tried || unknown;
+  operator_needed = unknown || (report.outcome == WriteOutcome::read && journal.unfinished());
+  if (operator_needed && report.error) write_problem = report.error->text();
+  next_robot = now;
+}
+
+// A recovery that fails in the same way at every start tells nothing new, and must not push out what could be
+// rolled back to.
+void Service::Impl::note_in_history(const WriteReport& report) {
+  HistoryEntry entry;
+  entry.time = clock.wall_us();
+  entry.action = report.label;
+  entry.outcome = outcome_name(report.outcome);
+  entry.before = report.before;
+  entry.after = report.after;
+  entry.device = report.device;
+  if (report.outcome == WriteOutcome::committed)
+    entry.calibration = in_force_file.announced(report.calibration);
+  const auto all = history.entries();
+  const bool known = !all.empty() && report.outcome == WriteOutcome::unknown &&
+                     all.front().outcome == entry.outcome && all.front().action == entry.action &&
+                     all.front().before == entry.before && all.front().after == entry.after;
+  if (known) return;
+  if (const auto added = history.add(entry); !added)
+    event(messages::Severity::warning, "history", added.error().text());
+}
+
+/// @return why the host goes on with the former calibration although the controller has the values of this
+/// one
+std::optional<Error> Service::Impl::settle_calibration(const std::string& id) {
+  const auto settled = in_force_file.settle(id);
   load_active();
+  if (settled) return std::nullopt;
+  event(messages::Severity::fault, "active", settled.error().text());
+  return Error{
+      settled.error().code,
+      "the values are in the controller, but corrected odometry goes on with the former calibration (" +
+          settled.error().what + ")",
+      settled.error().where, settled.error().remedy + "; then apply again"};
+}
+
+// Without an id: what an unfinished write-back is to be taken back to, else what the newest committed one
+// replaced. One that was rolled back or ended unknown has put nothing in force that could be taken back.
+std::optional<FormerValues> Service::Impl::former_values(const std::string& id) const {
+  const auto unfinished = journal.unfinished();
+  if (id.empty() && unfinished && !unfinished->before.empty())
+    return FormerValues{unfinished->before,
+                        active ? std::optional(odomcalib::to_json(*active)) : std::nullopt};
+  const auto entry = id.empty() ? history.newest_committed() : history.find(id);
+  if (!entry) return std::nullopt;
+  FormerValues former{entry->before, std::nullopt};
+  // The calibration in force before that entry is the one of the newest older entry that was committed.
+  for (const auto& older : history.entries())
+    if (older.id < entry->id && older.outcome == "committed" && !former.calibration)
+      former.calibration = older.calibration;
+  return former;
 }
 
 void Service::Impl::load_active() {
   active.reset();
   corrected.reset();
-  const auto path = config.state_dir / "active.json";
+  const auto& path = in_force_file.path();
   if (!std::filesystem::exists(path)) return;
   auto calibration = read_calibration(path);
   if (!calibration) return event(messages::Severity::warning, "active", calibration.error().text());

@@ -25,6 +25,7 @@ std::optional<HistoryEntry> entry_from(const std::filesystem::path& path) {
     entry.outcome = body.at("outcome").get<std::string>();
     entry.before = body.at("before").get<std::map<std::string, double>>();
     entry.after = body.at("after").get<std::map<std::string, double>>();
+    entry.device = body.value("device", "");
     if (body.contains("calibration") && body["calibration"].is_object())
       entry.calibration = body["calibration"].dump();
     return entry;
@@ -44,7 +45,8 @@ unsigned number_of(const std::filesystem::path& path) {
 
 std::string to_json(const HistoryEntry& entry, bool with_calibration) {
   ordered_json body = {{"id", entry.id},           {"time", entry.time},     {"action", entry.action},
-                       {"outcome", entry.outcome}, {"before", entry.before}, {"after", entry.after}};
+                       {"outcome", entry.outcome}, {"before", entry.before}, {"after", entry.after},
+                       {"device", entry.device}};
   if (with_calibration && entry.calibration)
     body["calibration"] = ordered_json::parse(*entry.calibration, nullptr, false);
   return body.dump(2, ' ', false, ordered_json::error_handler_t::replace);
@@ -81,6 +83,12 @@ std::vector<HistoryEntry> History::entries() const {
 std::optional<HistoryEntry> History::find(const std::string& id) const {
   for (auto& entry : entries())
     if (entry.id == id) return entry;
+  return std::nullopt;
+}
+
+std::optional<HistoryEntry> History::newest_committed() const {
+  for (auto& entry : entries())
+    if (entry.outcome == "committed") return entry;
   return std::nullopt;
 }
 

@@ -20,6 +20,7 @@ struct HistoryEntry {
   std::string outcome;                     ///< committed, rolled_back, unknown
   std::optional<std::string> calibration;  ///< JSON text of the calibration applied
   std::map<std::string, double> before, after;
+  std::string device;  ///< the controller, see device_of(); empty: not known
 };
 
 std::string to_json(const HistoryEntry& entry, bool with_calibration);
@@ -35,6 +36,7 @@ class History {
   /// Newest first; entries that cannot be read are left out.
   [[nodiscard]] std::vector<HistoryEntry> entries() const;
   [[nodiscard]] std::optional<HistoryEntry> find(const std::string& id) const;
+  [[nodiscard]] std::optional<HistoryEntry> newest_committed() const;
 
  private:
   [[nodiscard]] std::vector<std::filesystem::path> files() const;

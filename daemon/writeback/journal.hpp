@@ -35,6 +35,9 @@ struct JournalRecord {
   std::string label;                     ///< what asked for it: "apply", "rollback"
   std::map<std::string, double> before;  ///< SI, by quantity
   std::map<std::string, double> after;
+  std::string device;  ///< who holds these values; empty: it does not say, or an earlier version wrote this
+  std::string calibration;   ///< id of the one in force with `after`, see CalibrationInForce
+  bool store_begun = false;  ///< permanent memory may hold other values than `before`
 };
 
 /// One line: CRC-32 (zlib's) as hex, a space, a JSON object, a newline.
@@ -53,6 +56,7 @@ class Journal {
   Journal& operator=(Journal&&) = delete;
 
   /// On the disk when it returns. seq is given by the journal. Error: io; then the action must not be taken.
+  /// A record that could not be written whole leaves no trace: the next one is not spoiled by it.
   Result<void> append(JournalRecord record);
   /// The newest record, if any.
   [[nodiscard]] const std::optional<JournalRecord>& last() const { return last_; }
@@ -61,10 +65,12 @@ class Journal {
 
  private:
   Journal(std::filesystem::path path, int fd) : path_(std::move(path)), fd_(fd) {}
-  void rotate_when_large();
+  [[nodiscard]] bool write_whole(const std::string& line) const;
+  Result<void> rotate();
 
   std::filesystem::path path_;
   int fd_ = -1;
+  std::uintmax_t size_ = 0;  // bytes, of whole records
   std::optional<JournalRecord> last_;
 };
 

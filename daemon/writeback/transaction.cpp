@@ -8,8 +8,8 @@
 namespace odomcalib {
 namespace {
 
-constexpr double kJobTimeout =
-    20.0;  // s: stores may take several seconds, the driver's own time-outs are shorter
+// s: after a reset of the node its rest is known only when counts have come for a while
+constexpr double kWaitForRest = 2.0;
 
 const drivers::StoredParameter* find(const std::vector<drivers::StoredParameter>& stored,
                                      const std::string& name) {
@@ -45,6 +45,36 @@ bool stores_any(const drivers::Controller& controller, const ParameterMap& value
                      [&](const auto& one) { return one.stored && values.contains(one.quantity); });
 }
 
+bool names_all(const ParameterMap& values, const ParameterMap& wanted) {
+  return std::all_of(wanted.begin(), wanted.end(),
+                     [&](const auto& one) { return values.contains(one.first); });
+}
+
+/// On the way to the new values, with nothing left to do but to store them or to say so.
+bool nearly_done(const JournalRecord& record) {
+  return record.state == JournalState::store_begin || record.state == JournalState::store_ok;
+}
+
+Error mixture(const JournalRecord& interrupted) {
+  return {
+      ErrorCode::refused,
+      "an interrupted " + interrupted.label + " may have left a mixture, and not all of its values are given",
+      "write-back", "apply a whole calibration, set all values, or roll back"};
+}
+
+Error other_device(const std::string& journaled, const std::string& found) {
+  return {ErrorCode::write_unknown,
+          fmt::format("the interrupted write-back was to \"{}\", this controller is \"{}\": nothing was "
+                      "written to it",
+                      journaled, found),
+          "recovery", "connect that controller, or apply a calibration to this one"};
+}
+
+Error nothing_to_compare() {
+  return {ErrorCode::write_unknown, "the journal does not say which values were in force", "recovery",
+          "see odomcalibctl params get, then apply a calibration or roll back to an entry of the history"};
+}
+
 Error mismatch(const char* when) {
   return {ErrorCode::write_failed, fmt::format("the controller holds other values than written ({})", when),
           "controller parameters", "try again; check the parameter map of the profile"};
@@ -52,37 +82,48 @@ Error mismatch(const char* when) {
 
 }  // namespace
 
+std::string device_of(const drivers::Controller& controller) {
+  std::string all;
+  for (const drivers::Identity& one : controller.devices()) {
+    const bool numbered = one.vendor != 0 || one.product != 0 || one.serial != 0;
+    all += all.empty() ? "" : " + ";
+    all += numbered ? fmt::format("{:#x}/{:#x}/{}", one.vendor, one.product, one.serial) : one.name;
+  }
+  return all;
+}
+
 bool holds(const std::vector<drivers::StoredParameter>& stored, const ParameterMap& wanted) {
-  return std::all_of(wanted.begin(), wanted.end(), [&](const auto& entry) {
+  return !wanted.empty() && std::all_of(wanted.begin(), wanted.end(), [&](const auto& entry) {
     const auto* parameter = find(stored, entry.first);
     return parameter != nullptr && std::abs(parameter->value - entry.second) <= 0.51 * parameter->step + 1e-9;
   });
 }
 
-Result<void> Transaction::recover() {
+Result<void> Transaction::begin(Task task, const std::string& label) {
   if (busy()) return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
   report_ = {};
-  report_.label = "recovery";
-  recovering_ = true;
+  report_.label = label;
+  task_ = task;
+  interrupted_ = journal_.unfinished();
   store_begun_ = false;
+  old_known_ = true;
   phase_ = Phase::read_first;
   started_ = false;
   return {};
 }
 
-Result<void> Transaction::write(const std::string& label, const ParameterMap& values) {
-  if (busy()) return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
+Result<void> Transaction::read() { return begin(Task::read, "read"); }
+Result<void> Transaction::recover() { return begin(Task::recover, "recovery"); }
+
+Result<void> Transaction::write(const std::string& label, const ParameterMap& values,
+                                const std::string& calibration) {
   for (const auto& [name, value] : values)
     if (!std::isfinite(value) || value <= 0.0)
       return Error{ErrorCode::refused, fmt::format("{} = {} is no length", name, value), label,
                    "solve again"};
-  report_ = {};
-  report_.label = label;
+  if (auto begun = begin(Task::write, label); !begun) return begun;
   report_.after = values;
-  recovering_ = false;
-  store_begun_ = false;
-  phase_ = Phase::read_first;
-  started_ = false;
+  report_.calibration = calibration;
   return {};
 }
 
@@ -93,30 +134,52 @@ Result<void> Transaction::announce(JournalState state) {
                                   .state = state,
                                   .label = report_.label,
                                   .before = report_.before,
-                                  .after = report_.after});
+                                  .after = report_.after,
+                                  .device = report_.device,
+                                  .calibration = report_.calibration,
+                                  .store_begun = store_begun_ || state == JournalState::store_begin});
   if (written) report_.steps.push_back(name_of(state));
   return written;
 }
 
-Result<void> Transaction::start_job(Phase phase, drivers::Controller& controller, double now) const {
-  switch (phase) {
+drivers::ParameterJobResult::Kind Transaction::kind() const {
+  switch (phase_) {
     case Phase::write_new:
-      return controller.start_write_parameters(list_of(report_.after), now);
     case Phase::write_old:
-      return controller.start_write_parameters(list_of(report_.before), now);
+      return Job::Kind::write;
     case Phase::store_new:
     case Phase::store_old:
-      return controller.start_store(now);
+      return Job::Kind::store;
     default:
-      return controller.start_read_parameters(now);
+      return Job::Kind::read;
   }
+}
+
+Result<void> Transaction::start_job(drivers::Controller& controller, double now) const {
+  switch (kind()) {
+    case Job::Kind::read:
+      return controller.start_read_parameters(now);
+    case Job::Kind::write:
+      return controller.start_write_parameters(
+          list_of(phase_ == Phase::write_new ? report_.after : report_.before), now);
+    case Job::Kind::store:
+      return controller.start_store(now);
+  }
+  return {};
 }
 
 void Transaction::start(Phase phase, drivers::Controller& controller, double now) {
   phase_ = phase;
-  began_ = now;
+  entered_ = now;
+  started_ = false;
+  start_when_at_rest(controller, now);
+}
+
+void Transaction::start_when_at_rest(drivers::Controller& controller, double now) {
+  const bool needs_rest = kind() != Job::Kind::read;
+  if (needs_rest && !controller.at_rest() && now - entered_ < kWaitForRest) return;
   started_ = true;
-  if (auto begun = start_job(phase, controller, now); !begun) {
+  if (auto begun = start_job(controller, now); !begun) {
     Job job;
     job.error = begun.error();
     on_result(job, controller, now);
@@ -127,13 +190,10 @@ void Transaction::step(drivers::Controller& controller, double now, std::int64_t
   now_ = now;
   wall_us_ = wall_us;
   if (phase_ == Phase::idle) return;
-  if (!started_) return start(phase_, controller, now);
-  if (auto result = controller.take_job_result()) return on_result(*result, controller, now);
-  if (now - began_ < kJobTimeout) return;
-  Job job;
-  job.error =
-      Error{ErrorCode::timeout, "the controller does not answer", "controller parameters", "check the bus"};
-  on_result(job, controller, now);
+  if (!started_) return start_when_at_rest(controller, now);
+  // The driver bounds the time of its jobs: it knows how long a store may take.
+  const auto result = controller.take_job_result();
+  if (result && result->kind == kind()) on_result(*result, controller, now);
 }
 
 void Transaction::on_result(const Job& job, drivers::Controller& controller, double now) {
@@ -161,27 +221,52 @@ void Transaction::on_result(const Job& job, drivers::Controller& controller, dou
 }
 
 void Transaction::on_read(const Job& job, drivers::Controller& controller, double now) {
-  if (job.error) {
-    report_.error = *job.error;
-    // Nothing was touched: the old values are in force, unless an earlier write-back is unfinished.
-    return finish(journal_.unfinished() ? WriteOutcome::unknown
-                  : recovering_         ? WriteOutcome::read
-                                        : WriteOutcome::rolled_back);
-  }
+  if (job.error) return not_begun(*job.error);
   report_.in_force = job.parameters;
-  if (recovering_) return decide_recovery(controller, now);
-  report_.before = common(map_of(job.parameters), report_.after);
+  report_.device = device_of(controller);
+  if (task_ == Task::read) return finish(WriteOutcome::read);
+  if (task_ == Task::recover) return decide_recovery(controller, now);
+  plan_write(controller, now);
+}
+
+/// Nothing was touched: what was in force still is. After an interrupted write-back nobody knows what that
+/// is.
+void Transaction::not_begun(const Error& why) {
+  report_.error = why;
+  if (task_ != Task::write) return finish(WriteOutcome::read);
+  finish(interrupted_ ? WriteOutcome::unknown : WriteOutcome::rolled_back);
+}
+
+bool Transaction::about_this_device() const {
+  return interrupted_ && (interrupted_->device.empty() || interrupted_->device == report_.device);
+}
+
+void Transaction::plan_write(drivers::Controller& controller, double now) {
+  const ParameterMap present = map_of(report_.in_force);
+  report_.before = common(present, report_.after);
   report_.after = common(report_.after, report_.before);
+  if (about_this_device()) {
+    const ParameterMap& doubtful = interrupted_->before.empty() ? present : interrupted_->before;
+    if (!names_all(report_.after, doubtful)) return not_begun(mixture(*interrupted_));
+    take_old_from_journal();
+  }
   begin_writing(controller, now);
 }
 
+/// What was read may be a mixture that nobody ever wanted. It must not become the values to go back to.
+void Transaction::take_old_from_journal() {
+  store_begun_ = interrupted_->store_begun;
+  const bool new_in_force = nearly_done(*interrupted_) && holds(report_.in_force, interrupted_->after);
+  old_known_ = new_in_force || !interrupted_->before.empty();
+  if (new_in_force) return;
+  for (const auto& [name, value] : common(interrupted_->before, report_.before)) report_.before[name] = value;
+}
+
 void Transaction::begin_writing(drivers::Controller& controller, double now) {
-  for (const auto state : {JournalState::begin, JournalState::write})
-    if (auto written = announce(state); !written) {
-      report_.error = written.error();
-      return finish(WriteOutcome::rolled_back);
-    }
+  // What a controller has no place for is kept on the host: nothing that a crash could leave half done.
   if (report_.after.empty()) return finish(WriteOutcome::committed);
+  for (const auto state : {JournalState::begin, JournalState::write})
+    if (auto written = announce(state); !written) return not_begun(written.error());
   start(Phase::write_new, controller, now);
 }
 
@@ -214,9 +299,13 @@ void Transaction::go_back(const Error& why, drivers::Controller& controller, dou
 }
 
 void Transaction::on_old_written(const Job& job, drivers::Controller& controller, double now) {
-  if (job.error || !holds(job.parameters, report_.before)) return finish(WriteOutcome::unknown);
+  const bool restored = !job.error && holds(job.parameters, report_.before);
+  // What refuses its old value may never have lost it: that is seen, not concluded.
+  if (!restored && !store_begun_) return start(Phase::verify_old, controller, now);
+  if (!restored) return finish(WriteOutcome::unknown);
   report_.in_force = job.parameters;
-  if (store_begun_) return start(Phase::store_old, controller, now);
+  const bool stored = store_begun_ && stores_any(controller, report_.before);
+  if (stored) return start(Phase::store_old, controller, now);
   finish(WriteOutcome::rolled_back);
 }
 
@@ -226,32 +315,44 @@ void Transaction::on_old_verified(const Job& job) {
   finish(good ? WriteOutcome::rolled_back : WriteOutcome::unknown);
 }
 
-// By comparison, not by memory: the journal says only which two sets to compare with.
+// By comparison, not by memory: the journal says only which two sets to compare with, and whose they are.
 void Transaction::decide_recovery(drivers::Controller& controller, double now) {
-  const auto unfinished = journal_.unfinished();
-  if (!unfinished) return finish(WriteOutcome::read);
-  report_.label = unfinished->label;
-  report_.before = unfinished->before;
-  report_.after = unfinished->after;
-  store_begun_ = unfinished->state != JournalState::begin && unfinished->state != JournalState::write &&
-                 unfinished->state != JournalState::readback_ok;
-  if (holds(report_.in_force, report_.after) && unfinished->state != JournalState::rollback) {
-    // RAM holds the new set; whether it was stored cannot be seen, storing again is harmless.
-    if (auto written = announce(JournalState::store_begin); !written) return finish(WriteOutcome::unknown);
-    store_begun_ = true;
-    return start(Phase::store_new, controller, now);
-  }
+  if (!interrupted_) return finish(WriteOutcome::read);
+  if (!about_this_device()) return leave_alone(other_device(interrupted_->device, report_.device));
+  report_.label = interrupted_->label;
+  report_.before = interrupted_->before;
+  report_.after = interrupted_->after;
+  report_.calibration = interrupted_->calibration;
+  store_begun_ = interrupted_->store_begun;
+  const bool forward = interrupted_->state != JournalState::rollback;
+  if (forward && holds(report_.in_force, report_.after)) return store_again(controller, now);
+  if (report_.before.empty()) return leave_alone(nothing_to_compare());
   if (holds(report_.in_force, report_.before) && !store_begun_) return finish(WriteOutcome::rolled_back);
   go_back({ErrorCode::write_failed, "an interrupted write-back was undone", "recovery", "apply again"},
           controller, now);
 }
 
+/// RAM holds the new set; whether it was stored cannot be seen, storing again is harmless.
+void Transaction::store_again(drivers::Controller& controller, double now) {
+  if (!stores_any(controller, report_.after)) return finish(WriteOutcome::committed);
+  if (auto written = announce(JournalState::store_begin); !written) return not_begun(written.error());
+  store_begun_ = true;
+  start(Phase::store_new, controller, now);
+}
+
+void Transaction::leave_alone(const Error& why) {
+  report_.error = why;
+  finish(WriteOutcome::unknown);
+}
+
 void Transaction::finish(WriteOutcome outcome) {
+  if (outcome == WriteOutcome::rolled_back && !old_known_) outcome = WriteOutcome::unknown;
   if (outcome == WriteOutcome::committed) (void)announce(JournalState::commit);
   if (outcome == WriteOutcome::rolled_back && !report_.before.empty())
     (void)announce(JournalState::rolled_back);
   if (outcome == WriteOutcome::unknown) {
-    (void)announce(JournalState::needs_operator);
+    // The journal goes on saying what it said unless there was something new to say.
+    if (!report_.steps.empty()) (void)announce(JournalState::needs_operator);
     if (!report_.error) report_.error = mismatch("after restoring");
     report_.error->code = ErrorCode::write_unknown;
   }

@@ -26,8 +26,10 @@ struct WriteReport {
   std::string label;
   std::vector<drivers::StoredParameter> in_force;  ///< newest reading, empty when nothing could be read
   ParameterMap before, after;                      ///< after: what was asked for
+  std::string device;                              ///< who holds them, see device_of(); empty: not known
+  std::string calibration;                         ///< id of the one in force with `after`
   std::optional<Error> error;                      ///< why it was not committed
-  std::vector<std::string> steps;                  ///< what was done, for the report
+  std::vector<std::string> steps;                  ///< what was journaled; empty: nothing was touched
 };
 
 /// Drives one controller through one transaction at a time. Holds no clock and no descriptor.
@@ -37,11 +39,17 @@ class Transaction {
   explicit Transaction(Journal& journal) : journal_(journal) {}
 
   // One of these starts; refused (error refused) while another one runs.
+  Result<void> read();
   /// Reads, and brings an unfinished write-back of the journal to an end by comparing what the controller
-  /// holds: all new is stored and committed, anything else becomes old again.
+  /// holds: all new is stored and committed, anything else becomes old again. Another controller than the one
+  /// in the journal, and values that the journal does not name, are left alone (outcome unknown).
   Result<void> recover();
-  /// Writes those of the values that the controller stores, in full or not at all.
-  Result<void> write(const std::string& label, const ParameterMap& values);
+  /// Writes those of the values that the controller stores, in full or not at all. While the journal is
+  /// unfinished, what counts as old is what the journal says, and all of its quantities must be among the
+  /// values: what the controller holds may be a mixture.
+  /// @param calibration id of the one that is in force with these values (see CalibrationInForce)
+  Result<void> write(const std::string& label, const ParameterMap& values,
+                     const std::string& calibration = "");
 
   /// Call every few ms.
   void step(drivers::Controller& controller, double now, std::int64_t wall_us);
@@ -50,11 +58,16 @@ class Transaction {
   std::optional<WriteReport> take_report();
 
  private:
+  enum class Task { read, recover, write };
   enum class Phase { idle, read_first, write_new, store_new, verify_new, write_old, store_old, verify_old };
   using Job = drivers::ParameterJobResult;
 
+  Result<void> begin(Task task, const std::string& label);
   void start(Phase phase, drivers::Controller& controller, double now);
-  Result<void> start_job(Phase phase, drivers::Controller& controller, double now) const;
+  void start_when_at_rest(drivers::Controller& controller, double now);
+  Result<void> start_job(drivers::Controller& controller, double now) const;
+  [[nodiscard]] Job::Kind kind() const;
+  [[nodiscard]] bool about_this_device() const;
   void on_result(const Job& job, drivers::Controller& controller, double now);
   void on_read(const Job& job, drivers::Controller& controller, double now);
   void on_written(const Job& job, drivers::Controller& controller, double now);
@@ -62,24 +75,34 @@ class Transaction {
   void on_old_written(const Job& job, drivers::Controller& controller, double now);
   void on_old_verified(const Job& job);
   void decide_recovery(drivers::Controller& controller, double now);
+  void store_again(drivers::Controller& controller, double now);
+  void not_begun(const Error& why);
+  void plan_write(drivers::Controller& controller, double now);
+  void take_old_from_journal();
   void begin_writing(drivers::Controller& controller, double now);
   void go_back(const Error& why, drivers::Controller& controller, double now);
   /// False: the journal cannot be written, and the transaction has ended or turned back.
   Result<void> announce(JournalState state);
+  void leave_alone(const Error& why);
   void finish(WriteOutcome outcome);
 
   Journal& journal_;
   Phase phase_ = Phase::idle;
-  bool started_ = false;  // the job of this phase runs
-  bool recovering_ = false;
-  bool store_begun_ = false;
-  double began_ = 0.0, now_ = 0.0;
+  Task task_ = Task::read;
+  bool started_ = false;      // the job of this phase runs
+  bool store_begun_ = false;  // permanent memory may hold other values than the old ones
+  bool old_known_ = true;     // the old values are a whole set, not what was read of a mixture
+  double entered_ = 0.0, now_ = 0.0;
   std::int64_t wall_us_ = 0;
+  std::optional<JournalRecord> interrupted_;  // that the journal was left with
   WriteReport report_;
   std::optional<WriteReport> finished_;
 };
 
-/// Equal within half a step of the controller's resolution.
+/// Who the controller is, as far as it says: vendor/product/serial (1018h) or name of each of its devices.
+std::string device_of(const drivers::Controller& controller);
+
+/// All of `wanted`, each within half a step of the controller's resolution. Nobody holds an empty set.
 bool holds(const std::vector<drivers::StoredParameter>& stored, const ParameterMap& wanted);
 
 }  // namespace odomcalib

@@ -161,6 +161,7 @@ Result<void> AxisPair::begin(Job job) {
       return Error{ErrorCode::refused, "both drives must be configured and disabled",
                    "controller " + robot_.controller, "stop and disable first"};
   job_ = std::move(job);
+  job_result_.reset();
   start_side();
   return {};
 }
@@ -248,7 +249,7 @@ void AxisPair::finish_job(std::optional<Error> error) {
 
 std::optional<ParameterJobResult> AxisPair::take_job_result() { return std::exchange(job_result_, {}); }
 
-/// Serial numbers of both drives matter; the pair is told by the left one and by both names.
+/// The pair is told by the left drive and by both names; which two they are is said by devices().
 std::optional<Identity> AxisPair::identity() const {
   const auto left = drives_[0].identity(), right = drives_[1].identity();
   if (!left || !right) return std::nullopt;
@@ -256,6 +257,12 @@ std::optional<Identity> AxisPair::identity() const {
   both.name = left->name + " (serial " + std::to_string(left->serial) + ") and " + right->name + " (serial " +
               std::to_string(right->serial) + ")";
   return both;
+}
+
+std::vector<Identity> AxisPair::devices() const {
+  const auto left = drives_[0].identity(), right = drives_[1].identity();
+  if (!left || !right) return {};
+  return {*left, *right};
 }
 
 std::vector<Capability> AxisPair::capabilities() const {

@@ -30,6 +30,7 @@ class AxisPair final : public Controller {
   Result<void> command(double left_rad_s, double right_rad_s, double now) override;
   void quick_stop(double now) override;
   [[nodiscard]] bool watchdog_armed() const override;
+  [[nodiscard]] bool at_rest() const override { return drives_[0].at_rest() && drives_[1].at_rest(); }
 
   Result<void> start_read_parameters(double now) override;
   Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) override;
@@ -37,6 +38,7 @@ class AxisPair final : public Controller {
   std::optional<ParameterJobResult> take_job_result() override;
 
   [[nodiscard]] std::optional<Identity> identity() const override;
+  [[nodiscard]] std::vector<Identity> devices() const override;
   [[nodiscard]] RobotDescription description() const override { return robot_; }
   [[nodiscard]] std::vector<Capability> capabilities() const override;
   [[nodiscard]] Counters counters() const override;

@@ -104,13 +104,24 @@ class Controller {
   /// True when the controller itself will stop the wheels if this program dies, set up and read back.
   [[nodiscard]] virtual bool watchdog_armed() const = 0;
 
-  // Parameters: one job at a time, refused while moving.
+  /// The wheels have stood for at least 0.1 s: parameters may be written and stored.
+  [[nodiscard]] virtual bool at_rest() const = 0;
+
+  // Parameters: one job at a time, refused while the axes are not disabled; a write or a store, which may
+  // change how far the robot goes, also unless at_rest(). A job that was started ends with a result, whatever
+  // the device does: the driver bounds its time. What an earlier job left behind is not given for a later
+  // one.
   virtual Result<void> start_read_parameters(double now) = 0;
   virtual Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) = 0;
   virtual Result<void> start_store(double now) = 0;
   virtual std::optional<ParameterJobResult> take_job_result() = 0;
 
   [[nodiscard]] virtual std::optional<Identity> identity() const = 0;
+  /// All devices that hold parameters: one, or the two drives of a pair. Empty until they are identified.
+  [[nodiscard]] virtual std::vector<Identity> devices() const {
+    const auto one = identity();
+    return one ? std::vector<Identity>{*one} : std::vector<Identity>{};
+  }
   /// Nominal geometry from the profile: ticks per revolution, and the diameters and track where the profile
   /// states them.
   [[nodiscard]] virtual RobotDescription description() const = 0;

@@ -254,32 +254,40 @@ Counters DualAxis::counters() const {
   return all;
 }
 
-Result<void> DualAxis::job_allowed(double now) {
-  now_ = std::max(now_, now);
+Result<void> DualAxis::job_allowed() const {
   const std::string where = "controller " + profile_.name;
   if (phase_ != Phase::ready)
     return Error{ErrorCode::refused, "controller is not configured", where, "wait until it is"};
   if (motion_ != Motion::off || any_axis(canopen::DriveState::enabled))
     return Error{ErrorCode::refused, "axes are not disabled", where, "stop and disable first"};
-  if (!at_rest())
-    return Error{ErrorCode::refused, "wheels are turning", where, "wait until the robot stands still"};
   if (job_.running())
     return Error{ErrorCode::refused, "another parameter job is in progress", where, "wait for it"};
   return {};
 }
 
+/// What changes the geometry waits for rest. Reading does not: after a start, rest is known only when counts
+/// have come for a while.
+Result<void> DualAxis::change_allowed(double now) {
+  now_ = std::max(now_, now);
+  if (auto allowed = job_allowed(); !allowed) return allowed;
+  if (at_rest()) return {};
+  return Error{ErrorCode::refused, "wheels are turning", "controller " + profile_.name,
+               "wait until the robot stands still"};
+}
+
 Result<void> DualAxis::start_read_parameters(double now) {
-  if (auto allowed = job_allowed(now); !allowed) return allowed;
+  now_ = std::max(now_, now);
+  if (auto allowed = job_allowed(); !allowed) return allowed;
   return job_.start_read();
 }
 
 Result<void> DualAxis::start_write_parameters(const std::vector<ParameterValue>& values, double now) {
-  if (auto allowed = job_allowed(now); !allowed) return allowed;
+  if (auto allowed = change_allowed(now); !allowed) return allowed;
   return job_.start_write(values);
 }
 
 Result<void> DualAxis::start_store(double now) {
-  if (auto allowed = job_allowed(now); !allowed) return allowed;
+  if (auto allowed = change_allowed(now); !allowed) return allowed;
   return job_.start_store();
 }
 

@@ -37,6 +37,7 @@ class DualAxis final : public Controller {
   Result<void> command(double left_rad_s, double right_rad_s, double now) override;
   void quick_stop(double now) override;
   [[nodiscard]] bool watchdog_armed() const override { return watchdog_armed_; }
+  [[nodiscard]] bool at_rest() const override;
 
   Result<void> start_read_parameters(double now) override;
   Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) override;
@@ -97,8 +98,8 @@ class DualAxis final : public Controller {
   void end_motion(Motion how);
   [[nodiscard]] bool both_axes(canopen::DriveState state) const;
   [[nodiscard]] bool any_axis(canopen::DriveState state) const;
-  [[nodiscard]] bool at_rest() const;
-  Result<void> job_allowed(double now);
+  [[nodiscard]] Result<void> job_allowed() const;
+  Result<void> change_allowed(double now);
 
   struct Wheel {
     Wheel(double ticks_per_s, double ticks_per_rev) : unwrap(ticks_per_s), watch(ticks_per_rev) {}

@@ -28,8 +28,10 @@ Error ParameterJob::failed(ErrorCode code, const std::string& what, const std::s
 void ParameterJob::begin(ParameterJobResult::Kind kind) {
   kind_ = kind;
   running_ = true;
+  reset_wanted_ = false;
   read_back_.clear();
   first_error_.reset();
+  result_.reset();
 }
 
 Result<void> ParameterJob::start_read() {

@@ -36,6 +36,7 @@ class SpeedBase final : public Controller {
   Result<void> command(double left_rad_s, double right_rad_s, double now) override;
   void quick_stop(double now) override;
   [[nodiscard]] bool watchdog_armed() const override;
+  [[nodiscard]] bool at_rest() const override;
 
   /// These devices hold no geometry that this program could write: reading gives none, the rest is refused.
   Result<void> start_read_parameters(double now) override;
@@ -68,7 +69,6 @@ class SpeedBase final : public Controller {
   void step_enabling();
   void step_ending();
   void end_motion(Motion how);
-  [[nodiscard]] bool at_rest() const;
   [[nodiscard]] Error refused(const std::string& what, const std::string& remedy) const;
 
   const Profile profile_;

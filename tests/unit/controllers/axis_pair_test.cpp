@@ -171,6 +171,15 @@ TEST_F(AxisPair, counts_of_a_turn_stay_what_they_are_with_another_feed) {
       << "the host uses the new diameter already";
 }
 
+TEST_F(AxisPair, a_result_that_nobody_took_is_not_given_for_the_next_job) {
+  ready();
+  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
+  bench.run(10.0);
+  ASSERT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
+  EXPECT_FALSE(bench.controller->take_job_result());
+  EXPECT_EQ(job().kind, ParameterJobResult::Kind::read);
+}
+
 TEST_F(AxisPair, a_store_that_is_lost_is_found_out_by_the_reset) {
   ready();
   ASSERT_TRUE(bench.controller->start_write_parameters({{"left_wheel_diameter", 0.1512}}, bench.now).ok());
@@ -216,6 +225,9 @@ TEST_F(AxisPair, says_what_it_holds_and_who_they_are) {
   }
   EXPECT_NE(bench.controller->identity()->name.find("(serial 100)"), std::string::npos);
   EXPECT_NE(bench.controller->identity()->name.find("(serial 101)"), std::string::npos);
+  ASSERT_EQ(bench.controller->devices().size(), 2U);
+  EXPECT_EQ(bench.controller->devices()[0].serial, 100U);
+  EXPECT_EQ(bench.controller->devices()[1].serial, 101U);
   EXPECT_FALSE(bench.controller->start_write_parameters({{"track_width", 0.4}}, bench.now).ok());
 }
 

@@ -380,6 +380,60 @@ TEST(DualAxisParameters, are_written_read_back_and_stored) {
   EXPECT_TRUE(bench.events.empty());
 }
 
+TEST(DualAxisParameters, are_read_before_rest_is_known_but_not_changed) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  EXPECT_FALSE(bench.controller->at_rest());
+  EXPECT_EQ(bench.controller->start_store(bench.now).error().what, "wheels are turning");
+  EXPECT_EQ(bench.controller->start_write_parameters({{"track_width", 0.41}}, bench.now).error().what,
+            "wheels are turning");
+  ASSERT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
+  EXPECT_EQ(bench.job().parameters.size(), 3U);
+  EXPECT_TRUE(bench.run_until([&] { return bench.controller->at_rest(); }, 0.2));
+  EXPECT_TRUE(bench.controller->start_write_parameters({{"track_width", 0.41}}, bench.now).ok());
+}
+
+TEST(DualAxisParameters, a_result_that_nobody_took_is_not_given_for_the_next_job) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  ASSERT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
+  bench.run(0.5);
+  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
+  EXPECT_FALSE(bench.controller->take_job_result());
+  EXPECT_EQ(bench.job().kind, ParameterJobResult::Kind::store);
+}
+
+TEST(DualAxisParameters, a_store_may_take_as_long_as_the_profile_allows) {
+  Bench bench(changed_profile("wait_s = 5", "wait_s = 60", "slow-store.toml"));
+  ASSERT_TRUE(bench.ready());
+  bench.run(0.2);
+  bench.node.sdo_faults().answer_delay[{0x1010, 1}] = 55.0;
+  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
+  bench.run(54.0);
+  EXPECT_FALSE(bench.controller->take_job_result());
+  const auto result = bench.job();
+  EXPECT_FALSE(result.error) << result.error->text();
+}
+
+TEST(DualAxisParameters, every_job_ends_by_itself_when_the_drive_falls_silent) {
+  using Start = std::function<Result<void>(Controller&, double)>;
+  const std::vector<Start> jobs = {[](Controller& c, double now) { return c.start_read_parameters(now); },
+                                   [](Controller& c, double now) {
+                                     return c.start_write_parameters({{"track_width", 0.41}}, now);
+                                   },
+                                   [](Controller& c, double now) { return c.start_store(now); }};
+  for (const Start& start : jobs)
+    for (const double after : {0.0, 0.002, 0.005, 0.02}) {
+      Bench bench;
+      ASSERT_TRUE(bench.ready());
+      bench.run(0.2);
+      ASSERT_TRUE(start(*bench.controller, bench.now).ok());
+      bench.run(after);
+      bench.link_from_node = bench.link_to_node = false;
+      (void)bench.job();  // fails by itself when none comes within 10 s
+    }
+}
+
 TEST(DualAxisParameters, are_refused_while_enabled) {
   Bench bench;
   ASSERT_TRUE(bench.enabled());

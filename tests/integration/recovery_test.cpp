@@ -1,0 +1,239 @@
+// A write-back that was interrupted, and what the service makes of it at its next start: the real driver on
+// the simulated drive, in virtual time.
+#include <fstream>
+
+#include "daemon/writeback/history.hpp"
+#include "daemon/writeback/journal.hpp"
+#include "proto/file_bytes.hpp"
+#include "tests/integration/service_loop.hpp"
+
+namespace odomcalib {
+namespace {
+
+using Values = std::map<std::string, double>;
+using Raw = std::array<std::uint32_t, 3>;
+
+const Values kOld{{"left_wheel_diameter", 0.15}, {"right_wheel_diameter", 0.15}, {"track_width", 0.4}};
+const Values kNew{{"left_wheel_diameter", 0.1512}, {"right_wheel_diameter", 0.1498}, {"track_width", 0.4033}};
+constexpr Raw kOldRaw{150000, 150000, 400000}, kNewRaw{151200, 149800, 403300},
+    kMixed{150000, 149800, 400000};
+
+class Restarted : public ServiceLoop {
+ protected:
+  // The daemon dies, the journal ends like this, the drive holds that.
+  void die(const JournalRecord& record, const Raw& ram) {
+    service_.reset();
+    client_.reset();
+    ASSERT_TRUE(Journal::open(journal_path()).value().append(record).ok());
+    for (std::uint8_t i = 0; i < 3; ++i)
+      robot_->node().dictionary().set({0x2100, static_cast<std::uint8_t>(i + 1)}, ram[i]);
+    for (int i = 0; i < 500; ++i) robot_->step(0.002);
+    clock_.time += 1.0;
+  }
+  void restart() {
+    linked_ = false;
+    lease_.clear();
+    start_service();
+  }
+  bool settled(bool operator_needed) {
+    return run_until(
+        [&] {
+          if (++steps_ % 25 != 0) return false;
+          const json now = status();
+          return now["controller"]["state"] == "disabled" && now["state"] == "idle" &&
+                 now["robot"]["in_controller"] == true && now["operator_needed"] == operator_needed;
+        },
+        10.0);
+  }
+  static JournalRecord record_of(JournalState state) {
+    JournalRecord record;
+    record.state = state;
+    record.label = "apply";
+    record.before = kOld;
+    record.after = kNew;
+    record.store_begun = state == JournalState::store_begin || state == JournalState::needs_operator;
+    return record;
+  }
+  control::Reply call(const std::string& method, json parameters) {
+    if (lease_.empty()) acquire();
+    TestClient writer(folder_ / "control");
+    parameters["lease"] = lease_;
+    writer.call(method, parameters);
+    return wait_reply(writer, 30.0);
+  }
+  [[nodiscard]] std::filesystem::path journal_path() const { return folder_ / "state" / "journal"; }
+  [[nodiscard]] std::vector<std::string> journaled() const {
+    std::vector<std::string> states;
+    std::ifstream file(journal_path());
+    for (std::string line; std::getline(file, line);)
+      states.push_back(name_of(from_line(line).value_or(JournalRecord{}).state));
+    return states;
+  }
+  [[nodiscard]] std::vector<HistoryEntry> history() const {
+    return History(folder_ / "state" / "history").entries();
+  }
+  sim::DriveNode& node() { return robot_->node(); }
+};
+
+TEST_F(Restarted, a_mixed_drive_gets_its_old_values_back_at_the_first_try) {
+  die(record_of(JournalState::write), kMixed);
+  restart();
+  ASSERT_TRUE(settled(false)) << service_->status_json();
+  EXPECT_EQ(node().geometry_in_ram(), kOldRaw);
+  EXPECT_EQ(node().geometry_stored(), kOldRaw);
+  EXPECT_EQ(node().store_count(), 0U);
+  EXPECT_EQ(journaled(), (std::vector<std::string>{"write", "rollback", "rolled_back"}));
+  ASSERT_EQ(history().size(), 1U);
+  EXPECT_EQ(history()[0].outcome, "rolled_back");
+  EXPECT_EQ(history()[0].device, "0xfee/0xd15/4242");
+}
+
+TEST_F(Restarted, a_read_that_fails_is_repeated_and_changes_nothing) {
+  die(record_of(JournalState::write), kMixed);
+  node().sdo_faults().abort_on_read[{0x2100, 2}] = 0x06060000;
+  restart();
+  run(8.0);
+  EXPECT_EQ(status()["operator_needed"], true);
+  EXPECT_EQ(journaled(), (std::vector<std::string>{"write"}));
+  EXPECT_EQ(node().geometry_in_ram(), kMixed);
+  node().sdo_faults().abort_on_read.clear();
+  ASSERT_TRUE(settled(false)) << service_->status_json();
+  EXPECT_EQ(node().geometry_in_ram(), kOldRaw);
+  EXPECT_EQ(node().store_count(), 0U);
+  EXPECT_EQ(history().size(), 1U);
+}
+
+TEST_F(Restarted, a_recovery_that_fails_stores_once_and_is_told_once) {
+  die(record_of(JournalState::needs_operator), kMixed);
+  node().faults.store_fails = true;
+  restart();
+  run(30.0);
+  EXPECT_EQ(status()["operator_needed"], true);
+  EXPECT_EQ(history().size(), 1U);
+  const auto records = journaled().size();
+  EXPECT_EQ(records, 3U);  // needs_operator, rollback, needs_operator
+  const json check = json::parse(call("Check", json::object()).parameters)["checks"];
+  EXPECT_NE(check.dump().find("store"), std::string::npos) << check;
+  // Once more after a restart, but nothing new for the history.
+  client_.reset();
+  service_.reset();
+  restart();
+  run(5.0);
+  EXPECT_EQ(journaled().size(), records + 2);
+  EXPECT_EQ(history().size(), 1U);
+  // And once more when the controller was away: now it can store.
+  node().faults.store_fails = false;
+  robot_->reset_drive();
+  ASSERT_TRUE(settled(false)) << service_->status_json();
+  EXPECT_EQ(node().geometry_stored(), kOldRaw);
+}
+
+TEST_F(Restarted, a_mixture_is_not_made_legal_by_an_apply_that_fails) {
+  die(record_of(JournalState::needs_operator), kMixed);
+  node().faults.store_fails = true;
+  restart();
+  run(5.0);
+  ASSERT_EQ(status()["operator_needed"], true);
+  node().dictionary().set({0x2100, 2}, kMixed[1]);
+  const auto reply = call("SetParameters", {{"values", kNew}});
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.WriteUnknown");
+  EXPECT_EQ(status()["operator_needed"], true);
+  EXPECT_NE(call("SetParameters", {{"values", {{"track_width", 0.4033}}}}).error, "");
+  EXPECT_EQ(Journal::open(journal_path()).value().unfinished()->before, kOld);
+  node().faults.store_fails = false;
+  run(0.5);  // it is read what the drive holds now
+  EXPECT_EQ(call("Rollback", json::object()).error, "");
+  EXPECT_EQ(status()["operator_needed"], false);
+  EXPECT_EQ(node().geometry_stored(), kOldRaw);
+  EXPECT_EQ(node().geometry_in_ram(), kOldRaw);
+}
+
+TEST_F(Restarted, the_controller_of_another_robot_is_not_written) {
+  JournalRecord record = record_of(JournalState::store_begin);
+  record.device = "0xfee/0xd15/7";
+  die(record, kNewRaw);
+  restart();
+  run(6.0);
+  EXPECT_EQ(status()["operator_needed"], true);
+  EXPECT_EQ(node().store_count(), 0U);
+  EXPECT_EQ(node().geometry_in_ram(), kNewRaw);
+  EXPECT_EQ(journaled(), (std::vector<std::string>{"store_begin"}));
+  const json checks = json::parse(call("Check", json::object()).parameters)["checks"];
+  EXPECT_NE(checks.dump().find("this controller is"), std::string::npos) << checks;
+  EXPECT_EQ(call("SetParameters", {{"values", kOld}}).error, "");
+  EXPECT_EQ(status()["operator_needed"], false);
+}
+
+TEST_F(Restarted, values_are_read_again_when_the_controller_was_away) {
+  node().dictionary().set({0x2100, 3}, 410000);  // in RAM only
+  client_.reset();
+  service_.reset();
+  restart();
+  ASSERT_TRUE(settled(false));
+  EXPECT_NEAR(status()["robot"]["track_width"].get<double>(), 0.41, 1e-9);
+  robot_->reset_drive();
+  run(3.0);
+  EXPECT_NEAR(status()["robot"]["track_width"].get<double>(), 0.40, 1e-9);
+}
+
+class Applied : public Restarted {
+ protected:
+  static json calibration(const Values& values) {
+    json parameters = json::object();
+    for (const auto& [name, value] : values)
+      parameters[name] = {{"value", value}, {"std", 1e-5}, {"unit", "m"}};
+    return {{"format", "odomcalib-calibration/1"}, {"verdict", "accepted"}, {"parameters", parameters}};
+  }
+  [[nodiscard]] std::filesystem::path active() const { return folder_ / "state" / "active.json"; }
+};
+
+TEST_F(Applied, a_recovery_that_commits_puts_the_calibration_in_force) {
+  ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}}).error, "");
+  const std::string applied = read_file_bytes(active()).value();
+  // As if the daemon had died before the last record.
+  JournalRecord record = record_of(JournalState::store_ok);
+  record.calibration = sha256_hex(applied);
+  std::filesystem::remove(active());
+  die(record, kNewRaw);
+  restart();
+  ASSERT_TRUE(settled(false));
+  EXPECT_EQ(read_file_bytes(active()).value(), applied);
+  EXPECT_EQ(status()["calibrated"], true);
+  EXPECT_EQ(history()[0].outcome, "committed");
+  EXPECT_TRUE(history()[0].calibration.has_value());
+}
+
+TEST_F(Applied, a_commit_that_was_the_last_thing_done_is_settled_at_the_next_start) {
+  ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}}).error, "");
+  const std::string applied = read_file_bytes(active()).value();
+  client_.reset();
+  service_.reset();
+  std::filesystem::remove(active());
+  restart();
+  EXPECT_EQ(read_file_bytes(active()).value(), applied);
+}
+
+TEST_F(Applied, an_apply_whose_calibration_cannot_be_put_in_force_says_so) {
+  std::filesystem::create_directories(active() / "in the way");
+  const auto reply = call("Apply", {{"calibration", calibration(kNew)}});
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Io");
+  EXPECT_NE(reply.parameters.find("the values are in the controller"), std::string::npos) << reply.parameters;
+  EXPECT_EQ(node().geometry_stored(), kNewRaw);
+}
+
+TEST_F(Applied, rollback_without_an_id_undoes_the_newest_that_was_committed) {
+  ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}}).error, "");
+  JournalRecord record = record_of(JournalState::write);
+  record.before = kNew;
+  record.after["track_width"] = 0.41;
+  die(record, kNewRaw);
+  restart();
+  ASSERT_TRUE(settled(false));
+  ASSERT_EQ(history()[0].outcome, "rolled_back");
+  ASSERT_EQ(call("Rollback", json::object()).error, "");
+  EXPECT_EQ(node().geometry_stored(), kOldRaw);
+  EXPECT_FALSE(std::filesystem::exists(active()));
+}
+
+}  // namespace
+}  // namespace odomcalib
