@@ -1,6 +1,8 @@
 // Motions, stops and write-back of the service, in virtual time.
 #include <chrono>
+#include <cmath>
 #include <fstream>
+#include <numbers>
 #include <thread>
 
 #include "drivers/can/candump.hpp"
@@ -39,6 +41,21 @@ TEST_F(ServiceLoop, straight_goes_out_and_back_and_leaves_a_recording) {
   EXPECT_EQ(reader.counters()["skipped"], 0U);
   run(0.5);
   EXPECT_EQ(status()["controller"]["state"], "disabled");
+}
+
+// Headings are those of the preview, from which the way was found to be free.
+TEST_F(ServiceLoop, headings_count_from_the_start_of_the_motion_wherever_the_odometry_points) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Spin", {{"lease", lease_}, {"turns", 0.125}, {"direction", "ccw"}});
+  ASSERT_EQ(wait_reply(mover, 20.0).error, "");
+  const sim::Pose start = robot_->pose();
+  ASSERT_GT(start.yaw, 0.6);
+  mover.call("Calibrate", {{"lease", lease_}, {"options", {{"manoeuvre", "headings"}}}}, true);
+  const auto way = [&] { return std::hypot(robot_->pose().x - start.x, robot_->pose().y - start.y); };
+  ASSERT_TRUE(run_until([&] { return way() > 0.4; }, 20.0)) << service_->status_json();
+  const double direction = std::atan2(robot_->pose().y - start.y, robot_->pose().x - start.x);
+  EXPECT_NEAR(std::remainder(direction - start.yaw, 2.0 * std::numbers::pi), 0.5 * std::numbers::pi, 0.1);
 }
 
 TEST_F(ServiceLoop, nobody_moves_without_a_lease) {
