@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "daemon/service/service_impl.hpp"
 
@@ -257,21 +258,34 @@ void Service::poll_once(int timeout_ms) {
 
 void Service::stop_all(const std::string& why) {
   impl_->now = impl_->clock.now();
+  impl_->ending = true;
+  impl_->next_read = std::numeric_limits<double>::infinity();
   const Error error{ErrorCode::cancelled, why, "odomcalibd", "start again"};
   if (impl_->run) {
     impl_->run->stop(error);
     impl_->motion_ended();
   } else {
-    impl_->base.controller().quick_stop(impl_->now);
-    impl_->base.flush();
+    impl_->stop_drive();
   }
 }
 
-bool Service::drive_off() const {
-  const auto state = impl_->base.controller().state();
-  return !impl_->base.connected() ||
+bool Service::Impl::drive_off() const {
+  const auto state = base.controller().state();
+  return !base.connected() ||
          (state != drivers::ControllerState::enabled && state != drivers::ControllerState::enabling);
 }
+
+// A quick stop makes the controller refuse parameters for a moment: in the middle of a write-back, which
+// begins only when the axes are off, it would stop nothing and leave the values half written.
+void Service::Impl::stop_drive() {
+  if (transaction.busy() && drive_off()) return;
+  base.controller().quick_stop(now);
+  base.flush();
+}
+
+bool Service::drive_off() const { return impl_->drive_off(); }
+
+bool Service::writing() const { return impl_->transaction.busy(); }
 
 std::string Service::status_line() const { return impl_->activity(); }
 std::string Service::status_json() const { return impl_->status().dump(); }

@@ -128,6 +128,9 @@ void Service::Impl::handle(const IncomingCall& incoming) {
 void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& parameters) {
   const std::string method = incoming.call.name();
   const ClientId client = incoming.client;
+  if (ending && method != "GetStatus" && method != "Stop")
+    return refuse(client, {ErrorCode::refused, "the daemon is ending", "odomcalibd",
+                           "start it again: systemctl start odomcalib"});
   if (method == "GetStatus") return answer(client, {{"status", status()}});
   if (method == "Describe") return answer(client, {{"description", describe()}});
   if (method == "Check" && !flag(parameters, "nudge")) return answer(client, {{"checks", checks()}});
@@ -152,8 +155,7 @@ void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& p
     return answer(client, ordered_json::object());
   }
   if (method == "Stop") {
-    base.controller().quick_stop(now);
-    base.flush();
+    stop_drive();
     if (run) run->stop({ErrorCode::cancelled, "stopped on request", "motion", "start again"});
     if (pending && pending->method == "Record") pending->until = now;
     event(messages::Severity::stop, "stop", "stopped on request of a client");

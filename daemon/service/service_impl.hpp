@@ -62,6 +62,9 @@ struct Service::Impl {
   void serve_recording();
   void serve_telemetry();
 
+  void stop_drive();
+  [[nodiscard]] bool drive_off() const;
+
   // service_calls.cpp: what clients ask for
   void serve_clients();
   void forget(ClientId gone);
@@ -159,6 +162,7 @@ struct Service::Impl {
   std::string last_stop;            ///< why the robot was stopped last
   bool parameters_known = false;
   bool operator_needed = false;
+  bool ending = false;  ///< the daemon was told to end
   drivers::ControllerState controller_state = drivers::ControllerState::absent;
   std::uint64_t tick_count = 0, scan_count = 0, late_steps = 0;
   double next_robot = 0.0, next_status = 0.0, next_progress = 0.0, next_command = 0.0, next_read = 0.0;

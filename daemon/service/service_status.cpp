@@ -38,6 +38,7 @@ std::string name_of(drivers::ControllerState state) {
 }
 
 std::string Service::Impl::activity() const {
+  if (ending) return transaction.busy() ? "ending: reading or writing parameters" : "ending";
   if (run) return "moving: " + run->activity();
   if (solver) return "solving";
   if (transaction.busy()) return "reading or writing parameters";

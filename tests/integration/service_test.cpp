@@ -176,6 +176,52 @@ TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
   EXPECT_LT(robot_->fastest_rim(), 0.01);
 }
 
+TEST_F(ServiceLoop, a_daemon_that_is_told_to_end_begins_nothing_and_still_tells_its_status) {
+  acquire();
+  service_->stop_all("told to end");
+  const json wanted = {{"lease", lease_}, {"distance", 1.0}, {"values", {{"track_width", 0.4033}}}};
+  for (const char* method : {"Straight", "Spin", "Calibrate", "SetParameters", "Record", "Acquire"}) {
+    TestClient late(folder_ / "control");
+    late.call(method, wanted);
+    const auto reply = wait_reply(late, 0.1);
+    EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused") << method;
+    EXPECT_NE(reply.parameters.find("ending"), std::string::npos) << reply.parameters;
+  }
+  run(2.0);
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+  EXPECT_EQ(robot_->node().geometry_in_ram()[2], 400000U);
+  TestClient observer(folder_ / "control");
+  observer.call("GetStatus", json::object());
+  EXPECT_EQ(json::parse(wait_reply(observer, 0.1).parameters)["status"]["state"], "ending");
+  observer.call("Stop", json::object());
+  EXPECT_EQ(wait_reply(observer, 0.1).error, "");
+}
+
+TEST_F(ServiceLoop, a_write_back_that_is_under_way_is_waited_for) {
+  acquire();
+  TestClient writer(folder_ / "control");
+  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
+  ASSERT_TRUE(run_until([this] { return service_->writing(); }, 1.0));
+  service_->stop_all("told to end");
+  ASSERT_TRUE(service_->writing());
+  ASSERT_TRUE(run_until([this] { return !service_->writing(); }, 5.0));
+  EXPECT_EQ(wait_reply(writer, 0.1).error, "");
+  EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
+  run(3.0);
+  EXPECT_FALSE(service_->writing()) << "nothing new begins";
+}
+
+TEST_F(ServiceLoop, a_stop_does_not_spoil_a_write_back) {
+  acquire();
+  TestClient writer(folder_ / "control"), other(folder_ / "control");
+  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
+  ASSERT_TRUE(run_until([this] { return service_->writing(); }, 1.0));
+  other.call("Stop", json::object());
+  EXPECT_EQ(wait_reply(writer, 5.0).error, "");
+  EXPECT_EQ(wait_reply(other, 0.1).error, "");
+  EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
+}
+
 TEST_F(ServiceLoop, values_written_are_stored_and_survive_a_reset_of_the_node) {
   acquire();
   TestClient writer(folder_ / "control");
