@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 namespace odomcalib::safety {
 namespace {
@@ -92,13 +94,26 @@ void ObstacleGuard::seen(const std::vector<Point>& points, const Twist& twist) {
   }
 }
 
+std::vector<Pose> distinct_poses(const routines::Preview& preview) {
+  constexpr double kPlace = 0.02, kHeading = 0.05;  // m, rad: fine against any clearance
+  const auto cell = [](double value, double size) { return std::lround(value / size); };
+  std::set<std::array<long, 3>> taken;
+  std::vector<Pose> out;
+  for (const Pose& pose : preview.path)
+    if (taken
+            .insert({cell(pose.x, kPlace), cell(pose.y, kPlace), cell(routines::wrapped(pose.yaw), kHeading)})
+            .second)
+      out.push_back(pose);
+  return out;
+}
+
 std::optional<std::string> occupied(const std::vector<Point>& points, const routines::Preview& preview,
                                     const Footprint& footprint, double clearance) {
-  constexpr std::size_t kStride = 5;  // the preview has a pose each 20 ms, at most 6 mm apart
+  const auto poses = distinct_poses(preview);
   for (const Point& point : points) {
     if (inside(point, footprint, 0.0)) continue;
-    for (std::size_t i = 0; i < preview.path.size(); i += kStride)
-      if (inside(seen_from(preview.path[i], point), footprint, clearance))
+    for (const Pose& pose : poses)
+      if (inside(seen_from(pose, point), footprint, clearance))
         return fmt::format(
             "something stands {:.2f} m ahead and {:.2f} m to the left of the robot, nearer than "
             "{:.2f} m to its way",

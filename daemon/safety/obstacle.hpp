@@ -58,6 +58,10 @@ class ObstacleGuard {
   int free_scans_ = 0;
 };
 
+/// Poses of the preview that differ from each other: a plan that comes by a place again and again has one for
+/// it, so their number is bounded by the way and not by the time.
+std::vector<routines::Pose> distinct_poses(const routines::Preview& preview);
+
 /// Before a motion: points nearer than `clearance` to the footprint anywhere on the previewed path.
 /// @return what is in the way, with its place, or nullopt
 std::optional<std::string> occupied(const std::vector<Point>& points, const routines::Preview& preview,

@@ -87,7 +87,7 @@ struct Service::Impl {
   ordered_json nudge_report(const std::vector<Leg>& legs) const;
 
   // service_motion.cpp: guided motions
-  std::optional<Error> motion_forbidden(const routines::Plan& plan) const;
+  std::optional<Error> motion_forbidden(const routines::Preview& preview) const;
   void start_motion(const IncomingCall& incoming, const routines::Plan& plan, const ordered_json& parameters,
                     PendingCall pending);
   void motion_ended();

@@ -16,6 +16,17 @@ Error forbidden(ErrorCode code, const std::string& what, const std::string& reme
 constexpr double kNoticedPause = 0.050;  // s between control steps that are due every 10 ms
 constexpr double kLongestPause = 0.200;  // s; M1
 
+constexpr double kLongestPlan = 1800.0;  // s; a preview of it takes some 10 ms of the loop
+
+std::optional<Error> too_long(const routines::Plan& plan) {
+  double duration = 0.0;
+  for (const auto& move : plan.moves) duration += routines::expected_duration(move, plan.limits);
+  if (duration <= kLongestPlan) return std::nullopt;
+  return forbidden(ErrorCode::usage,
+                   fmt::format("this would take {:.0f} minutes, 30 are allowed", duration / 60.0),
+                   "less distance, fewer turns or repetitions, or faster");
+}
+
 ordered_json json_of(const routines::Pose& pose) { return {pose.x, pose.y, pose.yaw}; }
 
 }  // namespace
@@ -25,7 +36,7 @@ routines::WheelGeometry Service::Impl::geometry() const {
   return {all.left_wheel_diameter, all.right_wheel_diameter, all.track_width};
 }
 
-std::optional<Error> Service::Impl::motion_forbidden(const routines::Plan& plan) const {
+std::optional<Error> Service::Impl::motion_forbidden(const routines::Preview& preview) const {
   using drivers::ControllerState;
   if (operator_needed)
     return forbidden(ErrorCode::write_unknown,
@@ -47,8 +58,7 @@ std::optional<Error> Service::Impl::motion_forbidden(const routines::Plan& plan)
   if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
     return forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
                      "state robot.wheel_diameter and robot.track_width in the configuration");
-  if (const auto way =
-          safety::occupied(newest_points, routines::preview(plan), config.footprint, config.clearance))
+  if (const auto way = safety::occupied(newest_points, preview, config.footprint, config.clearance))
     return forbidden(ErrorCode::refused, *way, "clear the area, or move the robot");
   return std::nullopt;
 }
@@ -59,8 +69,9 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
   if (!dry_run && !lease.holds(call.lease))
     return refuse(incoming.client,
                   forbidden(ErrorCode::not_permitted, "no lease", "acquire one and keep it alive"));
-  if (const auto error = motion_forbidden(plan)) return refuse(incoming.client, *error);
+  if (const auto error = too_long(plan)) return refuse(incoming.client, *error);
   const auto preview = routines::preview(plan);
+  if (const auto error = motion_forbidden(preview)) return refuse(incoming.client, *error);
   if (dry_run)
     return answer(incoming.client, {{"result",
                                      {{"plan", plan.name},

@@ -222,6 +222,15 @@ TEST_F(ServiceLoop, a_stop_does_not_spoil_a_write_back) {
   EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
 }
 
+TEST_F(ServiceLoop, a_motion_of_many_hours_is_refused_at_once) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Spin", {{"lease", lease_}, {"turns", 10.0}, {"rate", 0.05}, {"repeat", 20}});
+  const auto reply = wait_reply(mover, 1.0);
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Usage");
+  EXPECT_NE(reply.parameters.find("minutes"), std::string::npos) << reply.parameters;
+}
+
 TEST_F(ServiceLoop, values_written_are_stored_and_survive_a_reset_of_the_node) {
   acquire();
   TestClient writer(folder_ / "control");

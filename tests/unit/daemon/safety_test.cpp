@@ -148,6 +148,16 @@ TEST(Obstacle, the_way_is_checked_before_the_first_step) {
   EXPECT_FALSE(occupied(cluster(0.5, 0.7), preview, {}, 0.3).has_value());
 }
 
+TEST(DistinctPoses, are_bounded_by_the_way_however_often_it_is_driven) {
+  routines::SpinOptions options;
+  const auto once = distinct_poses(routines::preview(routines::spin_plan(options)));
+  options.turns = 3.0;
+  options.repeat = 4;
+  const auto often = distinct_poses(routines::preview(routines::spin_plan(options)));
+  EXPECT_GT(once.size(), 60U);
+  EXPECT_LT(often.size(), once.size() + 10U);
+}
+
 TEST(PointsOf, turns_the_scan_into_the_base_frame_and_drops_no_readings) {
   Scan scan;
   scan.range_max = 10.0;
