@@ -13,11 +13,6 @@ namespace {
 using routines::Pose;
 using routines::Twist;
 
-bool inside(const Point& point, const Footprint& footprint, double grow) {
-  return point.x <= footprint.front + grow && point.x >= -footprint.back - grow &&
-         std::abs(point.y) <= footprint.half_width + grow;
-}
-
 Point seen_from(const Pose& pose, const Point& point) {
   const double dx = point.x - pose.x;
   const double dy = point.y - pose.y;
@@ -26,7 +21,19 @@ Point seen_from(const Pose& pose, const Point& point) {
   return {c * dx + s * dy, -s * dx + c * dy};
 }
 
-// Poses along the circle of the twist until `distance` m are driven, the present one included.
+bool on_path(const Point& point, const std::vector<Pose>& path, const ObstacleOptions& options) {
+  return std::any_of(path.begin(), path.end(), [&](const Pose& pose) {
+    return inside(seen_from(pose, point), options.footprint, options.side_margin);
+  });
+}
+
+}  // namespace
+
+bool inside(const Point& point, const Footprint& footprint, double grow) {
+  return point.x <= footprint.front + grow && point.x >= -footprint.back - grow &&
+         std::abs(point.y) <= footprint.half_width + grow;
+}
+
 std::vector<Pose> path_of(const Twist& twist, double distance) {
   constexpr int kSteps = 12;
   const double duration = distance / std::abs(twist.v);
@@ -43,16 +50,7 @@ std::vector<Pose> path_of(const Twist& twist, double distance) {
   return path;
 }
 
-bool on_path(const Point& point, const std::vector<Pose>& path, const ObstacleOptions& options) {
-  return std::any_of(path.begin(), path.end(), [&](const Pose& pose) {
-    return inside(seen_from(pose, point), options.footprint, options.side_margin);
-  });
-}
-
-// Turns with almost no forward speed are spins: the path above would be a whole circle of a tiny radius.
 bool is_spin(const Twist& twist) { return std::abs(twist.v) < 0.02; }
-
-}  // namespace
 
 double Footprint::radius() const { return std::hypot(std::max(front, back), half_width); }
 

@@ -116,6 +116,7 @@ void Service::Impl::serve_lidar() {
   for (Scan& scan : lidar.take_scans()) {
     ++scan_count;
     scans.seen(scan, now);
+    cover.seen(scan, config.lidar_pose, config.footprint, now);
     newest_points = safety::points_of(scan, config.lidar_pose);
     obstacles.seen(newest_points, run ? run->twist() : routines::Twist{});
     const messages::Stamp when = stamp(scan.t);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/safety/cover.hpp"
 #include "daemon/safety/freshness.hpp"
 #include "daemon/safety/lease.hpp"
 #include "daemon/safety/obstacle.hpp"
@@ -88,6 +89,7 @@ struct Service::Impl {
 
   // service_motion.cpp: guided motions
   std::optional<Error> motion_forbidden(const routines::Preview& preview) const;
+  std::optional<Error> unseen_forbidden(const std::vector<std::string>& unseen) const;
   void start_motion(const IncomingCall& incoming, const routines::Plan& plan, const ordered_json& parameters,
                     PendingCall pending);
   void motion_ended();
@@ -141,6 +143,7 @@ struct Service::Impl {
   safety::EncoderFreshness encoders;
   safety::ScanFreshness scans;
   safety::ObstacleGuard obstacles;
+  safety::Cover cover;
   DeadReckoning odometry;
   std::optional<Calibrator::Odometry> corrected;
   std::optional<Calibration> active;  ///< applied calibration

@@ -1,5 +1,6 @@
 // Guided motions: what must be true before one, and what came of it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <numbers>
@@ -29,11 +30,25 @@ std::optional<Error> too_long(const routines::Plan& plan) {
 
 ordered_json json_of(const routines::Pose& pose) { return {pose.x, pose.y, pose.yaw}; }
 
+ordered_json json_of(const std::vector<safety::Sector>& sectors) {
+  ordered_json list = ordered_json::array();
+  for (const auto& sector : sectors) list.push_back({sector.from, sector.to});
+  return list;
+}
+
 }  // namespace
 
 routines::WheelGeometry Service::Impl::geometry() const {
   const RobotDescription all = robot();
   return {all.left_wheel_diameter, all.right_wheel_diameter, all.track_width};
+}
+
+std::optional<Error> Service::Impl::unseen_forbidden(const std::vector<std::string>& unseen) const {
+  if (unseen.empty()) return std::nullopt;
+  return forbidden(ErrorCode::refused,
+                   fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
+                               safety::text_of(cover.blind(now).sectors()), fmt::join(unseen, "\", \"")),
+                   "look there yourself, keep everybody away, and say so: --unseen-area-free");
 }
 
 std::optional<Error> Service::Impl::motion_forbidden(const routines::Preview& preview) const {
@@ -72,12 +87,18 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
   if (const auto error = too_long(plan)) return refuse(incoming.client, *error);
   const auto preview = routines::preview(plan);
   if (const auto error = motion_forbidden(preview)) return refuse(incoming.client, *error);
+  const auto unseen = safety::unseen_moves(plan, cover.blind(now), obstacles.options());
   if (dry_run)
     return answer(incoming.client, {{"result",
                                      {{"plan", plan.name},
                                       {"moves", plan.moves.size()},
                                       {"duration", preview.duration},
-                                      {"reach", preview.reach}}}});
+                                      {"reach", preview.reach},
+                                      {"unseen_moves", unseen},
+                                      {"blind_sectors", json_of(cover.blind(now).sectors())}}}});
+  const bool looked = parameters.value("unseen_area_free", ordered_json(false)) == true;
+  if (const auto error = looked ? std::nullopt : unseen_forbidden(unseen))
+    return refuse(incoming.client, *error);
   const auto path = telemetry.recorder.start(fmt::format("{}-{}", plan.name, clock.wall_us() / 1'000'000));
   if (!path) return refuse(incoming.client, path.error());
   recording_path = path.value();

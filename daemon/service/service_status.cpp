@@ -13,6 +13,15 @@ ordered_json check(const std::string& name, bool good, const std::string& found,
       {"name", name}, {"outcome", good ? "ok" : "fail"}, {"found", found}, {"remedy", good ? "" : remedy}};
 }
 
+/// What the lidar does not see is no failure: it is to be looked at by somebody.
+ordered_json view_check(const std::vector<safety::Sector>& blind) {
+  if (blind.empty()) return check("lidar view", true, "all around", "");
+  return {{"name", "lidar view"},
+          {"outcome", "warn"},
+          {"found", "blind from " + safety::text_of(blind) + " (0 is ahead, 90 left)"},
+          {"remedy", "moves that go there are asked about: see that this area is free"}};
+}
+
 ordered_json json_of(const LoopWatch::Longest& turn) {
   return {{"seconds", turn.seconds}, {"part", turn.part}};
 }
@@ -141,6 +150,7 @@ ordered_json Service::Impl::checks() const {
                        all.left_wheel_diameter > 0.0 && all.track_width > 0.0 && all.ticks_per_rev > 0.0,
                        in_force.empty() ? "from the configuration" : "from the controller",
                        "state robot.wheel_diameter, robot.track_width; ticks in the profile"));
+  list.push_back(view_check(cover.blind(now).sectors()));
   list.push_back(
       check("write-back", !operator_needed, "nothing unfinished", "connect the controller and restart"));
   std::error_code error;

@@ -222,6 +222,63 @@ TEST_F(ServiceLoop, a_stop_does_not_spoil_a_write_back) {
   EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
 }
 
+// The robot carries something that hides what is behind it: beams end on it.
+class HalfBlind : public ServiceLoop {
+ protected:
+  void adjust(sim::SimRobotOptions& options) override { options.room.add_wall({-0.2, -0.2}, {-0.2, 0.2}); }
+  control::Reply ask(const std::string& method, json parameters) {
+    TestClient mover(folder_ / "control");
+    parameters["lease"] = lease_;
+    mover.call(method, parameters, true);
+    control::Reply reply;
+    run_until(
+        [&] {
+          if (auto got = mover.reply()) reply = *got;
+          return !reply.error.empty() || reply.parameters != "{}" || robot_->fastest_rim() > 0.05;
+        },
+        5.0);
+    return reply;
+  }
+};
+
+TEST_F(HalfBlind, moves_backward_and_turns_only_when_somebody_has_looked) {
+  acquire();
+  for (const char* method : {"Straight", "Spin"}) {
+    const auto reply = ask(method, {{"distance", 0.3}, {"turns", 0.1}});
+    EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused") << reply.parameters;
+    EXPECT_NE(reply.parameters.find("does not see"), std::string::npos) << reply.parameters;
+  }
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+  EXPECT_EQ(ask("Straight", {{"distance", 0.3}, {"unseen_area_free", true}}).error, "");
+  EXPECT_GT(robot_->fastest_rim(), 0.04);
+}
+
+TEST_F(HalfBlind, what_the_lidar_does_not_see_is_told_before_anything_moves) {
+  TestClient observer(folder_ / "control");
+  observer.call("Straight", {{"distance", 0.3}, {"dry_run", true}});
+  const json plan = json::parse(wait_reply(observer, 1.0).parameters)["result"];
+  EXPECT_EQ(plan["unseen_moves"], json({"straight backward"})) << plan;
+  ASSERT_EQ(plan["blind_sectors"].size(), 1U) << plan;
+  EXPECT_NEAR(0.5 * (plan["blind_sectors"][0][0].get<double>() + plan["blind_sectors"][0][1].get<double>()),
+              std::numbers::pi, 0.1);
+  observer.call("Check", json::object());
+  const json checks = json::parse(wait_reply(observer, 1.0).parameters)["checks"];
+  for (const json& check : checks)
+    if (check["name"] == "lidar view") {
+      EXPECT_EQ(check["outcome"], "warn");
+      EXPECT_NE(check["found"].get<std::string>().find("blind from 1"), std::string::npos) << check;
+      return;
+    }
+  FAIL() << "no row about the view";
+}
+
+TEST_F(ServiceLoop, a_lidar_that_sees_all_around_has_nothing_to_ask) {
+  TestClient observer(folder_ / "control");
+  observer.call("Spin", {{"turns", 1.0}, {"dry_run", true}});
+  const json plan = json::parse(wait_reply(observer, 1.0).parameters)["result"];
+  EXPECT_EQ(plan["unseen_moves"], json::array()) << plan;
+}
+
 TEST_F(ServiceLoop, a_motion_of_many_hours_is_refused_at_once) {
   acquire();
   TestClient mover(folder_ / "control");
