@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "daemon/service/json_text.hpp"
 #include "daemon/service/service_impl.hpp"
 
 namespace odomcalib {
@@ -187,8 +188,8 @@ void Service::Impl::serve_telemetry() {
   }
   if (now >= next_status) {
     next_status = now + 1.0;
-    telemetry.publisher.send("STATUS",
-                             messages::encode_json(clock.wall_us(), "odomcalib-status/1", status().dump()));
+    telemetry.publisher.send(
+        "STATUS", messages::encode_json(clock.wall_us(), "odomcalib-status/1", json_text(status())));
   }
 }
 
@@ -198,9 +199,9 @@ void Service::Impl::progress(const std::string& phase, double fraction, std::opt
   ordered_json body = {{"phase", phase}, {"fraction", fraction}, {"eta", nullptr}, {"hint", nullptr}};
   if (eta) body["eta"] = *eta;
   telemetry.publisher.send("PROGRESS",
-                           messages::encode_json(clock.wall_us(), "odomcalib-progress/1", body.dump()));
+                           messages::encode_json(clock.wall_us(), "odomcalib-progress/1", json_text(body)));
   if (pending && pending->more)
-    server.reply(pending->client, control::encode_reply(ordered_json{{"progress", body}}.dump(), true));
+    server.reply(pending->client, control::encode_reply(json_text({{"progress", body}}), true));
 }
 
 void Service::Impl::event(messages::Severity severity, const std::string& code, const std::string& text) {
@@ -209,7 +210,7 @@ void Service::Impl::event(messages::Severity severity, const std::string& code, 
       {{"time", clock.wall_us()}, {"severity", static_cast<int>(severity)}, {"code", code}, {"text", text}});
   if (events.size() > kKeptEvents) events.pop_front();
   for (const ClientId client : monitors)
-    server.reply(client, control::encode_reply(ordered_json{{"event", events.back()}}.dump(), true));
+    server.reply(client, control::encode_reply(json_text({{"event", events.back()}}), true));
 }
 
 messages::Stamp Service::Impl::stamp(double t) const {
@@ -289,6 +290,6 @@ bool Service::drive_off() const { return impl_->drive_off(); }
 bool Service::writing() const { return impl_->transaction.busy(); }
 
 std::string Service::status_line() const { return impl_->activity(); }
-std::string Service::status_json() const { return impl_->status().dump(); }
+std::string Service::status_json() const { return json_text(impl_->status()); }
 
 }  // namespace odomcalib

@@ -288,6 +288,22 @@ TEST_F(ServiceLoop, a_motion_of_many_hours_is_refused_at_once) {
   EXPECT_NE(reply.parameters.find("minutes"), std::string::npos) << reply.parameters;
 }
 
+// File names are bytes; so is what a device says of itself.
+class ForeignText : public ServiceLoop {
+ protected:
+  void adjust(Config& config) override {
+    const auto link = folder_ / "lidar\xFF";
+    std::filesystem::create_symlink(robot_->lidar_path(), link);
+    config.lidar_device = "serial:" + link.string() + "?baud=230400";
+  }
+};
+
+TEST_F(ForeignText, that_is_no_utf8_does_not_end_the_daemon) {
+  EXPECT_NE(status()["lidar"]["device"].get<std::string>().find("\uFFFD"), std::string::npos);
+  run(2.0);
+  EXPECT_EQ(status()["lidar"]["connected"], true);
+}
+
 TEST_F(ServiceLoop, values_written_are_stored_and_survive_a_reset_of_the_node) {
   acquire();
   TestClient writer(folder_ / "control");
