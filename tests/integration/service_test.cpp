@@ -167,6 +167,28 @@ TEST_F(ServiceLoop, stop_needs_no_lease) {
   EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
 }
 
+TEST_F(ServiceLoop, stop_is_heard_however_many_clients_are_connected) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  std::vector<std::unique_ptr<TestClient>> crowd;
+  for (int i = 0; i < 12; ++i) {
+    crowd.push_back(std::make_unique<TestClient>(folder_ / "control"));
+    run(0.03);
+  }
+  EXPECT_EQ(status()["clients"]["connected"], 10);
+  EXPECT_EQ(status()["clients"]["too_many"], 6);
+  crowd.push_back(std::make_unique<TestClient>(folder_ / "control"));
+  crowd.back()->call("GetStatus", json::object());
+  EXPECT_EQ(wait_reply(*crowd.back(), 0.5).error, "org.odomcalib.Calibration.Refused");
+  EXPECT_GT(robot_->fastest_rim(), 0.15);
+  TestClient last(folder_ / "control");
+  last.call("Stop", json::object());
+  EXPECT_LT(time_to_rest(), 0.5);
+  EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
+  EXPECT_EQ(wait_reply(last, 0.5).error, "");
+}
+
 TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
   acquire();
   TestClient mover(folder_ / "control");
