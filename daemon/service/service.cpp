@@ -218,19 +218,24 @@ messages::Stamp Service::Impl::stamp(double t) const {
   return {clock.wall_us() - age_us, static_cast<std::int64_t>(std::llround(t * 1e9))};
 }
 
-RobotDescription Service::Impl::robot() const {
+RobotDescription Service::Impl::nominal() const {
   RobotDescription all = base.controller().description();
   const RobotDescription& given = config.robot;
   if (given.left_wheel_diameter > 0.0) all.left_wheel_diameter = given.left_wheel_diameter;
   if (given.right_wheel_diameter > 0.0) all.right_wheel_diameter = given.right_wheel_diameter;
   if (given.track_width > 0.0) all.track_width = given.track_width;
+  all.lidar_pose = config.lidar_pose;
+  if (!given.robot_id.empty()) all.robot_id = given.robot_id;
+  return all;
+}
+
+RobotDescription Service::Impl::robot() const {
+  RobotDescription all = nominal();
   for (const auto& parameter : in_force) {
     if (parameter.quantity == "left_wheel_diameter") all.left_wheel_diameter = parameter.value;
     if (parameter.quantity == "right_wheel_diameter") all.right_wheel_diameter = parameter.value;
     if (parameter.quantity == "track_width") all.track_width = parameter.value;
   }
-  all.lidar_pose = config.lidar_pose;
-  if (!given.robot_id.empty()) all.robot_id = given.robot_id;
   return all;
 }
 

@@ -89,6 +89,8 @@ struct Service::Impl {
 
   // service_motion.cpp: guided motions
   std::optional<Error> motion_forbidden(const routines::Preview& preview) const;
+  /// Why the wheels' dimensions are no base for a speed.
+  std::optional<Error> geometry_forbidden() const;
   std::optional<Error> unseen_forbidden(const std::vector<std::string>& unseen) const;
   void start_motion(const IncomingCall& incoming, const routines::Plan& plan, const ordered_json& parameters,
                     PendingCall pending);
@@ -122,6 +124,9 @@ struct Service::Impl {
   void progress(const std::string& phase, double fraction, std::optional<double> eta);
   void event(messages::Severity severity, const std::string& code, const std::string& text);
   [[nodiscard]] messages::Stamp stamp(double t) const;
+  /// From profile and configuration.
+  [[nodiscard]] RobotDescription nominal() const;
+  /// The same with what the controller holds.
   [[nodiscard]] RobotDescription robot() const;
 
   Config config;

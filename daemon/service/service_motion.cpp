@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "daemon/service/service_impl.hpp"
 
@@ -17,6 +20,7 @@ Error forbidden(ErrorCode code, const std::string& what, const std::string& reme
 constexpr double kNoticedPause = 0.050;  // s between control steps that are due every 10 ms
 constexpr double kLongestPause = 0.200;  // s; M1
 
+constexpr double kPlausible = 0.15;      // share; further from nominal is no wheel of this robot
 constexpr double kLongestPlan = 1800.0;  // s; a preview of it takes some 10 ms of the loop
 
 std::optional<Error> too_long(const routines::Plan& plan) {
@@ -41,6 +45,32 @@ ordered_json json_of(const std::vector<safety::Sector>& sectors) {
 routines::WheelGeometry Service::Impl::geometry() const {
   const RobotDescription all = robot();
   return {all.left_wheel_diameter, all.right_wheel_diameter, all.track_width};
+}
+
+// Speeds are wheel rates times diameters: with wrong diameters the cap of M7 is none. What the controller
+// holds goes before the configuration, so it has to be known and likely.
+std::optional<Error> Service::Impl::geometry_forbidden() const {
+  const auto held = base.controller().capabilities();
+  const bool readable = std::any_of(held.begin(), held.end(), [](const auto& one) { return one.readable; });
+  if (readable && !parameters_known)
+    return forbidden(ErrorCode::device, "the controller's values were not read yet",
+                     "wait two seconds; if it stays, check the bus");
+  const RobotDescription expected = nominal(), all = robot();
+  if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
+    return forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
+                     "state robot.wheel_diameter and robot.track_width in the configuration");
+  const std::array<std::tuple<const char*, double, double>, 3> values{
+      {{"left_wheel_diameter", all.left_wheel_diameter, expected.left_wheel_diameter},
+       {"right_wheel_diameter", all.right_wheel_diameter, expected.right_wheel_diameter},
+       {"track_width", all.track_width, expected.track_width}}};
+  for (const auto& [name, value, wanted] : values)
+    if (wanted > 0.0 && std::abs(value / wanted - 1.0) > kPlausible)
+      return forbidden(ErrorCode::refused,
+                       fmt::format("the controller holds {} = {:.4f} m, the configuration says {:.4f} m",
+                                   name, value, wanted),
+                       "measure the robot; correct robot.* in the configuration or the profile, or the "
+                       "controller's value");
+  return std::nullopt;
 }
 
 std::optional<Error> Service::Impl::unseen_forbidden(const std::vector<std::string>& unseen) const {
@@ -69,10 +99,7 @@ std::optional<Error> Service::Impl::motion_forbidden(const routines::Preview& pr
     return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
   if (const auto stale = scans.stale(now))
     return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
-  const RobotDescription all = robot();
-  if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
-    return forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
-                     "state robot.wheel_diameter and robot.track_width in the configuration");
+  if (auto wrong = geometry_forbidden()) return wrong;
   if (const auto way = safety::occupied(newest_points, preview, config.footprint, config.clearance))
     return forbidden(ErrorCode::refused, *way, "clear the area, or move the robot");
   return std::nullopt;

@@ -146,11 +146,13 @@ ordered_json Service::Impl::checks() const {
       check("lidar port", lidar.connected(), text_of(lidar.problem()), "connect it; check lidar.device"));
   list.push_back(check("scans", !scans.stale(now), scans.stale(now).value_or("scans arrive"),
                        "check lidar and baud rate"));
-  list.push_back(check("geometry",
-                       all.left_wheel_diameter > 0.0 && all.track_width > 0.0 && all.ticks_per_rev > 0.0,
-                       in_force.empty() ? "from the configuration" : "from the controller",
-                       "state robot.wheel_diameter, robot.track_width; ticks in the profile"));
   list.push_back(view_check(cover.blind(now).sectors()));
+  const auto wrong = geometry_forbidden();
+  list.push_back(check("geometry", !wrong && all.ticks_per_rev > 0.0,
+                       wrong              ? wrong->what
+                       : in_force.empty() ? "from the configuration"
+                                          : "from the controller",
+                       wrong ? wrong->remedy : "state the ticks per turn in the profile"));
   list.push_back(
       check("write-back", !operator_needed, "nothing unfinished", "connect the controller and restart"));
   std::error_code error;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <set>
 #include <thread>
 
 #include "drivers/can/candump.hpp"
@@ -299,6 +300,40 @@ TEST_F(ServiceLoop, a_lidar_that_sees_all_around_has_nothing_to_ask) {
   observer.call("Spin", {{"turns", 1.0}, {"dry_run", true}});
   const json plan = json::parse(wait_reply(observer, 1.0).parameters)["result"];
   EXPECT_EQ(plan["unseen_moves"], json::array()) << plan;
+}
+
+// 0.05 m in the controller of wheels of 0.15 m: what is called 0.3 m/s would be 0.9.
+class OtherWheels : public ServiceLoop {
+ protected:
+  void adjust(Config& config) override { config.robot.left_wheel_diameter = 0.450; }
+};
+
+TEST_F(OtherWheels, than_those_of_the_configuration_do_not_turn) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
+  const auto reply = wait_reply(mover, 1.0);
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused");
+  EXPECT_NE(reply.parameters.find("left_wheel_diameter = 0.1500 m"), std::string::npos) << reply.parameters;
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+}
+
+TEST_F(ServiceLoop, nothing_moves_before_the_values_of_the_controller_were_read) {
+  service_.reset();
+  robot_->reset_drive();
+  linked_ = false;
+  start_service();
+  acquire();
+  std::set<std::string> said;
+  for (int i = 0; i < 400 && status()["robot"]["in_controller"] == false; ++i) {
+    TestClient mover(folder_ / "control");
+    mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
+    const auto reply = wait_reply(mover, 0.2);
+    ASSERT_EQ(reply.error.substr(0, 27), "org.odomcalib.Calibration.D") << reply.parameters;
+    said.insert(json::parse(reply.parameters)["what"]);
+  }
+  EXPECT_TRUE(said.contains("the controller's values were not read yet")) << json(said);
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
 }
 
 TEST_F(ServiceLoop, a_motion_of_many_hours_is_refused_at_once) {
