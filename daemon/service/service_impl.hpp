@@ -175,7 +175,8 @@ struct Service::Impl {
   std::uint64_t tick_count = 0, scan_count = 0, late_steps = 0;
   double next_robot = 0.0, next_status = 0.0, next_progress = 0.0, next_command = 0.0, next_read = 0.0;
   double next_lidar = 0.0, next_clients = 0.0;
-  double stepped_at = 0.0;  ///< s, last control step of the motion
+  double stepped_at = 0.0;    ///< s, last control step of the motion
+  double suspended_at = 0.0;  ///< s, Clock::suspended() then
 };
 
 std::string name_of(drivers::ControllerState state);

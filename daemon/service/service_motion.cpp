@@ -136,6 +136,7 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
   disagreements = 0;
   loop.motion_begins();
   stepped_at = now;
+  suspended_at = clock.suspended();
   pending = std::move(call);
   run.emplace(MotionRun::Options{.plan = plan,
                                  .geometry = geometry(),
@@ -147,8 +148,14 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
 }
 
 // While the loop is held up, nobody steers. The drive's own watchdog stops it after 200 ms without us (M1);
-// so do we, and say what it was. What is shorter is told.
+// so do we, and say what it was. What is shorter is told. A machine that was suspended is no exception: what
+// it woke up to is not what it had seen (M12).
 void Service::Impl::watch_loop() {
+  const double slept = clock.suspended() - std::exchange(suspended_at, clock.suspended());
+  if (slept > kLongestPause)
+    return run->stop({ErrorCode::protective_stop,
+                      fmt::format("the machine was suspended for {:.1f} s", slept), "daemon",
+                      "look where the robot is, then start again by hand"});
   const double pause = now - std::exchange(stepped_at, now);
   if (pause < kNoticedPause) return;
   const auto& longest = loop.in_motion();

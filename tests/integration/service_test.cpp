@@ -138,6 +138,17 @@ TEST_F(HeldUp, a_daemon_that_was_away_for_longer_than_the_drives_watchdog_stops)
   EXPECT_LT(time_to_rest(), 0.5);
 }
 
+TEST_F(ServiceLoop, a_machine_that_was_suspended_does_not_drive_on) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  clock_.slept += 60.0;  // the clock of all intervals stood still meanwhile
+  const auto end = wait_reply(mover, 1.0);
+  EXPECT_EQ(end.error, "org.odomcalib.Calibration.ProtectiveStop");
+  EXPECT_NE(end.parameters.find("suspended for 60.0 s"), std::string::npos) << end.parameters;
+  EXPECT_LT(time_to_rest(), 0.5);
+}
+
 TEST_F(ServiceLoop, a_closed_connection_stops_at_once) {
   acquire();
   TestClient mover(folder_ / "control");
