@@ -188,6 +188,7 @@ void Service::Impl::serve_telemetry() {
   }
   if (now >= next_status) {
     next_status = now + 1.0;
+    telemetry.publisher.serve(now);
     telemetry.publisher.send(
         "STATUS", messages::encode_json(clock.wall_us(), "odomcalib-status/1", json_text(status())));
   }
