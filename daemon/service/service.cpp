@@ -154,6 +154,8 @@ void Service::Impl::serve_solver() {
   progress("solve: " + phase, fraction, std::nullopt);
   auto result = solver->take_result();
   if (!result) return;
+  if (const auto problem = solver->not_kept())
+    event(messages::Severity::warning, "not_kept", problem->text());
   solver.reset();
   if (!*result) return fail_pending(result->error());
   const std::string text = to_json(result->value());
