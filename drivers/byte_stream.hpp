@@ -19,7 +19,7 @@ class ByteStream {
   virtual Result<bool> connected() { return true; }
   /// Whatever has arrived; empty when nothing has. Error device: unplugged, or closed by the other side.
   virtual Result<std::vector<std::uint8_t>> read() = 0;
-  /// Never blocks. Error device: unplugged, or the output buffer is full.
+  /// Never blocks. Error device: unplugged, or the output buffer is full: then all of it was dropped.
   virtual Result<void> write(std::span<const std::uint8_t> bytes) = 0;
 };
 

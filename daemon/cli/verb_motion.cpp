@@ -1,14 +1,17 @@
 // Verbs that move the robot or write to its controller: consent, lease, progress, result.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <vector>
 
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/client.hpp"
@@ -23,33 +26,68 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
 struct Options {
   bool yes = false;
   ordered_json parameters = ordered_json::object();
   double distance = 1.0, turns = 1.0;
   std::string direction = "both", file, id;
-  bool dry_run = false, quick = false, one_drive = false, nudge = false;
+  bool dry_run = false, quick = false, one_drive = false, nudge = false, unseen_area_free = false;
   std::vector<std::string> assignments;
 };
 
 // Rule M11: somebody has looked at the robot.
-Result<void> consent(const Options& options, const std::string& what) {
+Result<void> consent(const Options& options, const std::string& what, const std::string& besides) {
   if (options.yes || options.dry_run) return {};
   if (isatty(STDIN_FILENO) != 1)
     return Error{ErrorCode::usage, "moving or writing needs consent", what, "add --yes"};
   std::cerr
       << what
       << ": is the area clear and an emergency stop at hand? This program's obstacle stop replaces neither"
-      << " a safety scanner nor an emergency stop. Type yes to go on: " << std::flush;
+      << " a safety scanner nor an emergency stop. " << besides << "Type yes to go on: " << std::flush;
   std::string answer;
   std::getline(std::cin, answer);
   if (answer == "yes") return {};
   return Error{ErrorCode::cancelled, "no consent", what, ""};
 }
 
+bool moves(const std::string& method) {
+  return method == "Straight" || method == "Spin" || method == "Calibrate" || method == "Check";
+}
+
+// What the motion would be, and what of it the lidar would not see (rule M10). Empty: the lidar sees it all.
+Result<std::string> unseen_question(const Session& session, const std::string& method,
+                                    ordered_json parameters) {
+  auto client = Client::connect(session.socket);
+  if (!client) return client.error();
+  parameters["dry_run"] = true;
+  const auto answer = client.value().call(method, parameters.dump());
+  if (!answer) return answer.error();
+  const auto plan =
+      ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
+  const auto unseen = plan.value("unseen_moves", std::vector<std::string>());
+  if (unseen.empty()) return std::string();
+  std::string where;
+  for (const auto& sector : plan.value("blind_sectors", std::vector<std::array<double, 2>>()))
+    where += fmt::format("{}{:.0f} to {:.0f}", where.empty() ? "" : ", ", sector[0] * kDegrees,
+                         sector[1] * kDegrees);
+  return fmt::format(
+      "The lidar does not see {} deg around the robot (0 is ahead, 90 left), and \"{}\" goes there: nothing "
+      "but you stops the robot for what is or comes there. ",
+      where, fmt::join(unseen, "\", \""));
+}
+
 Result<ordered_json> run_method(const Session& session, const Options& options, const std::string& method,
                                 ordered_json parameters) {
-  if (auto given = consent(options, method); !given) return given.error();
+  std::string unseen;
+  if (moves(method) && !options.yes && !options.dry_run) {
+    auto asked = unseen_question(session, method, parameters);
+    if (!asked) return asked.error();
+    unseen = asked.value();
+  }
+  if (auto given = consent(options, method, unseen); !given) return given.error();
+  if (!unseen.empty() || options.unseen_area_free) parameters["unseen_area_free"] = true;
   if (options.dry_run) parameters["dry_run"] = true;
   ProgressLine line;
   const auto progress = [&line](const std::string& text) {
@@ -187,6 +225,11 @@ int rollback(const Session& session, const Options& options) {
   return print_result(session, run_method(session, options, "Rollback", parameters));
 }
 
+void add_look(CLI::App* motion, const std::shared_ptr<Options>& options) {
+  motion->add_flag("--unseen-area-free", options->unseen_area_free,
+                   "with --yes: somebody sees that the area which the lidar does not see is free");
+}
+
 template <typename Action>
 CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<Options>& options,
                      const char* verb, const char* help, Action action) {
@@ -203,15 +246,17 @@ CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<Opti
 
 void add_motions(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  add_action(app, session, options, "check", "Whether everything needed for a calibration is there", check)
-      ->add_flag("--nudge", options->nudge,
-                 "move by 5 cm and 15 degrees and back: are wheels, counts and lidar wired as configured?");
-  add_action(app, session, options, "straight", "Drive straight and back, odometry against lidar",
-             [](const Session& s, const Options& o) {
-               return print_result(s, run_method(s, o, "Straight", {{"distance", o.distance}}));
-             })
-      ->add_option("--distance", options->distance, "m, negative: backwards")
-      ->capture_default_str();
+  auto* looking = add_action(app, session, options, "check",
+                             "Whether everything needed for a calibration is there", check);
+  looking->add_flag(
+      "--nudge", options->nudge,
+      "move by 5 cm and 15 degrees and back: are wheels, counts and lidar wired as configured?");
+  auto* straight =
+      add_action(app, session, options, "straight", "Drive straight and back, odometry against lidar",
+                 [](const Session& s, const Options& o) {
+                   return print_result(s, run_method(s, o, "Straight", {{"distance", o.distance}}));
+                 });
+  straight->add_option("--distance", options->distance, "m, negative: backwards")->capture_default_str();
   auto* spin = add_action(
       app, session, options, "spin", "Turn on the spot, odometry against lidar",
       [](const Session& s, const Options& o) {
@@ -224,6 +269,7 @@ void add_motions(CLI::App& app, Session& session) {
   all->add_flag("--quick", options->quick, "a shorter pattern");
   all->add_flag("--one-drive", options->one_drive, "no second motion, whatever the first leaves open");
   all->add_option("--out", options->file, "calibration file to write");
+  for (auto* motion : {looking, straight, spin, all}) add_look(motion, options);
   add_action(app, session, options, "apply", "Write a calibration to the controller", apply)
       ->add_option("CALIBRATION", options->file)
       ->required();

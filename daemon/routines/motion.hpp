@@ -8,7 +8,7 @@
 
 namespace odomcalib::routines {
 
-/// Pose of the base in the odometry frame: m, m, rad.
+/// Pose of the base: m, m, rad.
 struct Pose {
   double x = 0.0, y = 0.0, yaw = 0.0;
 };
@@ -58,8 +58,8 @@ struct Move {
   double haste = 1.0;      ///< share of the acceleration that the limits allow, a tenth at least
   /// The amount is that of the commands, whatever the odometry says: for wheels whose counts may be wrong.
   bool open_loop = false;
-  /// Turn on the spot to this heading of the odometry frame, on the shorter way; direction and amount are
-  /// found at the start of the move.
+  /// Turn on the spot to this heading, relative to that at the start of the plan, on the shorter way;
+  /// direction and amount are found at the start of the move.
   std::optional<double> heading = std::nullopt;
 };
 

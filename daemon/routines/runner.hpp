@@ -38,7 +38,7 @@ struct Step {
 };
 
 /// One control step. A pose or time that is not finite commands zero and changes nothing.
-/// @param now s, not decreasing; @param pose of the odometry in any fixed frame
+/// @param now s, not decreasing; @param pose of the odometry in the frame of the plan's start
 Step next_step(const Plan& plan, RunState state, const Pose& pose, double now);
 
 /// Share of the moves already finished, in [0, 1].

@@ -3,18 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 namespace odomcalib::safety {
 namespace {
 
 using routines::Pose;
 using routines::Twist;
-
-bool inside(const Point& point, const Footprint& footprint, double grow) {
-  return point.x <= footprint.front + grow && point.x >= -footprint.back - grow &&
-         std::abs(point.y) <= footprint.half_width + grow;
-}
 
 Point seen_from(const Pose& pose, const Point& point) {
   const double dx = point.x - pose.x;
@@ -24,7 +21,19 @@ Point seen_from(const Pose& pose, const Point& point) {
   return {c * dx + s * dy, -s * dx + c * dy};
 }
 
-// Poses along the circle of the twist until `distance` m are driven, the present one included.
+bool on_path(const Point& point, const std::vector<Pose>& path, const ObstacleOptions& options) {
+  return std::any_of(path.begin(), path.end(), [&](const Pose& pose) {
+    return inside(seen_from(pose, point), options.footprint, options.side_margin);
+  });
+}
+
+}  // namespace
+
+bool inside(const Point& point, const Footprint& footprint, double grow) {
+  return point.x <= footprint.front + grow && point.x >= -footprint.back - grow &&
+         std::abs(point.y) <= footprint.half_width + grow;
+}
+
 std::vector<Pose> path_of(const Twist& twist, double distance) {
   constexpr int kSteps = 12;
   const double duration = distance / std::abs(twist.v);
@@ -41,16 +50,7 @@ std::vector<Pose> path_of(const Twist& twist, double distance) {
   return path;
 }
 
-bool on_path(const Point& point, const std::vector<Pose>& path, const ObstacleOptions& options) {
-  return std::any_of(path.begin(), path.end(), [&](const Pose& pose) {
-    return inside(seen_from(pose, point), options.footprint, options.side_margin);
-  });
-}
-
-// Turns with almost no forward speed are spins: the path above would be a whole circle of a tiny radius.
 bool is_spin(const Twist& twist) { return std::abs(twist.v) < 0.02; }
-
-}  // namespace
 
 double Footprint::radius() const { return std::hypot(std::max(front, back), half_width); }
 
@@ -92,13 +92,26 @@ void ObstacleGuard::seen(const std::vector<Point>& points, const Twist& twist) {
   }
 }
 
+std::vector<Pose> distinct_poses(const routines::Preview& preview) {
+  constexpr double kPlace = 0.02, kHeading = 0.05;  // m, rad: fine against any clearance
+  const auto cell = [](double value, double size) { return std::lround(value / size); };
+  std::set<std::array<long, 3>> taken;
+  std::vector<Pose> out;
+  for (const Pose& pose : preview.path)
+    if (taken
+            .insert({cell(pose.x, kPlace), cell(pose.y, kPlace), cell(routines::wrapped(pose.yaw), kHeading)})
+            .second)
+      out.push_back(pose);
+  return out;
+}
+
 std::optional<std::string> occupied(const std::vector<Point>& points, const routines::Preview& preview,
                                     const Footprint& footprint, double clearance) {
-  constexpr std::size_t kStride = 5;  // the preview has a pose each 20 ms, at most 6 mm apart
+  const auto poses = distinct_poses(preview);
   for (const Point& point : points) {
     if (inside(point, footprint, 0.0)) continue;
-    for (std::size_t i = 0; i < preview.path.size(); i += kStride)
-      if (inside(seen_from(preview.path[i], point), footprint, clearance))
+    for (const Pose& pose : poses)
+      if (inside(seen_from(pose, point), footprint, clearance))
         return fmt::format(
             "something stands {:.2f} m ahead and {:.2f} m to the left of the robot, nearer than "
             "{:.2f} m to its way",

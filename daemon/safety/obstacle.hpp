@@ -26,6 +26,9 @@ struct Footprint {
   [[nodiscard]] double radius() const;
 };
 
+/// Whether a point in the base frame lies on the robot, grown by so many m on all sides.
+bool inside(const Point& point, const Footprint& footprint, double grow);
+
 struct ObstacleOptions {
   Footprint footprint;
   double margin = 0.30;       ///< m, ahead of the stopping distance
@@ -38,6 +41,12 @@ struct ObstacleOptions {
 
 /// v t_react + v^2 / (2 a) + margin, m.
 double stopping_distance(double speed, const ObstacleOptions& options);
+
+/// Poses along the circle of the twist until `distance` m are driven, the present one included.
+std::vector<routines::Pose> path_of(const routines::Twist& twist, double distance);
+
+/// Turns with almost no forward speed are spins: their path would be a whole circle of a tiny radius.
+bool is_spin(const routines::Twist& twist);
 
 /// Readings inside the area that the robot sweeps until it can have stopped. Readings on the robot itself do
 /// not count. A spin sweeps the full circle of its farthest corner.
@@ -57,6 +66,10 @@ class ObstacleGuard {
   bool blocked_ = false;
   int free_scans_ = 0;
 };
+
+/// Poses of the preview that differ from each other: a plan that comes by a place again and again has one for
+/// it, so their number is bounded by the way and not by the time.
+std::vector<routines::Pose> distinct_poses(const routines::Preview& preview);
 
 /// Before a motion: points nearer than `clearance` to the footprint anywhere on the previewed path.
 /// @return what is in the way, with its place, or nullopt

@@ -84,7 +84,13 @@ void BaseLink::receive_bytes(const Clock& clock) {
 void BaseLink::flush_bytes() {
   const auto bytes = controller_->take_bytes();
   if (!port_ || bytes.empty()) return;
-  if (auto sent = port_->write(bytes); !sent) problem_ = sent.error();
+  note(port_->write(bytes));
+}
+
+// A queue that was full once is no problem any more when it takes what is sent again.
+void BaseLink::note(const Result<void>& sent) {
+  problem_.reset();
+  if (!sent) problem_ = sent.error();
 }
 
 void BaseLink::flush() {
@@ -95,7 +101,7 @@ void BaseLink::flush() {
     if (watcher_) watcher_(frame);
     // A full queue drops the frame: the controller repeats what matters, and late commands are worse than
     // none.
-    if (auto sent = transport_->send(frame); !sent) problem_ = sent.error();
+    note(transport_->send(frame));
   }
 }
 

@@ -33,7 +33,7 @@ class BaseLink {
 
   [[nodiscard]] drivers::Controller& controller() const { return *controller_; }
   [[nodiscard]] bool connected() const { return transport_ != nullptr || port_ != nullptr; }
-  /// Why the bus is away; empty while it is there.
+  /// Why the bus is away, or what was sent last could not be; empty while all is well.
   [[nodiscard]] const std::optional<Error>& problem() const { return problem_; }
   [[nodiscard]] drivers::Counters counters() const;
   [[nodiscard]] const std::string& device() const { return device_; }
@@ -47,6 +47,7 @@ class BaseLink {
   void receive(const Clock& clock);
   void receive_bytes(const Clock& clock);
   void flush_bytes();
+  void note(const Result<void>& sent);
   void lose(const Error& error, double now);
 
   std::string device_;

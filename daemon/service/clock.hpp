@@ -15,6 +15,8 @@ class Clock {
   Clock& operator=(const Clock&) = delete;
   /// s, monotonic: for every interval.
   [[nodiscard]] virtual double now() const = 0;
+  /// s that the machine has spent suspended, which now() leaves out.
+  [[nodiscard]] virtual double suspended() const { return 0.0; }
   /// us since 1970, may step: for people only.
   [[nodiscard]] virtual std::int64_t wall_us() const = 0;
 };
@@ -23,6 +25,9 @@ class SystemClock : public Clock {
  public:
   [[nodiscard]] double now() const override {
     return static_cast<double>(nanoseconds(CLOCK_MONOTONIC)) * 1e-9;
+  }
+  [[nodiscard]] double suspended() const override {
+    return static_cast<double>(nanoseconds(CLOCK_BOOTTIME) - nanoseconds(CLOCK_MONOTONIC)) * 1e-9;
   }
   [[nodiscard]] std::int64_t wall_us() const override { return nanoseconds(CLOCK_REALTIME) / 1000; }
 

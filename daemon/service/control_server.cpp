@@ -22,6 +22,7 @@ struct Client {
   int fd = -1;
   control::FrameDecoder decoder;
   std::string output;
+  bool spare = false;  // came when all places were taken
   bool gone = false;
 };
 
@@ -102,6 +103,8 @@ struct ControlServer::State {
 
   void accept_all();
   void accept_one(int fd);
+  [[nodiscard]] std::size_t count(bool spare) const;
+  void drop_oldest_spare();
   void read_from(ClientId id, Client& client);
   void take_frames(ClientId id, Client& client);
   void write_to(Client& client);
@@ -129,13 +132,30 @@ void ControlServer::State::accept_one(int fd) {
     close(fd);
     return;
   }
-  if (clients.size() >= kMostClients) {
-    ++counters.too_many;
-    close(fd);
-    return;
-  }
   ++counters.accepted;
-  clients[next++].fd = fd;
+  const bool spare = count(false) >= kMostClients;
+  if (spare && count(true) >= kSpareClients) drop_oldest_spare();
+  if (spare) ++counters.too_many;
+  Client& client = clients[next];
+  client.fd = fd;
+  client.spare = spare;
+  // What it came with counts at once: it may be a stop.
+  read_from(next++, client);
+}
+
+std::size_t ControlServer::State::count(bool spare) const {
+  const auto same = [spare](const auto& entry) { return entry.second.spare == spare; };
+  return static_cast<std::size_t>(std::count_if(clients.begin(), clients.end(), same));
+}
+
+void ControlServer::State::drop_oldest_spare() {
+  const auto oldest =
+      std::find_if(clients.begin(), clients.end(), [](const auto& entry) { return entry.second.spare; });
+  if (oldest == clients.end()) return;
+  write_to(oldest->second);
+  close(oldest->second.fd);
+  gone.push_back(oldest->first);
+  clients.erase(oldest);
 }
 
 void ControlServer::State::take_frames(ClientId id, Client& client) {
@@ -150,6 +170,9 @@ void ControlServer::State::take_frames(ClientId id, Client& client) {
     const control::ServiceInfo info{.version = kVersion};
     if (const auto answer = control::answer_introspection(call.value(), info))
       client.output += *answer;
+    else if (client.spare && call.value().name() != "Stop")
+      client.output += control::encode_error({ErrorCode::refused, "too many clients are connected",
+                                              path.string(), "end one of them; stopping works all the same"});
     else
       calls.push_back({id, call.value()});
   }
@@ -220,12 +243,12 @@ void ControlServer::watch(std::vector<pollfd>& polled) const {
 }
 
 void ControlServer::step() {
-  state_->accept_all();
   for (auto& [id, client] : state_->clients) {
     state_->read_from(id, client);
     state_->write_to(client);
   }
-  state_->drop_gone();
+  state_->drop_gone();  // first: their places are free for those who come
+  state_->accept_all();
 }
 
 std::vector<IncomingCall> ControlServer::take_calls() { return std::exchange(state_->calls, {}); }

@@ -27,10 +27,14 @@ struct IncomingCall {
 class ControlServer {
  public:
   static constexpr std::size_t kMostClients = 8;
+  /// Beyond those, for whoever wants to stop the robot (M15): only Stop is taken from them, and the newest
+  /// takes the place of the oldest.
+  static constexpr std::size_t kSpareClients = 2;
   static constexpr std::size_t kMostOutput = std::size_t{8} << 20;  ///< bytes waiting for one slow client
 
   struct Counters {
-    std::uint64_t accepted = 0, too_many = 0, not_permitted = 0, malformed = 0, too_slow = 0;
+    std::uint64_t accepted = 0, too_many = 0 /* beyond kMostClients */, not_permitted = 0, malformed = 0,
+                  too_slow = 0;
   };
 
   /// Binds the socket (mode 0660, of the group where it exists). An orphaned socket is replaced; a live one

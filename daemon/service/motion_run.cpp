@@ -103,9 +103,11 @@ void MotionRun::note_legs(const routines::RunState& before, const Situation& sit
   }
 }
 
+// The plan was previewed and its way checked from the origin (M10): it is driven in the frame of its start,
+// wherever the odometry happens to be.
 void MotionRun::drive(const Situation& situation) {
   const routines::RunState before = runner_.state();
-  twist_ = runner_.step(situation.now, situation.odometry);
+  twist_ = runner_.step(situation.now, relative(start_, situation.odometry));
   note_legs(before, situation);
   command(twist_, situation.now);
   if (runner_.done() && !ended()) enter(Phase::resting, situation.now);

@@ -18,7 +18,7 @@ namespace odomcalib {
 struct Leg {
   routines::Move move;
   double begin = 0.0, end = 0.0;  ///< s
-  routines::Pose before, after;   ///< odometry
+  routines::Pose before, after;   ///< in the odometry frame
   TickSample ticks_before, ticks_after;
   std::optional<Scan> scan_before, scan_after;
 };
@@ -83,7 +83,7 @@ class MotionRun {
   safety::Envelope envelope_;
   Phase phase_ = Phase::countdown;
   double since_ = 0.0, now_ = 0.0, drive_began_ = 0.0;
-  routines::Pose start_;
+  routines::Pose start_;  // in the odometry frame, where the plan begins
   routines::Twist twist_;
   std::optional<Scan> scan_;
   std::vector<Leg> legs_;

@@ -44,7 +44,16 @@ class Watchdog {
 };
 
 constexpr double kShortestEnd = 0.25;  // s; at rest the axes are off after 0.1
-constexpr double kLongestEnd = 1.5;    // s; below the watchdog's 2
+constexpr double kLongestEnd = 1.5;    // s, until the wheels stand
+constexpr double kLongestWrite = 8.0;  // s, until a write-back has ended; below the unit's TimeoutStopSec
+
+// The controller sends the stop again and takes the torque off before the bus is closed, from motion after
+// the ramp; and it gets all values of a write-back, or its old ones back.
+bool may_end(const Service& service, double elapsed) {
+  if (elapsed < kShortestEnd) return false;
+  if (elapsed < kLongestEnd && !service.drive_off()) return false;
+  return elapsed >= kLongestWrite || !service.writing();
+}
 
 void run(Service& service, const odomcalib::Clock& clock) {
   Watchdog watchdog;
@@ -55,11 +64,10 @@ void run(Service& service, const odomcalib::Clock& clock) {
   }
   service.stop_all("the daemon was told to end");
   sd_notify(0, "STOPPING=1");
-  // The controller sends the stop again and takes the torque off before the bus is closed, from motion after
-  // the ramp.
-  const double begin = clock.now();
-  while (clock.now() < begin + kShortestEnd || (clock.now() < begin + kLongestEnd && !service.drive_off()))
+  for (const double begin = clock.now(); !may_end(service, clock.now() - begin);) {
     service.poll_once(5);
+    watchdog.turned(clock.now(), service);
+  }
 }
 
 int serve(const std::string& path) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
+#include "daemon/service/json_text.hpp"
 #include "daemon/service/service_impl.hpp"
 
 namespace odomcalib {
@@ -119,6 +121,7 @@ void Service::Impl::serve_lidar() {
   for (Scan& scan : lidar.take_scans()) {
     ++scan_count;
     scans.seen(scan, now);
+    cover.seen(scan, config.lidar_pose, config.footprint, now);
     newest_points = safety::points_of(scan, config.lidar_pose);
     obstacles.seen(newest_points, run ? run->twist() : routines::Twist{});
     const messages::Stamp when = stamp(scan.t);
@@ -155,6 +158,8 @@ void Service::Impl::serve_solver() {
   progress("solve: " + phase, fraction, std::nullopt);
   auto result = solver->take_result();
   if (!result) return;
+  if (const auto problem = solver->not_kept())
+    event(messages::Severity::warning, "not_kept", problem->text());
   solver.reset();
   if (!*result) return fail_pending(result->error());
   const std::string text = to_json(result->value());
@@ -189,8 +194,9 @@ void Service::Impl::serve_telemetry() {
   }
   if (now >= next_status) {
     next_status = now + 1.0;
-    telemetry.publisher.send("STATUS",
-                             messages::encode_json(clock.wall_us(), "odomcalib-status/1", status().dump()));
+    telemetry.publisher.serve(now);
+    telemetry.publisher.send(
+        "STATUS", messages::encode_json(clock.wall_us(), "odomcalib-status/1", json_text(status())));
   }
 }
 
@@ -200,9 +206,9 @@ void Service::Impl::progress(const std::string& phase, double fraction, std::opt
   ordered_json body = {{"phase", phase}, {"fraction", fraction}, {"eta", nullptr}, {"hint", nullptr}};
   if (eta) body["eta"] = *eta;
   telemetry.publisher.send("PROGRESS",
-                           messages::encode_json(clock.wall_us(), "odomcalib-progress/1", body.dump()));
+                           messages::encode_json(clock.wall_us(), "odomcalib-progress/1", json_text(body)));
   if (pending && pending->more)
-    server.reply(pending->client, control::encode_reply(ordered_json{{"progress", body}}.dump(), true));
+    server.reply(pending->client, control::encode_reply(json_text({{"progress", body}}), true));
 }
 
 void Service::Impl::event(messages::Severity severity, const std::string& code, const std::string& text) {
@@ -211,7 +217,7 @@ void Service::Impl::event(messages::Severity severity, const std::string& code, 
       {{"time", clock.wall_us()}, {"severity", static_cast<int>(severity)}, {"code", code}, {"text", text}});
   if (events.size() > kKeptEvents) events.pop_front();
   for (const ClientId client : monitors)
-    server.reply(client, control::encode_reply(ordered_json{{"event", events.back()}}.dump(), true));
+    server.reply(client, control::encode_reply(json_text({{"event", events.back()}}), true));
 }
 
 messages::Stamp Service::Impl::stamp(double t) const {
@@ -219,19 +225,24 @@ messages::Stamp Service::Impl::stamp(double t) const {
   return {clock.wall_us() - age_us, static_cast<std::int64_t>(std::llround(t * 1e9))};
 }
 
-RobotDescription Service::Impl::robot() const {
+RobotDescription Service::Impl::nominal() const {
   RobotDescription all = base.controller().description();
   const RobotDescription& given = config.robot;
   if (given.left_wheel_diameter > 0.0) all.left_wheel_diameter = given.left_wheel_diameter;
   if (given.right_wheel_diameter > 0.0) all.right_wheel_diameter = given.right_wheel_diameter;
   if (given.track_width > 0.0) all.track_width = given.track_width;
+  all.lidar_pose = config.lidar_pose;
+  if (!given.robot_id.empty()) all.robot_id = given.robot_id;
+  return all;
+}
+
+RobotDescription Service::Impl::robot() const {
+  RobotDescription all = nominal();
   for (const auto& parameter : in_force) {
     if (parameter.quantity == "left_wheel_diameter") all.left_wheel_diameter = parameter.value;
     if (parameter.quantity == "right_wheel_diameter") all.right_wheel_diameter = parameter.value;
     if (parameter.quantity == "track_width") all.track_width = parameter.value;
   }
-  all.lidar_pose = config.lidar_pose;
-  if (!given.robot_id.empty()) all.robot_id = given.robot_id;
   return all;
 }
 
@@ -261,23 +272,36 @@ void Service::poll_once(int timeout_ms) {
 
 void Service::stop_all(const std::string& why) {
   impl_->now = impl_->clock.now();
+  impl_->ending = true;
+  impl_->next_read = std::numeric_limits<double>::infinity();
   const Error error{ErrorCode::cancelled, why, "odomcalibd", "start again"};
   if (impl_->run) {
     impl_->run->stop(error);
     impl_->motion_ended();
   } else {
-    impl_->base.controller().quick_stop(impl_->now);
-    impl_->base.flush();
+    impl_->stop_drive();
   }
 }
 
-bool Service::drive_off() const {
-  const auto state = impl_->base.controller().state();
-  return !impl_->base.connected() ||
+bool Service::Impl::drive_off() const {
+  const auto state = base.controller().state();
+  return !base.connected() ||
          (state != drivers::ControllerState::enabled && state != drivers::ControllerState::enabling);
 }
 
+// A quick stop makes the controller refuse parameters for a moment: in the middle of a write-back, which
+// begins only when the axes are off, it would stop nothing and leave the values half written.
+void Service::Impl::stop_drive() {
+  if (transaction.busy() && drive_off()) return;
+  base.controller().quick_stop(now);
+  base.flush();
+}
+
+bool Service::drive_off() const { return impl_->drive_off(); }
+
+bool Service::writing() const { return impl_->transaction.busy(); }
+
 std::string Service::status_line() const { return impl_->activity(); }
-std::string Service::status_json() const { return impl_->status().dump(); }
+std::string Service::status_json() const { return json_text(impl_->status()); }
 
 }  // namespace odomcalib

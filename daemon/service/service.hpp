@@ -24,10 +24,14 @@ class Service {
   /// everything that is due by the clock.
   void poll_once(int timeout_ms);
 
-  /// Zero command, quick stop, end of whatever runs (SIGTERM, ExecStop).
+  /// Zero command, quick stop, end of whatever runs (SIGTERM, ExecStop). From then on nothing new begins: of
+  /// what clients ask for, status is told and stops are obeyed. A write-back that runs goes on.
   void stop_all(const std::string& why);
   /// The axes have no torque, as far as the controller says: the program may end.
   [[nodiscard]] bool drive_off() const;
+  /// Values are on their way to the controller: to end now would leave it to the next start to find out
+  /// which.
+  [[nodiscard]] bool writing() const;
   /// One line for systemd's STATUS and for people.
   [[nodiscard]] std::string status_line() const;
   /// What `odomcalibctl status --json` prints.

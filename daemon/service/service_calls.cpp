@@ -7,6 +7,7 @@
 #include "daemon/routines/manoeuvres.hpp"
 #include "daemon/routines/pattern.hpp"
 #include "daemon/routines/plans.hpp"
+#include "daemon/service/json_text.hpp"
 #include "daemon/service/service_impl.hpp"
 
 namespace odomcalib {
@@ -83,8 +84,7 @@ PendingCall pending_of(const IncomingCall& incoming, const ordered_json& paramet
 }
 
 void Service::Impl::answer(ClientId client, const ordered_json& parameters) {
-  server.reply(
-      client, control::encode_reply(parameters.dump(-1, ' ', false, ordered_json::error_handler_t::replace)));
+  server.reply(client, control::encode_reply(json_text(parameters)));
 }
 
 void Service::Impl::refuse(ClientId client, const Error& error) {
@@ -128,6 +128,9 @@ void Service::Impl::handle(const IncomingCall& incoming) {
 void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& parameters) {
   const std::string method = incoming.call.name();
   const ClientId client = incoming.client;
+  if (ending && method != "GetStatus" && method != "Stop")
+    return refuse(client, {ErrorCode::refused, "the daemon is ending", "odomcalibd",
+                           "start it again: systemctl start odomcalib"});
   if (method == "GetStatus") return answer(client, {{"status", status()}});
   if (method == "Describe") return answer(client, {{"description", describe()}});
   if (method == "Check" && !flag(parameters, "nudge")) return answer(client, {{"checks", checks()}});
@@ -152,8 +155,7 @@ void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& p
     return answer(client, ordered_json::object());
   }
   if (method == "Stop") {
-    base.controller().quick_stop(now);
-    base.flush();
+    stop_drive();
     if (run) run->stop({ErrorCode::cancelled, "stopped on request", "motion", "start again"});
     if (pending && pending->method == "Record") pending->until = now;
     event(messages::Severity::stop, "stop", "stopped on request of a client");
@@ -257,8 +259,8 @@ void Service::Impl::call_record(const IncomingCall& incoming, const ordered_json
 void Service::Impl::call_apply(const IncomingCall& incoming, const ordered_json& parameters) {
   PendingCall call = pending_of(incoming, parameters);
   if (const auto forbidden = write_forbidden(call.lease)) return refuse(incoming.client, *forbidden);
-  const auto calibration =
-      calibration_from_json(parameters.value("calibration", ordered_json::object()).dump(), "calibration");
+  const auto calibration = calibration_from_json(
+      json_text(parameters.value("calibration", ordered_json::object())), "calibration");
   if (!calibration) return refuse(incoming.client, calibration.error());
   if (calibration.value().verdict == Verdict::refused)
     return refuse(incoming.client, {ErrorCode::refused, "this calibration was refused by its quality gate",

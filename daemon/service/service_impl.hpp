@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/safety/cover.hpp"
 #include "daemon/safety/freshness.hpp"
 #include "daemon/safety/lease.hpp"
 #include "daemon/safety/obstacle.hpp"
@@ -69,6 +70,9 @@ struct Service::Impl {
   void serve_recording();
   void serve_telemetry();
 
+  void stop_drive();
+  [[nodiscard]] bool drive_off() const;
+
   // service_calls.cpp: what clients ask for
   void serve_clients();
   void forget(ClientId gone);
@@ -91,7 +95,10 @@ struct Service::Impl {
   ordered_json nudge_report(const std::vector<Leg>& legs) const;
 
   // service_motion.cpp: guided motions
-  std::optional<Error> motion_forbidden(const routines::Plan& plan) const;
+  std::optional<Error> motion_forbidden(const routines::Preview& preview) const;
+  /// Why the wheels' dimensions are no base for a speed.
+  std::optional<Error> geometry_forbidden() const;
+  std::optional<Error> unseen_forbidden(const std::vector<std::string>& unseen) const;
   void start_motion(const IncomingCall& incoming, const routines::Plan& plan, const ordered_json& parameters,
                     PendingCall pending);
   void motion_ended();
@@ -128,6 +135,9 @@ struct Service::Impl {
   void progress(const std::string& phase, double fraction, std::optional<double> eta);
   void event(messages::Severity severity, const std::string& code, const std::string& text);
   [[nodiscard]] messages::Stamp stamp(double t) const;
+  /// From profile and configuration.
+  [[nodiscard]] RobotDescription nominal() const;
+  /// The same with what the controller holds.
   [[nodiscard]] RobotDescription robot() const;
 
   Config config;
@@ -150,6 +160,7 @@ struct Service::Impl {
   safety::EncoderFreshness encoders;
   safety::ScanFreshness scans;
   safety::ObstacleGuard obstacles;
+  safety::Cover cover;
   DeadReckoning odometry;
   std::optional<Calibrator::Odometry> corrected;
   std::optional<Calibration> active;  ///< applied calibration
@@ -173,11 +184,13 @@ struct Service::Impl {
   bool operator_needed = false;
   std::string write_problem = "an interrupted write-back waits for the controller";  ///< operator_needed: why
   bool recovery_tried = false;  ///< on this connection to the controller
+  bool ending = false;  ///< the daemon was told to end
   drivers::ControllerState controller_state = drivers::ControllerState::absent;
   std::uint64_t tick_count = 0, scan_count = 0, late_steps = 0;
   double next_robot = 0.0, next_status = 0.0, next_progress = 0.0, next_command = 0.0, next_read = 0.0;
   double next_lidar = 0.0, next_clients = 0.0;
-  double stepped_at = 0.0;  ///< s, last control step of the motion
+  double stepped_at = 0.0;    ///< s, last control step of the motion
+  double suspended_at = 0.0;  ///< s, Clock::suspended() then
 };
 
 std::string name_of(drivers::ControllerState state);

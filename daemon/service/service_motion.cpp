@@ -1,8 +1,12 @@
 // Guided motions: what must be true before one, and what came of it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "daemon/service/service_impl.hpp"
 
@@ -16,7 +20,25 @@ Error forbidden(ErrorCode code, const std::string& what, const std::string& reme
 constexpr double kNoticedPause = 0.050;  // s between control steps that are due every 10 ms
 constexpr double kLongestPause = 0.200;  // s; M1
 
+constexpr double kPlausible = 0.15;      // share; further from nominal is no wheel of this robot
+constexpr double kLongestPlan = 1800.0;  // s; a preview of it takes some 10 ms of the loop
+
+std::optional<Error> too_long(const routines::Plan& plan) {
+  double duration = 0.0;
+  for (const auto& move : plan.moves) duration += routines::expected_duration(move, plan.limits);
+  if (duration <= kLongestPlan) return std::nullopt;
+  return forbidden(ErrorCode::usage,
+                   fmt::format("this would take {:.0f} minutes, 30 are allowed", duration / 60.0),
+                   "less distance, fewer turns or repetitions, or faster");
+}
+
 ordered_json json_of(const routines::Pose& pose) { return {pose.x, pose.y, pose.yaw}; }
+
+ordered_json json_of(const std::vector<safety::Sector>& sectors) {
+  ordered_json list = ordered_json::array();
+  for (const auto& sector : sectors) list.push_back({sector.from, sector.to});
+  return list;
+}
 
 }  // namespace
 
@@ -25,7 +47,41 @@ routines::WheelGeometry Service::Impl::geometry() const {
   return {all.left_wheel_diameter, all.right_wheel_diameter, all.track_width};
 }
 
-std::optional<Error> Service::Impl::motion_forbidden(const routines::Plan& plan) const {
+// Speeds are wheel rates times diameters: with wrong diameters the cap of M7 is none. What the controller
+// holds goes before the configuration, so it has to be known and likely.
+std::optional<Error> Service::Impl::geometry_forbidden() const {
+  const auto held = base.controller().capabilities();
+  const bool readable = std::any_of(held.begin(), held.end(), [](const auto& one) { return one.readable; });
+  if (readable && !parameters_known)
+    return forbidden(ErrorCode::device, "the controller's values were not read yet",
+                     "wait two seconds; if it stays, check the bus");
+  const RobotDescription expected = nominal(), all = robot();
+  if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
+    return forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
+                     "state robot.wheel_diameter and robot.track_width in the configuration");
+  const std::array<std::tuple<const char*, double, double>, 3> values{
+      {{"left_wheel_diameter", all.left_wheel_diameter, expected.left_wheel_diameter},
+       {"right_wheel_diameter", all.right_wheel_diameter, expected.right_wheel_diameter},
+       {"track_width", all.track_width, expected.track_width}}};
+  for (const auto& [name, value, wanted] : values)
+    if (wanted > 0.0 && std::abs(value / wanted - 1.0) > kPlausible)
+      return forbidden(ErrorCode::refused,
+                       fmt::format("the controller holds {} = {:.4f} m, the configuration says {:.4f} m",
+                                   name, value, wanted),
+                       "measure the robot; correct robot.* in the configuration or the profile, or the "
+                       "controller's value");
+  return std::nullopt;
+}
+
+std::optional<Error> Service::Impl::unseen_forbidden(const std::vector<std::string>& unseen) const {
+  if (unseen.empty()) return std::nullopt;
+  return forbidden(ErrorCode::refused,
+                   fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
+                               safety::text_of(cover.blind(now).sectors()), fmt::join(unseen, "\", \"")),
+                   "look there yourself, keep everybody away, and say so: --unseen-area-free");
+}
+
+std::optional<Error> Service::Impl::motion_forbidden(const routines::Preview& preview) const {
   using drivers::ControllerState;
   if (operator_needed)
     return forbidden(ErrorCode::write_unknown,
@@ -43,12 +99,8 @@ std::optional<Error> Service::Impl::motion_forbidden(const routines::Plan& plan)
     return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
   if (const auto stale = scans.stale(now))
     return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
-  const RobotDescription all = robot();
-  if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
-    return forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
-                     "state robot.wheel_diameter and robot.track_width in the configuration");
-  if (const auto way =
-          safety::occupied(newest_points, routines::preview(plan), config.footprint, config.clearance))
+  if (auto wrong = geometry_forbidden()) return wrong;
+  if (const auto way = safety::occupied(newest_points, preview, config.footprint, config.clearance))
     return forbidden(ErrorCode::refused, *way, "clear the area, or move the robot");
   return std::nullopt;
 }
@@ -59,14 +111,21 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
   if (!dry_run && !lease.holds(call.lease))
     return refuse(incoming.client,
                   forbidden(ErrorCode::not_permitted, "no lease", "acquire one and keep it alive"));
-  if (const auto error = motion_forbidden(plan)) return refuse(incoming.client, *error);
+  if (const auto error = too_long(plan)) return refuse(incoming.client, *error);
   const auto preview = routines::preview(plan);
+  if (const auto error = motion_forbidden(preview)) return refuse(incoming.client, *error);
+  const auto unseen = safety::unseen_moves(plan, cover.blind(now), obstacles.options());
   if (dry_run)
     return answer(incoming.client, {{"result",
                                      {{"plan", plan.name},
                                       {"moves", plan.moves.size()},
                                       {"duration", preview.duration},
-                                      {"reach", preview.reach}}}});
+                                      {"reach", preview.reach},
+                                      {"unseen_moves", unseen},
+                                      {"blind_sectors", json_of(cover.blind(now).sectors())}}}});
+  const bool looked = parameters.value("unseen_area_free", ordered_json(false)) == true;
+  if (const auto error = looked ? std::nullopt : unseen_forbidden(unseen))
+    return refuse(incoming.client, *error);
   const auto path = telemetry.recorder.start(fmt::format("{}-{}", plan.name, clock.wall_us() / 1'000'000));
   if (!path) return refuse(incoming.client, path.error());
   recording_path = path.value();
@@ -77,6 +136,7 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
   disagreements = 0;
   loop.motion_begins();
   stepped_at = now;
+  suspended_at = clock.suspended();
   pending = std::move(call);
   run.emplace(MotionRun::Options{.plan = plan,
                                  .geometry = geometry(),
@@ -88,8 +148,14 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
 }
 
 // While the loop is held up, nobody steers. The drive's own watchdog stops it after 200 ms without us (M1);
-// so do we, and say what it was. What is shorter is told.
+// so do we, and say what it was. What is shorter is told. A machine that was suspended is no exception: what
+// it woke up to is not what it had seen (M12).
 void Service::Impl::watch_loop() {
+  const double slept = clock.suspended() - std::exchange(suspended_at, clock.suspended());
+  if (slept > kLongestPause)
+    return run->stop({ErrorCode::protective_stop,
+                      fmt::format("the machine was suspended for {:.1f} s", slept), "daemon",
+                      "look where the robot is, then start again by hand"});
   const double pause = now - std::exchange(stepped_at, now);
   if (pause < kNoticedPause) return;
   const auto& longest = loop.in_motion();

@@ -13,6 +13,15 @@ ordered_json check(const std::string& name, bool good, const std::string& found,
       {"name", name}, {"outcome", good ? "ok" : "fail"}, {"found", found}, {"remedy", good ? "" : remedy}};
 }
 
+/// What the lidar does not see is no failure: it is to be looked at by somebody.
+ordered_json view_check(const std::vector<safety::Sector>& blind) {
+  if (blind.empty()) return check("lidar view", true, "all around", "");
+  return {{"name", "lidar view"},
+          {"outcome", "warn"},
+          {"found", "blind from " + safety::text_of(blind) + " (0 is ahead, 90 left)"},
+          {"remedy", "moves that go there are asked about: see that this area is free"}};
+}
+
 ordered_json json_of(const LoopWatch::Longest& turn) {
   return {{"seconds", turn.seconds}, {"part", turn.part}};
 }
@@ -38,6 +47,7 @@ std::string name_of(drivers::ControllerState state) {
 }
 
 std::string Service::Impl::activity() const {
+  if (ending) return transaction.busy() ? "ending: reading or writing parameters" : "ending";
   if (run) return "moving: " + run->activity();
   if (solver) return "solving";
   if (transaction.busy()) return "reading or writing parameters";
@@ -136,10 +146,13 @@ ordered_json Service::Impl::checks() const {
       check("lidar port", lidar.connected(), text_of(lidar.problem()), "connect it; check lidar.device"));
   list.push_back(check("scans", !scans.stale(now), scans.stale(now).value_or("scans arrive"),
                        "check lidar and baud rate"));
-  list.push_back(check("geometry",
-                       all.left_wheel_diameter > 0.0 && all.track_width > 0.0 && all.ticks_per_rev > 0.0,
-                       in_force.empty() ? "from the configuration" : "from the controller",
-                       "state robot.wheel_diameter, robot.track_width; ticks in the profile"));
+  list.push_back(view_check(cover.blind(now).sectors()));
+  const auto wrong = geometry_forbidden();
+  list.push_back(check("geometry", !wrong && all.ticks_per_rev > 0.0,
+                       wrong              ? wrong->what
+                       : in_force.empty() ? "from the configuration"
+                                          : "from the controller",
+                       wrong ? wrong->remedy : "state the ticks per turn in the profile"));
   list.push_back(
       check("write-back", !operator_needed, operator_needed ? write_problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));

@@ -12,33 +12,51 @@ struct SolverJob::State {
   std::string phase = "reading";
   double fraction = 0.0;
   std::optional<Result<Calibration>> result;
+  std::optional<Error> not_kept;
 
   void report(const std::string& name, double share) {
     const std::lock_guard lock(mutex);
     phase = name;
     fraction = share;
   }
-  void finish(Result<Calibration> calibration) {
+  void finish(Result<Calibration> calibration, std::optional<Error> problem) {
     const std::lock_guard lock(mutex);
+    not_kept = std::move(problem);
     result.emplace(std::move(calibration));
   }
 };
 
 namespace {
 
-Result<Calibration> solve(const Calibrator& calibrator, const std::vector<std::filesystem::path>& paths,
-                          const std::vector<std::string>& effects, const Calibrator::Progress& progress) {
+Result<Calibration> read_and_solve(const Calibrator& calibrator,
+                                   const std::vector<std::filesystem::path>& paths,
+                                   const std::vector<std::string>& effects,
+                                   const Calibrator::Progress& progress) {
   std::vector<Recording> recordings;
   for (const auto& path : paths) {
     auto recording = read_recording(path);
     if (!recording) return recording.error();
     recordings.push_back(std::move(recording).value());
   }
+  return calibrator.solve(recordings, effects, progress);
+}
+
+// Nothing may leave the thread as an exception, not even that there is no memory for the recording.
+Result<Calibration> solve(const Calibrator& calibrator, const std::vector<std::filesystem::path>& paths,
+                          const std::vector<std::string>& effects, const Calibrator::Progress& progress) {
   try {
-    return calibrator.solve(recordings, effects, progress);
+    return read_and_solve(calibrator, paths, effects, progress);
   } catch (const std::exception& error) {
     return Error{ErrorCode::format, error.what(), paths.front().string(), "report this recording"};
   }
+}
+
+std::optional<Error> keep_copy(const Calibration& calibration, const std::filesystem::path& file) {
+  if (file.empty()) return std::nullopt;
+  std::error_code ignored;  // shows in the writing
+  std::filesystem::create_directories(file.parent_path(), ignored);
+  const auto written = write_calibration(calibration, file);
+  return written ? std::nullopt : std::optional(written.error());
 }
 
 }  // namespace
@@ -50,8 +68,8 @@ SolverJob::SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::
                keep = std::move(keep), state = state_] {
     const auto progress = [&state](const std::string& phase, double share) { state->report(phase, share); };
     auto result = solve(calibrator, paths, effects, progress);
-    if (result && !keep.empty()) (void)write_calibration(result.value(), keep);
-    state->finish(std::move(result));
+    auto problem = result ? keep_copy(result.value(), keep) : std::nullopt;
+    state->finish(std::move(result), std::move(problem));
   }).detach();
 }
 
@@ -60,6 +78,11 @@ SolverJob::~SolverJob() = default;
 std::pair<std::string, double> SolverJob::progress() const {
   const std::lock_guard lock(state_->mutex);
   return {state_->phase, state_->fraction};
+}
+
+std::optional<Error> SolverJob::not_kept() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->not_kept;
 }
 
 std::optional<Result<Calibration>> SolverJob::take_result() {

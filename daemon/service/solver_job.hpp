@@ -15,7 +15,7 @@ class SolverJob {
  public:
   struct State;
   /// @param recordings of one robot, solved jointly
-  /// @param keep file for a copy of the result; empty: none
+  /// @param keep file for a copy of the result, in a folder that is made where needed; empty: none
   SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::path> recordings,
             std::vector<std::string> effects, std::filesystem::path keep = {});
   ~SolverJob();
@@ -23,6 +23,8 @@ class SolverJob {
   SolverJob& operator=(const SolverJob&) = delete;
 
   [[nodiscard]] std::pair<std::string, double> progress() const;
+  /// Why there is no copy of the result, when that failed.
+  [[nodiscard]] std::optional<Error> not_kept() const;
   /// Once, when it is there.
   std::optional<Result<Calibration>> take_result();
 

@@ -15,6 +15,20 @@ constexpr std::uint64_t kLargestRecording = std::uint64_t{512} << 20;
 constexpr std::uint64_t kMostFrameBytes = kLargestRecording / 2;  // of frames: measurements come first
 constexpr std::uintmax_t kLeastSpace = std::uintmax_t{64} << 20;
 
+class LcmOutlet final : public Outlet {
+ public:
+  explicit LcmOutlet(lcm_t* lcm) : lcm_(lcm) {}
+  ~LcmOutlet() override { lcm_destroy(lcm_); }
+  LcmOutlet(const LcmOutlet&) = delete;
+  LcmOutlet& operator=(const LcmOutlet&) = delete;
+  bool publish(const std::string& channel, const std::string& message) override {
+    return lcm_publish(lcm_, channel.c_str(), message.data(), static_cast<unsigned>(message.size())) == 0;
+  }
+
+ private:
+  lcm_t* lcm_;
+};
+
 bool usable_name(const std::string& name) {
   const auto good = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
   return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), good);
@@ -31,28 +45,27 @@ std::optional<Error> too_little_space(const std::filesystem::path& folder) {
 
 }  // namespace
 
-struct Publisher::Handle {
-  explicit Handle(const std::string& url) : lcm(lcm_create(url.c_str())) {}
-  ~Handle() {
-    if (lcm != nullptr) lcm_destroy(lcm);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  lcm_t* lcm;
-};
-
-Publisher::Publisher(const std::string& url, std::string prefix) : prefix_(std::move(prefix)) {
-  if (!url.empty()) lcm_ = std::make_unique<Handle>(url);
+std::unique_ptr<Outlet> open_lcm(const std::string& url) {
+  lcm_t* lcm = lcm_create(url.c_str());
+  return lcm != nullptr ? std::make_unique<LcmOutlet>(lcm) : nullptr;
 }
 
-Publisher::~Publisher() = default;
+Publisher::Publisher(std::string url, std::string prefix, Open open)
+    : url_(std::move(url)), prefix_(std::move(prefix)), open_(std::move(open)) {
+  if (!url_.empty()) outlet_ = open_(url_);
+}
+
+void Publisher::serve(double now) {
+  if (url_.empty() || outlet_) return;
+  if (!next_try_) next_try_ = now + kRetry;
+  if (now < *next_try_) return;
+  next_try_ = now + kRetry;
+  outlet_ = open_(url_);
+}
 
 void Publisher::send(const std::string& channel, const std::string& message) {
-  if (!lcm_) return;
-  const std::string name = prefix_ + channel;
-  const bool good = lcm_->lcm != nullptr && lcm_publish(lcm_->lcm, name.c_str(), message.data(),
-                                                        static_cast<unsigned>(message.size())) == 0;
-  ++(good ? sent_ : failed_);
+  if (url_.empty()) return;
+  ++(outlet_ && outlet_->publish(prefix_ + channel, message) ? sent_ : failed_);
 }
 
 Recorder::Recorder(std::filesystem::path folder, std::string prefix, MakeSink make_sink)

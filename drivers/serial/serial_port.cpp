@@ -68,20 +68,37 @@ class TtyPort final : public ByteStream {
     return out;
   }
 
+  /// What does not fit is dropped, but never in part: the rest of something that was begun goes first, so
+  /// that no half of a line is glued to the next one.
   Result<void> write(std::span<const std::uint8_t> bytes) override {
-    while (!bytes.empty()) {
-      const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
-        return port_error(path_, "output buffer is full: the device does not take what is sent",
-                          "check baud rate and flow control");
-      if (n <= 0) return unplugged(path_, n == 0 ? "write took nothing" : std::strerror(errno));
-      bytes = bytes.subspan(static_cast<std::size_t>(n));
-    }
+    const auto begun = put(rest_);
+    if (!begun) return begun.error();
+    rest_.erase(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(begun.value()));
+    if (!rest_.empty()) return full();
+    const auto taken = put(bytes);
+    if (!taken) return taken.error();
+    if (taken.value() == 0 && !bytes.empty()) return full();
+    rest_.assign(bytes.begin() + static_cast<std::ptrdiff_t>(taken.value()), bytes.end());
     return {};
   }
 
  private:
+  /// How many bytes the port takes now.
+  [[nodiscard]] Result<std::size_t> put(std::span<const std::uint8_t> bytes) const {
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+      const ssize_t n = ::write(fd_, bytes.data() + done, bytes.size() - done);
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) break;
+      if (n <= 0) return unplugged(path_, n == 0 ? "write took nothing" : std::strerror(errno));
+      done += static_cast<std::size_t>(n);
+    }
+    return done;
+  }
+  [[nodiscard]] Error full() const {
+    return port_error(path_, "output buffer is full: the device does not take what is sent",
+                      "check baud rate and flow control");
+  }
   [[nodiscard]] Result<std::vector<std::uint8_t>> end_of_input(ssize_t n) const {
     return unplugged(path_, n < 0 ? std::strerror(errno) : "end of file");
   }
@@ -89,6 +106,7 @@ class TtyPort final : public ByteStream {
   std::string path_;
   std::unique_ptr<OpenFile> file_;
   int fd_;
+  std::vector<std::uint8_t> rest_;  // of a write that the port took in part
 };
 
 std::optional<LibSerial::BaudRate> table_rate(unsigned baud) {

@@ -20,7 +20,8 @@ using nlohmann::json;
 
 class VirtualClock : public Clock {
  public:
-  double time = 100.0;
+  double time = 100.0, slept = 0.0;
+  [[nodiscard]] double suspended() const override { return slept; }
   [[nodiscard]] double now() const override { return time; }
   [[nodiscard]] std::int64_t wall_us() const override {
     return static_cast<std::int64_t>(1.7e15 + time * 1e6);

@@ -1,6 +1,9 @@
 // Motions, stops and write-back of the service, in virtual time.
 #include <chrono>
+#include <cmath>
 #include <fstream>
+#include <numbers>
+#include <set>
 #include <thread>
 
 #include "drivers/can/candump.hpp"
@@ -39,6 +42,21 @@ TEST_F(ServiceLoop, straight_goes_out_and_back_and_leaves_a_recording) {
   EXPECT_EQ(reader.counters()["skipped"], 0U);
   run(0.5);
   EXPECT_EQ(status()["controller"]["state"], "disabled");
+}
+
+// Headings are those of the preview, from which the way was found to be free.
+TEST_F(ServiceLoop, headings_count_from_the_start_of_the_motion_wherever_the_odometry_points) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Spin", {{"lease", lease_}, {"turns", 0.125}, {"direction", "ccw"}});
+  ASSERT_EQ(wait_reply(mover, 20.0).error, "");
+  const sim::Pose start = robot_->pose();
+  ASSERT_GT(start.yaw, 0.6);
+  mover.call("Calibrate", {{"lease", lease_}, {"options", {{"manoeuvre", "headings"}}}}, true);
+  const auto way = [&] { return std::hypot(robot_->pose().x - start.x, robot_->pose().y - start.y); };
+  ASSERT_TRUE(run_until([&] { return way() > 0.4; }, 20.0)) << service_->status_json();
+  const double direction = std::atan2(robot_->pose().y - start.y, robot_->pose().x - start.x);
+  EXPECT_NEAR(std::remainder(direction - start.yaw, 2.0 * std::numbers::pi), 0.5 * std::numbers::pi, 0.1);
 }
 
 TEST_F(ServiceLoop, nobody_moves_without_a_lease) {
@@ -120,6 +138,17 @@ TEST_F(HeldUp, a_daemon_that_was_away_for_longer_than_the_drives_watchdog_stops)
   EXPECT_LT(time_to_rest(), 0.5);
 }
 
+TEST_F(ServiceLoop, a_machine_that_was_suspended_does_not_drive_on) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  clock_.slept += 60.0;  // the clock of all intervals stood still meanwhile
+  const auto end = wait_reply(mover, 1.0);
+  EXPECT_EQ(end.error, "org.odomcalib.Calibration.ProtectiveStop");
+  EXPECT_NE(end.parameters.find("suspended for 60.0 s"), std::string::npos) << end.parameters;
+  EXPECT_LT(time_to_rest(), 0.5);
+}
+
 TEST_F(ServiceLoop, a_closed_connection_stops_at_once) {
   acquire();
   TestClient mover(folder_ / "control");
@@ -150,6 +179,28 @@ TEST_F(ServiceLoop, stop_needs_no_lease) {
   EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
 }
 
+TEST_F(ServiceLoop, stop_is_heard_however_many_clients_are_connected) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  std::vector<std::unique_ptr<TestClient>> crowd;
+  for (int i = 0; i < 12; ++i) {
+    crowd.push_back(std::make_unique<TestClient>(folder_ / "control"));
+    run(0.03);
+  }
+  EXPECT_EQ(status()["clients"]["connected"], 10);
+  EXPECT_EQ(status()["clients"]["too_many"], 6);
+  crowd.push_back(std::make_unique<TestClient>(folder_ / "control"));
+  crowd.back()->call("GetStatus", json::object());
+  EXPECT_EQ(wait_reply(*crowd.back(), 0.5).error, "org.odomcalib.Calibration.Refused");
+  EXPECT_GT(robot_->fastest_rim(), 0.15);
+  TestClient last(folder_ / "control");
+  last.call("Stop", json::object());
+  EXPECT_LT(time_to_rest(), 0.5);
+  EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
+  EXPECT_EQ(wait_reply(last, 0.5).error, "");
+}
+
 TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
   acquire();
   TestClient mover(folder_ / "control");
@@ -157,6 +208,168 @@ TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
   service_.reset();
   for (int i = 0; i < 400; ++i) robot_->step(0.002);
   EXPECT_LT(robot_->fastest_rim(), 0.01);
+}
+
+TEST_F(ServiceLoop, a_daemon_that_is_told_to_end_begins_nothing_and_still_tells_its_status) {
+  acquire();
+  service_->stop_all("told to end");
+  const json wanted = {{"lease", lease_}, {"distance", 1.0}, {"values", {{"track_width", 0.4033}}}};
+  for (const char* method : {"Straight", "Spin", "Calibrate", "SetParameters", "Record", "Acquire"}) {
+    TestClient late(folder_ / "control");
+    late.call(method, wanted);
+    const auto reply = wait_reply(late, 0.1);
+    EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused") << method;
+    EXPECT_NE(reply.parameters.find("ending"), std::string::npos) << reply.parameters;
+  }
+  run(2.0);
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+  EXPECT_EQ(robot_->node().geometry_in_ram()[2], 400000U);
+  TestClient observer(folder_ / "control");
+  observer.call("GetStatus", json::object());
+  EXPECT_EQ(json::parse(wait_reply(observer, 0.1).parameters)["status"]["state"], "ending");
+  observer.call("Stop", json::object());
+  EXPECT_EQ(wait_reply(observer, 0.1).error, "");
+}
+
+TEST_F(ServiceLoop, a_write_back_that_is_under_way_is_waited_for) {
+  acquire();
+  TestClient writer(folder_ / "control");
+  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
+  ASSERT_TRUE(run_until([this] { return service_->writing(); }, 1.0));
+  service_->stop_all("told to end");
+  ASSERT_TRUE(service_->writing());
+  ASSERT_TRUE(run_until([this] { return !service_->writing(); }, 5.0));
+  EXPECT_EQ(wait_reply(writer, 0.1).error, "");
+  EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
+  run(3.0);
+  EXPECT_FALSE(service_->writing()) << "nothing new begins";
+}
+
+TEST_F(ServiceLoop, a_stop_does_not_spoil_a_write_back) {
+  acquire();
+  TestClient writer(folder_ / "control"), other(folder_ / "control");
+  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
+  ASSERT_TRUE(run_until([this] { return service_->writing(); }, 1.0));
+  other.call("Stop", json::object());
+  EXPECT_EQ(wait_reply(writer, 5.0).error, "");
+  EXPECT_EQ(wait_reply(other, 0.1).error, "");
+  EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
+}
+
+// The robot carries something that hides what is behind it: beams end on it.
+class HalfBlind : public ServiceLoop {
+ protected:
+  void adjust(sim::SimRobotOptions& options) override { options.room.add_wall({-0.2, -0.2}, {-0.2, 0.2}); }
+  control::Reply ask(const std::string& method, json parameters) {
+    TestClient mover(folder_ / "control");
+    parameters["lease"] = lease_;
+    mover.call(method, parameters, true);
+    control::Reply reply;
+    run_until(
+        [&] {
+          if (auto got = mover.reply()) reply = *got;
+          return !reply.error.empty() || reply.parameters != "{}" || robot_->fastest_rim() > 0.05;
+        },
+        5.0);
+    return reply;
+  }
+};
+
+TEST_F(HalfBlind, moves_backward_and_turns_only_when_somebody_has_looked) {
+  acquire();
+  for (const char* method : {"Straight", "Spin"}) {
+    const auto reply = ask(method, {{"distance", 0.3}, {"turns", 0.1}});
+    EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused") << reply.parameters;
+    EXPECT_NE(reply.parameters.find("does not see"), std::string::npos) << reply.parameters;
+  }
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+  EXPECT_EQ(ask("Straight", {{"distance", 0.3}, {"unseen_area_free", true}}).error, "");
+  EXPECT_GT(robot_->fastest_rim(), 0.04);
+}
+
+TEST_F(HalfBlind, what_the_lidar_does_not_see_is_told_before_anything_moves) {
+  TestClient observer(folder_ / "control");
+  observer.call("Straight", {{"distance", 0.3}, {"dry_run", true}});
+  const json plan = json::parse(wait_reply(observer, 1.0).parameters)["result"];
+  EXPECT_EQ(plan["unseen_moves"], json({"straight backward"})) << plan;
+  ASSERT_EQ(plan["blind_sectors"].size(), 1U) << plan;
+  EXPECT_NEAR(0.5 * (plan["blind_sectors"][0][0].get<double>() + plan["blind_sectors"][0][1].get<double>()),
+              std::numbers::pi, 0.1);
+  observer.call("Check", json::object());
+  const json checks = json::parse(wait_reply(observer, 1.0).parameters)["checks"];
+  for (const json& check : checks)
+    if (check["name"] == "lidar view") {
+      EXPECT_EQ(check["outcome"], "warn");
+      EXPECT_NE(check["found"].get<std::string>().find("blind from 1"), std::string::npos) << check;
+      return;
+    }
+  FAIL() << "no row about the view";
+}
+
+TEST_F(ServiceLoop, a_lidar_that_sees_all_around_has_nothing_to_ask) {
+  TestClient observer(folder_ / "control");
+  observer.call("Spin", {{"turns", 1.0}, {"dry_run", true}});
+  const json plan = json::parse(wait_reply(observer, 1.0).parameters)["result"];
+  EXPECT_EQ(plan["unseen_moves"], json::array()) << plan;
+}
+
+// 0.05 m in the controller of wheels of 0.15 m: what is called 0.3 m/s would be 0.9.
+class OtherWheels : public ServiceLoop {
+ protected:
+  void adjust(Config& config) override { config.robot.left_wheel_diameter = 0.450; }
+};
+
+TEST_F(OtherWheels, than_those_of_the_configuration_do_not_turn) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
+  const auto reply = wait_reply(mover, 1.0);
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused");
+  EXPECT_NE(reply.parameters.find("left_wheel_diameter = 0.1500 m"), std::string::npos) << reply.parameters;
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+}
+
+TEST_F(ServiceLoop, nothing_moves_before_the_values_of_the_controller_were_read) {
+  service_.reset();
+  robot_->reset_drive();
+  linked_ = false;
+  start_service();
+  acquire();
+  std::set<std::string> said;
+  for (int i = 0; i < 400 && status()["robot"]["in_controller"] == false; ++i) {
+    TestClient mover(folder_ / "control");
+    mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
+    const auto reply = wait_reply(mover, 0.2);
+    ASSERT_EQ(reply.error.substr(0, 27), "org.odomcalib.Calibration.D") << reply.parameters;
+    said.insert(json::parse(reply.parameters)["what"]);
+  }
+  EXPECT_TRUE(said.contains("the controller's values were not read yet")) << json(said);
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+}
+
+TEST_F(ServiceLoop, a_motion_of_many_hours_is_refused_at_once) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Spin", {{"lease", lease_}, {"turns", 10.0}, {"rate", 0.05}, {"repeat", 20}});
+  const auto reply = wait_reply(mover, 1.0);
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Usage");
+  EXPECT_NE(reply.parameters.find("minutes"), std::string::npos) << reply.parameters;
+}
+
+// File names are bytes; so is what a device says of itself.
+class ForeignText : public ServiceLoop {
+ protected:
+  void adjust(Config& config) override {
+    const auto link = folder_ / "lidar\xFF";
+    std::filesystem::create_symlink(robot_->lidar_path(), link);
+    config.lidar_device = "serial:" + link.string() + "?baud=230400";
+  }
+};
+
+TEST_F(ForeignText, that_is_no_utf8_does_not_end_the_daemon) {
+  EXPECT_NE(status()["lidar"]["device"].get<std::string>().find("\uFFFD"), std::string::npos);
+  run(2.0);
+  EXPECT_EQ(status()["lidar"]["connected"], true);
 }
 
 TEST_F(ServiceLoop, values_written_are_stored_and_survive_a_reset_of_the_node) {

@@ -1,5 +1,6 @@
 #include "drivers/base/ros_arduino/ros_arduino.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -9,6 +10,7 @@ namespace {
 
 constexpr double kAsk_s = 0.02;
 constexpr double kAnswer_s = 0.25;  // the firmware answers within its 33 ms control interval
+constexpr std::string_view kAccepted = "OK", kNotUnderstood = "Invalid Command";
 
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -38,25 +40,27 @@ double RosArduino::transfer_s(std::size_t bytes) const {
   return baud_ ? 10.0 * static_cast<double>(bytes) / *baud_ : 0.0;
 }
 
-void RosArduino::send_line(const std::string& line, char kind, double now) {
+void RosArduino::send_line(const std::string& line, Question::Kind kind, double now) {
   send(bytes_of(line + "\r"));
   waiting_.push_back({kind, now});
   asked_ = true;
 }
 
-/// One question at a time: then an answer cannot be taken for another one's.
+/// One question at a time, but for stops: then an answer cannot be taken for another one's.
 void RosArduino::ask(double now) {
   now_ = now;
-  if (!waiting_.empty()) {
-    if (now - waiting_.front().sent_at < kAnswer_s) return;
+  if (!waiting_.empty() && now - waiting_.front().sent_at >= kAnswer_s) {
     ++no_answer_;
     waiting_.clear();
   }
+  const auto is_stop = [](const Question& question) { return question.kind == Question::Kind::stop; };
+  if (!std::all_of(waiting_.begin(), waiting_.end(), is_stop)) return;
   if (wanted_) {
-    send_line("m " + std::to_string((*wanted_)[0]) + " " + std::to_string((*wanted_)[1]), 'm', now);
+    send_line("m " + std::to_string((*wanted_)[0]) + " " + std::to_string((*wanted_)[1]),
+              Question::Kind::speed, now);
     wanted_.reset();
   } else if (now >= ask_due_) {
-    send_line("e", 'e', now);
+    send_line("e", Question::Kind::counts, now);
     ask_due_ = now + kAsk_s;
   }
 }
@@ -64,6 +68,12 @@ void RosArduino::ask(double now) {
 void RosArduino::command(double left_rad_s, double right_rad_s) {
   const double counts = profile_.ticks_per_rev * profile_.interval_s / (2.0 * std::numbers::pi);
   wanted_ = {std::lround(left_rad_s * counts), std::lround(right_rad_s * counts)};
+}
+
+/// A stop waits for no answer, which may have been lost (M14); its own comes after those that are due.
+void RosArduino::stop() {
+  wanted_.reset();
+  send_line("m 0 0", Question::Kind::stop, now_);
 }
 
 void RosArduino::on_bytes(std::span<const std::uint8_t> bytes, double now) {
@@ -92,6 +102,21 @@ void RosArduino::refuse(std::uint64_t& counter) {
   used_ = 0;
 }
 
+/// The question that this line answers. Where it fits a later one and not the first, the answers before it
+/// were lost.
+RosArduino::Question RosArduino::answered(std::string_view line, double t) {
+  if (!asked_) return {line == kAccepted ? Question::Kind::speed : Question::Kind::counts, t};
+  const auto fits = [&](const Question& question) {
+    return (question.kind == Question::Kind::counts) != (line == kAccepted);
+  };
+  auto found = std::find_if(waiting_.begin(), waiting_.end(), fits);
+  if (found == waiting_.end() || line == kNotUnderstood) found = waiting_.begin();
+  const Question question = *found;
+  no_answer_ += static_cast<std::uint64_t>(found - waiting_.begin());
+  waiting_.erase(waiting_.begin(), found + 1);
+  return question;
+}
+
 /// The board prints "\r\n" at the end of a line.
 void RosArduino::on_line(double t) {
   if (overlong_) {
@@ -102,11 +127,10 @@ void RosArduino::on_line(double t) {
   std::string_view line(line_.data(), used_);
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
   if (waiting_.empty() && asked_) return refuse(unasked_);
-  const Question question = asked_ ? waiting_.front() : Question{line == "OK" ? 'm' : 'e', t};
-  if (asked_) waiting_.pop_front();
-  if (line == "Invalid Command") return refuse(invalid_);
-  if (question.kind == 'm' && line != "OK") return refuse(bad_line_);
-  if (question.kind == 'e') {
+  const Question question = answered(line, t);
+  if (line == kNotUnderstood) return refuse(invalid_);
+  if (question.kind != Question::Kind::counts && line != kAccepted) return refuse(bad_line_);
+  if (question.kind == Question::Kind::counts) {
     const auto before = bad_line_;
     // The board counts between the end of the question and the beginning of the answer.
     const double earliest = question.sent_at + transfer_s(2);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <deque>
+#include <string_view>
 
 #include "drivers/base/speed/speed_protocol.hpp"
 
@@ -21,20 +22,22 @@ class RosArduino final : public SpeedProtocol {
   void greet(double /*now*/) override {}
   void ask(double now) override;
   void command(double left_rad_s, double right_rad_s) override;
+  void stop() override;
   [[nodiscard]] Counters counters() const override;
 
  private:
   static constexpr std::size_t kLongestLine = 64;
+  struct Question {
+    enum class Kind { counts, speed, stop } kind;
+    double sent_at;
+  };
+
+  [[nodiscard]] Question answered(std::string_view line, double t);
   void on_line(double t);
   void on_counts(std::string_view line, double t);
   void refuse(std::uint64_t& counter);
-  void send_line(const std::string& line, char kind, double now);
+  void send_line(const std::string& line, Question::Kind kind, double now);
   [[nodiscard]] double transfer_s(std::size_t bytes) const;
-
-  struct Question {
-    char kind;  ///< first letter of the command
-    double sent_at;
-  };
 
   const Profile profile_;
   std::optional<unsigned> baud_;

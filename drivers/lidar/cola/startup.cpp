@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "drivers/clean_text.hpp"
+
 namespace odomcalib::drivers::cola {
 namespace {
 
@@ -98,7 +100,7 @@ void Startup::on_telegram(const Telegram& telegram, double now) {
   if (step_ == Step::identify && telegram.name == "DeviceIdent") {
     Arguments in(telegram.dialect, telegram.arguments);
     const std::string name = in.counted_text();
-    identity_ = "SICK " + name + " " + in.counted_text();
+    identity_ = "SICK " + clean_text(name) + " " + clean_text(in.counted_text());
     problem_.reset();
     return enter(Step::state, now);
   }

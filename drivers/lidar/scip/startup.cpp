@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdio>
 
+#include "drivers/clean_text.hpp"
+
 namespace odomcalib::drivers::scip {
 namespace {
 
@@ -83,7 +85,7 @@ void Startup::step(double now, bool heard) {
 }
 
 void Startup::refused(const Reply& reply, const std::string& what, double now) {
-  problem_ = trouble(what + " (status " + reply.status + ")",
+  problem_ = trouble(what + " (status " + clean_text(reply.status) + ")",
                      reply.status == "10" ? "the laser is off; it may still be spinning up"
                                           : "it is tried again; switch the sensor off and on if it stays");
   enter(Step::pause, now);
@@ -105,7 +107,7 @@ void Startup::on_reply(const Reply& reply, double now) {
   if (step_ == Step::version && name == "VV" && reply.status == "00") {
     const auto fields = fields_of(reply.lines);
     const auto text = [&](const char* key) { return fields.contains(key) ? fields.at(key) : std::string(); };
-    identity_ = text("PROD") + " firmware " + text("FIRM") + " serial " + text("SERI");
+    identity_ = clean_text(text("PROD") + " firmware " + text("FIRM") + " serial " + text("SERI"));
     enter(Step::parameters, now);
   } else if (step_ == Step::parameters && name == "PP" && reply.status == "00") {
     parameters_ = read_parameters(reply.lines);

@@ -40,7 +40,9 @@ void ScipDevice::on_line(const std::string& line, double now) {
   const std::string name = line.substr(0, 2);
   if (name == "QT") laser_ = false, stream_.clear(), reply(line, "00", {}, soon);
   if (name == "VV")
-    reply(line, "00", {"VEND:Nobody;", "PROD:SIM-30LX;", "FIRM:1.0;", "PROT:SCIP 2.2;", "SERI:H7;"}, soon);
+    reply(line, "00",
+          {"VEND:Nobody;", "PROD:" + options_.product + ";", "FIRM:1.0;", "PROT:SCIP 2.2;", "SERI:H7;"},
+          soon);
   if (name == "PP")
     reply(line, "00",
           {"MODL:SIM;", "DMIN:23;", "DMAX:60000;", "ARES:1440;", "AMIN:0;", "AMAX:1080;", "AFRT:540;",

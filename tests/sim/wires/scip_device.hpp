@@ -8,6 +8,7 @@ namespace odomcalib::sim {
 class ScipDevice final : public LidarDevice {
  public:
   struct Options {
+    std::string product = "SIM-30LX";
     double period = 0.0251;        ///< s; the sensor says 2400 turns a minute
     double clock_zero = 16'776.0;  ///< s on the device's clock at time 0: it wraps at 16777.216 s
     double ready_at = 0.0;         ///< s; before, the laser cannot be switched on

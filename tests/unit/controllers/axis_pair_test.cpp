@@ -63,109 +63,137 @@ std::unique_ptr<Controller> pair_controller() {
 class AxisPair : public testing::Test {
  protected:
   AxisPair()
-      : bench(pair_controller(), [this](const auto& sent, double t) { return drives.exchange(sent, t); }) {}
+      : bench_(pair_controller(), [this](const auto& sent, double t) { return drives_.exchange(sent, t); }) {}
 
   void ready() {
-    ASSERT_TRUE(bench.run_until(ControllerState::disabled)) << bench.story();
-    bench.run(0.3);  // until the wheels are known to stand
+    ASSERT_TRUE(bench_.run_until(ControllerState::disabled)) << bench_.story();
+    bench_.run(0.3);  // until the wheels are known to stand
   }
   void moving() {
     ready();
-    bench.controller->enable(bench.now);
-    ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
-    bench.drive(4.0, 4.0, 0.5);
+    bench_.controller->enable(bench_.now);
+    ASSERT_TRUE(bench_.run_until(ControllerState::enabled)) << bench_.story();
+    bench_.drive(4.0, 4.0, 0.5);
   }
   ParameterJobResult job() {
     for (int i = 0; i < 20'000; ++i) {
-      bench.turn();
-      if (auto result = bench.controller->take_job_result()) return *result;
+      bench_.turn();
+      if (auto result = bench_.controller->take_job_result()) return *result;
     }
     ADD_FAILURE() << "the job does not end";
     return {};
   }
   [[nodiscard]] std::uint32_t feed(std::size_t side) {
-    return drives.node[side]->dictionary().value({0x6092, 1});
+    return drives_.node[side]->dictionary().value({0x6092, 1});
   }
 
-  TwoDrives drives;
-  test::CanBench bench;
+  TwoDrives drives_;
+  test::CanBench bench_;
 };
 
 TEST_F(AxisPair, moves_both_wheels_and_dates_their_counts_by_the_sync) {
   moving();
-  EXPECT_TRUE(bench.controller->watchdog_armed());
-  bench.ticks.clear();
-  bench.drive(4.0, 5.0, 2.0);
-  EXPECT_GT(drives.rate[0], 0.0);
-  EXPECT_LT(drives.rate[1], 0.0);  // mounted mirrored
-  ASSERT_NEAR(static_cast<double>(bench.ticks.size()), 100.0, 5.0);
+  EXPECT_TRUE(bench_.controller->watchdog_armed());
+  bench_.ticks.clear();
+  bench_.drive(4.0, 5.0, 2.0);
+  EXPECT_GT(drives_.rate[0], 0.0);
+  EXPECT_LT(drives_.rate[1], 0.0);  // mounted mirrored
+  ASSERT_NEAR(static_cast<double>(bench_.ticks.size()), 100.0, 5.0);
   // Counts against time are straight lines: both counts were taken at the date of the sample.
-  const TickSample& first = bench.ticks[10];
-  for (std::size_t i = 20; i < bench.ticks.size(); ++i) {
-    const double dt = bench.ticks[i].t - first.t;
-    EXPECT_NEAR(static_cast<double>(bench.ticks[i].left - first.left), 4.0 * dt / kTwoPi * kCounts,
+  const TickSample& first = bench_.ticks[10];
+  for (std::size_t i = 20; i < bench_.ticks.size(); ++i) {
+    const double dt = bench_.ticks[i].t - first.t;
+    EXPECT_NEAR(static_cast<double>(bench_.ticks[i].left - first.left), 4.0 * dt / kTwoPi * kCounts,
                 2.0e-4 * kCounts * 4.0);
-    EXPECT_NEAR(static_cast<double>(bench.ticks[i].right - first.right), 5.0 * dt / kTwoPi * kCounts,
+    EXPECT_NEAR(static_cast<double>(bench_.ticks[i].right - first.right), 5.0 * dt / kTwoPi * kCounts,
                 2.0e-4 * kCounts * 5.0);
   }
-  EXPECT_EQ(bench.controller->counters()["unpaired_counts"], 0U);
+  EXPECT_EQ(bench_.controller->counters()["unpaired_counts"], 0U);
 }
 
 TEST_F(AxisPair, a_fault_of_one_drive_stops_both) {
   moving();
-  drives.node[1]->emergency(0x2310, 0x02, bench.now);
-  bench.drive(4.0, 4.0, 0.2);
-  EXPECT_TRUE(bench.happened("emcy")) << bench.story();
-  EXPECT_EQ(drives.rate[0], 0.0);
-  EXPECT_EQ(drives.rate[1], 0.0);
-  EXPECT_NE(bench.story().find("right drive: emergency"), std::string::npos);
+  drives_.node[1]->emergency(0x2310, 0x02, bench_.now);
+  bench_.drive(4.0, 4.0, 0.2);
+  EXPECT_TRUE(bench_.happened("emcy")) << bench_.story();
+  EXPECT_EQ(drives_.rate[0], 0.0);
+  EXPECT_EQ(drives_.rate[1], 0.0);
+  EXPECT_NE(bench_.story().find("right drive: emergency"), std::string::npos);
+}
+
+TEST_F(AxisPair, a_quick_stop_is_on_its_way_before_anything_else_happens) {
+  moving();
+  ASSERT_NE(drives_.rate[0], 0.0);
+  bench_.controller->quick_stop(bench_.now);
+  bench_.flush();
+  EXPECT_EQ(drives_.rate[0], 0.0);
+  EXPECT_EQ(drives_.rate[1], 0.0);
+}
+
+TEST(DualAxisOnItsWire, a_quick_stop_is_on_its_way_before_anything_else_happens) {
+  sim::DriveNode node({});
+  node.reset(0.0);
+  test::CanBench bench(test::shipped("sim-dual"), [&node](const std::vector<sim::Frame>& sent, double now) {
+    for (const sim::Frame& frame : sent) node.receive(frame, now);
+    node.advance(now, {});
+    return node.take_frames(now);
+  });
+  ASSERT_TRUE(bench.run_until(ControllerState::disabled)) << bench.story();
+  bench.run(0.5);
+  bench.controller->enable(bench.now);
+  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  bench.drive(2.0, 2.0, 0.06);
+  ASSERT_NE(node.order().rate[0], 0.0);
+  bench.controller->quick_stop(bench.now);
+  bench.flush();
+  EXPECT_EQ(node.order().rate[0], 0.0);
 }
 
 TEST_F(AxisPair, a_missing_drive_keeps_the_other_from_moving) {
   ready();
-  drives.node[0]->faults.heartbeat_stopped = true;
-  drives.node[0]->sdo_faults().silent = true;
-  bench.run(1.0);
-  EXPECT_TRUE(bench.happened("heartbeat_lost")) << bench.story();
-  EXPECT_NE(bench.controller->state(), ControllerState::disabled);
-  bench.controller->enable(bench.now);
-  bench.run(0.5);
-  EXPECT_EQ(drives.node[1]->drive_state(), sim::DriveState::switch_on_disabled);
+  drives_.node[0]->faults.heartbeat_stopped = true;
+  drives_.node[0]->sdo_faults().silent = true;
+  bench_.run(1.0);
+  EXPECT_TRUE(bench_.happened("heartbeat_lost")) << bench_.story();
+  EXPECT_NE(bench_.controller->state(), ControllerState::disabled);
+  bench_.controller->enable(bench_.now);
+  bench_.run(0.5);
+  EXPECT_EQ(drives_.node[1]->drive_state(), sim::DriveState::switch_on_disabled);
 }
 
 TEST_F(AxisPair, feeds_are_read_written_stored_and_seen_after_a_reset) {
   ready();
-  ASSERT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
+  ASSERT_TRUE(bench_.controller->start_read_parameters(bench_.now).ok());
   const auto read = job();
   ASSERT_EQ(read.parameters.size(), 2U);
   EXPECT_NEAR(read.parameters[0].value, 0.150, 1e-8);
   EXPECT_LT(read.parameters[0].step / 0.150, 1e-7);
-  ASSERT_TRUE(bench.controller
+  ASSERT_TRUE(bench_.controller
                   ->start_write_parameters(
-                      {{"left_wheel_diameter", 0.1512}, {"right_wheel_diameter", 0.1497}}, bench.now)
+                      {{"left_wheel_diameter", 0.1512}, {"right_wheel_diameter", 0.1497}}, bench_.now)
                   .ok());
   EXPECT_FALSE(job().error);
   EXPECT_EQ(feed(0), static_cast<std::uint32_t>(std::llround(std::numbers::pi * 100 * 151200)));
   EXPECT_EQ(feed(1), static_cast<std::uint32_t>(std::llround(std::numbers::pi * 100 * 149700)));
-  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
+  ASSERT_TRUE(bench_.controller->start_store(bench_.now).ok());
   const auto stored = job();
   EXPECT_FALSE(stored.error) << stored.error->text();
-  EXPECT_TRUE(bench.happened("restarted_to_verify"));
-  EXPECT_FALSE(bench.happened("unexpected_boot")) << bench.story();
-  EXPECT_EQ(drives.node[0]->store_count(), 1U);
-  EXPECT_EQ(drives.node[1]->store_count(), 1U);
+  EXPECT_TRUE(bench_.happened("restarted_to_verify"));
+  EXPECT_FALSE(bench_.happened("unexpected_boot")) << bench_.story();
+  EXPECT_EQ(drives_.node[0]->store_count(), 1U);
+  EXPECT_EQ(drives_.node[1]->store_count(), 1U);
   ready();
   moving();
 }
 
 TEST_F(AxisPair, counts_of_a_turn_stay_what_they_are_with_another_feed) {
   ready();
-  ASSERT_TRUE(bench.controller->start_write_parameters({{"left_wheel_diameter", 0.2}}, bench.now).ok());
+  ASSERT_TRUE(bench_.controller->start_write_parameters({{"left_wheel_diameter", 0.2}}, bench_.now).ok());
   EXPECT_FALSE(job().error);
   moving();
-  bench.ticks.clear();
-  bench.drive(4.0, 4.0, 2.0);
-  const TickSample &first = bench.ticks[10], &last = bench.ticks.back();
+  bench_.ticks.clear();
+  bench_.drive(4.0, 4.0, 2.0);
+  const TickSample &first = bench_.ticks[10], &last = bench_.ticks.back();
   const double turns = 4.0 * (last.t - first.t) / kTwoPi;
   EXPECT_NEAR(static_cast<double>(last.left - first.left) / turns, kCounts, 0.01 * kCounts)
       << "the host uses the new diameter already";
@@ -173,19 +201,19 @@ TEST_F(AxisPair, counts_of_a_turn_stay_what_they_are_with_another_feed) {
 
 TEST_F(AxisPair, a_result_that_nobody_took_is_not_given_for_the_next_job) {
   ready();
-  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
-  bench.run(10.0);
-  ASSERT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
-  EXPECT_FALSE(bench.controller->take_job_result());
+  ASSERT_TRUE(bench_.controller->start_store(bench_.now).ok());
+  bench_.run(10.0);
+  ASSERT_TRUE(bench_.controller->start_read_parameters(bench_.now).ok());
+  EXPECT_FALSE(bench_.controller->take_job_result());
   EXPECT_EQ(job().kind, ParameterJobResult::Kind::read);
 }
 
 TEST_F(AxisPair, a_store_that_is_lost_is_found_out_by_the_reset) {
   ready();
-  ASSERT_TRUE(bench.controller->start_write_parameters({{"left_wheel_diameter", 0.1512}}, bench.now).ok());
+  ASSERT_TRUE(bench_.controller->start_write_parameters({{"left_wheel_diameter", 0.1512}}, bench_.now).ok());
   EXPECT_FALSE(job().error);
-  drives.node[0]->faults.store_is_lost = true;
-  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
+  drives_.node[0]->faults.store_is_lost = true;
+  ASSERT_TRUE(bench_.controller->start_store(bench_.now).ok());
   const auto stored = job();
   ASSERT_TRUE(stored.error);
   EXPECT_EQ(stored.error->code, ErrorCode::write_failed);
@@ -194,9 +222,9 @@ TEST_F(AxisPair, a_store_that_is_lost_is_found_out_by_the_reset) {
 
 TEST_F(AxisPair, a_drive_that_does_not_come_back_leaves_the_state_unknown) {
   ready();
-  ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
-  for (int i = 0; i < 20'000 && !bench.happened("restarted_to_verify"); ++i) bench.turn();
-  drives.node[0]->sdo_faults().silent = true;
+  ASSERT_TRUE(bench_.controller->start_store(bench_.now).ok());
+  for (int i = 0; i < 20'000 && !bench_.happened("restarted_to_verify"); ++i) bench_.turn();
+  drives_.node[0]->sdo_faults().silent = true;
   const auto stored = job();
   ASSERT_TRUE(stored.error);
   EXPECT_EQ(stored.error->code, ErrorCode::write_unknown);
@@ -205,10 +233,10 @@ TEST_F(AxisPair, a_drive_that_does_not_come_back_leaves_the_state_unknown) {
 TEST_F(AxisPair, when_the_second_drive_refuses_the_first_one_gets_its_old_value_back) {
   ready();
   const std::uint32_t before = feed(0);
-  drives.node[1]->sdo_faults().abort_on_write[{0x6092, 1}] = 0x06060000;
-  ASSERT_TRUE(bench.controller
+  drives_.node[1]->sdo_faults().abort_on_write[{0x6092, 1}] = 0x06060000;
+  ASSERT_TRUE(bench_.controller
                   ->start_write_parameters(
-                      {{"left_wheel_diameter", 0.1512}, {"right_wheel_diameter", 0.1497}}, bench.now)
+                      {{"left_wheel_diameter", 0.1512}, {"right_wheel_diameter", 0.1497}}, bench_.now)
                   .ok());
   const auto written = job();
   ASSERT_TRUE(written.error);
@@ -219,16 +247,16 @@ TEST_F(AxisPair, when_the_second_drive_refuses_the_first_one_gets_its_old_value_
 
 TEST_F(AxisPair, says_what_it_holds_and_who_they_are) {
   ready();
-  for (const Capability& one : bench.controller->capabilities()) {
+  for (const Capability& one : bench_.controller->capabilities()) {
     EXPECT_EQ(one.stored, one.quantity != "track_width") << one.quantity;
     EXPECT_EQ(one.writable, one.quantity != "track_width") << one.quantity;
   }
-  EXPECT_NE(bench.controller->identity()->name.find("(serial 100)"), std::string::npos);
-  EXPECT_NE(bench.controller->identity()->name.find("(serial 101)"), std::string::npos);
-  ASSERT_EQ(bench.controller->devices().size(), 2U);
-  EXPECT_EQ(bench.controller->devices()[0].serial, 100U);
-  EXPECT_EQ(bench.controller->devices()[1].serial, 101U);
-  EXPECT_FALSE(bench.controller->start_write_parameters({{"track_width", 0.4}}, bench.now).ok());
+  EXPECT_NE(bench_.controller->identity()->name.find("(serial 100)"), std::string::npos);
+  EXPECT_NE(bench_.controller->identity()->name.find("(serial 101)"), std::string::npos);
+  ASSERT_EQ(bench_.controller->devices().size(), 2U);
+  EXPECT_EQ(bench_.controller->devices()[0].serial, 100U);
+  EXPECT_EQ(bench_.controller->devices()[1].serial, 101U);
+  EXPECT_FALSE(bench_.controller->start_write_parameters({{"track_width", 0.4}}, bench_.now).ok());
 }
 
 }  // namespace

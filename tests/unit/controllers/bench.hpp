@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -50,6 +51,14 @@ class Bench {
   bool run_until(ControllerState wanted, double seconds = 12.0) {
     for (const double end = now + seconds; now < end && controller->state() != wanted;) turn();
     return controller->state() == wanted;
+  }
+  /// What the controller has to say now reaches the device, without another turn of the controller.
+  void flush() {
+    send();
+    for (int i = 0; i < 5; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));  // a kernel thread carries the bytes
+      exchange();
+    }
   }
   void drive(double left_rad_s, double right_rad_s, double seconds) {
     for (const double end = now + seconds; now < end - 1e-9;) {

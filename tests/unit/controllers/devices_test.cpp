@@ -121,6 +121,24 @@ TYPED_TEST(Devices, quick_stop_stops_at_once) {
   EXPECT_FALSE(bench.controller->command(1.0, 1.0, bench.now).ok());
 }
 
+// The stop guard sends what there is and may be the last to do so: nobody asks the controller again.
+TYPED_TEST(Devices, a_quick_stop_is_on_its_way_before_anything_else_happens) {
+  TypeParam rig;
+  Bench& bench = *rig.bench;
+  ASSERT_TRUE(bench.run_until(ControllerState::disabled));
+  bench.run(0.5);
+  bench.controller->enable(bench.now);
+  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  bench.drive(3.0, 3.0, 0.5);
+  rig.device.silent = true;  // an answer that is due gets lost
+  bench.drive(3.0, 3.0, 0.03);
+  ASSERT_NE(rig.device.wheels().rate[0], 0.0);
+  bench.controller->quick_stop(bench.now);
+  bench.flush();
+  EXPECT_EQ(rig.device.wheels().rate[0], 0.0);
+  EXPECT_EQ(rig.device.wheels().rate[1], 0.0);
+}
+
 TYPED_TEST(Devices, silence_in_motion_is_a_stop_and_the_device_is_found_again) {
   TypeParam rig;
   Bench& bench = *rig.bench;
@@ -221,6 +239,43 @@ TEST(RosArduino, accounts_for_every_byte) {
   test::expect_accounted(counters);
   EXPECT_EQ(counters.at("bad_line") + counters.at("unasked_line") + counters.at("no_answer"), 0U);
   EXPECT_NEAR(static_cast<double>(bench.ticks.size()), 50.0 * (bench.now - bench.ticks.front().t), 10.0);
+}
+
+// What one question in flight must not do to a stop, and a stop not to the questions.
+TEST(RosArduino, goes_on_counting_while_stops_are_repeated) {
+  sim::ArduinoBoard device;
+  SerialBench bench(shipped("ros_arduino"), device);
+  ASSERT_TRUE(bench.run_until(ControllerState::disabled)) << bench.story();
+  bench.controller->enable(bench.now);
+  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  bench.drive(3.0, 3.0, 0.5);
+  bench.ticks.clear();
+  for (int i = 0; i < 50; ++i) {
+    bench.controller->quick_stop(bench.now);
+    bench.run(0.01);
+  }
+  EXPECT_GE(bench.ticks.size(), 20U);
+  const Counters counters = bench.controller->counters();
+  test::expect_accounted(counters);
+  EXPECT_EQ(counters.at("bad_line") + counters.at("unasked_line") + counters.at("no_answer"), 0U);
+}
+
+TEST(RosArduino, an_answer_that_was_lost_before_that_of_a_stop_is_no_other_ones) {
+  auto controller = shipped("ros_arduino");
+  const auto tell = [&](const std::string& line, double t) {
+    controller->on_bytes({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()}, t);
+  };
+  controller->on_time(1.0);
+  ASSERT_EQ(controller->take_bytes().size(), 2U);  // "e", whose answer gets lost
+  controller->quick_stop(1.005);
+  ASSERT_EQ(controller->take_bytes().size(), 6U);
+  tell("OK\r\n", 1.010);
+  controller->on_time(1.020);
+  const auto bytes = controller->take_bytes();
+  ASSERT_GE(bytes.size(), 2U);
+  EXPECT_EQ(bytes[0], 'e') << "the next question waits for nothing";
+  EXPECT_EQ(controller->counters().at("no_answer"), 1U);
+  EXPECT_EQ(controller->counters().at("bad_line"), 0U);
 }
 
 }  // namespace

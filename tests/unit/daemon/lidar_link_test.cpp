@@ -266,6 +266,14 @@ TEST(LidarLinks, hokuyo_over_tcp_and_serial_shows_the_wall_where_and_when_it_was
   expect_wall(settled(serial.run(3.0)));
 }
 
+TEST(LidarLinks, what_does_not_print_in_a_name_is_replaced) {
+  sim::ScipDevice::Options options;
+  options.product = "SIM\xFF\x1B";
+  TcpBench bench(std::make_unique<sim::ScipDevice>(options), "hokuyo");
+  EXPECT_GT(bench.run(1.0).size(), 5U);
+  EXPECT_EQ(bench.link().identity(), "SIM?? firmware 1.0 serial H7");
+}
+
 TEST(LidarLinks, hokuyo_that_spins_up_is_asked_again) {
   sim::ScipDevice::Options options;
   options.ready_at = 3.0;

@@ -3,8 +3,11 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "daemon/routines/plans.hpp"
+#include "daemon/safety/cover.hpp"
 #include "daemon/safety/envelope.hpp"
 #include "daemon/safety/freshness.hpp"
 #include "daemon/safety/lease.hpp"
@@ -146,6 +149,90 @@ TEST(Obstacle, the_way_is_checked_before_the_first_step) {
   EXPECT_TRUE(occupied(cluster(1.4, 0.0), preview, {}, 0.3).has_value());
   EXPECT_FALSE(occupied(cluster(1.7, 0.0), preview, {}, 0.3).has_value());
   EXPECT_FALSE(occupied(cluster(0.5, 0.7), preview, {}, 0.3).has_value());
+}
+
+/// Beams every degree, from -half to half of `view`, that all end at the same range; 0: nowhere.
+Scan fan(double view, float range) {
+  Scan scan;
+  scan.range_max = 10.0;
+  scan.angle_min = -0.5 * view;
+  scan.angle_increment = std::numbers::pi / 180.0;
+  scan.ranges.assign(static_cast<std::size_t>(view / scan.angle_increment) + 1, range);
+  return scan;
+}
+
+BlindArea blind_of(const Scan& scan, const std::array<double, 3>& pose = {}) {
+  Cover cover;
+  cover.seen(scan, pose, {}, 1.0);
+  return cover.blind(1.0);
+}
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+TEST(Cover, what_stands_behind_a_lidar_of_270_degrees_is_hidden) {
+  const auto blind = blind_of(fan(0.75 * kTurn, 5.0F));
+  EXPECT_TRUE(blind.hides({-0.26, 0.0}));
+  EXPECT_FALSE(blind.hides({0.26, 0.0}));
+  EXPECT_FALSE(blind.hides({-0.26, 0.35}));
+  ASSERT_EQ(blind.sectors().size(), 1U);
+  EXPECT_NEAR(blind.sectors()[0].from, 0.375 * kTurn, 0.06);
+  EXPECT_NEAR(blind.sectors()[0].to, 0.625 * kTurn, 0.06);
+  EXPECT_NE(text_of(blind.sectors()).find("deg"), std::string::npos);
+}
+
+TEST(Cover, a_beam_without_an_echo_sees_and_one_that_ends_on_the_robot_does_not) {
+  EXPECT_TRUE(blind_of(fan(kTurn, 0.0F)).sectors().empty());
+  EXPECT_EQ(blind_of(fan(kTurn, 0.2F)).sectors().size(), 1U);
+  EXPECT_TRUE(blind_of(fan(kTurn, 0.2F)).hides({1.0, 0.0}));
+}
+
+TEST(Cover, one_lost_echo_in_the_shadow_of_the_robot_opens_no_view) {
+  Cover cover;
+  cover.seen(fan(kTurn, 0.2F), {}, {}, 1.0);
+  cover.seen(fan(kTurn, 0.0F), {}, {}, 1.1);
+  EXPECT_EQ(cover.blind(1.1).sectors().size(), 1U);
+}
+
+TEST(Cover, is_remembered_for_a_second_and_thin_posts_and_coarse_beams_are_no_gaps) {
+  Cover cover;
+  cover.seen(fan(kTurn, 5.0F), {}, {}, 1.0);
+  EXPECT_TRUE(cover.blind(1.9).sectors().empty());
+  EXPECT_EQ(cover.blind(2.1).sectors().size(), 1U);
+  Scan coarse = fan(kTurn, 5.0F);
+  coarse.angle_increment *= 3.0;
+  coarse.ranges.resize(120);
+  coarse.ranges[60] = 0.1F;
+  EXPECT_TRUE(blind_of(coarse).sectors().empty());
+}
+
+TEST(Cover, turns_with_the_mount_and_is_seen_from_where_the_lidar_is) {
+  const auto blind = blind_of(fan(0.5 * kTurn, 5.0F), {0.2, 0.0, std::numbers::pi / 2.0});
+  EXPECT_FALSE(blind.hides({0.2, 1.0}));
+  EXPECT_TRUE(blind.hides({0.2, -1.0}));
+  EXPECT_TRUE(blind.hides({0.3, -0.1}));
+}
+
+TEST(UnseenMoves, are_those_backward_and_on_the_spot_of_a_lidar_that_looks_ahead) {
+  const auto ahead = blind_of(fan(0.75 * kTurn, 5.0F));
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(unseen_moves(routines::straight_plan({}), ahead, {}), Names{"straight backward"});
+  EXPECT_EQ(unseen_moves(routines::spin_plan({}), ahead, {}), (Names{"spin left", "spin right"}));
+  EXPECT_EQ(unseen_moves({"", {routines::turn_to(1.0, 0.4)}, {}}, ahead, {}), Names{"turn to heading"});
+  EXPECT_EQ(unseen_moves({"", {routines::arc(0.5, 1.0, 0.3, false)}, {}}, ahead, {}),
+            Names{"left arc backward"});
+  const auto around = blind_of(fan(kTurn, 5.0F));
+  EXPECT_TRUE(unseen_moves(routines::straight_plan({}), around, {}).empty());
+  EXPECT_TRUE(unseen_moves(routines::spin_plan({}), around, {}).empty());
+}
+
+TEST(DistinctPoses, are_bounded_by_the_way_however_often_it_is_driven) {
+  routines::SpinOptions options;
+  const auto once = distinct_poses(routines::preview(routines::spin_plan(options)));
+  options.turns = 3.0;
+  options.repeat = 4;
+  const auto often = distinct_poses(routines::preview(routines::spin_plan(options)));
+  EXPECT_GT(once.size(), 60U);
+  EXPECT_LT(often.size(), once.size() + 10U);
 }
 
 TEST(PointsOf, turns_the_scan_into_the_base_frame_and_drops_no_readings) {

@@ -66,6 +66,21 @@ TEST(SolverJob, tells_its_progress_and_its_result_once) {
   std::filesystem::remove(path);
 }
 
+TEST(SolverJob, keeps_a_copy_and_tells_when_it_cannot) {
+  const auto path = recording();
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("kept_" + std::to_string(getpid()));
+  const auto may_end = std::make_shared<std::atomic<bool>>(true);
+  SolverJob job(slow(may_end), {path}, {}, folder / "calibrations" / "one.json");
+  ASSERT_TRUE(wait_for(job)->ok());
+  EXPECT_TRUE(std::filesystem::exists(folder / "calibrations" / "one.json"));
+  EXPECT_FALSE(job.not_kept());
+  SolverJob failing(slow(may_end), {path}, {}, path / "below_a_file" / "one.json");
+  ASSERT_TRUE(wait_for(failing)->ok());
+  EXPECT_TRUE(failing.not_kept());
+  std::filesystem::remove_all(folder);
+  std::filesystem::remove(path);
+}
+
 TEST(SolverJob, that_throws_or_finds_no_file_is_an_error) {
   Calibrator calibrator;
   calibrator.solve = [](const auto&, const auto&, const auto&) -> Calibration {

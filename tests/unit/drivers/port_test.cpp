@@ -137,6 +137,24 @@ TEST(Serial, a_device_that_takes_nothing_does_not_block) {
   EXPECT_TRUE(full);
 }
 
+// Half a command glued to the next one would be another command.
+TEST(Serial, sends_whole_lines_or_none_when_the_buffer_was_full) {
+  Pty pty;
+  auto port = open_serial(pty.path, 115200);
+  ASSERT_TRUE(port.ok());
+  const std::string line = std::string(4999, 'x') + "\r";  // more than a port takes at once: it is cut
+  const test::ByteString bytes(line.begin(), line.end());
+  std::size_t taken = 0;
+  while (taken < 10'000 && port.value()->write(bytes).ok()) ++taken;
+  ASSERT_LT(taken, 10'000U) << "never full";
+  std::string heard = pty.hear();
+  ASSERT_TRUE(port.value()->write(bytes).ok());
+  heard += pty.hear();
+  ++taken;
+  ASSERT_EQ(heard.size(), taken * line.size());
+  for (std::size_t i = 0; i < taken; ++i) ASSERT_EQ(heard.substr(i * line.size(), line.size()), line) << i;
+}
+
 /// Plays the adapter: answers each set-up command with the given text.
 void play_adapter(const Pty& pty, const std::string& to_rate, const std::string& to_open,
                   std::string& heard) {
