@@ -13,6 +13,7 @@
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/numbers.hpp"
 #include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration.hpp"
@@ -168,7 +169,7 @@ Result<ordered_json> parsed_values(const std::vector<std::string>& assignments) 
     const char* end = text.data() + text.size();
     const auto parsed = equals == std::string::npos ? std::from_chars_result{end, std::errc::invalid_argument}
                                                     : std::from_chars(text.data() + equals + 1, end, value);
-    if (parsed.ec != std::errc{} || parsed.ptr != end || equals == 0)
+    if (parsed.ec != std::errc{} || parsed.ptr != end || equals == 0 || !std::isfinite(value))
       return Error{ErrorCode::usage, "not NAME=VALUE with a value in m", text, "odomcalibctl params get"};
     values[text.substr(0, equals)] = value;
   }
@@ -211,13 +212,14 @@ void add_motions(CLI::App& app, Session& session) {
                return print_result(s, run_method(s, o, "Straight", {{"distance", o.distance}}));
              })
       ->add_option("--distance", options->distance, "m, negative: backwards")
+      ->check(finite())
       ->capture_default_str();
   auto* spin = add_action(
       app, session, options, "spin", "Turn on the spot, odometry against lidar",
       [](const Session& s, const Options& o) {
         return print_result(s, run_method(s, o, "Spin", {{"turns", o.turns}, {"direction", o.direction}}));
       });
-  spin->add_option("--turns", options->turns, "full turns")->capture_default_str();
+  spin->add_option("--turns", options->turns, "full turns")->check(finite())->capture_default_str();
   spin->add_option("--direction", options->direction)->check(CLI::IsMember({"ccw", "cw", "both"}));
   auto* all =
       add_action(app, session, options, "calibrate", "Straight, spin and pattern, then solve", calibrate);

@@ -152,6 +152,9 @@ void Service::Impl::serve_solver() {
   auto result = solver->take_result();
   if (!result) return;
   solver.reset();
+  if (*solve_cancelled)
+    return fail_pending({ErrorCode::cancelled, "stopped on request", "solve",
+                         "the recording is kept: odomcalibctl solve " + recording_path.string()});
   if (!*result) return fail_pending(result->error());
   const std::string text = to_json(result->value());
   telemetry.publisher.send("RESULT", messages::encode_json(clock.wall_us(), "odomcalib-calibration/1", text));

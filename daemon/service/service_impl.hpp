@@ -14,6 +14,8 @@
 #include "daemon/safety/lease.hpp"
 #include "daemon/safety/obstacle.hpp"
 #include "daemon/service/base_link.hpp"
+#include "daemon/service/call_parameters.hpp"
+#include "daemon/service/cancellable.hpp"
 #include "daemon/service/control_server.hpp"
 #include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/lidar_link.hpp"
@@ -67,10 +69,12 @@ struct Service::Impl {
   void forget(ClientId gone);
   void handle(const IncomingCall& incoming);
   void dispatch(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_monitor(const IncomingCall& incoming);
+  void call_stop(const IncomingCall& incoming);
   void call_straight(const IncomingCall& incoming, const ordered_json& parameters);
   void call_spin(const IncomingCall& incoming, const ordered_json& parameters);
   void call_calibrate(const IncomingCall& incoming, const ordered_json& parameters);
-  Result<routines::Plan> calibration_plan(const ordered_json& options) const;
+  Result<routines::Plan> calibration_plan(CallParameters& options) const;
   void call_record(const IncomingCall& incoming, const ordered_json& parameters);
   void call_apply(const IncomingCall& incoming, const ordered_json& parameters);
   void call_set(const IncomingCall& incoming, const ordered_json& parameters);
@@ -78,6 +82,8 @@ struct Service::Impl {
   void call_history(const IncomingCall& incoming, const ordered_json& parameters);
   void answer(ClientId client, const ordered_json& parameters);
   void refuse(ClientId client, const Error& error);
+  /// A member of the call is missing or of a wrong type.
+  void refuse_parameter(ClientId client, const std::string& name);
 
   // service_check.cpp
   void call_check(const IncomingCall& incoming, const ordered_json& parameters);
@@ -153,6 +159,7 @@ struct Service::Impl {
   std::optional<PendingCall> pending;
   std::optional<MotionRun> run;
   std::optional<SolverJob> solver;
+  CancelFlag solve_cancelled;  ///< of the job above
   std::filesystem::path recording_path;
   std::set<ClientId> monitors;
   std::deque<ordered_json> events;  ///< newest last, bounded

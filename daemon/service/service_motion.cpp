@@ -190,7 +190,8 @@ void Service::Impl::recording_written(const Result<std::filesystem::path>& path,
   auto recordings = pending->earlier;
   recordings.push_back(path.value());
   const auto kept = config.state_dir / "calibrations" / (path.value().stem().string() + ".json");
-  solver.emplace(calibrator, std::move(recordings), pending->effects, kept);
+  solve_cancelled = std::make_shared<std::atomic<bool>>(false);
+  solver.emplace(cancellable(calibrator, solve_cancelled), std::move(recordings), pending->effects, kept);
 }
 
 }  // namespace odomcalib
