@@ -14,6 +14,7 @@
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/numbers.hpp"
+#include "daemon/cli/outputs.hpp"
 #include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration.hpp"
@@ -121,21 +122,35 @@ Solved second_drive(const Session& session, const Options& options, Solved first
   return first;
 }
 
+// The drive must not be lost with the file: the result was printed, and the daemon has a copy.
+int report_lost(Error error, const Solved& solved) {
+  const std::filesystem::path recording = solved.body.value("recording", "");
+  const auto copy =
+      recording.parent_path().parent_path() / "calibrations" / recording.stem().replace_extension(".json");
+  error.remedy =
+      fmt::format("the result above was not lost: odomcalibd keeps it in {}, and the recording is {}",
+                  copy.string(), recording.string());
+  return report_error(error, JsonMode::off);
+}
+
 int calibrate(const Session& session, const Options& options) {
+  // After two minutes of driving it would be too late to find out.
+  if (const auto files = check_outputs({{"--out", options.file}}, {}); !files)
+    return report_error(files.error(), session.json);
   const ordered_json wanted = {{"quick", options.quick}};
   if (options.dry_run)
     return print_result(session, run_method(session, options, "Calibrate", {{"options", wanted}}));
   auto solved = drive_and_solve(session, options, wanted);
   if (!solved) return report_error(solved.error(), session.json);
-  const Calibration calibration = second_drive(session, options, std::move(solved).value()).calibration;
-  if (!options.file.empty())
-    if (auto written = write_calibration(calibration, options.file); !written)
-      return report_error(written.error(), session.json);
+  const Solved best = second_drive(session, options, std::move(solved).value());
   if (session.json != JsonMode::off)
-    print_json(to_json(calibration), session.json);
+    print_json(to_json(best.calibration), session.json);
   else
-    std::cout << to_text(describe(calibration), session.legend);
-  return calibration.verdict == Verdict::refused ? kRefused : kDone;
+    std::cout << to_text(describe(best.calibration), session.legend);
+  if (!options.file.empty())
+    if (auto written = write_output(options.file, to_json(best.calibration)); !written)
+      return report_lost(written.error(), best);
+  return best.calibration.verdict == Verdict::refused ? kRefused : kDone;
 }
 
 int apply(const Session& session, const Options& options) {
