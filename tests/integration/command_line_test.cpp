@@ -295,6 +295,27 @@ TEST_F(CommandLine, an_interrupted_solve_is_cancelled) {
   EXPECT_THAT(read("said"), HasSubstr("\"cancelled\""));
 }
 
+class Completion : public CommandLine {
+ protected:
+  /// What bash offers behind these words, the last of which is being typed.
+  std::string offered(const std::string& words) {
+    write("complete.sh", R"(source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
+_odomcalibctl; printf '%s\n' "${COMPREPLY[@]}")");
+    return run("bash", "complete.sh " ODOMCALIB_COMPLETION " " ODOMCALIB_CTL " " + words).out;
+  }
+};
+
+TEST_F(Completion, knows_the_verbs_and_options_that_the_program_knows) {
+  EXPECT_EQ(offered("sol"), "solve\n");
+  EXPECT_THAT(offered("''"),
+              AllOf(HasSubstr("calibrate\n"), HasSubstr("--json\n"), HasSubstr("--version\n")));
+  EXPECT_EQ(offered("solve --rep"), "--report\n");
+  EXPECT_EQ(offered("graph opt"), "optimize\n");
+  EXPECT_EQ(offered("graph optimize --json in.g2o --sv"), "--svg\n");
+}
+
+TEST_F(Completion, leaves_files_to_the_shell) { EXPECT_EQ(offered("graph optimize in"), "\n"); }
+
 class DaemonUsage : public CommandLine {
  protected:
   Outcome daemon(const std::string& controller, const std::string& lidar) {
