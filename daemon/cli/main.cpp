@@ -1,6 +1,7 @@
 // odomcalibctl: parses the command line and runs one verb.
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <new>
 #include <string_view>
 #include <vector>
 
@@ -83,6 +84,10 @@ int main(int argc, char** argv) {
   int status = odomcalib::cli::kFailure;
   try {
     status = run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    status = odomcalib::cli::report_error(
+        {odomcalib::ErrorCode::io, "out of memory", "odomcalibctl", "give it less to read, or more memory"},
+        json);
   } catch (const std::exception& error) {
     status = odomcalib::cli::report_error({odomcalib::ErrorCode::io, error.what(), "odomcalibctl", ""}, json);
   }

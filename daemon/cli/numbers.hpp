@@ -1,11 +1,8 @@
 // Numbers on the command line.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <limits>
-
-namespace CLI {
-class Validator;
-}
 
 namespace odomcalib::cli {
 

@@ -1,14 +1,19 @@
 // The programs as a shell sees them: files, exit statuses, both outputs. Nothing here needs a daemon.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <atomic>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <thread>
 
+#include "daemon/service/control_server.hpp"
 #include "proto/calibration.hpp"
 #include "proto/file_bytes.hpp"
 #include "tests/integration/processes.hpp"
@@ -293,6 +298,57 @@ TEST_F(CommandLine, an_interrupted_solve_is_cancelled) {
     EXPECT_EQ(solve.wait(5.0), 4);
   }
   EXPECT_THAT(read("said"), HasSubstr("\"cancelled\""));
+}
+
+/// Gives the lease to everybody, and its calibration to whoever wants to drive.
+class CannedDaemon {
+ public:
+  CannedDaemon(const fs::path& socket, const Calibration& calibration, std::function<void()> while_driving)
+      : server_(std::move(ControlServer::create(socket, "").value())),
+        calibration_(json::parse(to_json(calibration))),
+        while_driving_(std::move(while_driving)),
+        thread_([this] { serve(); }) {}
+  ~CannedDaemon() {
+    over_ = true;
+    thread_.join();
+  }
+  CannedDaemon(const CannedDaemon&) = delete;
+  CannedDaemon& operator=(const CannedDaemon&) = delete;
+
+ private:
+  void serve() {
+    while (!over_) {
+      std::vector<pollfd> polled;
+      server_.watch(polled);
+      (void)poll(polled.data(), polled.size(), 5);
+      server_.step();
+      for (const auto& incoming : server_.take_calls())
+        server_.reply(incoming.client, control::encode_reply(answer(incoming.call.name()).dump()));
+    }
+  }
+  json answer(const std::string& method) {
+    if (method == "Acquire") return {{"lease", "mine"}, {"ttl_ms", 120}};
+    if (method != "Calibrate") return {{"ttl_ms", 120}};
+    while_driving_();
+    return {{"result", {{"recording", "/state/recordings/drive.lcmlog"}, {"calibration", calibration_}}}};
+  }
+
+  ControlServer server_;
+  json calibration_;
+  std::function<void()> while_driving_;
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+TEST_F(CommandLine, a_result_that_cannot_be_written_after_the_drive_is_printed_and_the_copy_named) {
+  fs::create_directory(folder_ / "results");
+  const CannedDaemon daemon(folder_ / "control", calibration(),
+                            [this] { fs::remove_all(folder_ / "results"); });
+  const auto got = ctl("--socket control calibrate --yes --out results/cal.json");
+  EXPECT_EQ(got.status, 1) << got.out;
+  EXPECT_THAT(got.out, AllOf(HasSubstr("ACCEPTED"), HasSubstr("400.000")));
+  EXPECT_THAT(got.err, AllOf(HasSubstr("/state/calibrations/drive.json"),
+                             HasSubstr("/state/recordings/drive.lcmlog")));
 }
 
 class Completion : public CommandLine {
