@@ -110,6 +110,7 @@ template <typename Choice>
 void add_choice(CLI::App& verb, const std::string& option, Choice& chosen,
                 const std::map<std::string, Choice>& choices, const std::string& help) {
   std::vector<std::string> names;
+  names.reserve(choices.size());
   for (const auto& [name, choice] : choices) names.push_back(name);
   verb.add_option_function<std::string>(
           option, [&chosen, &choices](const std::string& name) { chosen = choices.at(name); }, help)

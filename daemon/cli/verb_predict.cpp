@@ -37,7 +37,8 @@ void warn_of(const Calibration& calibration, const std::string& where) {
   if (calibration.verdict == Verdict::refused && where != "nominal")
     warn(refusal_of(calibration, where).text() + "; its values are used all the same");
   for (const std::string& name : calib::unknown_effects(calibration))
-    warn(where + ": this program does not know the effect \"" + name + "\"; odometry goes on without it");
+    warn(fmt::format(R"({}: this program does not know the effect "{}"; odometry goes on without it)", where,
+                     name));
 }
 
 // A calibration of lengths near zero, or counts without end, may still lead nowhere.
