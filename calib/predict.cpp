@@ -118,6 +118,13 @@ std::vector<Placement> effect_placements(const Calibration& calibration) {
   return placements;
 }
 
+std::vector<std::string> unknown_effects(const Calibration& calibration) {
+  std::vector<std::string> names;
+  for (const EffectResult& result : calibration.effects)
+    if (!effect_of(result) && !find_lidar_effect(result.name)) names.push_back(result.name);
+  return names;
+}
+
 Calibration nominal_calibration(const RobotDescription& robot) {
   Calibration calibration;
   calibration.robot = robot;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "proto/calibration.hpp"
@@ -24,6 +25,10 @@ struct Placement {
 };
 /// Every value of every effect and curve of the calibration, in the order of the file.
 std::vector<Placement> effect_placements(const Calibration& calibration);
+
+/// Names of effects in the file that this program cannot compensate, because it does not know them or not
+/// with these parameters: odometry goes on without them.
+std::vector<std::string> unknown_effects(const Calibration& calibration);
 
 /// A calibration that holds the nominal values and no effects: dead reckoning as the robot does it now.
 Calibration nominal_calibration(const RobotDescription& robot);

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "calib/effect_names.hpp"
 #include "calib/effects/catalogue.hpp"
 #include "calib/estimators/path_fit.hpp"
 #include "calib/findings.hpp"
@@ -164,8 +165,8 @@ class Solver {
     return ratio < kClearly;
   }
 
-  /// "auto" and "none" stand alone; otherwise every name must be known.
   std::optional<Error> choose_effects() {
+    if (auto wrong = wrong_effects(options_.effects)) return wrong;
     automatic_ = options_.effects == std::vector<std::string>{"auto"};
     if (automatic_ || options_.effects == std::vector<std::string>{"none"}) return std::nullopt;
     for (const std::string& name : options_.effects) {
@@ -174,9 +175,6 @@ class Solver {
         continue;
       }
       const EffectList found = find_effects(name);
-      if (found.empty())
-        return Error{ErrorCode::usage, "there is no effect named \"" + name + "\"", "--effects",
-                     "see odomcalibctl(1)"};
       effects_.insert(effects_.end(), found.begin(), found.end());
     }
     return std::nullopt;

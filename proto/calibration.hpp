@@ -101,6 +101,10 @@ struct Calibration {
   }
 };
 
+/// Path of the first parameter, of the robot or of an effect, whose value is no finite number (null in the
+/// file), e.g. "parameters.track_width": with it nothing may be computed or written elsewhere.
+std::optional<std::string> non_finite_value(const Calibration& calibration);
+
 /// JSON text with two-space indent and a fixed member order (same input, same bytes). Non-finite numbers
 /// become null.
 std::string to_json(const Calibration& calibration);

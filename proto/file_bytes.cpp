@@ -182,4 +182,60 @@ Result<void> replace_file(const std::filesystem::path& path, std::string_view by
   return sync_folder(path);
 }
 
+std::filesystem::path behind_links(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as the kernel
+  for (int hops = 0; hops < kMostLinks; ++hops) {
+    std::error_code no_link;
+    const auto target = std::filesystem::read_symlink(path, no_link);
+    if (no_link) break;
+    path = path.parent_path() / target;
+  }
+  return path;
+}
+
+namespace {
+
+enum class OutputKind { replaced, written_to };
+
+Result<OutputKind> kind_of_output(const std::filesystem::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) {
+    if (errno == ENOENT) return OutputKind::replaced;
+    return io_error("cannot write", path, "check the name and the permissions");
+  }
+  if (S_ISREG(info.st_mode)) return OutputKind::replaced;
+  if (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode) || S_ISFIFO(info.st_mode)) return OutputKind::written_to;
+  return Error{ErrorCode::io, S_ISDIR(info.st_mode) ? "is a folder" : "is no regular file", path.string(),
+               "name a file"};
+}
+
+Result<void> write_into(const std::filesystem::path& path, std::string_view bytes) {
+  const Descriptor fd(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+  if (fd.get() < 0) return io_error("cannot open", path, "check the permissions");
+  if (!write_all(fd.get(), bytes)) return io_error("cannot write", path);
+  return {};
+}
+
+}  // namespace
+
+Result<void> write_output(const std::filesystem::path& path, std::string_view bytes) {
+  const auto kind = kind_of_output(path);
+  if (!kind) return kind.error();
+  if (kind.value() == OutputKind::written_to) return write_into(path, bytes);
+  return replace_file(behind_links(path), bytes);
+}
+
+Result<void> check_output(const std::filesystem::path& path) {
+  const auto kind = kind_of_output(path);
+  if (!kind) return kind.error();
+  if (kind.value() == OutputKind::written_to) {
+    if (::access(path.c_str(), W_OK) == 0) return {};
+    return io_error("cannot write", path, "check the permissions");
+  }
+  const auto file = behind_links(path);
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  if (file.has_filename() && ::access(folder.c_str(), W_OK | X_OK) == 0) return {};
+  return io_error("cannot write into its folder", path, "check the folder and its permissions");
+}
+
 }  // namespace odomcalib

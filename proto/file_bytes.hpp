@@ -36,7 +36,18 @@ Result<std::string> gzip(std::string_view bytes);
 Result<void> sync_folder(const std::filesystem::path& path);
 
 /// Writes to a temporary file beside `path`, syncs, renames and syncs the folder: `path` holds either the old
-/// or the new content, never a part. Error: io.
+/// or the new content, never a part. A link of that name is replaced, not followed: for a program's own
+/// folders. Error: io.
 Result<void> replace_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// The path behind a chain of symbolic links, whether there is something at its end or not.
+std::filesystem::path behind_links(std::filesystem::path path);
+
+/// Writes where a user wants it: the file behind a link is replaced as above and the link stays; a device or
+/// a FIFO takes the bytes; anything else that is no regular file is refused. Error: io.
+Result<void> write_output(const std::filesystem::path& path, std::string_view bytes);
+
+/// Whether write_output may write there, as far as can be told before it does: nothing is changed. Error: io.
+Result<void> check_output(const std::filesystem::path& path);
 
 }  // namespace odomcalib

@@ -13,10 +13,13 @@
 namespace odomcalib::cli {
 namespace {
 
+/// Zero is a length that nobody stated.
+std::optional<double> stated(double length) { return length > 0.0 ? std::optional(length) : std::nullopt; }
+
 std::optional<double> nominal_of(const RobotDescription& robot, const std::string& name) {
-  if (name == "left_wheel_diameter") return robot.left_wheel_diameter;
-  if (name == "right_wheel_diameter") return robot.right_wheel_diameter;
-  if (name == "track_width") return robot.track_width;
+  if (name == "left_wheel_diameter") return stated(robot.left_wheel_diameter);
+  if (name == "right_wheel_diameter") return stated(robot.right_wheel_diameter);
+  if (name == "track_width") return stated(robot.track_width);
   if (!robot.lidar_pose) return std::nullopt;
   if (name == "lidar_x") return (*robot.lidar_pose)[0];
   if (name == "lidar_y") return (*robot.lidar_pose)[1];

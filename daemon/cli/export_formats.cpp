@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 
+#include "daemon/cli/usable_calibration.hpp"
 #include "proto/report_data.hpp"
 
 namespace odomcalib::cli {
@@ -85,20 +86,6 @@ std::string traces_csv(const ReportData& data) {
   return out;
 }
 
-struct Dimensions {
-  double left, right, track;
-  double mean() const { return 0.5 * (left + right); }
-};
-
-Result<Dimensions> dimensions_of(const Calibration& calibration) {
-  const auto left = calibration.parameter("left_wheel_diameter");
-  const auto right = calibration.parameter("right_wheel_diameter");
-  const auto track = calibration.parameter("track_width");
-  if (left && right && track && *left + *right > 0.0) return Dimensions{*left, *right, *track};
-  return Error{ErrorCode::empty, "no wheel diameters and track width", "calibration file",
-               "it was refused; see odomcalibctl report"};
-}
-
 /// As `--robot` reads it.
 std::string robot_toml(const Calibration& calibration, const Dimensions& d) {
   std::string out = fmt::format("left_wheel_diameter = {}\nright_wheel_diameter = {}\ntrack_width = {}\n",
@@ -130,7 +117,10 @@ const std::vector<std::string>& export_formats() {
   return formats;
 }
 
-Result<std::string> exported(const Calibration& calibration, const std::string& what) {
+bool is_configuration(const std::string& what) { return what == "toml" || what == "diff_drive"; }
+
+Result<std::string> exported(const Calibration& calibration, const std::string& what,
+                             const std::string& where) {
   if (what == "parameters") return parameters_csv(calibration);
   if (what == "effects") return effects_csv(calibration);
   const ReportData data = report_data_of(calibration);
@@ -138,7 +128,9 @@ Result<std::string> exported(const Calibration& calibration, const std::string& 
   if (what == "residual") return residual_csv(data);
   if (what == "paths") return paths_csv(data);
   if (what == "traces") return traces_csv(data);
-  const auto dimensions = dimensions_of(calibration);
+  // A robot would be driven by these.
+  if (calibration.verdict == Verdict::refused) return refusal_of(calibration, where);
+  const auto dimensions = dimensions_of(calibration, where);
   if (!dimensions) return dimensions.error();
   if (what == "toml") return robot_toml(calibration, dimensions.value());
   if (what == "diff_drive") return diff_drive_yaml(dimensions.value());

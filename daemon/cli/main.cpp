@@ -1,10 +1,14 @@
 // odomcalibctl: parses the command line and runs one verb.
 #include <CLI/CLI.hpp>
 #include <exception>
-#include <iostream>
+#include <new>
+#include <string_view>
+#include <vector>
 
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/interrupts.hpp"
 #include "daemon/cli/verbs.hpp"
+#include "odomcalib_version.hpp"
 
 namespace {
 
@@ -16,6 +20,7 @@ void add_common_options(CLI::App& app, odomcalib::cli::Session& session, std::st
   app.add_flag("!--no-legend", session.legend, "tables without their head line");
   app.add_flag_callback(
       "--no-pager", [] {}, "accepted for scripts; no pager is ever started");
+  app.set_version_flag("--version", odomcalib::kVersion);
   app.add_option("--socket", session.socket, "control socket of the daemon")->capture_default_str();
   app.footer(odomcalib::cli::exit_status_help());
 }
@@ -23,6 +28,24 @@ void add_common_options(CLI::App& app, odomcalib::cli::Session& session, std::st
 JsonMode mode_of(const std::string& text) {
   if (text == "short") return JsonMode::shortened;
   return text == "pretty" ? JsonMode::pretty : JsonMode::off;
+}
+
+// For what happens before the command line is parsed, or when it cannot be.
+JsonMode asked_mode(int argc, char** argv) {
+  const std::vector<std::string_view> words(argv, argv + argc);
+  constexpr std::string_view kOption = "--json";
+  for (const std::string_view word : words) {
+    if (word == kOption) return JsonMode::pretty;
+    if (word.starts_with("--json=")) return mode_of(std::string(word.substr(kOption.size() + 1)));
+  }
+  return JsonMode::off;
+}
+
+int refuse(const CLI::App& app, const CLI::ParseError& error, JsonMode json) {
+  if (app.exit(error) == 0) return odomcalib::cli::kDone;
+  odomcalib::cli::print_error_json(
+      {odomcalib::ErrorCode::usage, error.what(), "command line", "odomcalibctl --help"}, json);
+  return odomcalib::cli::kUsage;
 }
 
 int run(int argc, char** argv) {
@@ -46,7 +69,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? odomcalib::cli::kDone : odomcalib::cli::kUsage;
+    return refuse(app, error, asked_mode(argc, argv));
   }
   session.json = mode_of(json);
   if (session.run) return session.run();
@@ -56,10 +79,17 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const JsonMode json = asked_mode(argc, argv);
+  odomcalib::cli::end_when_interrupted(json);
+  int status = odomcalib::cli::kFailure;
   try {
-    return run(argc, argv);
+    status = run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    status = odomcalib::cli::report_error(
+        {odomcalib::ErrorCode::io, "out of memory", "odomcalibctl", "give it less to read, or more memory"},
+        json);
   } catch (const std::exception& error) {
-    std::cerr << "odomcalibctl: " << error.what() << '\n';
-    return odomcalib::cli::kFailure;
+    status = odomcalib::cli::report_error({odomcalib::ErrorCode::io, error.what(), "odomcalibctl", ""}, json);
   }
+  return odomcalib::cli::after_flush(status);
 }

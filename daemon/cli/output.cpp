@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "daemon/cli/exit_codes.hpp"
 
@@ -13,25 +14,34 @@ namespace odomcalib::cli {
 
 void print_json(const std::string& text, JsonMode mode) {
   const auto value = nlohmann::ordered_json::parse(text, nullptr, false);
-  if (value.is_discarded()) {
-    std::cout << text << '\n';
-    return;
-  }
+  if (value.is_discarded()) throw std::runtime_error("the result is no JSON: " + text.substr(0, 80));
   const int indent = mode == JsonMode::pretty ? 2 : -1;
   std::cout << value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }
 
 int report_error(const Error& error, JsonMode mode) {
   std::cerr << "odomcalibctl: " << error.text() << '\n';
-  if (mode != JsonMode::off) {
-    const nlohmann::ordered_json body = {{"error",
-                                          {{"code", code_name(error.code)},
-                                           {"what", error.what},
-                                           {"where", error.where},
-                                           {"remedy", error.remedy}}}};
-    print_json(body.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), mode);
-  }
+  print_error_json(error, mode);
   return exit_status(error.code);
+}
+
+void print_error_json(const Error& error, JsonMode mode) {
+  if (mode == JsonMode::off) return;
+  const nlohmann::ordered_json body = {{"error",
+                                        {{"code", code_name(error.code)},
+                                         {"what", error.what},
+                                         {"where", error.where},
+                                         {"remedy", error.remedy}}}};
+  print_json(body.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), mode);
+}
+
+void warn(const std::string& text) { std::cerr << "odomcalibctl: warning: " << text << '\n'; }
+
+int after_flush(int status) {
+  std::cout.flush();
+  if (std::cout) return status;
+  std::cerr << "odomcalibctl: standard output: cannot write; the result is incomplete or lost\n";
+  return status == kDone ? static_cast<int>(kFailure) : status;
 }
 
 ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}

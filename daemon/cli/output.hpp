@@ -9,12 +9,23 @@ namespace odomcalib::cli {
 
 enum class JsonMode { off, pretty, shortened };
 
-/// Prints JSON text (any layout) in the wanted layout; members keep their order.
+/// Prints JSON text (any layout) in the wanted layout; members keep their order. Throws std::runtime_error
+/// on other text: what is printed here is JSON, or nothing.
 void print_json(const std::string& text, JsonMode mode);
 
 /// One line for people on standard error, with --json also an object {"error":{...}} on standard output.
 /// @return the exit status that belongs to the error
 int report_error(const Error& error, JsonMode mode);
+
+/// The object alone, for errors that people were told of already.
+void print_error_json(const Error& error, JsonMode mode);
+
+/// One line on standard error; the verb goes on.
+void warn(const std::string& text);
+
+/// What was printed must have arrived (a full disk, a closed pipe). Call once, at the very end.
+/// @return `status`, or failure where it would have been success
+int after_flush(int status);
 
 /// A line that replaces itself on a terminal; silent where standard error is none.
 class ProgressLine {

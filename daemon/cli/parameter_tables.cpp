@@ -44,6 +44,15 @@ std::string change_of(const ordered_json& entry, const char* name) {
   return side("before") + " -> " + side("after");
 }
 
+// What was written, or would be, in place of what.
+Section change_section(const ordered_json& result) {
+  Section section{"", {}, {{"", "old -> new, mm"}, {}}};
+  const auto after = result.value("after", ordered_json::object());
+  for (const char* name : kQuantities)
+    if (after.contains(name)) section.table.rows.push_back({readable(name), change_of(result, name)});
+  return section;
+}
+
 }  // namespace
 
 Document describe_parameters(const ordered_json& parameters) {
@@ -62,10 +71,13 @@ Document describe_history(const ordered_json& entries) {
 }
 
 Document describe_write_back(const ordered_json& result) {
+  const bool dry = result.value("outcome", "") == "dry_run";
   std::string steps;
   for (const auto& step : result.value("steps", ordered_json::array()))
     steps += (steps.empty() ? "" : ", ") + readable(step.is_string() ? step.get<std::string>() : step.dump());
-  Document document{readable(result.value("outcome", "")), {{"", {steps}, {}}}};
+  if (dry) steps = "would be written:";
+  Document document{dry ? "dry run, nothing was written" : readable(result.value("outcome", "")),
+                    {{"", {steps}, {}}, change_section(result)}};
   document.sections.push_back(parameter_section(result.value("parameters", ordered_json::array())));
   return document;
 }

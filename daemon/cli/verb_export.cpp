@@ -2,9 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/export_formats.hpp"
+#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/usable_calibration.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/file_bytes.hpp"
 
@@ -15,16 +18,31 @@ struct Options {
   std::string calibration, what = "parameters", out;
 };
 
+// The text of another program's format is one value of the JSON object.
+void print(const std::string& what, const std::string& text, const Session& session) {
+  if (session.json == JsonMode::off)
+    std::cout << text;
+  else
+    print_json(nlohmann::ordered_json{{"what", what}, {"text", text}}.dump(), session.json);
+}
+
 int export_calibration(const Options& options, const Session& session) {
-  const auto calibration = read_calibration(options.calibration);
+  if (const auto files = check_outputs({{"--out", options.out}}, {{"the calibration", options.calibration}});
+      !files)
+    return report_error(files.error(), session.json);
+  const bool configuration = is_configuration(options.what);
+  const auto calibration =
+      configuration ? read_finite_calibration(options.calibration) : read_calibration(options.calibration);
   if (!calibration) return report_error(calibration.error(), session.json);
-  const auto text = exported(calibration.value(), options.what);
+  const auto text = exported(calibration.value(), options.what, options.calibration);
   if (!text) return report_error(text.error(), session.json);
+  if (calibration.value().verdict == Verdict::refused)
+    warn(refusal_of(calibration.value(), options.calibration).text());
   if (options.out.empty()) {
-    std::cout << text.value();
+    print(options.what, text.value(), session);
     return kDone;
   }
-  if (auto written = replace_file(options.out, text.value()); !written)
+  if (auto written = write_output(options.out, text.value()); !written)
     return report_error(written.error(), session.json);
   return kDone;
 }

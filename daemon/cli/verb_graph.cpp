@@ -1,6 +1,7 @@
 // Pose graphs: optimise one, tell what it holds, or make one of a recording.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +9,8 @@
 #include "daemon/cli/graph_map.hpp"
 #include "daemon/cli/graph_picture.hpp"
 #include "daemon/cli/graph_run.hpp"
+#include "daemon/cli/numbers.hpp"
+#include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/file_bytes.hpp"
@@ -41,12 +44,16 @@ void print(const Session& session, const Described&... described) {
 
 Result<void> write_results(const Options& options, const GraphRun& run) {
   if (!options.out.empty())
-    if (auto written = replace_file(options.out, to_g2o(run.after)); !written) return written;
-  if (!options.picture.empty()) return replace_file(options.picture, graph_picture(run.before, run.after));
+    if (auto written = write_output(options.out, to_g2o(run.after)); !written) return written;
+  if (!options.picture.empty()) return write_output(options.picture, graph_picture(run.before, run.after));
   return {};
 }
 
 int optimize(const Options& options, const Session& session) {
+  if (const auto files = check_outputs({{"--out", options.out}, {"--svg", options.picture}},
+                                       named("the graph", options.files));
+      !files)
+    return report_error(files.error(), session.json);
   auto graph = read_files(options.files);
   if (!graph) return report_error(graph.error(), session.json);
   const GraphRun run = run_graph(std::move(graph).value(), options.solver);
@@ -77,13 +84,17 @@ int tell(const Options& options, const Session& session) {
 
 Result<void> write_results(const BuildOptions& options, const calib::RecordingMap& map) {
   if (!options.out.empty())
-    if (auto written = replace_file(options.out, to_g2o(map.made.graph)); !written) return written;
+    if (auto written = write_output(options.out, to_g2o(map.made.graph)); !written) return written;
   if (options.picture.empty()) return {};
-  return replace_file(options.picture, graph_picture(map.by_odometry, map.made.graph,
+  return write_output(options.picture, graph_picture(map.by_odometry, map.made.graph,
                                                      {map.occupied, map.cell, map.last_scan}));
 }
 
 int build(const BuildOptions& options, const Session& session) {
+  if (const auto files = check_outputs({{"--out", options.out}, {"--svg", options.picture}},
+                                       {{"the recording", options.recording}, {"--robot", options.robot}});
+      !files)
+    return report_error(files.error(), session.json);
   const auto recordings = read_recordings({options.recording}, options.robot);
   if (!recordings) return report_error(recordings.error(), session.json);
   const auto map = calib::map_recording(recordings.value().front(), options.graph);
@@ -94,17 +105,26 @@ int build(const BuildOptions& options, const Session& session) {
   return kDone;
 }
 
+/// One of the names, and no other: CLI::CheckedTransformer takes and shows the numbers behind them too.
+template <typename Choice>
+void add_choice(CLI::App& verb, const std::string& option, Choice& chosen,
+                const std::map<std::string, Choice>& choices, const std::string& help) {
+  std::vector<std::string> names;
+  names.reserve(choices.size());
+  for (const auto& [name, choice] : choices) names.push_back(name);
+  verb.add_option_function<std::string>(
+          option, [&chosen, &choices](const std::string& name) { chosen = choices.at(name); }, help)
+      ->check(CLI::IsMember(names));
+}
+
 void add_optimize(CLI::App& parent, Session& session) {
   auto* verb = parent.add_subcommand("optimize", "Move the vertices to where they agree best with the edges");
   auto options = std::make_shared<Options>();
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
   verb->add_option("--out", options->out, "g2o file to write");
   verb->add_option("--svg", options->picture, "picture to write: trajectory before and after, loops");
-  verb->add_option("--start", options->solver.start,
-                   "first guess to try first: auto, file, odometry, tree, rotations")
-      ->transform(CLI::CheckedTransformer(graph_starts()));
-  verb->add_option("--method", options->solver.method, "auto, gauss-newton, levenberg-marquardt")
-      ->transform(CLI::CheckedTransformer(graph_methods()));
+  add_choice(*verb, "--start", options->solver.start, graph_starts(), "first guess to try first");
+  add_choice(*verb, "--method", options->solver.method, graph_methods(), "how steps are taken");
   verb->add_option("--iterations", options->solver.max_iterations, "at most so many from one first guess")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
@@ -128,10 +148,10 @@ void add_build(CLI::App& parent, Session& session) {
   verb->add_option("--svg", options->picture, "picture to write: map, trajectory before and after, loops");
   verb->add_option("--robot", options->robot, "nominal values (TOML) instead of those of the recording");
   verb->add_option("--distance", options->graph.spacing.distance, "m of travel from keyframe to keyframe")
-      ->check(CLI::Range(0.01, 100.0))
+      ->check(finite(0.01, 100.0))
       ->capture_default_str();
   verb->add_option("--rotation", options->graph.spacing.rotation, "rad turned from keyframe to keyframe")
-      ->check(CLI::Range(0.01, 6.0))
+      ->check(finite(0.01, 6.0))
       ->capture_default_str();
   verb->callback(
       [&session, options] { session.run = [&session, options] { return build(*options, session); }; });

@@ -3,14 +3,15 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "calib/match.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/verbs.hpp"
+#include "proto/file_bytes.hpp"
 #include "proto/recording.hpp"
 
 namespace odomcalib::cli {
@@ -93,9 +94,11 @@ ordered_json match_pair(const ordered_json& pair) {
 }
 
 int match_file(const std::string& path, const Session& session) {
-  std::ifstream file(path);
-  if (!file)
-    return report_error({ErrorCode::io, "cannot open", path, "check the name and the rights"}, session.json);
+  const auto bytes = read_file_bytes(path);
+  if (!bytes) return report_error(bytes.error(), session.json);
+  const Unpacked text = is_gzip(bytes.value()) ? gunzip(bytes.value()) : Unpacked{bytes.value(), true, ""};
+  if (!text.whole) warn(path + ": " + text.problem);
+  std::istringstream file(text.bytes);
   std::size_t pairs = 0;
   for (std::string line; std::getline(file, line);) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;

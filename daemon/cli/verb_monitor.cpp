@@ -12,6 +12,7 @@
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/numbers.hpp"
 #include "daemon/cli/verbs.hpp"
 
 namespace odomcalib::cli {
@@ -67,7 +68,7 @@ int watch(Client& events, Client& questions, const Options& options, const Sessi
   const auto begin = Clock::now();
   auto next = begin;
   std::string state;
-  while (finish == 0) {
+  while (finish == 0 && std::cout) {
     const auto now = Clock::now();
     if (options.duration > 0.0 && std::chrono::duration<double>(now - begin).count() >= options.duration)
       break;
@@ -104,7 +105,7 @@ int monitor(const Options& options, const Session& session) {
 void add_monitor(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("monitor", "Events of the daemon as they happen, until Ctrl-C");
   auto options = std::make_shared<Options>();
-  verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C")->check(CLI::Range(0.0, 86400.0));
+  verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C")->check(finite(0.0, 86400.0));
   verb->callback(
       [&session, options] { session.run = [&session, options] { return monitor(*options, session); }; });
 }

@@ -16,6 +16,8 @@
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/numbers.hpp"
+#include "daemon/cli/outputs.hpp"
 #include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration.hpp"
@@ -33,13 +35,17 @@ struct Options {
   ordered_json parameters = ordered_json::object();
   double distance = 1.0, turns = 1.0;
   std::string direction = "both", file, id;
-  bool dry_run = false, quick = false, one_drive = false, nudge = false, unseen_area_free = false;
+  bool dry_run = false, quick = false, one_drive = false, nudge = false;
   std::vector<std::string> assignments;
 };
 
 // Rule M11: somebody has looked at the robot.
 Result<void> consent(const Options& options, const std::string& what, const std::string& besides) {
-  if (options.yes || options.dry_run) return {};
+  if (options.dry_run) return {};
+  if (options.yes) {
+    if (!besides.empty()) std::cerr << "odomcalibctl: " << besides << '\n';
+    return {};
+  }
   if (isatty(STDIN_FILENO) != 1)
     return Error{ErrorCode::usage, "moving or writing needs consent", what, "add --yes"};
   std::cerr
@@ -81,13 +87,12 @@ Result<std::string> unseen_question(const Session& session, const std::string& m
 Result<ordered_json> run_method(const Session& session, const Options& options, const std::string& method,
                                 ordered_json parameters) {
   std::string unseen;
-  if (moves(method) && !options.yes && !options.dry_run) {
+  if (moves(method) && !options.dry_run) {
     auto asked = unseen_question(session, method, parameters);
     if (!asked) return asked.error();
     unseen = asked.value();
   }
   if (auto given = consent(options, method, unseen); !given) return given.error();
-  if (!unseen.empty() || options.unseen_area_free) parameters["unseen_area_free"] = true;
   if (options.dry_run) parameters["dry_run"] = true;
   ProgressLine line;
   const auto progress = [&line](const std::string& text) {
@@ -158,21 +163,35 @@ Solved second_drive(const Session& session, const Options& options, Solved first
   return first;
 }
 
+// The drive must not be lost with the file: the result was printed, and the daemon has a copy.
+int report_lost(Error error, const Solved& solved) {
+  const std::filesystem::path recording = solved.body.value("recording", "");
+  const auto copy =
+      recording.parent_path().parent_path() / "calibrations" / recording.stem().replace_extension(".json");
+  error.remedy =
+      fmt::format("the result above was not lost: odomcalibd keeps it in {}, and the recording is {}",
+                  copy.string(), recording.string());
+  return report_error(error, JsonMode::off);
+}
+
 int calibrate(const Session& session, const Options& options) {
+  // After two minutes of driving it would be too late to find out.
+  if (const auto files = check_outputs({{"--out", options.file}}, {}); !files)
+    return report_error(files.error(), session.json);
   const ordered_json wanted = {{"quick", options.quick}};
   if (options.dry_run)
     return print_result(session, run_method(session, options, "Calibrate", {{"options", wanted}}));
   auto solved = drive_and_solve(session, options, wanted);
   if (!solved) return report_error(solved.error(), session.json);
-  const Calibration calibration = second_drive(session, options, std::move(solved).value()).calibration;
-  if (!options.file.empty())
-    if (auto written = write_calibration(calibration, options.file); !written)
-      return report_error(written.error(), session.json);
+  const Solved best = second_drive(session, options, std::move(solved).value());
   if (session.json != JsonMode::off)
-    print_json(to_json(calibration), session.json);
+    print_json(to_json(best.calibration), session.json);
   else
-    std::cout << to_text(describe(calibration), session.legend);
-  return calibration.verdict == Verdict::refused ? kRefused : kDone;
+    std::cout << to_text(describe(best.calibration), session.legend);
+  if (!options.file.empty())
+    if (auto written = write_output(options.file, to_json(best.calibration)); !written)
+      return report_lost(written.error(), best);
+  return best.calibration.verdict == Verdict::refused ? kRefused : kDone;
 }
 
 int apply(const Session& session, const Options& options) {
@@ -206,7 +225,7 @@ Result<ordered_json> parsed_values(const std::vector<std::string>& assignments) 
     const char* end = text.data() + text.size();
     const auto parsed = equals == std::string::npos ? std::from_chars_result{end, std::errc::invalid_argument}
                                                     : std::from_chars(text.data() + equals + 1, end, value);
-    if (parsed.ec != std::errc{} || parsed.ptr != end || equals == 0)
+    if (parsed.ec != std::errc{} || parsed.ptr != end || equals == 0 || !std::isfinite(value))
       return Error{ErrorCode::usage, "not NAME=VALUE with a value in m", text, "odomcalibctl params get"};
     values[text.substr(0, equals)] = value;
   }
@@ -225,11 +244,6 @@ int rollback(const Session& session, const Options& options) {
   return print_result(session, run_method(session, options, "Rollback", parameters));
 }
 
-void add_look(CLI::App* motion, const std::shared_ptr<Options>& options) {
-  motion->add_flag("--unseen-area-free", options->unseen_area_free,
-                   "with --yes: somebody sees that the area which the lidar does not see is free");
-}
-
 template <typename Action>
 CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<Options>& options,
                      const char* verb, const char* help, Action action) {
@@ -246,30 +260,28 @@ CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<Opti
 
 void add_motions(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
-  auto* looking = add_action(app, session, options, "check",
-                             "Whether everything needed for a calibration is there", check);
-  looking->add_flag(
-      "--nudge", options->nudge,
-      "move by 5 cm and 15 degrees and back: are wheels, counts and lidar wired as configured?");
-  auto* straight =
-      add_action(app, session, options, "straight", "Drive straight and back, odometry against lidar",
-                 [](const Session& s, const Options& o) {
-                   return print_result(s, run_method(s, o, "Straight", {{"distance", o.distance}}));
-                 });
-  straight->add_option("--distance", options->distance, "m, negative: backwards")->capture_default_str();
+  add_action(app, session, options, "check", "Whether everything needed for a calibration is there", check)
+      ->add_flag("--nudge", options->nudge,
+                 "move by 5 cm and 15 degrees and back: are wheels, counts and lidar wired as configured?");
+  add_action(app, session, options, "straight", "Drive straight and back, odometry against lidar",
+             [](const Session& s, const Options& o) {
+               return print_result(s, run_method(s, o, "Straight", {{"distance", o.distance}}));
+             })
+      ->add_option("--distance", options->distance, "m, negative: backwards")
+      ->check(finite())
+      ->capture_default_str();
   auto* spin = add_action(
       app, session, options, "spin", "Turn on the spot, odometry against lidar",
       [](const Session& s, const Options& o) {
         return print_result(s, run_method(s, o, "Spin", {{"turns", o.turns}, {"direction", o.direction}}));
       });
-  spin->add_option("--turns", options->turns, "full turns")->capture_default_str();
+  spin->add_option("--turns", options->turns, "full turns")->check(finite())->capture_default_str();
   spin->add_option("--direction", options->direction)->check(CLI::IsMember({"ccw", "cw", "both"}));
   auto* all =
       add_action(app, session, options, "calibrate", "Straight, spin and pattern, then solve", calibrate);
   all->add_flag("--quick", options->quick, "a shorter pattern");
   all->add_flag("--one-drive", options->one_drive, "no second motion, whatever the first leaves open");
   all->add_option("--out", options->file, "calibration file to write");
-  for (auto* motion : {looking, straight, spin, all}) add_look(motion, options);
   add_action(app, session, options, "apply", "Write a calibration to the controller", apply)
       ->add_option("CALIBRATION", options->file)
       ->required();

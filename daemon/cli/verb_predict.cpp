@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "calib/predict.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
+#include "daemon/cli/usable_calibration.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration.hpp"
 #include "proto/file_bytes.hpp"
@@ -21,7 +25,30 @@ struct Options {
 
 Result<Calibration> chosen_calibration(const Options& options, const RobotDescription& robot) {
   if (options.calibration == "nominal") return calib::nominal_calibration(robot);
-  return read_calibration(options.calibration);
+  auto calibration = read_finite_calibration(options.calibration);
+  if (!calibration) return calibration;
+  if (const auto needed = dimensions_of(calibration.value(), options.calibration); !needed)
+    return needed.error();
+  return calibration;
+}
+
+// What a reader of the trajectory must know, and would not see from it.
+void warn_of(const Calibration& calibration, const std::string& where) {
+  if (calibration.verdict == Verdict::refused && where != "nominal")
+    warn(refusal_of(calibration, where).text() + "; its values are used all the same");
+  for (const std::string& name : calib::unknown_effects(calibration))
+    warn(fmt::format(R"({}: this program does not know the effect "{}"; odometry goes on without it)", where,
+                     name));
+}
+
+// A calibration of lengths near zero, or counts without end, may still lead nowhere.
+Result<std::vector<PoseSample>> finite_poses(std::vector<PoseSample> poses, const std::string& where) {
+  const auto is_finite = [](const PoseSample& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.yaw);
+  };
+  if (std::all_of(poses.begin(), poses.end(), is_finite)) return poses;
+  return Error{ErrorCode::format, "dead reckoning leads to no finite pose", where,
+               "check the values of the calibration and the counts of the recording"};
 }
 
 // One line "t x y 0 0 0 qz qw" (TUM).
@@ -42,21 +69,29 @@ Result<std::vector<PoseSample>> predicted(const Options& options) {
                  "dead reckoning needs encoder counts"};
   const auto calibration = chosen_calibration(options, recording.robot);
   if (!calibration) return calibration.error();
-  return calib::predict(recording, calibration.value());
+  warn_of(calibration.value(), options.calibration);
+  return finite_poses(calib::predict(recording, calibration.value()), options.recording);
 }
 
 int predict_trajectory(const Options& options, const Session& session) {
+  const std::string calibration = options.calibration == "nominal" ? "" : options.calibration;
+  if (const auto files = check_outputs(
+          {{"--trajectory", options.trajectory}},
+          {{"the recording", options.recording}, {"--calibration", calibration}, {"--robot", options.robot}});
+      !files)
+    return report_error(files.error(), session.json);
   const auto poses = predicted(options);
   if (!poses) return report_error(poses.error(), session.json);
-  if (auto written = replace_file(options.trajectory, to_tum(poses.value())); !written)
+  if (auto written = write_output(options.trajectory, to_tum(poses.value())); !written)
     return report_error(written.error(), session.json);
   const PoseSample end = poses.value().empty() ? PoseSample{} : poses.value().back();
   if (session.json == JsonMode::off)
     std::cout << fmt::format("{} poses, end x {:.4f} m, y {:.4f} m, yaw {:.5f} rad\n", poses.value().size(),
                              end.x, end.y, end.yaw);
   else
-    print_json(fmt::format(R"({{"poses":{},"end":[{},{},{}]}})", poses.value().size(), end.x, end.y, end.yaw),
-               session.json);
+    print_json(
+        nlohmann::ordered_json{{"poses", poses.value().size()}, {"end", {end.x, end.y, end.yaw}}}.dump(),
+        session.json);
   return kDone;
 }
 

@@ -10,6 +10,7 @@
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/numbers.hpp"
 #include "daemon/cli/verbs.hpp"
 
 namespace odomcalib::cli {
@@ -80,8 +81,7 @@ void add_record(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("record", "Record without moving the robot, until Ctrl-C or for a time");
   auto options = std::make_shared<Options>();
   verb->add_option("NAME", options->name, "beginning of the file's name")->capture_default_str();
-  verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C or stop")
-      ->check(CLI::Range(0.0, 3600.0));
+  verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C or stop")->check(finite(0.0, 3600.0));
   verb->callback(
       [&session, options] { session.run = [&session, options] { return record(*options, session); }; });
 }

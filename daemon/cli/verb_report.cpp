@@ -5,6 +5,7 @@
 
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/outputs.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration.hpp"
 #include "proto/file_bytes.hpp"
@@ -17,10 +18,14 @@ struct Options {
 };
 
 int show_report(const Options& options, const Session& session) {
+  if (const auto files =
+          check_outputs({{"--html", options.html}}, {{"the calibration", options.calibration}});
+      !files)
+    return report_error(files.error(), session.json);
   const auto calibration = read_calibration(options.calibration);
   if (!calibration) return report_error(calibration.error(), session.json);
   if (!options.html.empty())
-    if (auto written = replace_file(options.html, to_html(report(calibration.value()))); !written)
+    if (auto written = write_output(options.html, to_html(report(calibration.value()))); !written)
       return report_error(written.error(), session.json);
   if (session.json != JsonMode::off)
     print_json(to_json(calibration.value()), session.json);

@@ -5,9 +5,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "calib/effect_names.hpp"
 #include "calib/solve.hpp"
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "odomcalib_version.hpp"
@@ -25,8 +27,8 @@ struct Options {
 
 Result<void> write_results(const Options& options, const Calibration& calibration) {
   if (!options.out.empty())
-    if (auto written = write_calibration(calibration, options.out); !written) return written;
-  if (!options.report.empty()) return replace_file(options.report, to_html(report(calibration)));
+    if (auto written = write_output(options.out, to_json(calibration)); !written) return written;
+  if (!options.report.empty()) return write_output(options.report, to_html(report(calibration)));
   return {};
 }
 
@@ -37,7 +39,15 @@ std::string settings_of(const Options& options) {
   return settings.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+Result<void> check_files(const Options& options) {
+  auto inputs = named("a recording", options.recordings);
+  inputs.push_back({"--robot", options.robot});
+  return check_outputs({{"--out", options.out}, {"--report", options.report}}, inputs);
+}
+
 int solve_recordings(const Options& options, const Session& session) {
+  if (const auto wrong = calib::wrong_effects(options.effects)) return report_error(*wrong, session.json);
+  if (const auto files = check_files(options); !files) return report_error(files.error(), session.json);
   const auto recordings = read_recordings(options.recordings, options.robot);
   if (!recordings) return report_error(recordings.error(), session.json);
   ProgressLine line;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "calib/effect_names.hpp"
 #include "calib/match.hpp"
 #include "calib/next_test.hpp"
 #include "calib/predict.hpp"
@@ -72,6 +73,7 @@ Calibrator make_calibrator() {
                         const Calibrator::Progress& progress) {
     return calib::solve(recordings, {.effects = effects}, progress);
   };
+  calibrator.wrong_effects = calib::wrong_effects;
   calibrator.odometry = [](const Calibration& calibration) {
     auto state = std::make_shared<calib::Odometry>(calibration);
     return [state](const TickSample& sample) { return state->update(sample); };

@@ -34,6 +34,8 @@ struct Calibrator {
   std::function<Calibration(const std::vector<Recording>&, const std::vector<std::string>& effects,
                             const Progress&)>
       solve;
+  /// Why effects of these names cannot be fitted. May be empty: any name is taken then.
+  std::function<std::optional<Error>(const std::vector<std::string>&)> wrong_effects;
   std::function<Odometry(const Calibration&)> odometry;
   /// May be empty: nothing is told then.
   std::function<std::vector<HostValue>(const Calibration&)> host_values;

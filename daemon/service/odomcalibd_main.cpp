@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <exception>
 
+#include "daemon/service/base_link.hpp"
+#include "daemon/service/lidar_link.hpp"
 #include "daemon/service/service.hpp"
 #include "odomcalib_version.hpp"
 
@@ -70,17 +72,39 @@ void run(Service& service, const odomcalib::Clock& clock) {
   }
 }
 
+constexpr int kFailure = 1, kUsage = 2;  // odomcalibd(8), "EXIT STATUS"
+
+// Some of these errors know the value only, or nothing.
+odomcalib::Error at_key(odomcalib::Error error, const std::string& key) {
+  if (!error.where.starts_with("controller."))
+    error.where = key + (error.where.empty() ? "" : ": ") + error.where;
+  return error;
+}
+
+// Devices may be absent; profile, lidar type and the form of both addresses may not be wrong.
+odomcalib::Result<void> check_devices(const odomcalib::Config& config) {
+  if (auto base = odomcalib::BaseLink::create(config.controller_device, config.controller_profile); !base)
+    return at_key(base.error(), "controller.profile");
+  if (auto lidar = odomcalib::LidarLink::create(config.lidar_device, config.lidar_type); !lidar)
+    return at_key(lidar.error(), "lidar");
+  return {};
+}
+
+// Names the file too: an error of a device knows only its key.
+int refuse(const odomcalib::Error& error, const std::string& path) {
+  spdlog::error("configuration {}: {}", path, error.text());
+  return kUsage;
+}
+
 int serve(const std::string& path) {
   const auto config = odomcalib::read_config(path);
-  if (!config) {
-    spdlog::error("{}", config.error().text());
-    return 2;
-  }
+  if (!config) return refuse(config.error(), path);
+  if (const auto devices = check_devices(config.value()); !devices) return refuse(devices.error(), path);
   odomcalib::SystemClock clock;
   auto service = Service::create(config.value(), clock, odomcalib::make_calibrator());
   if (!service) {
     spdlog::error("{}", service.error().text());
-    return 1;
+    return kFailure;
   }
   spdlog::info("odomcalibd {} serves {}", odomcalib::kVersion, config.value().socket.string());
   run(*service.value(), clock);
@@ -95,7 +119,11 @@ int run(int argc, char** argv) {
   std::string config = "/etc/odomcalib/odomcalib.toml";
   app.add_option("--config", config, "configuration file")->capture_default_str();
   app.set_version_flag("--version", odomcalib::kVersion);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kUsage;
+  }
   spdlog::set_pattern("%l: %v");
   catch_signals();
   return serve(config);
@@ -104,7 +132,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int status = 1;
+  int status = kFailure;
   try {
     status = run(argc, argv);
   } catch (const std::exception& error) {

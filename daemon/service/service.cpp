@@ -161,6 +161,9 @@ void Service::Impl::serve_solver() {
   if (const auto problem = solver->not_kept())
     event(messages::Severity::warning, "not_kept", problem->text());
   solver.reset();
+  if (*solve_cancelled)
+    return fail_pending({ErrorCode::cancelled, "stopped on request", "solve",
+                         "the recording is kept: odomcalibctl solve " + recording_path.string()});
   if (!*result) return fail_pending(result->error());
   const std::string text = to_json(result->value());
   telemetry.publisher.send("RESULT", messages::encode_json(clock.wall_us(), "odomcalib-calibration/1", text));

@@ -7,33 +7,17 @@
 #include "daemon/routines/manoeuvres.hpp"
 #include "daemon/routines/pattern.hpp"
 #include "daemon/routines/plans.hpp"
+#include "daemon/service/call_parameters.hpp"
 #include "daemon/service/json_text.hpp"
 #include "daemon/service/service_impl.hpp"
 
 namespace odomcalib {
 namespace {
 
-double number(const ordered_json& parameters, const char* name, double otherwise) {
-  const auto found = parameters.find(name);
-  if (found == parameters.end() || found->is_null()) return otherwise;
-  return found->is_number() ? found->get<double>() : std::numeric_limits<double>::quiet_NaN();
-}
-
-std::string text(const ordered_json& parameters, const char* name, const std::string& otherwise) {
-  const auto found = parameters.find(name);
-  return found != parameters.end() && found->is_string() ? found->get<std::string>() : otherwise;
-}
-
-bool flag(const ordered_json& parameters, const char* name) {
-  const auto found = parameters.find(name);
-  return found != parameters.end() && found->is_boolean() && found->get<bool>();
-}
-
 Error out_of_range(const std::string& what) {
   return {ErrorCode::usage, what, "parameters", "see odomcalibctl(1)"};
 }
 
-// NaN (no number at all) fails every comparison and is out of range.
 bool within(double value, double least, double most) { return value >= least && value <= most; }
 
 std::optional<Error> wrong_straight(const routines::StraightOptions& options) {
@@ -51,16 +35,13 @@ std::optional<Error> wrong_spin(const routines::SpinOptions& options) {
   return std::nullopt;
 }
 
-int whole(double value) { return within(value, 0.0, 1000.0) ? static_cast<int>(std::lround(value)) : 0; }
-
 constexpr std::size_t kMostRecordings = 8;
 
 // "with": file names of this daemon's own recordings; nothing outside its folder is read for a client.
-Result<std::vector<std::filesystem::path>> earlier_recordings(const ordered_json& options,
+Result<std::vector<std::filesystem::path>> earlier_recordings(const ordered_json& given,
                                                               const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> paths;
-  const auto given = options.value("with", ordered_json::array());
-  if (!given.is_array() || given.size() > kMostRecordings)
+  if (!given.is_null() && (!given.is_array() || given.size() > kMostRecordings))
     return out_of_range("\"with\" is no list of recordings");
   for (const auto& name : given) {
     const auto file = std::filesystem::path(name.is_string() ? name.get<std::string>() : "").filename();
@@ -72,6 +53,37 @@ Result<std::vector<std::filesystem::path>> earlier_recordings(const ordered_json
   return paths;
 }
 
+// Names of effects to fit; without the member those of the daemon.
+std::vector<std::string> wanted_effects(CallParameters& options) {
+  const ordered_json& given = options.member("effects");
+  if (given.is_null()) return PendingCall{}.effects;
+  std::vector<std::string> names;
+  for (const auto& name : given)
+    if (name.is_string()) names.push_back(name.get<std::string>());
+  if (!given.is_array() || names.empty() || names.size() != given.size()) options.reject("effects");
+  return names;
+}
+
+// Values to write by name. None at all is no wish.
+ParameterMap wanted_values(CallParameters& parameters) {
+  ParameterMap values;
+  const ordered_json& given = parameters.member("values");
+  if (!given.is_object() || given.empty()) parameters.reject("values");
+  if (!given.is_object()) return values;
+  CallParameters members(given, "values");
+  for (const auto& item : given.items()) values[item.key()] = members.number(item.key().c_str());
+  if (members.wrong()) parameters.reject(*members.wrong());
+  return values;
+}
+
+// The turns of a spin go to the sides that are named.
+void choose_sides(CallParameters& parameters, routines::SpinOptions& options) {
+  const std::string direction = parameters.text("direction", "both");
+  if (direction != "both" && direction != "cw" && direction != "ccw") parameters.reject("direction");
+  options.left = direction != "cw";
+  options.right = direction != "ccw";
+}
+
 }  // namespace
 
 PendingCall pending_of(const IncomingCall& incoming, const ordered_json& parameters) {
@@ -79,7 +91,7 @@ PendingCall pending_of(const IncomingCall& incoming, const ordered_json& paramet
   pending.client = incoming.client;
   pending.method = incoming.call.name();
   pending.more = incoming.call.more;
-  pending.lease = text(parameters, "lease", "");
+  pending.lease = CallParameters(parameters).text("lease", "");
   return pending;
 }
 
@@ -89,6 +101,10 @@ void Service::Impl::answer(ClientId client, const ordered_json& parameters) {
 
 void Service::Impl::refuse(ClientId client, const Error& error) {
   server.reply(client, control::encode_error(error));
+}
+
+void Service::Impl::refuse_parameter(ClientId client, const std::string& name) {
+  server.reply(client, control::encode_invalid_parameter(name));
 }
 
 void Service::Impl::finish_pending(const ordered_json& result) {
@@ -117,6 +133,8 @@ void Service::Impl::forget(ClientId gone) {
   // Who asked for a motion and went away cannot watch it: it ends.
   if (run && pending && pending->client == gone)
     run->stop({ErrorCode::cancelled, "the client closed its connection", "motion", "start again"});
+  // Nor would anybody end a recording without a duration. What was recorded is kept.
+  if (pending && pending->method == "Record" && pending->client == gone) pending->until = now;
 }
 
 void Service::Impl::handle(const IncomingCall& incoming) {
@@ -131,36 +149,34 @@ void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& p
   if (ending && method != "GetStatus" && method != "Stop")
     return refuse(client, {ErrorCode::refused, "the daemon is ending", "odomcalibd",
                            "start it again: systemctl start odomcalib"});
+  CallParameters given(parameters);
   if (method == "GetStatus") return answer(client, {{"status", status()}});
   if (method == "Describe") return answer(client, {{"description", describe()}});
-  if (method == "Check" && !flag(parameters, "nudge")) return answer(client, {{"checks", checks()}});
+  if (method == "Check" && !given.flag("nudge")) {
+    if (given.wrong()) return refuse_parameter(client, *given.wrong());
+    return answer(client, {{"checks", checks()}});
+  }
   if (method == "GetParameters") return answer(client, {{"parameters", this->parameters(active)}});
   if (method == "History") return call_history(incoming, parameters);
-  if (method == "Monitor") {
-    monitors.insert(client);
-    return;
-  }
+  if (method == "Monitor") return call_monitor(incoming);
   if (method == "Acquire") {
-    const auto given = lease.acquire(client, now);
-    if (!given) return refuse(client, given.error());
-    return answer(client, {{"lease", given.value()}, {"ttl_ms", std::lround(1000.0 * safety::kLeaseTime)}});
+    const auto granted = lease.acquire(client, now);
+    if (!granted) return refuse(client, granted.error());
+    return answer(client, {{"lease", granted.value()}, {"ttl_ms", std::lround(1000.0 * safety::kLeaseTime)}});
   }
   if (method == "Renew") {
-    const auto renewed = lease.renew(text(parameters, "lease", ""), now, number(parameters, "sent", now));
+    const std::string name = given.text("lease", "");
+    const double sent = given.number("sent", now);
+    if (given.wrong()) return refuse_parameter(client, *given.wrong());
+    const auto renewed = lease.renew(name, now, sent);
     if (!renewed) return refuse(client, renewed.error());
     return answer(client, {{"ttl_ms", std::lround(1000.0 * safety::kLeaseTime)}});
   }
   if (method == "Release") {
-    lease.release(text(parameters, "lease", ""));
+    lease.release(given.text("lease", ""));
     return answer(client, ordered_json::object());
   }
-  if (method == "Stop") {
-    stop_drive();
-    if (run) run->stop({ErrorCode::cancelled, "stopped on request", "motion", "start again"});
-    if (pending && pending->method == "Record") pending->until = now;
-    event(messages::Severity::stop, "stop", "stopped on request of a client");
-    return answer(client, ordered_json::object());
-  }
+  if (method == "Stop") return call_stop(incoming);
   if (pending)
     return refuse(client, {ErrorCode::refused, "busy: " + activity(), "", "wait for its end, or stop it"});
   if (method == "Check") return call_check(incoming, parameters);
@@ -174,25 +190,44 @@ void Service::Impl::dispatch(const IncomingCall& incoming, const ordered_json& p
   server.reply(client, control::encode_method_not_implemented(incoming.call.method));
 }
 
+// A stream of events needs a client that takes more than one reply.
+void Service::Impl::call_monitor(const IncomingCall& incoming) {
+  if (!incoming.call.more) return refuse_parameter(incoming.client, "more");
+  monitors.insert(incoming.client);
+}
+
+void Service::Impl::call_stop(const IncomingCall& incoming) {
+  stop_drive();
+  if (run) run->stop({ErrorCode::cancelled, "stopped on request", "motion", "start again"});
+  if (solver) *solve_cancelled = true;
+  if (pending && pending->method == "Record") pending->until = now;
+  event(messages::Severity::stop, "stop", "stopped on request of a client");
+  answer(incoming.client, ordered_json::object());
+}
+
 void Service::Impl::call_straight(const IncomingCall& incoming, const ordered_json& parameters) {
+  CallParameters given(parameters);
   routines::StraightOptions options;
-  options.distance = number(parameters, "distance", options.distance);
-  options.speed = number(parameters, "speed", options.speed);
-  options.repeat = whole(number(parameters, "repeat", 1));
+  options.distance = given.number("distance");
+  options.speed = given.number("speed", options.speed);
+  options.repeat = given.whole("repeat", 1);
   options.limits = config.limits;
+  (void)given.flag("dry_run");
+  if (given.wrong()) return refuse_parameter(incoming.client, *given.wrong());
   if (const auto wrong = wrong_straight(options)) return refuse(incoming.client, *wrong);
   start_motion(incoming, routines::straight_plan(options), parameters, pending_of(incoming, parameters));
 }
 
 void Service::Impl::call_spin(const IncomingCall& incoming, const ordered_json& parameters) {
+  CallParameters given(parameters);
   routines::SpinOptions options;
-  options.turns = number(parameters, "turns", options.turns);
-  options.rate = number(parameters, "rate", options.rate);
-  options.repeat = whole(number(parameters, "repeat", 1));
+  options.turns = given.number("turns");
+  options.rate = given.number("rate", options.rate);
+  options.repeat = given.whole("repeat", 1);
   options.limits = config.limits;
-  const std::string direction = text(parameters, "direction", "both");
-  options.left = direction != "cw";
-  options.right = direction != "ccw";
+  choose_sides(given, options);
+  (void)given.flag("dry_run");
+  if (given.wrong()) return refuse_parameter(incoming.client, *given.wrong());
   if (const auto wrong = wrong_spin(options)) return refuse(incoming.client, *wrong);
   start_motion(incoming, routines::spin_plan(options), parameters, pending_of(incoming, parameters));
 }
@@ -200,40 +235,43 @@ void Service::Impl::call_spin(const IncomingCall& incoming, const ordered_json& 
 // Straight, spin and pattern as one motion in one recording, or a single manoeuvre that goes with earlier
 // recordings.
 void Service::Impl::call_calibrate(const IncomingCall& incoming, const ordered_json& parameters) {
-  const auto options = parameters.value("options", ordered_json::object());
-  if (!options.is_object()) return refuse(incoming.client, out_of_range("options are no object"));
-  auto plan = calibration_plan(options);
-  if (!plan) return refuse(incoming.client, plan.error());
-  auto earlier = earlier_recordings(options, config.state_dir / "recordings");
-  if (!earlier) return refuse(incoming.client, earlier.error());
+  static const ordered_json kNone = ordered_json::object();
+  CallParameters given(parameters);
+  (void)given.flag("dry_run");
+  if (given.wrong()) return refuse_parameter(incoming.client, *given.wrong());
+  const ordered_json& wanted = given.member("options");
+  CallParameters options(wanted.is_null() ? kNone : wanted, "options");
   PendingCall call = pending_of(incoming, parameters);
+  call.effects = wanted_effects(options);
+  auto plan = calibration_plan(options);
+  if (options.wrong()) return refuse_parameter(incoming.client, *options.wrong());
+  if (calibrator.wrong_effects)
+    if (const auto wrong = calibrator.wrong_effects(call.effects)) return refuse(incoming.client, *wrong);
+  if (!plan) return refuse(incoming.client, plan.error());
+  auto earlier = earlier_recordings(options.member("with"), config.state_dir / "recordings");
+  if (!earlier) return refuse(incoming.client, earlier.error());
   call.earlier = std::move(earlier).value();
-  if (const auto effects = options.find("effects"); effects != options.end() && effects->is_array()) {
-    call.effects.clear();
-    for (const auto& effect : *effects)
-      if (effect.is_string()) call.effects.push_back(effect.get<std::string>());
-  }
   start_motion(incoming, plan.value(), parameters, std::move(call));
 }
 
-Result<routines::Plan> Service::Impl::calibration_plan(const ordered_json& options) const {
+Result<routines::Plan> Service::Impl::calibration_plan(CallParameters& options) const {
   const routines::PatternOptions pattern{.area_length = config.area_length,
                                          .area_width = config.area_width,
                                          .track_width = robot().track_width,
-                                         .quick = flag(options, "quick"),
+                                         .quick = options.flag("quick"),
                                          .limits = config.limits};
-  if (const std::string name = text(options, "manoeuvre", ""); !name.empty()) {
+  if (const std::string name = options.text("manoeuvre", ""); !name.empty()) {
     auto plan = routines::manoeuvre_plan(name, pattern);
     if (!plan) return out_of_range("there is no manoeuvre \"" + name + "\"");
     return std::move(*plan);
   }
   routines::StraightOptions straight;
-  straight.distance = number(options, "distance", std::min(1.0, 0.45 * config.area_length));
-  straight.speed = number(options, "speed", straight.speed);
-  straight.repeat = whole(number(options, "repeat", 1));
+  straight.distance = options.number("distance", std::min(1.0, 0.45 * config.area_length));
+  straight.speed = options.number("speed", straight.speed);
+  straight.repeat = options.whole("repeat", 1);
   routines::SpinOptions spin;
-  spin.turns = number(options, "turns", 1.0);
-  spin.rate = number(options, "rate", spin.rate);
+  spin.turns = options.number("turns", 1.0);
+  spin.rate = options.number("rate", spin.rate);
   spin.repeat = straight.repeat;
   if (const auto wrong = wrong_straight(straight)) return *wrong;
   if (const auto wrong = wrong_spin(spin)) return *wrong;
@@ -246,10 +284,13 @@ Result<routines::Plan> Service::Impl::calibration_plan(const ordered_json& optio
 }
 
 void Service::Impl::call_record(const IncomingCall& incoming, const ordered_json& parameters) {
-  const double duration = number(parameters, "duration", 0.0);
+  CallParameters given(parameters);
+  const double duration = given.number("duration", 0.0);
+  const std::string name = given.text("name", "record");
+  if (given.wrong()) return refuse_parameter(incoming.client, *given.wrong());
   if (!within(duration, 0.0, 3600.0))
     return refuse(incoming.client, out_of_range("duration is not 0 to 3600 s"));
-  const auto path = telemetry.recorder.start(text(parameters, "name", "record"));
+  const auto path = telemetry.recorder.start(name);
   if (!path) return refuse(incoming.client, path.error());
   next_robot = now;
   pending = pending_of(incoming, parameters);
@@ -257,35 +298,44 @@ void Service::Impl::call_record(const IncomingCall& incoming, const ordered_json
 }
 
 void Service::Impl::call_apply(const IncomingCall& incoming, const ordered_json& parameters) {
+  CallParameters given(parameters);
+  const bool dry_run = given.flag("dry_run");
+  if (!given.member("calibration").is_object()) given.reject("calibration");
+  if (given.wrong()) return refuse_parameter(incoming.client, *given.wrong());
   PendingCall call = pending_of(incoming, parameters);
   if (const auto forbidden = write_forbidden(call.lease)) return refuse(incoming.client, *forbidden);
-  const auto calibration = calibration_from_json(
-      json_text(parameters.value("calibration", ordered_json::object())), "calibration");
+  const auto calibration = calibration_from_json(json_text(given.member("calibration")), "calibration");
   if (!calibration) return refuse(incoming.client, calibration.error());
   if (calibration.value().verdict == Verdict::refused)
     return refuse(incoming.client, {ErrorCode::refused, "this calibration was refused by its quality gate",
                                     "calibration", "record again and solve"});
+  if (const auto member = non_finite_value(calibration.value()))
+    return refuse(incoming.client, {ErrorCode::format, "\"" + *member + "\" has no finite value",
+                                    "calibration", "solve the recording again"});
   ParameterMap values;
   for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
     if (const auto value = calibration.value().parameter(name)) values[name] = *value;
   call.calibration = to_json(calibration.value());
-  start_write(incoming, values, std::move(call), flag(parameters, "dry_run"));
+  start_write(incoming, values, std::move(call), dry_run);
 }
 
 void Service::Impl::call_set(const IncomingCall& incoming, const ordered_json& parameters) {
+  CallParameters given(parameters);
+  const bool dry_run = given.flag("dry_run");
+  const ParameterMap values = wanted_values(given);
+  if (given.wrong()) return refuse_parameter(incoming.client, *given.wrong());
   PendingCall call = pending_of(incoming, parameters);
   if (const auto forbidden = write_forbidden(call.lease)) return refuse(incoming.client, *forbidden);
-  ParameterMap values;
-  const auto wanted = parameters.value("values", ordered_json::object());
-  for (const auto& [name, value] : wanted.items())
-    values[name] = value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
-  start_write(incoming, values, std::move(call), flag(parameters, "dry_run"));
+  start_write(incoming, values, std::move(call), dry_run);
 }
 
 void Service::Impl::call_rollback(const IncomingCall& incoming, const ordered_json& parameters) {
+  CallParameters given(parameters);
+  const bool dry_run = given.flag("dry_run");
+  const std::string id = given.text("id", "");
+  if (given.wrong()) return refuse_parameter(incoming.client, *given.wrong());
   PendingCall call = pending_of(incoming, parameters);
   if (const auto forbidden = write_forbidden(call.lease)) return refuse(incoming.client, *forbidden);
-  const std::string id = text(parameters, "id", "");
   const auto former = former_values(id);
   if (!former)
     return refuse(
@@ -293,14 +343,17 @@ void Service::Impl::call_rollback(const IncomingCall& incoming, const ordered_js
         {ErrorCode::usage, id.empty() ? "no write-back was committed" : "no history entry \"" + id + "\"", "",
          "odomcalibctl history"});
   call.calibration = former->calibration;
-  start_write(incoming, former->values, std::move(call), flag(parameters, "dry_run"));
+  start_write(incoming, former->values, std::move(call), dry_run);
 }
 
 void Service::Impl::call_history(const IncomingCall& incoming, const ordered_json& parameters) {
-  const double limit = number(parameters, "limit", 1e6);
+  CallParameters given(parameters);
+  const int limit = given.whole("limit", std::numeric_limits<int>::max());
+  if (given.wrong() || limit < 0) return refuse_parameter(incoming.client, "limit");
   ordered_json list = ordered_json::array();
   for (const auto& entry : history.entries())
-    if (static_cast<double>(list.size()) < limit) list.push_back(ordered_json::parse(to_json(entry, false)));
+    if (list.size() < static_cast<std::size_t>(limit))
+      list.push_back(ordered_json::parse(to_json(entry, false)));
   answer(incoming.client, {{"entries", list}});
 }
 

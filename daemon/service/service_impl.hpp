@@ -15,6 +15,8 @@
 #include "daemon/safety/lease.hpp"
 #include "daemon/safety/obstacle.hpp"
 #include "daemon/service/base_link.hpp"
+#include "daemon/service/call_parameters.hpp"
+#include "daemon/service/cancellable.hpp"
 #include "daemon/service/control_server.hpp"
 #include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/lidar_link.hpp"
@@ -78,10 +80,12 @@ struct Service::Impl {
   void forget(ClientId gone);
   void handle(const IncomingCall& incoming);
   void dispatch(const IncomingCall& incoming, const ordered_json& parameters);
+  void call_monitor(const IncomingCall& incoming);
+  void call_stop(const IncomingCall& incoming);
   void call_straight(const IncomingCall& incoming, const ordered_json& parameters);
   void call_spin(const IncomingCall& incoming, const ordered_json& parameters);
   void call_calibrate(const IncomingCall& incoming, const ordered_json& parameters);
-  Result<routines::Plan> calibration_plan(const ordered_json& options) const;
+  Result<routines::Plan> calibration_plan(CallParameters& options) const;
   void call_record(const IncomingCall& incoming, const ordered_json& parameters);
   void call_apply(const IncomingCall& incoming, const ordered_json& parameters);
   void call_set(const IncomingCall& incoming, const ordered_json& parameters);
@@ -89,6 +93,8 @@ struct Service::Impl {
   void call_history(const IncomingCall& incoming, const ordered_json& parameters);
   void answer(ClientId client, const ordered_json& parameters);
   void refuse(ClientId client, const Error& error);
+  /// A member of the call is missing or of a wrong type.
+  void refuse_parameter(ClientId client, const std::string& name);
 
   // service_check.cpp
   void call_check(const IncomingCall& incoming, const ordered_json& parameters);
@@ -98,7 +104,6 @@ struct Service::Impl {
   std::optional<Error> motion_forbidden(const routines::Preview& preview) const;
   /// Why the wheels' dimensions are no base for a speed.
   std::optional<Error> geometry_forbidden() const;
-  std::optional<Error> unseen_forbidden(const std::vector<std::string>& unseen) const;
   void start_motion(const IncomingCall& incoming, const routines::Plan& plan, const ordered_json& parameters,
                     PendingCall pending);
   void motion_ended();
@@ -176,6 +181,7 @@ struct Service::Impl {
   std::optional<PendingCall> pending;
   std::optional<MotionRun> run;
   std::optional<SolverJob> solver;
+  CancelFlag solve_cancelled;  ///< of the job above
   std::filesystem::path recording_path;
   std::set<ClientId> monitors;
   std::deque<ordered_json> events;  ///< newest last, bounded
@@ -184,7 +190,7 @@ struct Service::Impl {
   bool operator_needed = false;
   std::string write_problem = "an interrupted write-back waits for the controller";  ///< operator_needed: why
   bool recovery_tried = false;  ///< on this connection to the controller
-  bool ending = false;  ///< the daemon was told to end
+  bool ending = false;          ///< the daemon was told to end
   drivers::ControllerState controller_state = drivers::ControllerState::absent;
   std::uint64_t tick_count = 0, scan_count = 0, late_steps = 0;
   double next_robot = 0.0, next_status = 0.0, next_progress = 0.0, next_command = 0.0, next_read = 0.0;

@@ -73,14 +73,6 @@ std::optional<Error> Service::Impl::geometry_forbidden() const {
   return std::nullopt;
 }
 
-std::optional<Error> Service::Impl::unseen_forbidden(const std::vector<std::string>& unseen) const {
-  if (unseen.empty()) return std::nullopt;
-  return forbidden(ErrorCode::refused,
-                   fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
-                               safety::text_of(cover.blind(now).sectors()), fmt::join(unseen, "\", \"")),
-                   "look there yourself, keep everybody away, and say so: --unseen-area-free");
-}
-
 std::optional<Error> Service::Impl::motion_forbidden(const routines::Preview& preview) const {
   using drivers::ControllerState;
   if (operator_needed)
@@ -123,9 +115,10 @@ void Service::Impl::start_motion(const IncomingCall& incoming, const routines::P
                                       {"reach", preview.reach},
                                       {"unseen_moves", unseen},
                                       {"blind_sectors", json_of(cover.blind(now).sectors())}}}});
-  const bool looked = parameters.value("unseen_area_free", ordered_json(false)) == true;
-  if (const auto error = looked ? std::nullopt : unseen_forbidden(unseen))
-    return refuse(incoming.client, *error);
+  if (!unseen.empty())
+    event(messages::Severity::warning, "lidar_blind",
+          fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
+                      safety::text_of(cover.blind(now).sectors()), fmt::join(unseen, "\", \"")));
   const auto path = telemetry.recorder.start(fmt::format("{}-{}", plan.name, clock.wall_us() / 1'000'000));
   if (!path) return refuse(incoming.client, path.error());
   recording_path = path.value();
@@ -256,7 +249,8 @@ void Service::Impl::recording_written(const Result<std::filesystem::path>& path,
   auto recordings = pending->earlier;
   recordings.push_back(path.value());
   const auto kept = config.state_dir / "calibrations" / (path.value().stem().string() + ".json");
-  solver.emplace(calibrator, std::move(recordings), pending->effects, kept);
+  solve_cancelled = std::make_shared<std::atomic<bool>>(false);
+  solver.emplace(cancellable(calibrator, solve_cancelled), std::move(recordings), pending->effects, kept);
 }
 
 }  // namespace odomcalib

@@ -22,11 +22,40 @@ ordered_json view_check(const std::vector<safety::Sector>& blind) {
           {"remedy", "moves that go there are asked about: see that this area is free"}};
 }
 
+ordered_json check_geometry(const RobotDescription& robot, const std::string& origin) {
+  std::string missing;
+  const auto need = [&missing](double value, const char* name) {
+    if (!(value > 0.0)) missing += (missing.empty() ? "" : ", ") + std::string(name);
+  };
+  need(robot.left_wheel_diameter, "left wheel diameter");
+  need(robot.right_wheel_diameter, "right wheel diameter");
+  need(robot.track_width, "track width");
+  need(robot.ticks_per_rev, "ticks per turn");
+  return check("geometry", missing.empty(), missing.empty() ? origin : "not known: " + missing,
+               "state robot.wheel_diameter, robot.track_width; ticks in the profile");
+}
+
+ordered_json check_disk(const std::filesystem::path& folder) {
+  constexpr std::uintmax_t kMegabyte = 1'000'000, kLeast = 64;
+  std::error_code error;
+  const auto space = std::filesystem::space(folder, error);
+  if (error) return check("disk", false, error.message(), "see that " + folder.string() + " is there");
+  const std::uintmax_t left = space.available / kMegabyte;
+  return check("disk", left > kLeast,
+               left > kLeast ? "enough space" : "only " + std::to_string(left) + " MB left",
+               "remove old recordings");
+}
+
 ordered_json json_of(const LoopWatch::Longest& turn) {
   return {{"seconds", turn.seconds}, {"part", turn.part}};
 }
 
 std::string text_of(const std::optional<Error>& problem) { return problem ? problem->text() : ""; }
+
+std::string found_at(bool connected, const std::optional<Error>& problem) {
+  if (problem) return problem->text();
+  return connected ? "open" : "not open yet";
+}
 
 // What a controller cannot hold stays on the host, value by value.
 void add_host_values(const std::vector<HostValue>& values, ordered_json& list) {
@@ -133,33 +162,30 @@ ordered_json Service::Impl::checks() const {
   const auto state = base.controller().state();
   const RobotDescription all = robot();
   ordered_json list = ordered_json::array();
-  list.push_back(check("bus", base.connected(), text_of(base.problem()),
+  list.push_back(check("bus", base.connected(), found_at(base.connected(), base.problem()),
                        "connect the adapter; check controller.device"));
   list.push_back(check("controller", state == ControllerState::disabled || state == ControllerState::enabled,
                        name_of(state),
                        "switch the controller on; check the profile's node id and the bit rate"));
-  list.push_back(check("watchdog", base.controller().watchdog_armed(), "controller stops by itself",
+  const bool armed = base.controller().watchdog_armed();
+  list.push_back(check("watchdog", armed,
+                       armed ? "controller stops by itself" : "controller would not stop by itself",
                        "use a profile with a watchdog"));
   list.push_back(check("encoders", !encoders.stale(now), encoders.stale(now).value_or("counts arrive"),
                        "check the bus"));
-  list.push_back(
-      check("lidar port", lidar.connected(), text_of(lidar.problem()), "connect it; check lidar.device"));
+  list.push_back(check("lidar port", lidar.connected(), found_at(lidar.connected(), lidar.problem()),
+                       "connect it; check lidar.device"));
   list.push_back(check("scans", !scans.stale(now), scans.stale(now).value_or("scans arrive"),
                        "check lidar and baud rate"));
   list.push_back(view_check(cover.blind(now).sectors()));
   const auto wrong = geometry_forbidden();
-  list.push_back(check("geometry", !wrong && all.ticks_per_rev > 0.0,
-                       wrong              ? wrong->what
-                       : in_force.empty() ? "from the configuration"
-                                          : "from the controller",
-                       wrong ? wrong->remedy : "state the ticks per turn in the profile"));
+  list.push_back(
+      wrong ? check("geometry", false, wrong->what, wrong->remedy)
+            : check_geometry(all, in_force.empty() ? "from the configuration" : "from the controller"));
   list.push_back(
       check("write-back", !operator_needed, operator_needed ? write_problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
-  std::error_code error;
-  const auto space = std::filesystem::space(config.state_dir, error);
-  list.push_back(check("disk", !error && space.available > (std::uintmax_t{64} << 20),
-                       error ? error.message() : "enough space", "remove old recordings"));
+  list.push_back(check_disk(config.state_dir));
   return list;
 }
 

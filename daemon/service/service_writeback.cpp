@@ -46,7 +46,7 @@ void Service::Impl::start_write(const IncomingCall& incoming, const ParameterMap
     const auto known = old.find(name);
     if (known == old.end())
       return refuse(incoming.client,
-                    {ErrorCode::usage, "unknown parameter \"" + name + "\"", "", "odomcalibctl params"});
+                    {ErrorCode::usage, "unknown parameter \"" + name + "\"", "", "odomcalibctl params get"});
     const bool plausible = std::isfinite(value) && std::abs(value / known->second - 1.0) <= kPlausible;
     if (!plausible)
       return refuse(incoming.client,

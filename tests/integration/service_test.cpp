@@ -1,7 +1,9 @@
 // Motions, stops and write-back of the service, in virtual time.
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <set>
 #include <thread>
@@ -260,32 +262,7 @@ TEST_F(ServiceLoop, a_stop_does_not_spoil_a_write_back) {
 class HalfBlind : public ServiceLoop {
  protected:
   void adjust(sim::SimRobotOptions& options) override { options.room.add_wall({-0.2, -0.2}, {-0.2, 0.2}); }
-  control::Reply ask(const std::string& method, json parameters) {
-    TestClient mover(folder_ / "control");
-    parameters["lease"] = lease_;
-    mover.call(method, parameters, true);
-    control::Reply reply;
-    run_until(
-        [&] {
-          if (auto got = mover.reply()) reply = *got;
-          return !reply.error.empty() || reply.parameters != "{}" || robot_->fastest_rim() > 0.05;
-        },
-        5.0);
-    return reply;
-  }
 };
-
-TEST_F(HalfBlind, moves_backward_and_turns_only_when_somebody_has_looked) {
-  acquire();
-  for (const char* method : {"Straight", "Spin"}) {
-    const auto reply = ask(method, {{"distance", 0.3}, {"turns", 0.1}});
-    EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused") << reply.parameters;
-    EXPECT_NE(reply.parameters.find("does not see"), std::string::npos) << reply.parameters;
-  }
-  EXPECT_LT(robot_->fastest_rim(), 1e-6);
-  EXPECT_EQ(ask("Straight", {{"distance", 0.3}, {"unseen_area_free", true}}).error, "");
-  EXPECT_GT(robot_->fastest_rim(), 0.04);
-}
 
 TEST_F(HalfBlind, what_the_lidar_does_not_see_is_told_before_anything_moves) {
   TestClient observer(folder_ / "control");
@@ -403,6 +380,174 @@ TEST_F(ServiceLoop, a_store_that_fails_leaves_the_old_values_or_asks_for_an_oper
   EXPECT_EQ(reply.error, "org.odomcalib.Calibration.WriteUnknown");
   EXPECT_EQ(robot_->node().geometry_in_ram()[2], 400000U);
   EXPECT_EQ(status()["operator_needed"], true);
+}
+
+// Calls whose parameters are of a wrong type: what they would do, and which parameter the answer must name.
+struct WrongCall {
+  const char* name;
+  const char* method;
+  json parameters;
+  const char* parameter;
+};
+
+class WrongParameter : public ServiceLoop, public testing::WithParamInterface<WrongCall> {};
+
+TEST_P(WrongParameter, is_refused_by_name_and_nothing_moves_or_is_written) {
+  acquire();
+  TestClient caller(folder_ / "control");
+  json parameters = GetParam().parameters;
+  parameters["lease"] = lease_;
+  caller.call(GetParam().method, parameters);
+  const auto reply = wait_reply(caller, 1.0);
+  EXPECT_EQ(reply.error, "org.varlink.service.InvalidParameter") << reply.parameters;
+  EXPECT_EQ(json::parse(reply.parameters).value("parameter", ""), GetParam().parameter);
+  run(1.0);
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+  EXPECT_EQ(status()["state"], "idle");
+  EXPECT_EQ(robot_->node().store_count(), 0U);
+}
+
+// NaN and infinity arrive as null (rule M17).
+INSTANTIATE_TEST_SUITE_P(
+    Service, WrongParameter,
+    testing::Values(
+        WrongCall{"null_distance", "Straight", {{"distance", nullptr}}, "distance"},
+        WrongCall{"no_distance", "Straight", json::object(), "distance"},
+        WrongCall{"distance_in_quotes", "Straight", {{"distance", "1"}}, "distance"},
+        WrongCall{"null_speed", "Straight", {{"distance", 1.0}, {"speed", nullptr}}, "speed"},
+        WrongCall{"half_repeat", "Straight", {{"distance", 1.0}, {"repeat", 1.5}}, "repeat"},
+        WrongCall{"numeric_dry_run", "Straight", {{"distance", 1.0}, {"dry_run", 1}}, "dry_run"},
+        WrongCall{"null_turns", "Spin", {{"turns", nullptr}}, "turns"},
+        WrongCall{"null_rate", "Spin", {{"turns", 1.0}, {"rate", nullptr}}, "rate"},
+        WrongCall{"direction_up", "Spin", {{"turns", 1.0}, {"direction", "up"}}, "direction"},
+        WrongCall{"numeric_nudge", "Check", {{"nudge", 1}}, "nudge"},
+        WrongCall{"calibrate_null_speed", "Calibrate", {{"options", {{"speed", nullptr}}}}, "options.speed"},
+        WrongCall{"calibrate_effects", "Calibrate", {{"options", {{"effects", "none"}}}}, "options.effects"},
+        WrongCall{"record_null_duration", "Record", {{"duration", nullptr}}, "duration"},
+        WrongCall{"set_null", "SetParameters", {{"values", nullptr}}, "values"},
+        WrongCall{"set_nothing", "SetParameters", {{"values", json::object()}}, "values"},
+        WrongCall{"set_null_value",
+                  "SetParameters",
+                  {{"values", {{"track_width", nullptr}}}},
+                  "values.track_width"},
+        WrongCall{"rollback_numeric_id", "Rollback", {{"id", 5}}, "id"},
+        WrongCall{"apply_nothing", "Apply", {{"calibration", nullptr}}, "calibration"},
+        WrongCall{"monitor_without_more", "Monitor", json::object(), "more"}),
+    [](const auto& one) { return std::string(one.param.name); });
+
+TEST_F(ServiceLoop, an_optional_text_that_is_null_is_an_absent_one) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Spin", {{"lease", lease_}, {"turns", 1.0}, {"direction", nullptr}, {"dry_run", true}});
+  const auto reply = wait_reply(mover, 1.0);
+  ASSERT_EQ(reply.error, "") << reply.parameters;
+  EXPECT_EQ(json::parse(reply.parameters)["result"]["moves"], 2);
+}
+
+TEST_F(ServiceLoop, what_a_check_found_follows_its_outcome) {
+  const auto checks = [this] {
+    TestClient asker(folder_ / "control");
+    asker.call("Check", json::object());
+    std::map<std::string, json> found;
+    const json reply = json::parse(wait_reply(asker, 1.0).parameters);
+    for (const auto& check : reply["checks"]) found[check["name"]] = check;
+    return found;
+  };
+  const auto good = checks();
+  acquire();
+  robot_->node().faults.store_fails = true;
+  TestClient writer(folder_ / "control");
+  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
+  (void)wait_reply(writer, 30.0);
+  robot_->unplug_lidar();
+  std::filesystem::remove_all(folder_ / "state");
+  run(1.0);
+  const auto bad = checks();
+  for (const char* name : {"lidar port", "scans", "write-back", "disk"}) {
+    EXPECT_EQ(good.at(name)["outcome"], "ok") << good.at(name);
+    EXPECT_EQ(bad.at(name)["outcome"], "fail") << bad.at(name);
+    EXPECT_NE(bad.at(name)["found"], good.at(name)["found"]);
+    EXPECT_NE(bad.at(name)["found"], "") << name;
+  }
+}
+
+TEST_F(ServiceLoop, a_recording_ends_with_the_client_that_asked_for_it) {
+  TestClient recorder(folder_ / "control");
+  recorder.call("Record", {{"name", "left_alone"}}, true);
+  ASSERT_TRUE(run_until([this] { return status()["state"] == "recording"; }, 2.0));
+  run(1.0);
+  recorder.hang_up();
+  EXPECT_TRUE(run_until([this] { return status()["state"] == "idle"; }, 5.0)) << status()["state"];
+  std::uintmax_t bytes = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder_ / "state" / "recordings"))
+    if (file.path().filename().string().starts_with("left_alone")) bytes += file.file_size();
+  EXPECT_GT(bytes, 1000U) << "what was recorded is kept";
+}
+
+// A solver that goes on until it is told to end, or the test has lasted for too long.
+class EndlessSolve : public ServiceLoop {
+ protected:
+  Calibrator calibrator() override {
+    Calibrator functions;
+    functions.solve = [this](const std::vector<Recording>& /*recordings*/,
+                             const std::vector<std::string>& /*effects*/,
+                             const Calibrator::Progress& progress) {
+      using Clock = std::chrono::steady_clock;
+      solving_ = true;
+      for (const auto end = Clock::now() + std::chrono::seconds(10); Clock::now() < end;) {
+        progress("fitting", 0.5);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+      const Calibration nothing;
+      return nothing;
+    };
+    return functions;
+  }
+  std::atomic<bool> solving_{false};
+};
+
+TEST_F(EndlessSolve, stop_ends_a_solve_at_its_next_progress_report) {
+  acquire();
+  TestClient caller(folder_ / "control");
+  caller.call("Calibrate", {{"lease", lease_}, {"options", {{"manoeuvre", "headings"}}}}, true);
+  ASSERT_TRUE(run_until([this] { return solving_.load(); }, 600.0)) << service_->status_json();
+  TestClient other(folder_ / "control");
+  other.call("Stop", json::object());
+  std::optional<control::Reply> reply;
+  for (int i = 0; i < 1000 && !reply; ++i) {
+    step();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    reply = caller.reply();
+  }
+  ASSERT_TRUE(reply.has_value()) << "it goes on solving";
+  EXPECT_EQ(reply->error, "org.odomcalib.Calibration.Cancelled") << reply->parameters;
+  EXPECT_NE(reply->parameters.find("headings"), std::string::npos) << "where the recording is";
+  EXPECT_EQ(status()["state"], "idle");
+}
+
+// The names are asked before anything moves.
+class PickyCalibrator : public ServiceLoop {
+ protected:
+  Calibrator calibrator() override {
+    Calibrator functions;
+    functions.wrong_effects = [](const std::vector<std::string>& names) {
+      const bool known = names == std::vector<std::string>{"none"};
+      return known ? std::nullopt : std::optional(Error{ErrorCode::usage, "no such effect", "", ""});
+    };
+    return functions;
+  }
+};
+
+TEST_F(PickyCalibrator, an_unknown_effect_is_refused_before_the_drive) {
+  acquire();
+  TestClient caller(folder_ / "control");
+  const auto wanted = [&](const char* name) {
+    return json{{"lease", lease_}, {"dry_run", true}, {"options", {{"effects", json::array({name})}}}};
+  };
+  caller.call("Calibrate", wanted("tme_offset"));
+  EXPECT_EQ(wait_reply(caller, 1.0).error, "org.odomcalib.Calibration.Usage");
+  caller.call("Calibrate", wanted("none"));
+  EXPECT_EQ(wait_reply(caller, 1.0).error, "");
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/export_formats.hpp"
 #include "daemon/cli/figure_svg.hpp"
+#include "daemon/cli/parameter_tables.hpp"
 #include "proto/report_data.hpp"
 
 namespace odomcalib::cli {
@@ -134,7 +136,24 @@ TEST(Export, csv_and_configuration_files) {
 TEST(Export, every_format_is_known_and_others_are_not) {
   for (const auto& format : export_formats()) EXPECT_TRUE(exported(example(), format).ok()) << format;
   EXPECT_EQ(exported(example(), "fax").error().code, ErrorCode::usage);
-  EXPECT_EQ(exported(Calibration{}, "toml").error().code, ErrorCode::empty);
+  EXPECT_EQ(exported(Calibration{}, "toml").error().code, ErrorCode::refused);
+}
+
+TEST(Report, a_length_that_nobody_stated_has_no_nominal_value) {
+  auto calibration = example();
+  calibration.robot = {};
+  EXPECT_THAT(to_text(describe(calibration)), Not(HasSubstr(" 0.000 ")));
+  EXPECT_THAT(to_text(describe(calibration)), HasSubstr("147.000"));
+}
+
+TEST(WriteBack, a_dry_run_says_what_would_be_written_in_place_of_what) {
+  const auto result = nlohmann::ordered_json::parse(R"({"outcome":"dry_run",
+    "before":{"left_wheel_diameter":0.15,"right_wheel_diameter":0.15,"track_width":0.4},
+    "after":{"track_width":0.4033},"parameters":[]})");
+  const std::string text = to_text(describe_write_back(result));
+  EXPECT_THAT(text, HasSubstr("nothing was written"));
+  EXPECT_THAT(text, HasSubstr("400.000 -> 403.300"));
+  EXPECT_THAT(text, Not(HasSubstr("150.000"))) << "what stays is not listed";
 }
 
 }  // namespace

@@ -111,6 +111,15 @@ TEST(CalibrationFile, rejects_damage_and_names_the_member) {
   EXPECT_EQ(broken("/new_member", 0.5), "accepted") << "changes are additive";
 }
 
+TEST(CalibrationFile, names_the_first_value_that_is_no_number) {
+  EXPECT_EQ(non_finite_value(example()), std::nullopt);
+  auto calibration = example();
+  calibration.effects.push_back({"carpet", {{"p_x", {std::nan(""), -1.0, "1"}}}, {}, {}, "host"});
+  EXPECT_EQ(non_finite_value(calibration), "effects.carpet.p_x");
+  calibration.parameters.front().second.value = INFINITY;
+  EXPECT_EQ(non_finite_value(calibration), "parameters." + calibration.parameters.front().first);
+}
+
 TEST(CalibrationFile, rejects_what_is_no_json_object) {
   for (const std::string text : {"", "{", "[]", "null", "\xff\xfe", "{\"format\":\"other\"}"}) {
     const auto result = calibration_from_json(text, "cal.json");

@@ -1,0 +1,60 @@
+#include "daemon/cli/outputs.hpp"
+
+#include <filesystem>
+
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is no regular file (a terminal, /dev/null) loses nothing when it is named twice.
+bool is_kept(const fs::path& path) {
+  std::error_code error;
+  const auto status = fs::status(path, error);
+  return fs::is_regular_file(status) || !fs::exists(status);
+}
+
+fs::path place_of(const std::string& path) {
+  std::error_code error;
+  return fs::weakly_canonical(fs::absolute(behind_links(path), error), error);
+}
+
+/// The same device and inode, or the same path where there is no file yet.
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return fs::equivalent(a, b, error) || place_of(a) == place_of(b);
+}
+
+Result<void> check_apart(const NamedFile& output, const std::vector<NamedFile>& others) {
+  for (const NamedFile& other : others) {
+    if (other.path.empty() || !same_file(output.path, other.path)) continue;
+    return Error{ErrorCode::usage, output.name + " names the same file as " + other.name, output.path,
+                 "give it a name of its own; nothing was written"};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
+  std::vector<NamedFile> taken = inputs;
+  for (const NamedFile& output : outputs) {
+    if (output.path.empty()) continue;
+    if (is_kept(output.path))
+      if (auto apart = check_apart(output, taken); !apart) return apart;
+    if (auto writable = check_output(output.path); !writable) return writable;
+    taken.push_back(output);
+  }
+  return {};
+}
+
+std::vector<NamedFile> named(const std::string& name, const std::vector<std::string>& paths) {
+  std::vector<NamedFile> files;
+  files.reserve(paths.size());
+  for (const auto& path : paths) files.push_back({name, path});
+  return files;
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,25 @@
+// Calibration files whose values are about to be used, not only shown.
+#pragma once
+
+#include <string>
+
+#include "proto/calibration.hpp"
+#include "proto/result.hpp"
+
+namespace odomcalib::cli {
+
+/// Whose values are all finite. Error: io, format.
+Result<Calibration> read_finite_calibration(const std::string& path);
+
+/// Wheel diameters and track width, as they are needed to drive by. Error: refused, when the file says so
+/// itself; format, when one is missing or no length.
+struct Dimensions {
+  double left, right, track;
+  [[nodiscard]] double mean() const { return 0.5 * (left + right); }
+};
+Result<Dimensions> dimensions_of(const Calibration& calibration, const std::string& where);
+
+/// "refused: why", as the error of whoever will not use it.
+Error refusal_of(const Calibration& calibration, const std::string& where);
+
+}  // namespace odomcalib::cli

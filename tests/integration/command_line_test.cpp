@@ -1,0 +1,409 @@
+// The programs as a shell sees them: files, exit statuses, both outputs. Nothing here needs a daemon.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "daemon/service/control_server.hpp"
+#include "proto/calibration.hpp"
+#include "proto/file_bytes.hpp"
+#include "tests/integration/processes.hpp"
+
+namespace odomcalib::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+class CommandLine : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = "/tmp/odomcalib-cl-XXXXXX";
+    folder_ = mkdtemp(name.data());
+    write("drive.jsonl", recording(0.0));
+    save("cal.json", calibration());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Outcome run(const std::string& program, const std::string& arguments) {
+    const std::string command =
+        "cd '" + folder_.string() + "' && { " + program + " " + arguments + "; } >.out 2>.err </dev/null";
+    const int status = system(command.c_str());
+    return {WEXITSTATUS(status), read(".out"), read(".err")};
+  }
+  Outcome ctl(const std::string& arguments) { return run(ODOMCALIB_CTL, arguments); }
+
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name) << content;
+  }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    const auto bytes = read_file_bytes(folder_ / name);
+    return bytes ? bytes.value() : "";
+  }
+  void save(const std::string& name, const Calibration& calibration) const {
+    ASSERT_TRUE(write_calibration(calibration, folder_ / name).ok());
+  }
+  [[nodiscard]] bool exists(const std::string& name) const { return fs::exists(folder_ / name); }
+
+  /// Two metres straight, with poses that agree.
+  static std::string recording(double start) {
+    std::string text = R"({"type":"robot","wheel_diameter":0.15,"track_width":0.4,"ticks_per_rev":4096})"
+                       "\n";
+    for (int i = 0; i <= 100; ++i) {
+      const json ticks = {{"type", "ticks"}, {"t", start + 0.1 * i}, {"left", 174 * i}, {"right", 174 * i}};
+      const json pose = {{"type", "pose"}, {"t", start + 0.1 * i}, {"x", 0.02 * i}, {"y", 0.0}, {"yaw", 0.0}};
+      text += ticks.dump() + "\n" + pose.dump() + "\n";
+    }
+    return text;
+  }
+  static Calibration calibration() {
+    Calibration calibration;
+    calibration.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
+    calibration.parameters = {{"left_wheel_diameter", {0.15, 1e-4, "m"}},
+                              {"right_wheel_diameter", {0.15, 1e-4, "m"}},
+                              {"track_width", {0.4, 1e-4, "m"}}};
+    calibration.verdict = Verdict::accepted;
+    calibration.reasons = {"fits"};
+    return calibration;
+  }
+
+  fs::path folder_;
+};
+
+// An output that is the input, by whatever name: each line is a verb, %s the output's name.
+struct Overwriting {
+  const char* name;
+  const char* arguments;
+  const char* input;
+};
+
+class OutputThatIsTheInput : public CommandLine, public ::testing::WithParamInterface<Overwriting> {};
+
+TEST_P(OutputThatIsTheInput, is_refused_by_any_name_and_the_input_stays) {
+  const std::string input = GetParam().input;
+  if (!exists(input)) write(input, "VERTEX_SE2 0 0 0 0\n");
+  const std::string before = read(input);
+  fs::create_symlink(input, folder_ / "link");
+  fs::create_hard_link(folder_ / input, folder_ / "hard");
+  fs::create_directory(folder_ / "sub");
+  for (const std::string& name :
+       {input, "./sub/../" + input, std::string("link"), std::string("hard"), (folder_ / input).string()}) {
+    const auto got = ctl(GetParam().arguments + (" " + name));
+    EXPECT_EQ(got.status, 2) << name << got.out << got.err;
+    EXPECT_THAT(got.err, HasSubstr("names the same file")) << name;
+    EXPECT_EQ(read(input), before) << name;
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CommandLine, OutputThatIsTheInput,
+    ::testing::Values(Overwriting{"solve_out", "solve drive.jsonl --out", "drive.jsonl"},
+                      Overwriting{"solve_report", "solve drive.jsonl --report", "drive.jsonl"},
+                      Overwriting{"solve_robot", "solve drive.jsonl --robot robot.toml --out", "robot.toml"},
+                      Overwriting{"predict_recording",
+                                  "predict drive.jsonl --calibration cal.json --trajectory", "drive.jsonl"},
+                      Overwriting{"predict_calibration",
+                                  "predict drive.jsonl --calibration cal.json --trajectory", "cal.json"},
+                      Overwriting{"report", "report cal.json --html", "cal.json"},
+                      Overwriting{"export", "export cal.json --out", "cal.json"},
+                      Overwriting{"graph_optimize", "graph optimize map.g2o --out", "map.g2o"},
+                      Overwriting{"graph_picture", "graph optimize map.g2o --svg", "map.g2o"},
+                      Overwriting{"graph_build", "graph build drive.jsonl --out", "drive.jsonl"}),
+    [](const auto& one) { return std::string(one.param.name); });
+
+TEST_F(CommandLine, two_outputs_of_one_name_are_refused_before_either_is_written) {
+  const auto got = ctl("solve drive.jsonl --out both --report ./both");
+  EXPECT_EQ(got.status, 2) << got.err;
+  EXPECT_FALSE(exists("both"));
+}
+
+TEST_F(CommandLine, both_outputs_may_go_to_a_device) {
+  EXPECT_THAT(ctl("graph optimize absent.g2o --out /dev/null --svg /dev/null").err, HasSubstr("absent.g2o"));
+}
+
+TEST_F(CommandLine, an_output_that_is_a_fifo_takes_the_result_and_stays_one) {
+  ASSERT_EQ(mkfifo((folder_ / "fifo").c_str(), 0600), 0);
+  const auto got = ctl("export cal.json --what toml --out fifo & timeout 5 cat fifo; wait $!");
+  EXPECT_THAT(got.out, HasSubstr("track_width = 0.4"));
+  EXPECT_TRUE(fs::is_fifo(folder_ / "fifo"));
+}
+
+TEST_F(CommandLine, a_folder_that_is_not_there_is_told_before_the_daemon_is_asked_to_move) {
+  const auto got = ctl("--socket /nonexistent/control calibrate --yes --out absent/cal.json");
+  EXPECT_EQ(got.status, 1) << got.err;
+  EXPECT_THAT(got.err, HasSubstr("absent/cal.json"));
+}
+
+TEST_F(CommandLine, values_that_are_no_numbers_are_refused_by_name_where_they_are_used) {
+  auto broken = calibration();
+  broken.parameters.back().second.value = std::nan("");
+  save("nan.json", broken);
+  for (const std::string verb : {"predict drive.jsonl --calibration nan.json --trajectory out --json",
+                                 "export nan.json --what toml", "export nan.json --what diff_drive"}) {
+    const auto got = ctl(verb);
+    EXPECT_EQ(got.status, 1) << verb << got.out;
+    EXPECT_THAT(got.err, AllOf(HasSubstr("nan.json"), HasSubstr("parameters.track_width"))) << verb;
+    EXPECT_THAT(got.out, Not(HasSubstr("nan,"))) << verb;
+  }
+  EXPECT_FALSE(exists("out"));
+}
+
+TEST_F(CommandLine, dead_reckoning_that_leaves_the_numbers_is_refused) {
+  auto huge = calibration();
+  huge.parameters[0].second.value = huge.parameters[1].second.value = 1e308;
+  save("huge.json", huge);
+  const auto got = ctl("predict drive.jsonl --calibration huge.json --trajectory out --json");
+  EXPECT_EQ(got.status, 1) << got.out;
+  EXPECT_TRUE(json::parse(got.out, nullptr, false).contains("error")) << got.out;
+  EXPECT_FALSE(exists("out"));
+}
+
+TEST_F(CommandLine, a_standard_output_that_takes_nothing_is_a_failure) {
+  write("graph.g2o", "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n");
+  write("pairs.jsonl", "{}\n");
+  for (const std::string verb : {"export cal.json", "report cal.json --json", "graph optimize graph.g2o",
+                                 "match pairs.jsonl", "--version"}) {
+    const auto got = ctl(verb + " >/dev/full");
+    EXPECT_EQ(got.status, 1) << verb;
+    EXPECT_THAT(got.err, HasSubstr("standard output")) << verb;
+  }
+}
+
+TEST_F(CommandLine, effects_that_are_none_are_refused_before_anything_is_read_or_written) {
+  const std::string before = read("cal.json");
+  for (const std::string names : {"tme_offset", "''", "none,time_offset", "auto,auto", "backlash,backlash"}) {
+    const auto got = ctl("solve absent.jsonl --out cal.json --effects " + names);
+    EXPECT_EQ(got.status, 2) << names << got.err;
+    EXPECT_THAT(got.err, AllOf(HasSubstr("time_offset"), HasSubstr("range_bias"))) << names;
+  }
+  EXPECT_EQ(read("cal.json"), before);
+}
+
+TEST_F(CommandLine, one_drive_given_twice_is_refused) {
+  write("copy.jsonl", read("drive.jsonl"));
+  write("packed.jsonl.gz", gzip(read("drive.jsonl")).value());
+  for (const std::string second : {"drive.jsonl", "copy.jsonl", "packed.jsonl.gz"}) {
+    const auto got = ctl("solve drive.jsonl --out out.json " + second);
+    EXPECT_EQ(got.status, 2) << second << got.err;
+    EXPECT_THAT(got.err, HasSubstr("same drive")) << second;
+  }
+  write("later.jsonl", recording(1000.0));
+  EXPECT_NE(ctl("solve drive.jsonl later.jsonl").status, 2);
+}
+
+TEST_F(CommandLine, a_refused_calibration_configures_no_robot_and_leads_only_with_a_warning) {
+  auto refused = calibration();
+  refused.verdict = Verdict::refused;
+  refused.reasons = {"nothing moved"};
+  save("refused.json", refused);
+  const auto toml = ctl("export refused.json --what toml");
+  EXPECT_EQ(toml.status, 3) << toml.out;
+  EXPECT_EQ(toml.out, "");
+  for (const std::string verb :
+       {"export refused.json", "predict drive.jsonl --calibration refused.json --trajectory out"}) {
+    const auto got = ctl(verb);
+    EXPECT_EQ(got.status, 0) << verb << got.err;
+    EXPECT_THAT(got.err, AllOf(HasSubstr("warning"), HasSubstr("nothing moved"))) << verb;
+  }
+  refused.parameters.clear();
+  save("refused.json", refused);
+  const auto got = ctl("predict drive.jsonl --calibration refused.json --trajectory other");
+  EXPECT_EQ(got.status, 3) << got.err;
+  EXPECT_FALSE(exists("other"));
+}
+
+TEST_F(CommandLine, an_effect_that_this_program_does_not_know_is_told) {
+  auto foreign = calibration();
+  foreign.effects.push_back({"moon_phase", {{"pull", {0.1, 0.01, "m"}}}, {}, {}, "host"});
+  save("foreign.json", foreign);
+  const auto got = ctl("predict drive.jsonl --calibration foreign.json --trajectory out");
+  EXPECT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.err, AllOf(HasSubstr("warning"), HasSubstr("moon_phase")));
+  EXPECT_EQ(ctl("predict drive.jsonl --calibration cal.json --trajectory out").err, "");
+}
+
+TEST_F(CommandLine, errors_of_usage_are_json_where_json_is_asked_for) {
+  for (const std::string words :
+       {"--json fly", "solve --json", "status --fly --json=short", "straight --json --distance nan"}) {
+    const auto got = ctl(words);
+    EXPECT_EQ(got.status, 2) << words;
+    const json body = json::parse(got.out, nullptr, false);
+    ASSERT_TRUE(body.is_object()) << words << got.out;
+    EXPECT_EQ(body["error"]["code"], "usage");
+    EXPECT_NE(body["error"]["what"], "");
+  }
+}
+
+TEST_F(CommandLine, export_as_json_is_json_with_the_same_text) {
+  const json body = json::parse(ctl("export cal.json --json").out, nullptr, false);
+  ASSERT_TRUE(body.is_object());
+  EXPECT_EQ(body["what"], "parameters");
+  EXPECT_EQ(body["text"], ctl("export cal.json").out);
+}
+
+TEST_F(CommandLine, both_programs_tell_their_version) {
+  const auto got = ctl("--version");
+  EXPECT_EQ(got.status, 0);
+  EXPECT_THAT(got.out, ContainsRegex("^[0-9]+[.][0-9]+[.][0-9]+\n$"));
+  EXPECT_EQ(run(ODOMCALIB_DAEMON, "--version").out, got.out);
+}
+
+TEST_F(CommandLine, a_choice_is_made_by_name_and_the_names_are_told) {
+  write("graph.g2o", "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n");
+  for (const std::string wrong : {"--start bogus", "--start 1", "--method bogus"}) {
+    const auto got = ctl("graph optimize graph.g2o " + wrong);
+    EXPECT_EQ(got.status, 2) << wrong;
+    EXPECT_THAT(got.err, Not(ContainsRegex("[a-z]->|[{][0-9]"))) << wrong;
+  }
+  EXPECT_THAT(ctl("graph optimize graph.g2o --start bogus").err, HasSubstr("rotations"));
+  EXPECT_EQ(ctl("graph optimize graph.g2o --start tree --method gauss-newton").status, 0);
+}
+
+TEST_F(CommandLine, pairs_may_be_packed_and_a_folder_is_called_one) {
+  write("pairs.jsonl", "{}\n{}\n");
+  write("pairs.jsonl.gz", gzip("{}\n{}\n").value());
+  EXPECT_EQ(ctl("match pairs.jsonl.gz").out, ctl("match pairs.jsonl").out);
+  const auto got = ctl("match /tmp");
+  EXPECT_EQ(got.status, 1);
+  EXPECT_THAT(got.err, HasSubstr("folder"));
+}
+
+// A FIFO that nobody writes holds the program up while it reads.
+TEST_F(CommandLine, an_interrupted_solve_is_cancelled) {
+  ASSERT_EQ(mkfifo((folder_ / "fifo").c_str(), 0600), 0);
+  for (const int number : {SIGINT, SIGTERM}) {
+    Process solve({ODOMCALIB_CTL, "--json", "solve", (folder_ / "fifo").string()}, folder_ / "said");
+    // Ready when it waits: signals are caught before the command line is read.
+    ASSERT_FALSE(solve.wait(0.5).has_value());
+    solve.signal(number);
+    EXPECT_EQ(solve.wait(5.0), 4);
+  }
+  EXPECT_THAT(read("said"), HasSubstr("\"cancelled\""));
+}
+
+/// Gives the lease to everybody, and its calibration to whoever wants to drive.
+class CannedDaemon {
+ public:
+  CannedDaemon(const fs::path& socket, const Calibration& calibration, std::function<void()> while_driving)
+      : server_(std::move(ControlServer::create(socket, "").value())),
+        calibration_(json::parse(to_json(calibration))),
+        while_driving_(std::move(while_driving)),
+        thread_([this] { serve(); }) {}
+  ~CannedDaemon() {
+    over_ = true;
+    thread_.join();
+  }
+  CannedDaemon(const CannedDaemon&) = delete;
+  CannedDaemon& operator=(const CannedDaemon&) = delete;
+
+ private:
+  void serve() {
+    while (!over_) {
+      std::vector<pollfd> polled;
+      server_.watch(polled);
+      (void)poll(polled.data(), polled.size(), 5);
+      server_.step();
+      for (const auto& incoming : server_.take_calls())
+        server_.reply(incoming.client, control::encode_reply(answer(incoming.call.name()).dump()));
+    }
+  }
+  json answer(const std::string& method) {
+    if (method == "Acquire") return {{"lease", "mine"}, {"ttl_ms", 120}};
+    if (method != "Calibrate") return {{"ttl_ms", 120}};
+    while_driving_();
+    return {{"result", {{"recording", "/state/recordings/drive.lcmlog"}, {"calibration", calibration_}}}};
+  }
+
+  ControlServer server_;
+  json calibration_;
+  std::function<void()> while_driving_;
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+TEST_F(CommandLine, a_result_that_cannot_be_written_after_the_drive_is_printed_and_the_copy_named) {
+  fs::create_directory(folder_ / "results");
+  const CannedDaemon daemon(folder_ / "control", calibration(),
+                            [this] { fs::remove_all(folder_ / "results"); });
+  const auto got = ctl("--socket control calibrate --yes --out results/cal.json");
+  EXPECT_EQ(got.status, 1) << got.out;
+  EXPECT_THAT(got.out, AllOf(HasSubstr("ACCEPTED"), HasSubstr("400.000")));
+  EXPECT_THAT(got.err, AllOf(HasSubstr("/state/calibrations/drive.json"),
+                             HasSubstr("/state/recordings/drive.lcmlog")));
+}
+
+class Completion : public CommandLine {
+ protected:
+  /// What bash offers behind these words, the last of which is being typed.
+  std::string offered(const std::string& words) {
+    write("complete.sh", R"(source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
+_odomcalibctl; printf '%s\n' "${COMPREPLY[@]}")");
+    return run("bash", "complete.sh " ODOMCALIB_COMPLETION " " ODOMCALIB_CTL " " + words).out;
+  }
+};
+
+TEST_F(Completion, knows_the_verbs_and_options_that_the_program_knows) {
+  EXPECT_EQ(offered("sol"), "solve\n");
+  EXPECT_THAT(offered("''"),
+              AllOf(HasSubstr("calibrate\n"), HasSubstr("--json\n"), HasSubstr("--version\n")));
+  EXPECT_EQ(offered("solve --rep"), "--report\n");
+  EXPECT_EQ(offered("graph opt"), "optimize\n");
+  EXPECT_EQ(offered("graph optimize --json in.g2o --sv"), "--svg\n");
+}
+
+TEST_F(Completion, leaves_files_to_the_shell) { EXPECT_EQ(offered("graph optimize in"), "\n"); }
+
+class DaemonUsage : public CommandLine {
+ protected:
+  Outcome daemon(const std::string& controller, const std::string& lidar) {
+    write("d.toml", "[controller]\n" + controller + "\n[lidar]\n" + lidar + "\n[daemon]\nstate_dir = \"" +
+                        (folder_ / "state").string() + "\"\nsocket = \"" + (folder_ / "control").string() +
+                        "\"\n");
+    return run(ODOMCALIB_DAEMON, "--config d.toml");
+  }
+  const std::string controller_ =
+      "device = \"slcan:/dev/null?bitrate=500000\"\nprofile = \"" ODOMCALIB_PROFILE "\"";
+  const std::string lidar_ = "device = \"serial:/dev/null?baud=230400\"";
+};
+
+TEST_F(DaemonUsage, words_that_make_no_sense_end_with_2) {
+  EXPECT_EQ(run(ODOMCALIB_DAEMON, "--bogus").status, 2);
+  EXPECT_EQ(run(ODOMCALIB_DAEMON, "--config").status, 2);
+  EXPECT_EQ(run(ODOMCALIB_DAEMON, "--config absent.toml").status, 2);
+  EXPECT_EQ(run(ODOMCALIB_DAEMON, "--help").status, 0);
+}
+
+TEST_F(DaemonUsage, a_configuration_that_cannot_work_ends_with_2_and_names_file_and_key) {
+  write("empty.toml", "");
+  const auto empty = run(ODOMCALIB_DAEMON, "--config empty.toml");
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_THAT(empty.out + empty.err, AllOf(HasSubstr("empty.toml"), HasSubstr("controller.profile")));
+  const auto profile = daemon("device = \"slcan:/dev/null\"\nprofile = \"/absent.toml\"", lidar_);
+  EXPECT_EQ(profile.status, 2);
+  EXPECT_THAT(profile.out + profile.err, AllOf(HasSubstr("d.toml"), HasSubstr("/absent.toml")));
+  const auto lidar = daemon(controller_, "device = \"pigeon:/dev/null\"");
+  EXPECT_EQ(lidar.status, 2);
+  EXPECT_THAT(lidar.out + lidar.err, AllOf(HasSubstr("d.toml"), HasSubstr("pigeon")));
+}
+
+}  // namespace
+}  // namespace odomcalib::testing
