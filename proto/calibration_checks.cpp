@@ -7,7 +7,7 @@ namespace {
 
 std::optional<std::string> non_finite(const QuantityList& quantities, const std::string& path) {
   for (const auto& [name, quantity] : quantities)
-    if (!std::isfinite(quantity.value)) return path + "." + name;
+    if (!std::isfinite(quantity.value)) return std::string(path).append(".").append(name);
   return std::nullopt;
 }
 

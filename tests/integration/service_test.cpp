@@ -498,7 +498,7 @@ class EndlessSolve : public ServiceLoop {
         progress("fitting", 0.5);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
-      const Calibration nothing;
+      Calibration nothing;
       return nothing;
     };
     return functions;
