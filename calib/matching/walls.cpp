@@ -1,5 +1,6 @@
 #include "calib/matching/walls.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -82,6 +83,26 @@ bool is_straight(const Wall& wall) {
          wall.line.angle_variance < kMaxAngleSigma * kMaxAngleSigma;
 }
 
+/// A slight arc hides in the noise of all readings, and shows where it is asked for: by the coefficient of s^2
+/// beside offset and slope.
+bool is_bent(const Surface& surface, const Piece& piece, const FittedLine& line, double range_noise) {
+  constexpr double kPlain = 3.5;  // deviations
+  Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  for (std::size_t i = piece.first; i <= piece.last; ++i) {
+    const SurfacePoint& point = surface.points[i];
+    const Eigen::Vector2d offset = point.position - line.centre;
+    const double s = line.direction().dot(offset);
+    const double weight = 1.0 / distance_variance(point.beam.dot(line.normal), range_noise);
+    const Eigen::Vector3d powers(1.0, s, s * s);
+    gram += weight * powers * powers.transpose();
+    gradient += weight * line.normal.dot(offset) * powers;
+  }
+  const Eigen::LDLT<Eigen::Matrix3d> ldlt(gram);
+  const double bend = ldlt.solve(gradient)(2);
+  return bend * bend > kPlain * kPlain * ldlt.solve(Eigen::Vector3d::UnitZ())(2);
+}
+
 /// The point farthest from the chord between the ends; an end itself when the piece is too short to cut.
 std::size_t farthest_from_chord(const Surface& surface, const Piece& piece) {
   const Eigen::Vector2d a = surface.points[piece.first].position;
@@ -112,7 +133,7 @@ struct JoinedPieces {
 void split(const Surface& surface, const Piece& piece, double range_noise, std::vector<PieceOfWall>& out) {
   if (piece.last - piece.first + 1 < kMinWallPoints) return;
   const Wall wall = wall_through(surface, piece, range_noise);
-  if (is_straight(wall)) {
+  if (is_straight(wall) && !is_bent(surface, piece, wall.line, range_noise)) {
     out.push_back({piece, wall});
     return;
   }

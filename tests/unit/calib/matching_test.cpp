@@ -3,10 +3,12 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <functional>
+#include <random>
 
 #include "calib/geometry/se2.hpp"
 #include "calib/match.hpp"
 #include "calib/matching/point_to_line.hpp"
+#include "calib/matching/walls.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
 namespace odomcalib::calib {
@@ -169,6 +171,33 @@ TEST(Matching, an_empty_scan_or_a_single_point_is_refused) {
   EXPECT_EQ(match_scans(empty, scan_from(kRoom, {}, 0.005, 2), {0, 0, 0}).status, "too_few_points");
   empty.ranges[100] = 1.0F;
   EXPECT_EQ(match_scans(scan_from(kRoom, {}, 0.005, 2), empty, {0, 0, 0}).status, "too_few_points");
+}
+
+/// Beams a third of a degree apart on a wall 3 m away that bulges by `sagitta` over 2 m.
+Surface bulging_wall(double sagitta, double noise, unsigned seed) {
+  constexpr double kDistance = 3.0, kHalf = 1.0;  // m
+  std::mt19937 random(seed);
+  std::normal_distribution<double> error(0.0, noise);
+  Surface surface;
+  for (double angle = -std::atan(kHalf / kDistance); angle < std::atan(kHalf / kDistance); angle += 6e-3) {
+    const double along = kDistance * std::tan(angle);
+    const double away = kDistance + sagitta * (1.0 - along * along / (kHalf * kHalf));
+    SurfacePoint point{};
+    point.beam = {std::cos(angle), std::sin(angle)};
+    point.anchor = point.normal = Eigen::Vector2d::Zero();
+    point.range = away / std::cos(angle) + error(random);
+    point.position = point.range * point.beam;
+    surface.points.push_back(point);
+  }
+  return surface;
+}
+
+TEST(Walls, that_are_slightly_bent_are_no_straight_ones) {
+  constexpr double kNoise = 0.015;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    EXPECT_EQ(find_walls(bulging_wall(0.0, kNoise, seed), kNoise).walls.size(), 1U) << "seed " << seed;
+    EXPECT_GT(find_walls(bulging_wall(0.03, kNoise, seed), kNoise).walls.size(), 1U) << "seed " << seed;
+  }
 }
 
 TEST(Surface, deskewing_straightens_a_sweep_taken_while_turning) {
