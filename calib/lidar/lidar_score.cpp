@@ -284,6 +284,7 @@ LidarScores::HeldOut LidarScores::held_out(const std::vector<std::size_t>& accep
   std::vector<std::size_t> more = accepted;
   more.push_back(candidate);
   const auto few_columns = columns(accepted), all_columns = columns(more);
+  const double usual = total_.squares / static_cast<double>(pairs_.size());
   double before = 0.0, after = 0.0, points = 0.0, sum = 0.0, squares = 0.0;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const Eigen::VectorXd few = solved(pairs_, few_columns, fold), all = solved(pairs_, all_columns, fold);
@@ -293,8 +294,10 @@ LidarScores::HeldOut LidarScores::held_out(const std::vector<std::size_t>& accep
       before += pairs_[g].squares - without;
       after += pairs_[g].squares - with;
       points += static_cast<double>(pairs_[g].points);
-      sum += with - without;
-      squares += (with - without) * (with - without);
+      // A few pairs that gain most of it say that the gain is large, not that it is uncertain.
+      const double relative = (with - without) / (pairs_[g].squares - without + usual);
+      sum += relative;
+      squares += relative * relative;
     }
   }
   const auto n = static_cast<double>(pairs_.size());

@@ -51,7 +51,7 @@ class LidarScores {
   /// Held-out gain of adding a candidate: five folds of pairs, each predicted by the others.
   struct HeldOut {
     double before = 0.0, after = 0.0;  ///< m, RMS of the distances between the scans
-    double z = 0.0;                    ///< mean gain per pair in its standard deviations
+    double z = 0.0;  ///< mean gain per pair, relative to what the pair leaves, in its standard deviations
   };
   [[nodiscard]] HeldOut held_out(const std::vector<std::size_t>& accepted, std::size_t candidate) const;
 

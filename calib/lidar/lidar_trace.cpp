@@ -59,15 +59,27 @@ class Trace {
   bool add_best() {
     const auto scores = scores_.score(accepted_);
     for (const std::size_t c : in_order(scores)) {
+      if (refused_[c]) continue;
       const auto proof = scores_.held_out(accepted_, c);
-      if (proof.z < kHeldOutZ || !is_worthwhile(proof) || !matters(c)) {
+      const bool holds = proof.z >= kHeldOutZ && is_worthwhile(proof);
+      if (!holds || !matters(c)) {
         refused_[c] = true;
+        if (holds) refuse_lesser_names(c, scores);
         continue;
       }
       add(c, scores[c].family_p_value, proof);
       return true;
     }
     return false;
+  }
+
+  /// What is too small as a free law is no larger under a name that explains less than half of it.
+  void refuse_lesser_names(std::size_t curve, const std::vector<LidarScores::Score>& scores) {
+    if (effect(curve).is_named()) return;
+    for (std::size_t c = 0; c < scores.size(); ++c)
+      if (effect(c).is_named() && effect(c).variable() == effect(curve).variable() &&
+          scores[c].statistic < kSameLaw * scores[curve].statistic)
+        refused_[c] = true;
   }
 
   /// Significant candidates, the best first; a name before the free curve on its own ground unless that

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "calib/lidar/lidar_curve.hpp"
 #include "calib/lidar/lidar_trace.hpp"
@@ -120,6 +121,50 @@ TEST(LidarEffect, a_turn_that_begins_anywhere_is_seen_as_one) {
 TEST(LidarEffect, too_few_pairs_tell_nothing) {
   EXPECT_TRUE(trace_lidar({}, true).empty());
   EXPECT_TRUE(trace_lidar(std::vector<HeadingPair>(3), true).empty());
+}
+
+/// What two scans that face different ways disagree about, where beams lie at angles off by a share
+/// `epsilon`.
+HeadingPair seen_with_scaled_angles(double epsilon, double range, std::mt19937& random) {
+  constexpr double kNoise = 4e-3;  // m
+  std::normal_distribution<double> noise(0.0, kNoise);
+  std::uniform_real_distribution<double> angle(-2.3, 2.3), slant(-0.6, 0.6);
+  HeadingPair pair;
+  for (int k = 0; k < 60; ++k) {
+    DoubleSighting p;
+    p.first = {angle(random), range, 0.0};
+    p.second = {angle(random), range, 0.0};
+    const double towards = angle(random), tilt = slant(random);
+    p.first_beam = p.second_beam = {std::cos(towards), std::sin(towards)};
+    p.normal = -Eigen::Vector2d(std::cos(towards + tilt), std::sin(towards + tilt));
+    p.arm = range * p.second_beam;
+    const double shift = epsilon * (p.second.bearing - p.first.bearing) * range;
+    p.distance = shift * p.normal.dot(Eigen::Vector2d(-std::sin(towards), std::cos(towards))) + noise(random);
+    p.deviation = kNoise;
+    pair.points.push_back(p);
+  }
+  return pair;
+}
+
+TEST(LidarEffect, that_a_few_wide_views_show_best_is_found) {
+  constexpr unsigned kSeed = 3;
+  std::mt19937 random(kSeed);
+  std::vector<HeadingPair> pairs;
+  for (int k = 0; k < 60; ++k)
+    pairs.push_back(seen_with_scaled_angles(4e-3, k % 20 == 0 ? 12.0 : 0.8, random));
+  const auto found = trace_lidar(pairs, false);
+  ASSERT_FALSE(found.empty()) << "seed " << kSeed;
+  EXPECT_EQ(found.front().effect->name(), "angle_scale");
+  EXPECT_NEAR(std::abs(found.front().values.front()), 4e-3, 4e-4);
+}
+
+TEST(LidarEffect, of_none_is_found_in_noise) {
+  constexpr unsigned kSeed = 4;
+  std::mt19937 random(kSeed);
+  std::vector<HeadingPair> pairs;
+  for (int k = 0; k < 60; ++k)
+    pairs.push_back(seen_with_scaled_angles(0.0, k % 20 == 0 ? 12.0 : 0.8, random));
+  EXPECT_TRUE(trace_lidar(pairs, false).empty()) << "seed " << kSeed;
 }
 
 }  // namespace
