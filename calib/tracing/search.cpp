@@ -106,8 +106,7 @@ class Search {
     std::erase_if(candidates_, std::not_fn(goes_with));
     if (candidates_.empty()) return;
     noise_share_ = 1.0 - 0.5 * static_cast<double>(trace->outliers) / static_cast<double>(trace->pairs);
-    round_.reset();
-    has_changed_ = true;
+    begin_again();
     go_on(0.4, 0.5);
     noise_share_ = kNoiseShare;
   }
@@ -116,8 +115,14 @@ class Search {
   void ask_for_waves() {
     candidates_ = floor_waves(task_.models());
     for (const Candidate& wave : rolling_waves(task_.data, result_.model)) candidates_.push_back(wave);
+    begin_again();
+  }
+
+  /// With other candidates.
+  void begin_again() {
     round_.reset();
     has_changed_ = true;
+    no_more_curves_ = false;
   }
 
   /// Waves are many, and what was nothing before one of them was found is not asked again.
@@ -216,9 +221,22 @@ class Search {
     std::string reason =
         objection(task_, basis(), trial.model, selected, largest_ratio(candidates_[trial.candidate]), proof);
     if (!reason.empty()) return reason;
+    if (may_be_chance(candidates_[trial.candidate], proof)) {
+      no_more_curves_ = true;
+      return "a gain that may be chance: error times " + std::to_string(proof.improvement.ratio).substr(0, 5);
+    }
     settled = round_->refit(trial.candidate, {});
     if (!settled) return "the fit does not settle";
     return spoils_drives(task_, basis(), settled->model) ? "drives get worse" : "";
+  }
+
+  /// Of a curve that odometry would use, whose gain must show over ten seconds. A reference that errs with
+  /// the motion, as in a nearly round room, asks for one curve after the other: where the best is none, no
+  /// other is.
+  [[nodiscard]] bool may_be_chance(const Candidate& candidate, const Proof& proof) const {
+    return candidate.curve && candidate.effect->storage() == Storage::host &&
+           std::isfinite(largest_ratio(candidate)) && !result_.owner_of(candidate.curve->law) &&
+           proof.before > 0.0 && !proof.improvement.is_plain();
   }
 
   void adopt(FittedModel model) {
@@ -229,6 +247,7 @@ class Search {
   /// From the model as it is now.
   void start_again() {
     has_changed_ = true;
+    no_more_curves_ = false;
     unproved_.clear();
   }
 
@@ -261,7 +280,7 @@ class Search {
   }
 
   bool accept_curve(std::size_t index) {
-    if (result_.curves.size() >= kMaxCurves) return false;
+    if (no_more_curves_ || result_.curves.size() >= kMaxCurves) return false;
     auto trial = round_->refit(index);
     if (trial && is_held_back(*candidates_[index].effect, trial->model.fit))
       trial = refit_as(index, strong(*candidates_[index].curve));
@@ -359,6 +378,7 @@ class Search {
   std::vector<Candidate> candidates_;
   std::optional<SearchRound> round_;
   double noise_share_ = kNoiseShare;
+  bool no_more_curves_ = false;
   bool has_changed_ = true;  ///< the model or the candidates, since the round began
   SearchResult result_;
   /// What plausible names and plain curves would make of the base parameters that the last model could

@@ -78,6 +78,12 @@ StretchErrors where_selected(const StretchErrors& before, const StretchErrors& a
   return mixed;
 }
 
+bool Improvement::is_plain() const {
+  constexpr double kBothSides = 2.0 * 1.960, kOneSide = 1.282;  // normal quantiles, 95 % and 90 %
+  const double deviation = std::log(upper / lower) / kBothSides;
+  return std::log(ratio) + kOneSide * deviation < 0.0;
+}
+
 Improvement compare(const StretchErrors& before, const StretchErrors& after) {
   std::map<std::size_t, RatioOfSums> by_block;
   const std::size_t count = std::min(before.position.size(), after.position.size());

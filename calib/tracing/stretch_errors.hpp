@@ -42,6 +42,8 @@ struct Improvement {
   double ratio = 1.0;  ///< rms after over rms before, position
   double upper = 1.0;  ///< 97.5 % bound of it
   double lower = 1.0;  ///< 2.5 % bound
+  /// Whether nine of ten such drives would show a gain.
+  [[nodiscard]] bool is_plain() const;
 };
 
 /// Paired block bootstrap over the stretches' blocks, 1000 draws with a fixed seed. Position and heading
