@@ -86,7 +86,7 @@ bool is_straight(const Wall& wall) {
 /// A slight arc hides in the noise of all readings, and shows where it is asked for: by the coefficient of s^2
 /// beside offset and slope.
 bool is_bent(const Surface& surface, const Piece& piece, const FittedLine& line, double range_noise) {
-  constexpr double kPlain = 3.5;  // deviations
+  constexpr double kPlain = 5.0;  // deviations
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   for (std::size_t i = piece.first; i <= piece.last; ++i) {

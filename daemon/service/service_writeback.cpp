@@ -81,9 +81,11 @@ void Service::Impl::start_write(const IncomingCall& incoming, const ParameterMap
 
 void Service::Impl::serve_writeback() {
   const auto state = base.controller().state();
-  // What is there when it comes back, and what it holds, is to be seen.
-  if (state == drivers::ControllerState::absent && !transaction.busy())
+  // What is there when it comes back, and what it holds, is to be seen, at once: nothing moves before.
+  if (state == drivers::ControllerState::absent && !transaction.busy()) {
     parameters_known = recovery_tried = false;
+    if (!ending) next_read = now;
+  }
   if (state == drivers::ControllerState::disabled && !transaction.busy() && !run && now >= next_read)
     begin_reading();
   transaction.step(base.controller(), now, clock.wall_us());

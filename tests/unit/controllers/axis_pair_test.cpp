@@ -1,8 +1,11 @@
 // The generic pair of single-axis CiA 402 drives against two simulated ones on one bus.
+#include <unistd.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <string>
 
 #include "tests/sim/wires/drive_node.hpp"
 #include "tests/unit/controllers/bench.hpp"
@@ -52,7 +55,8 @@ std::unique_ptr<Controller> pair_controller() {
   std::string text = test::read_text("drivers/base/profiles/cia402-pair.toml");
   const std::string unit = "rpm_per_count = 1.0";
   text.replace(text.find(unit), unit.size(), "rpm_per_count = 0.01");
-  const auto path = std::filesystem::temp_directory_path() / "odomcalib-axis-pair-test.toml";
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("odomcalib-axis-pair-test-" + std::to_string(getpid()) + ".toml");
   std::ofstream(path) << text;
   auto made = make_controller(path.string());
   std::filesystem::remove(path);

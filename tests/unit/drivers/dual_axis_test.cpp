@@ -1,6 +1,8 @@
 // The controller against the simulated drive, frame by frame and without a clock.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cmath>
 #include <functional>
 
@@ -118,7 +120,7 @@ std::string changed_profile(const std::string& from, const std::string& to, cons
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos);
   text.replace(at, from.size(), to);
-  const std::string path = testing::TempDir() + name;
+  const std::string path = testing::TempDir() + std::to_string(getpid()) + name;
   std::ofstream(path) << text;
   return path;
 }

@@ -20,12 +20,13 @@ class Output : public testing::Test {
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "elsewhere");
   }
+  void TearDown() override { fs::remove_all(folder_); }
   static std::string content(const fs::path& path) { return read_file_bytes(path).value(); }
   static std::ptrdiff_t files_in(const fs::path& folder) {
     return std::distance(fs::directory_iterator(folder), {});
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) / "file_bytes_output";
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("file_bytes_output_" + std::to_string(getpid()));
 };
 
 TEST_F(Output, behind_a_link_is_replaced_and_the_link_stays) {
