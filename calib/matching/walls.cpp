@@ -83,8 +83,8 @@ bool is_straight(const Wall& wall) {
          wall.line.angle_variance < kMaxAngleSigma * kMaxAngleSigma;
 }
 
-/// A slight arc hides in the noise of all readings, and shows where it is asked for: by the coefficient of s^2
-/// beside offset and slope.
+/// A slight arc hides in the noise of all readings, and shows where it is asked for: by the coefficient of
+/// s^2 beside offset and slope.
 bool is_bent(const Surface& surface, const Piece& piece, const FittedLine& line, double range_noise) {
   constexpr double kPlain = 5.0;  // deviations
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();

@@ -30,7 +30,7 @@ struct Fault {
   const char* state = "disabled";  ///< of the controller then
 };
 
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
 
 class FaultLoop : public ServiceLoop {
  protected:
@@ -160,7 +160,7 @@ struct Deceit {
   double lidar_yaw = 0.0;
 };
 
-void PrintTo(const Deceit& deceit, std::ostream* out) { *out << deceit.name; }
+std::ostream& operator<<(std::ostream& out, const Deceit& deceit) { return out << deceit.name; }
 
 class DeceivingFault : public FaultLoop, public testing::WithParamInterface<Deceit> {
  protected:

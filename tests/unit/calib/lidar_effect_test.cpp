@@ -146,12 +146,18 @@ HeadingPair seen_with_scaled_angles(double epsilon, double range, std::mt19937& 
   return pair;
 }
 
+/// Three of them look far.
+std::vector<HeadingPair> sixty_pairs(double epsilon, std::mt19937& random) {
+  std::vector<HeadingPair> pairs(60);
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    pairs[k] = seen_with_scaled_angles(epsilon, k % 20 == 0 ? 12.0 : 0.8, random);
+  return pairs;
+}
+
 TEST(LidarEffect, that_a_few_wide_views_show_best_is_found) {
   constexpr unsigned kSeed = 3;
   std::mt19937 random(kSeed);
-  std::vector<HeadingPair> pairs;
-  for (int k = 0; k < 60; ++k)
-    pairs.push_back(seen_with_scaled_angles(4e-3, k % 20 == 0 ? 12.0 : 0.8, random));
+  const auto pairs = sixty_pairs(4e-3, random);
   const auto found = trace_lidar(pairs, false);
   ASSERT_FALSE(found.empty()) << "seed " << kSeed;
   EXPECT_EQ(found.front().effect->name(), "angle_scale");
@@ -161,9 +167,7 @@ TEST(LidarEffect, that_a_few_wide_views_show_best_is_found) {
 TEST(LidarEffect, of_none_is_found_in_noise) {
   constexpr unsigned kSeed = 4;
   std::mt19937 random(kSeed);
-  std::vector<HeadingPair> pairs;
-  for (int k = 0; k < 60; ++k)
-    pairs.push_back(seen_with_scaled_angles(0.0, k % 20 == 0 ? 12.0 : 0.8, random));
+  const auto pairs = sixty_pairs(0.0, random);
   EXPECT_TRUE(trace_lidar(pairs, false).empty()) << "seed " << kSeed;
 }
 

@@ -94,11 +94,11 @@ class Bench {
   void step() {
     now += kStep;
     for (std::size_t side = 0; side < 2; ++side) {
-      wheels.rate[side] = node.order().torque ? node.order().rate[side] : 0.0;
-      if (wheels_turn) angle_[side] += wheels.rate[side] * kStep;
-      wheels.counts[side] = std::llround(angle_[side] * kTicksPerRad);
+      wheels_.rate[side] = node.order().torque ? node.order().rate[side] : 0.0;
+      if (wheels_turn) angle_[side] += wheels_.rate[side] * kStep;
+      wheels_.counts[side] = std::llround(angle_[side] * kTicksPerRad);
     }
-    node.advance(now, wheels);
+    node.advance(now, wheels_);
     for (const sim::Frame& frame : node.take_frames(now))
       if (link_from_node) controller->on_frame(to_can(frame, now));
     controller->on_time(now);
@@ -110,7 +110,7 @@ class Bench {
     for (auto& tick : controller->take_ticks()) ticks.push_back(tick);
   }
 
-  sim::WheelState wheels;
+  sim::WheelState wheels_;
   std::array<double, 2> angle_{};
 };
 
@@ -120,7 +120,7 @@ std::string changed_profile(const std::string& from, const std::string& to, cons
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos);
   text.replace(at, from.size(), to);
-  const std::string path = testing::TempDir() + std::to_string(getpid()) + name;
+  std::string path = testing::TempDir() + std::to_string(getpid()) + name;
   std::ofstream(path) << text;
   return path;
 }
