@@ -180,7 +180,10 @@ class Search {
     if (reason.empty()) {
       reason = failure(trial, proof, settled);
       const bool is_plain = !candidate.curve || score.family_p_value <= kNamedLevel;
-      if (!reason.empty() && is_plain) unproved_.push_back(change);
+      if (!reason.empty() && is_plain) {
+        unproved_.push_back(change);
+        if (candidate.curve) unproved_.push_back(doubt_of_zero(task_, trial.model, *candidate.curve));
+      }
     }
     consider(trial, reason.empty() ? "added" : reason);
     strike(candidate.key);
