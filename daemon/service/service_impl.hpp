@@ -55,6 +55,9 @@ struct FormerValues {
   std::optional<std::string> calibration;  ///< JSON text; nullopt: none was in force
 };
 
+/// Share of a length; one that is further from what is known of it is another robot's.
+inline constexpr double kPlausible = 0.15;
+
 struct Service::Impl {
   Impl(const Config& configuration, Clock& time, Calibrator functions, BaseLink base_link,
        LidarLink lidar_link, ControlServer control_server, Journal write_journal);

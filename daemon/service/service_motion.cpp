@@ -20,7 +20,6 @@ Error forbidden(ErrorCode code, const std::string& what, const std::string& reme
 constexpr double kNoticedPause = 0.050;  // s between control steps that are due every 10 ms
 constexpr double kLongestPause = 0.200;  // s; M1
 
-constexpr double kPlausible = 0.15;      // share; further from nominal is no wheel of this robot
 constexpr double kLongestPlan = 1800.0;  // s; a preview of it takes some 10 ms of the loop
 
 std::optional<Error> too_long(const routines::Plan& plan) {

@@ -8,9 +8,6 @@
 namespace odomcalib {
 namespace {
 
-// More than this from the values in force is no calibration but another robot.
-constexpr double kPlausible = 0.15;
-
 std::string outcome_name(WriteOutcome outcome) {
   if (outcome == WriteOutcome::committed) return "committed";
   return outcome == WriteOutcome::rolled_back ? "rolled_back" : "unknown";

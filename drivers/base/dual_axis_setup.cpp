@@ -5,6 +5,7 @@
 
 #include "drivers/base/canopen/words.hpp"
 #include "drivers/base/dual_axis.hpp"
+#include "drivers/clean_text.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -31,17 +32,6 @@ SdoStep read_step(std::uint16_t index, std::uint8_t sub, NumberType type, bool o
 
 SdoStep write_step(const canopen::ObjectAddress& object, NumberType type, std::int64_t value, bool optional) {
   return {SdoStep::Kind::write, object, type, value, optional, canopen::kSdoTimeout_s, ""};
-}
-
-/// Strings may be padded with blanks or zeros, and are foreign text: only what prints is kept.
-std::string clean_text(const std::vector<std::uint8_t>& bytes) {
-  std::string out;
-  for (const std::uint8_t byte : bytes) {
-    if (byte == 0) break;
-    out += byte >= 0x20 && byte < 0x7F ? static_cast<char>(byte) : '?';
-  }
-  while (!out.empty() && out.back() == ' ') out.pop_back();
-  return out;
 }
 
 void add_watchdog(std::vector<SdoStep>& steps, const Profile& profile) {
@@ -125,7 +115,8 @@ void DualAxis::end_identification() {
     return outcome == nullptr || outcome->error ? 0U : static_cast<std::uint32_t>(outcome->value);
   };
   Identity found{number("vendor"), number("product"), number("revision"), number("serial"), ""};
-  if (const auto* name = setup_.find("name"); name != nullptr) found.name = clean_text(name->bytes);
+  if (const auto* name = setup_.find("name"); name != nullptr)
+    found.name = clean_text(std::string(name->bytes.begin(), name->bytes.end()));
   identity_ = found;
   heard_at_ = now_;
   const bool ours = (profile_.vendor == 0 || profile_.vendor == found.vendor) &&

@@ -55,6 +55,13 @@ struct PioneerRig : Rig<sim::PioneerBase, SerialBench> {
 using Rigs = testing::Types<AgilexRig, VescRig, ArduinoRig, PioneerRig>;
 TYPED_TEST_SUITE(Devices, Rigs);
 
+void enable(Bench& bench) {
+  ASSERT_TRUE(bench.run_until(ControllerState::disabled)) << bench.story();
+  bench.run(0.5);
+  bench.controller->enable(bench.now);
+  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+}
+
 /// +1 or -1: a motor that is mounted mirrored turns the other way.
 double mounting(const RobotDescription& robot, std::size_t side) {
   return robot.controller == "vesc" && side == 1 ? -1.0 : 1.0;
@@ -96,10 +103,7 @@ TYPED_TEST(Devices, is_found_moves_counts_and_stops) {
 TYPED_TEST(Devices, a_command_that_grows_old_becomes_zero) {
   TypeParam rig;
   Bench& bench = *rig.bench;
-  ASSERT_TRUE(bench.run_until(ControllerState::disabled));
-  bench.run(0.5);
-  bench.controller->enable(bench.now);
-  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  ASSERT_NO_FATAL_FAILURE(enable(bench));
   bench.drive(3.0, 3.0, 0.5);
   EXPECT_NE(rig.device.wheels().rate[0], 0.0);
   bench.run(0.2);
@@ -110,10 +114,7 @@ TYPED_TEST(Devices, a_command_that_grows_old_becomes_zero) {
 TYPED_TEST(Devices, quick_stop_stops_at_once) {
   TypeParam rig;
   Bench& bench = *rig.bench;
-  ASSERT_TRUE(bench.run_until(ControllerState::disabled));
-  bench.run(0.5);
-  bench.controller->enable(bench.now);
-  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  ASSERT_NO_FATAL_FAILURE(enable(bench));
   bench.drive(3.0, 3.0, 0.5);
   bench.controller->quick_stop(bench.now);
   bench.run(0.06);
@@ -125,10 +126,7 @@ TYPED_TEST(Devices, quick_stop_stops_at_once) {
 TYPED_TEST(Devices, a_quick_stop_is_on_its_way_before_anything_else_happens) {
   TypeParam rig;
   Bench& bench = *rig.bench;
-  ASSERT_TRUE(bench.run_until(ControllerState::disabled));
-  bench.run(0.5);
-  bench.controller->enable(bench.now);
-  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  ASSERT_NO_FATAL_FAILURE(enable(bench));
   bench.drive(3.0, 3.0, 0.5);
   rig.device.silent = true;  // an answer that is due gets lost
   bench.drive(3.0, 3.0, 0.03);
@@ -142,10 +140,7 @@ TYPED_TEST(Devices, a_quick_stop_is_on_its_way_before_anything_else_happens) {
 TYPED_TEST(Devices, silence_in_motion_is_a_stop_and_the_device_is_found_again) {
   TypeParam rig;
   Bench& bench = *rig.bench;
-  ASSERT_TRUE(bench.run_until(ControllerState::disabled));
-  bench.run(0.5);
-  bench.controller->enable(bench.now);
-  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  ASSERT_NO_FATAL_FAILURE(enable(bench));
   bench.drive(3.0, 3.0, 0.5);
   rig.device.silent = true;
   bench.drive(3.0, 3.0, 1.0);
@@ -163,10 +158,7 @@ TYPED_TEST(Devices, silence_in_motion_is_a_stop_and_the_device_is_found_again) {
 TYPED_TEST(Devices, what_is_not_a_number_is_refused_and_stops) {
   TypeParam rig;
   Bench& bench = *rig.bench;
-  ASSERT_TRUE(bench.run_until(ControllerState::disabled));
-  bench.run(0.5);
-  bench.controller->enable(bench.now);
-  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  ASSERT_NO_FATAL_FAILURE(enable(bench));
   EXPECT_FALSE(bench.controller->command(std::nan(""), 0.0, bench.now).ok());
   bench.run(0.01);
   EXPECT_TRUE(bench.happened("bad_command"));

@@ -153,19 +153,23 @@ TEST(Transaction, does_not_take_the_result_of_a_store_for_its_read) {
   EXPECT_TRUE(is_new(memory.stored));
 }
 
+/// Takes no value, the old ones neither.
+struct Refusing : FakeController {
+  using FakeController::FakeController;
+  Mishap first = Mishap::abort;  ///< at the first write
+  Result<void> start_write_parameters(const std::vector<drivers::ParameterValue>& values,
+                                      double now) override {
+    fail_at = jobs;
+    mishap = jobs == 1 ? first : Mishap::abort;
+    return FakeController::start_write_parameters(values, now);
+  }
+};
+
 TEST(Transaction, old_values_that_were_never_lost_need_not_be_written_back) {
   const Folder folder;
   Memory memory;
   auto journal = Journal::open(folder.path / "journal");
-  struct Locked : FakeController {
-    using FakeController::FakeController;
-    Result<void> start_write_parameters(const std::vector<drivers::ParameterValue>& values,
-                                        double now) override {
-      fail_at = jobs;
-      mishap = Mishap::abort;
-      return FakeController::start_write_parameters(values, now);
-    }
-  } controller(memory);
+  Refusing controller(memory);
   Transaction transaction(journal.value());
   ASSERT_TRUE(transaction.write("apply", kNew).ok());
   const auto report = run(transaction, controller);
@@ -179,15 +183,8 @@ TEST(Transaction, asks_for_an_operator_when_neither_set_can_be_reached) {
   const Folder folder;
   Memory memory;
   auto journal = Journal::open(folder.path / "journal");
-  struct Stubborn : FakeController {
-    using FakeController::FakeController;
-    Result<void> start_write_parameters(const std::vector<drivers::ParameterValue>& values,
-                                        double now) override {
-      fail_at = jobs;
-      mishap = jobs == 1 ? Mishap::half_written : Mishap::abort;
-      return FakeController::start_write_parameters(values, now);
-    }
-  } controller(memory);
+  Refusing controller(memory);
+  controller.first = Mishap::half_written;
   Transaction transaction(journal.value());
   ASSERT_TRUE(transaction.write("apply", kNew).ok());
   const auto report = run(transaction, controller);
