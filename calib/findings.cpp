@@ -64,8 +64,11 @@ class Filler {
     if (found_.stamps.any()) calibration_.extensions["stamps"] = to_json(found_.stamps);
     if (!found_.outcome.considered.empty())
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
-    store_report_data(make_report_data(found_.session, found_.outcome, plain_), calibration_);
-    const GateResult gate = judge(calibration_, footing());
+    const ReportData report = make_report_data(found_.session, found_.outcome, plain_);
+    store_report_data(report, calibration_);
+    Footing stands_on = footing();
+    stands_on.drive_errors = report.drive_errors;
+    const GateResult gate = judge(calibration_, stands_on);
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;
   }

@@ -109,6 +109,17 @@ class Judgement {
     }
   }
 
+  /// What loses counts or slips now and then leaves most pairs clean, and adds up on the way.
+  void check_drives(const std::vector<DriveError>& errors) {
+    for (const DriveError& error : errors)
+      if (error.name == "open_loop_10s_position" && error.after && error.noise_floor &&
+          error.after->value > kWarnResidual * *error.noise_floor && error.after->low > *error.noise_floor)
+        warn("odometry over ten seconds is off by " + times(error.after->value / *error.noise_floor) +
+             " the noise floor: something moves the robot that the counts do not show; look for counts that "
+             "get "
+             "lost, slip, and what touches the robot");
+  }
+
   [[nodiscard]] GateResult result() const {
     if (!refusals_.empty()) return {Verdict::refused, refusals_};
     if (!warnings_.empty()) return {Verdict::accepted_with_warnings, warnings_};
@@ -141,6 +152,7 @@ GateResult judge(const Calibration& calibration, const Footing& footing) {
   }
   judgement.check_matches(footing.matched, footing.unmatched);
   judgement.check_residual(calibration.residual);
+  judgement.check_drives(footing.drive_errors);
   for (const std::string& remark : footing.remarks) judgement.warn(remark);
   if (!footing.converged) judgement.warn("the fit had not settled when its iterations ran out");
   return judgement.result();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proto/calibration.hpp"
+#include "proto/report_data.hpp"
 
 namespace odomcalib::calib {
 
@@ -23,6 +24,7 @@ struct Footing {
   /// Base quantities with the deviations that the motion leaves, without what is unknown of the effects;
   /// empty: those of the calibration.
   QuantityList measured = {};
+  std::vector<DriveError> drive_errors = {};
 };
 
 /// Refuses implausible or badly determined values, or those of the few scans that happened to match, and says

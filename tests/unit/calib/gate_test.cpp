@@ -53,6 +53,22 @@ TEST(Gate, accepts_what_only_a_law_of_unknown_shape_makes_uncertain_and_says_so)
   EXPECT_EQ(judge(uncertain, footing).verdict, Verdict::refused);
 }
 
+TEST(Gate, warns_of_a_way_that_adds_up_to_more_than_noise) {
+  Footing footing = kFirm;
+  const auto drifting = [&](double value, double low) {
+    footing.drive_errors = {
+        {"open_loop_10s_position", "m", 20, {}, {}, Bounded{value, low, 2.0 * value}, 0.004}};
+    return judge(sound(), footing);
+  };
+  EXPECT_EQ(drifting(0.0079, 0.006).verdict, Verdict::accepted);
+  EXPECT_EQ(drifting(0.0096, 0.0039).verdict, Verdict::accepted) << "a few stretches may have made that";
+  const GateResult gate = drifting(0.0096, 0.0041);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons.front().find("2.4 times the noise floor"), std::string::npos)
+      << gate.reasons.front();
+}
+
 TEST(Gate, refuses_what_cannot_be_the_robot) {
   EXPECT_EQ(judge(with_track(0.43, 1e-4), kFirm).verdict, Verdict::accepted);
   EXPECT_EQ(judge(with_track(0.45, 1e-4), kFirm).verdict, Verdict::accepted_with_warnings);
