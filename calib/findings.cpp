@@ -66,9 +66,7 @@ class Filler {
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
     const ReportData report = make_report_data(found_.session, found_.outcome, plain_);
     store_report_data(report, calibration_);
-    Footing stands_on = footing();
-    stands_on.drive_errors = report.drive_errors;
-    const GateResult gate = judge(calibration_, stands_on);
+    const GateResult gate = judge(calibration_, footing(report.drive_errors));
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;
   }
@@ -85,8 +83,9 @@ class Filler {
     return std::hypot(kMatcherScale, metre_in_doubt(found_.lidar, found_.session.recordings()));
   }
 
-  [[nodiscard]] Footing footing() const {
+  [[nodiscard]] Footing footing(const std::vector<DriveError>& drive_errors) const {
     Footing footing;
+    footing.drive_errors = drive_errors;
     footing.converged = found_.outcome.model.fit.converged;
     footing.measured = measured_;
     if (outliers_) footing.remarks.push_back(to_text(*outliers_));

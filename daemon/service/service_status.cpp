@@ -22,19 +22,6 @@ ordered_json view_check(const std::vector<safety::Sector>& blind) {
           {"remedy", "moves that go there are asked about: see that this area is free"}};
 }
 
-ordered_json check_geometry(const RobotDescription& robot, const std::string& origin) {
-  std::string missing;
-  const auto need = [&missing](double value, const char* name) {
-    if (!(value > 0.0)) missing += (missing.empty() ? "" : ", ") + std::string(name);
-  };
-  need(robot.left_wheel_diameter, "left wheel diameter");
-  need(robot.right_wheel_diameter, "right wheel diameter");
-  need(robot.track_width, "track width");
-  need(robot.ticks_per_rev, "ticks per turn");
-  return check("geometry", missing.empty(), missing.empty() ? origin : "not known: " + missing,
-               "state robot.wheel_diameter, robot.track_width; ticks in the profile");
-}
-
 ordered_json check_disk(const std::filesystem::path& folder) {
   constexpr std::uintmax_t kMegabyte = 1'000'000, kLeast = 64;
   std::error_code error;
@@ -179,9 +166,13 @@ ordered_json Service::Impl::checks() const {
                        "check lidar and baud rate"));
   list.push_back(view_check(cover.blind(now).sectors()));
   const auto wrong = geometry_forbidden();
-  list.push_back(
-      wrong ? check("geometry", false, wrong->what, wrong->remedy)
-            : check_geometry(all, in_force.empty() ? "from the configuration" : "from the controller"));
+  const bool ticks_known = all.ticks_per_rev > 0.0;
+  list.push_back(wrong ? check("geometry", false, wrong->what, wrong->remedy)
+                       : check("geometry", ticks_known,
+                               !ticks_known       ? "not known: ticks per turn"
+                               : in_force.empty() ? "from the configuration"
+                                                  : "from the controller",
+                               "state the ticks per turn in the profile"));
   list.push_back(
       check("write-back", !operator_needed, operator_needed ? write_problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
