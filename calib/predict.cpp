@@ -162,13 +162,14 @@ struct Odometry::State {
   double ticks_per_rev = 0.0;
   std::deque<TickSample> history;
   Pose pose;
-  DriveHistory drive{{}};
+  DriveHistory drive{{}, 0.0};
 };
 
 Odometry::Odometry(const Calibration& calibration) : state_(std::make_unique<State>()) {
   state_->correction = correction_of(calibration);
   state_->ticks_per_rev = calibration.robot.ticks_per_rev;
-  state_->drive = DriveHistory(to_base(as_span(state_->correction.parameters)));
+  const double tick_angle = state_->ticks_per_rev > 0.0 ? 2.0 * kPi / state_->ticks_per_rev : 0.0;
+  state_->drive = DriveHistory(to_base(as_span(state_->correction.parameters)), tick_angle);
 }
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;

@@ -24,12 +24,24 @@ void remember(std::span<double> memory, double motion) {
 
 }  // namespace
 
-double DriveHistory::Wheel::advance(double delta) {
-  const double now = delta == 0.0 ? direction : std::copysign(1.0, delta);
-  if (direction != 0.0 && now != direction) since = 0.0;
-  direction = now;
+double DriveHistory::Wheel::advance(double delta, double dither) {
+  if (direction == 0.0) {
+    behind += delta;
+    if (std::abs(behind) <= dither) return since;
+    direction = std::copysign(1.0, behind);
+    behind = 0.0;
+    return since;
+  }
+  const double ahead = direction * delta - behind;
+  behind = std::max(-ahead, 0.0);
+  if (behind > dither) {
+    direction = -direction;
+    behind = 0.0;
+    since = std::abs(delta);
+    return 0.0;
+  }
   const double before = since;
-  since += std::abs(delta);
+  since += std::max(ahead, 0.0);
   return before;
 }
 
@@ -45,8 +57,8 @@ void DriveHistory::advance(StepContext& c) {
   since_reversal_ += c.way;
   c.distance = distance_;
   distance_ += c.way;
-  c.left_since_reversal = left_.advance(c.left_delta);
-  c.right_since_reversal = right_.advance(c.right_delta);
+  c.left_since_reversal = left_.advance(c.left_delta, dither_);
+  c.right_since_reversal = right_.advance(c.right_delta, dither_);
   swing_caster(c, step);
   relax_turn(c, step);
   remember_stop(c);

@@ -12,17 +12,23 @@ namespace odomcalib::calib {
 /// What accumulates over a drive: pose by the plain model, and how far back the last reversals lie.
 class DriveHistory {
  public:
-  explicit DriveHistory(const BaseParameters& base) : base_(base) { since_stop_.fill(kFarBack); }
+  /// @param tick_angle rad, of one count: a wheel that stands between two may show either
+  DriveHistory(const BaseParameters& base, double tick_angle) : base_(base), dither_(kDither * tick_angle) {
+    since_stop_.fill(kFarBack);
+  }
   /// Fills the fields of `context` that depend on the drive so far, then takes the interval in.
   void advance(StepContext& context);
 
  private:
   /// m or rad: the drive begins as if the last reversal and the last stop lay so far back.
   static constexpr double kFarBack = 1e3;
+  static constexpr double kDither = 1.5;  ///< counts; coming back by no more is no reversal
   struct Wheel {
     double direction = 0.0;
+    double behind = 0.0;  ///< rad, its farthest point in that direction; without one, its way so far
     double since = kFarBack;
-    double advance(double delta);
+    /// @return rotation since the last reversal before this interval, rad
+    double advance(double delta, double dither);
   };
   void swing_caster(StepContext& context, const Pose& step);
   void relax_turn(StepContext& context, const Pose& step);
@@ -31,6 +37,7 @@ class DriveHistory {
   void remember_turn(StepContext& context, double yaw);
 
   BaseParameters base_;
+  double dither_;  ///< rad
   Pose pose_;
   Wheel left_, right_;
   double direction_ = 0.0;

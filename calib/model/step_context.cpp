@@ -244,7 +244,7 @@ void see_from_the_past(StepContext& last, const WheelTrack& track, const BasePar
 
 std::vector<StepContext> make_context(const WheelTrack& track, const BaseParameters& base) {
   std::vector<StepContext> contexts = make_context_of_moment(track, base);
-  DriveHistory history(base);
+  DriveHistory history(base, track.tick_angle);
   for (StepContext& c : contexts) history.advance(c);
   return contexts;
 }

@@ -1,5 +1,6 @@
 #include "calib/wheels/fine_track.hpp"
 
+#include <algorithm>
 #include <boost/math/interpolators/makima.hpp>
 #include <cmath>
 #include <utility>
@@ -31,6 +32,12 @@ void append(WheelTrack& track, double t, double left, double right, int segment)
   track.segment.push_back(segment);
 }
 
+/// Between two samples a cubic may go a little beyond them, and between two that are equal err by rounding: a
+/// wheel that stands would seem to reverse.
+double between(double from, double to, double value) {
+  return std::clamp(value, std::min(from, to), std::max(from, to));
+}
+
 /// Samples [begin, end) of one segment without gaps.
 void append_refined(const WheelTrack& track, std::size_t begin, std::size_t end, WheelTrack& out) {
   const auto copy = [&](std::size_t k) {
@@ -48,7 +55,8 @@ void append_refined(const WheelTrack& track, std::size_t begin, std::size_t end,
     const int parts = static_cast<int>(std::ceil(duration / kLongest));
     for (int part = 1; part < parts; ++part) {
       const double t = track.t[k] + duration * part / parts;
-      append(out, t, left(t), right(t), track.segment[k]);
+      append(out, t, between(track.left[k], track.left[k + 1], left(t)),
+             between(track.right[k], track.right[k + 1], right(t)), track.segment[k]);
     }
   }
   copy(end - 1);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace odomcalib::calib {
 namespace {
@@ -56,6 +57,24 @@ TEST(FineTrack, a_wheel_that_stands_does_not_move) {
   for (const double t : {0.03, 0.5, 0.87, 5.13, 5.6}) {
     const std::size_t k = fine.interval_at(t);
     EXPECT_EQ(fine.left[k], fine.left[k + 1]) << t;
+  }
+}
+
+/// Counts of an encoder, as a recording has them.
+WheelTrack counted_every(double period) {
+  constexpr double kCount = 2.0 * std::numbers::pi / 8000.0;
+  WheelTrack track = sampled_every(period);
+  for (auto* angles : {&track.left, &track.right})
+    for (double& angle : *angles) angle = kCount * std::round(4273.0 + angle / kCount);
+  return track;
+}
+
+TEST(FineTrack, goes_beyond_no_sample) {
+  const WheelTrack rare = counted_every(0.04), fine = finely_sampled(rare);
+  for (std::size_t k = 0; k + 1 < fine.t.size(); ++k) {
+    const std::size_t own = rare.interval_at(fine.t[k]);
+    EXPECT_GE(fine.left[k], rare.left[own]) << fine.t[k];
+    EXPECT_LE(fine.left[k], rare.left[own + 1]) << fine.t[k];
   }
 }
 

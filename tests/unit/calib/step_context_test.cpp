@@ -33,6 +33,42 @@ std::vector<StepContext> contexts_of(const std::vector<Leg>& legs) {
   return make_context(track, kBase);
 }
 
+/// Of a left wheel that shows `counts` one after the other.
+std::vector<StepContext> contexts_of_counts(const std::vector<int>& counts) {
+  WheelTrack track;
+  track.tick_angle = 0.01;
+  for (const int count : counts) {
+    track.t.push_back(kPeriod * static_cast<double>(track.t.size()));
+    track.left.push_back(track.tick_angle * count);
+    track.right.push_back(0.0);
+    track.segment.push_back(0);
+  }
+  return make_context(track, kBase);
+}
+
+TEST(Reversal, is_more_than_a_count) {
+  const auto contexts = contexts_of_counts({0, 5, 10, 9, 10, 9, 10, 15, 20});
+  for (const StepContext& c : contexts) EXPECT_GT(c.left_since_reversal, 100.0) << c.t;
+}
+
+TEST(Reversal, counts_from_where_the_wheel_turned) {
+  const auto contexts = contexts_of_counts({0, 5, 10, 9, 7, 2, -3});
+  EXPECT_GT(contexts[2].left_since_reversal, 100.0);
+  EXPECT_EQ(contexts[3].left_since_reversal, 0.0);
+  EXPECT_NEAR(contexts[5].left_since_reversal, 0.07, 1e-12);
+}
+
+TEST(Reversal, needs_no_fast_start) {
+  const auto contexts = contexts_of_counts({0, 1, 2, 3, 2, 1, 0});
+  EXPECT_GT(contexts[3].left_since_reversal, 100.0);
+  EXPECT_EQ(contexts[4].left_since_reversal, 0.0);
+}
+
+TEST(Reversal, ends_where_a_wheel_dithers_at_rest) {
+  const auto contexts = contexts_of_counts({0, 10, 5, 0, 1, 0, 1, 0, 1, 0});
+  EXPECT_NEAR(contexts[8].left_since_reversal, contexts[3].left_since_reversal, 1e-12);
+}
+
 std::size_t caster(std::size_t trail, double lean) {
   const auto place = std::find(kCasterLeans.begin(), kCasterLeans.end(), lean);
   return trail * kCasterLeans.size() + static_cast<std::size_t>(place - kCasterLeans.begin());
