@@ -393,10 +393,13 @@ class Solver {
     constexpr double kSliding = 2.0;  // deviations; rooms with walls enough mostly stay below 1.5
     bool any = false;
     for (std::size_t i = 0; i < paths_.size(); ++i) {
-      const auto& pairs = session_->data()[i].pairs;
-      if (drift_of_matches(pairs, paths_[i]) < kSliding) continue;
-      session_->set_pairs(i, pairs_of_places(pairs, paths_[i]));
-      any = true;
+      const auto& [model, pairs, places] = session_->data()[i];
+      const Trajectory trajectory = model->trajectory(as_span(parameters_), effects_);
+      const PathOfWheels wheels = path_of_wheels(trajectory);
+      const bool slides = drift_of_matches(pairs, paths_[i], wheels) >= kSliding;
+      if (slides) session_->set_pairs(i, pairs_of_places(pairs, paths_[i], wheels));
+      session_->set_places(i, paths_[i].scans);
+      any = any || slides;
     }
     return any;
   }
@@ -471,17 +474,29 @@ class Solver {
     every_scan_placed_ = true;
   }
 
-  /// Places are believed where they confirm the matches and know better: a map may be wrong as a whole.
+  /// Places are believed where they confirm the matches and know better: a map may be wrong as a whole. What
+  /// is too small to be told, as a millisecond's delay, is too small to speak against it.
   [[nodiscard]] bool improves(const PathFit& path) const {
+    const std::vector<bool> quiet = quiet_parameters();
     double gain = 0.0;  // logarithm of the ratio of variances, summed
     for (Eigen::Index k = 0; k < parameters_.size(); ++k) {
       const double before = outcome_.model.fit.covariance(k, k), after = path.covariance(k, k);
-      if (!(before > 0.0) || !(after > 0.0)) continue;
+      if (!(before > 0.0) || !(after > 0.0) || quiet[static_cast<std::size_t>(k)]) continue;
       const double apart = path.parameters(k) - parameters_(k);
       if (apart * apart > kAgreement * kAgreement * (before + after)) return false;
       if (k < kBaseCount) gain += std::log(before / after);
     }
     return gain > 0.0;
+  }
+
+  [[nodiscard]] std::vector<bool> quiet_parameters() const {
+    std::vector<bool> quiet(kBaseCount, false);
+    for (const auto& effect : effects_) {
+      const bool is_quiet =
+          std::find(outcome_.quiet.begin(), outcome_.quiet.end(), effect) != outcome_.quiet.end();
+      quiet.insert(quiet.end(), effect->parameters().size(), is_quiet);
+    }
+    return quiet;
   }
 
   void fill() {

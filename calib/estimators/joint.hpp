@@ -8,6 +8,7 @@
 
 #include "calib/model/drive_model.hpp"
 #include "calib/noise/whitening.hpp"
+#include "calib/reference/placed_scan.hpp"
 #include "calib/reference/sensor_pair.hpp"
 #include "proto/result.hpp"
 
@@ -17,6 +18,7 @@ namespace odomcalib::calib {
 struct FitData {
   const DriveModel* model = nullptr;
   std::vector<SensorPair> pairs;
+  std::vector<PlacedScan> places = {};  ///< in time order: scans, where there is a map to tell theirs
 };
 
 struct FitOptions {

@@ -9,15 +9,10 @@
 #include "calib/lidar/lidar_trace.hpp"
 #include "calib/map/adjust.hpp"
 #include "calib/model/drive_model.hpp"
+#include "calib/reference/placed_scan.hpp"
 #include "proto/recording.hpp"
 
 namespace odomcalib::calib {
-
-struct PlacedScan {
-  double time = 0.0;           ///< s, the scan's reference time on the sensor's clock
-  Pose pose;                   ///< of the sensor in the map
-  Eigen::Matrix3d covariance;  ///< x, y in map axes, yaw
-};
 
 struct ScanPath {
   std::vector<PlacedScan> scans;  ///< in time order

@@ -6,15 +6,19 @@
 #include <vector>
 
 #include "calib/map/scan_path.hpp"
+#include "calib/reference/placed_scan.hpp"
 #include "calib/reference/sensor_pair.hpp"
 
 namespace odomcalib::calib {
 
 /// Largest drift of the chained matches against the path, in deviations that independent errors of the stated
 /// covariances would have: the larger of x, y (map axes) and yaw.
-double drift_of_matches(const std::vector<SensorPair>& pairs, const ScanPath& path);
+double drift_of_matches(const std::vector<SensorPair>& pairs, const ScanPath& path,
+                        const PathOfWheels& wheels);
 
-/// The same pairs with motions from place to place; pairs of a scan without a place are left out.
-std::vector<SensorPair> pairs_of_places(const std::vector<SensorPair>& pairs, const ScanPath& path);
+/// The same pairs with motions from place to place, each that of the nearest scan; pairs without one are left
+/// out.
+std::vector<SensorPair> pairs_of_places(const std::vector<SensorPair>& pairs, const ScanPath& path,
+                                        const PathOfWheels& wheels);
 
 }  // namespace odomcalib::calib

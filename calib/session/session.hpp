@@ -37,6 +37,10 @@ class Session {
   void set_pairs(std::size_t recording, std::vector<SensorPair> pairs) {
     data_[recording].pairs = std::move(pairs);
   }
+  /// Where the scans of one recording were taken.
+  void set_places(std::size_t recording, std::vector<PlacedScan> places) {
+    data_[recording].places = std::move(places);
+  }
 
   /// Tells the models where the base was (see DriveModel::locate).
   /// @param fixes per recording

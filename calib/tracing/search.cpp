@@ -99,11 +99,14 @@ class Search {
   void ask_the_outliers() {
     const auto trace = trace_outliers(task_.data, result_.model.fit);
     if (!trace) return;
-    const auto goes_with = [&](const Candidate& c) {
-      if (!c.curve || belongs_to_the_place(c.curve->law.variable)) return false;
-      return std::count(trace->depends_on.begin(), trace->depends_on.end(), c.curve->law.variable) > 0;
+    const auto goes_with = [&](const Law& law) {
+      return !belongs_to_the_place(law.variable) &&
+             std::count(trace->depends_on.begin(), trace->depends_on.end(), law.variable) > 0;
     };
-    std::erase_if(candidates_, std::not_fn(goes_with));
+    std::erase_if(candidates_, [&](const Candidate& c) {
+      const auto laws = laws_of(c);
+      return std::none_of(laws.begin(), laws.end(), goes_with);
+    });
     if (candidates_.empty()) return;
     noise_share_ = 1.0 - 0.5 * static_cast<double>(trace->outliers) / static_cast<double>(trace->pairs);
     begin_again();

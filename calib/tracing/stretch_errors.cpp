@@ -35,16 +35,16 @@ std::vector<Stretch> select(const std::vector<Stretch>& stretches, std::size_t f
 
 void add_errors(const FitData& data, const Eigen::VectorXd& parameters, const EffectList& effects,
                 const std::vector<Stretch>& stretches, StretchErrors& error) {
-  std::vector<Interval> intervals;
-  intervals.reserve(stretches.size());
-  for (const Stretch& s : stretches) intervals.push_back(s.interval);
-  const auto predicted = data.model->predict(as_span(parameters), effects, intervals);
-  for (std::size_t k = 0; k < stretches.size(); ++k) {
-    const Pose& measured = stretches[k].sensor_motion;
-    error.position.push_back(std::hypot(predicted[k].x - measured.x, predicted[k].y - measured.y));
-    error.heading.push_back(wrap_angle(predicted[k].yaw - measured.yaw));
-    error.fold.push_back(stretches[k].fold);
-    error.block.push_back(stretches[k].block);
+  if (stretches.empty()) return;
+  const Trajectory trajectory = data.model->trajectory(as_span(parameters), effects);
+  const PathOfWheels wheels = path_of_wheels(trajectory);
+  for (const Stretch& stretch : stretches) {
+    const Pose predicted = between(wheels(stretch.interval.begin), wheels(stretch.interval.end));
+    const Pose measured = measured_motion(stretch, data, wheels);
+    error.position.push_back(std::hypot(predicted.x - measured.x, predicted.y - measured.y));
+    error.heading.push_back(wrap_angle(predicted.yaw - measured.yaw));
+    error.fold.push_back(stretch.fold);
+    error.block.push_back(stretch.block);
   }
 }
 
@@ -79,6 +79,7 @@ StretchErrors where_selected(const StretchErrors& before, const StretchErrors& a
 }
 
 bool Improvement::is_plain() const {
+  if (upper < 1.0) return true;
   constexpr double kBothSides = 2.0 * 1.960, kOneSide = 1.282;  // normal quantiles, 95 % and 90 %
   const double deviation = std::log(upper / lower) / kBothSides;
   return std::log(ratio) + kOneSide * deviation < 0.0;

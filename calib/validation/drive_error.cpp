@@ -23,11 +23,14 @@ std::vector<Pose> errors_of(std::span<const FitData> data, const std::vector<Str
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     for (std::size_t d = 0; d < data.size(); ++d) {
       const auto trajectory = data[d].model->trajectory(as_span(parameters[fold]), effects);
+      const PathOfWheels wheels = path_of_wheels(trajectory);
+      const Pose base_seen_from_sensor = inverse(to_base(as_span(parameters[fold])).mount);
       for (std::size_t k = 0; k < stretches.size(); ++k) {
         const Stretch& s = stretches[k];
         if (s.fold != fold || s.recording != d) continue;
         const Pose told = between(trajectory.at(s.interval.begin), trajectory.at(s.interval.end));
-        errors[k] = {told.x - s.motion.x, told.y - s.motion.y, wrap_angle(told.yaw - s.motion.yaw)};
+        const Pose motion = conjugate(measured_motion(s, data[d], wheels), base_seen_from_sensor);
+        errors[k] = {told.x - motion.x, told.y - motion.y, wrap_angle(told.yaw - motion.yaw)};
       }
     }
   }
@@ -81,7 +84,8 @@ class Judge {
 
   void add(StretchKind kind, const std::vector<std::pair<std::string, Part>>& names,
            std::vector<DriveError>& out) const {
-    const auto stretches = find_stretches(kind, data_, folds_, *full_.fit, trusted_pairs(*full_.fit));
+    const auto stretches =
+        find_stretches(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
     if (stretches.size() < kFewest) return;
     const auto errors = [&](const std::vector<Eigen::VectorXd>& parameters) {
       return parameters.empty() ? std::vector<Pose>{}

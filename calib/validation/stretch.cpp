@@ -3,6 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "calib/geometry/vector2.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -62,8 +65,23 @@ class Chain {
           lever(base, before.after).transpose();
       sum += cross + cross.transpose();
     }
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(mount.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    return turn * sum * turn.transpose();
+    return in_axes_of_base(sum, mount);
+  }
+
+  /// The same of a chain whose ends are known otherwise, as well as `ends` says: x, y, yaw of the sensor's
+  /// motion. What is left is what the wheels and the stamps do in between.
+  [[nodiscard]] Eigen::Matrix3d covariance(const Pose& mount, const Eigen::Matrix3d& ends) const {
+    const Pose base = compose(end_, inverse(mount));
+    const Eigen::Matrix3d at_end = lever(base, end_);
+    Eigen::Matrix3d sum = at_end * ends * at_end.transpose();
+    for (const Link& link : links_) {
+      const Eigen::Matrix3d a = lever(base, link.after);
+      sum += a * covariance_of_wheels(link).asDiagonal() * a.transpose();
+    }
+    const Eigen::Vector3d begin = lever(base, links_.front().after) * links_.front().state.begin_velocity;
+    const Eigen::Vector3d end = at_end * links_.back().state.end_velocity;
+    sum += noise_.stamp_jitter * noise_.stamp_jitter * (begin * begin.transpose() + end * end.transpose());
+    return in_axes_of_base(sum, mount);
   }
 
  private:
@@ -72,6 +90,21 @@ class Chain {
     PairState state;
     Pose after;
   };
+  static Eigen::Matrix3d in_axes_of_base(const Eigen::Matrix3d& covariance, const Pose& mount) {
+    const Eigen::Matrix3d turn = rotation_about_z(mount.yaw);
+    return turn * covariance * turn.transpose();
+  }
+  /// Errors that neighbours take back, as those of the scan that they share, are none of the wheels'.
+  [[nodiscard]] Eigen::Vector3d covariance_of_wheels(const Link& link) const {
+    const double way = noise_.process_translation, turn = noise_.process_rotation;
+    const Eigen::Vector3d all = base_covariance(*link.pair, link.state, noise_).diagonal();
+    Eigen::Vector3d wheels(way * way, way * way, turn * turn);
+    for (Eigen::Index k = 0; k < wheels.size(); ++k) {
+      const double lasting = 1.0 + 2.0 * noise_.correlation.at(static_cast<std::size_t>(k));
+      wheels(k) = std::min(wheels(k), std::max(lasting, 0.0) * all(k));
+    }
+    return wheels;
+  }
   /// How an error made at `at` moves the end: a heading error swings everything that comes after it.
   static Eigen::Matrix3d lever(const Pose& end, const Pose& at) {
     Eigen::Matrix3d a = Eigen::Matrix3d::Identity();
@@ -84,12 +117,24 @@ class Chain {
   Pose end_;
 };
 
+/// Of how well places are known the wheels say nothing.
+Pose at_rest(double /*time*/) { return {}; }
+
+/// By the places of the scans about both ends.
+std::optional<PlacedMotion> motion_by_places(const FitData& data, const Interval& interval,
+                                             const PathOfWheels& wheels) {
+  const auto begin = mean_place(data.places, interval.begin, wheels);
+  const auto end = mean_place(data.places, interval.end, wheels);
+  return begin && end ? std::optional(motion_between(*begin, *end)) : std::nullopt;
+}
+
 /// One recording's stretches, found from left to right.
 class Finder {
  public:
   Finder(StretchKind kind, const FitData& data, std::size_t recording, std::span<const std::size_t> folds,
          const std::vector<bool>& trusted, std::size_t first, const NoiseModel& noise, const Pose& mount)
       : kind_(kind),
+        data_(data),
         pairs_(data.pairs),
         recording_(recording),
         folds_(folds),
@@ -154,13 +199,15 @@ class Finder {
     stretch.block = 1000 * recording_ + static_cast<std::size_t>(std::max(0.0, since / kBlockSeconds));
     stretch.amount = amount;
     stretch.interval = {pairs_[first].interval.begin, pairs_[last].interval.end};
-    stretch.sensor_motion = chain.end();
-    stretch.motion = conjugate(chain.end(), inverse(mount_));
-    stretch.covariance = chain.covariance(mount_);
+    stretch.chained = chain.end();
+    const auto ends = motion_by_places(data_, stretch.interval, at_rest);
+    stretch.is_placed = ends.has_value();
+    stretch.covariance = ends ? chain.covariance(mount_, ends->covariance) : chain.covariance(mount_);
     found_.push_back(stretch);
   }
 
   StretchKind kind_;
+  const FitData& data_;
   std::span<const SensorPair> pairs_;
   std::size_t recording_;
   std::span<const std::size_t> folds_;
@@ -179,6 +226,21 @@ std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b) {
   std::vector<bool> trusted;
   for (std::size_t k = 0; k < std::min(a.weights.size(), b.weights.size()); ++k)
     trusted.push_back(std::max(a.weights[k], b.weights[k]) >= kTrustedWeight);
+  return trusted;
+}
+
+Pose measured_motion(const Stretch& stretch, const FitData& data, const PathOfWheels& wheels) {
+  const auto placed = stretch.is_placed ? motion_by_places(data, stretch.interval, wheels) : std::nullopt;
+  return placed ? placed->motion : stretch.chained;
+}
+
+std::vector<bool> measured_pairs(std::span<const FitData> data, std::vector<bool> trusted) {
+  auto flag = trusted.begin();
+  for (const FitData& d : data)
+    for (const SensorPair& pair : d.pairs) {
+      *flag = *flag || motion_by_places(d, pair.interval, at_rest);
+      ++flag;
+    }
   return trusted;
 }
 

@@ -20,16 +20,24 @@ struct Stretch {
   std::size_t block = 0;  ///< of half a minute: stretches of one block are not independent
   double amount = 1.0;    ///< in units of the kind: 1 for open loop, m of length, full turns
   Interval interval;
-  Pose sensor_motion;          ///< measured, in the sensor's frame at the begin
-  Pose motion;                 ///< the same of the base, in its own
-  Eigen::Matrix3d covariance;  ///< of `motion` as the noise model has it: reference and wheels
+  Pose chained;                ///< motion of the sensor in its frame at the begin, by the matches
+  bool is_placed = false;      ///< places in a map tell it better
+  Eigen::Matrix3d covariance;  ///< of the base's motion as the noise model has it: reference and wheels
 };
+
+/// What the reference says of the sensor's motion over a stretch, in its frame at the begin.
+/// @param wheels of the model that is judged by it (see mean_place)
+Pose measured_motion(const Stretch& stretch, const FitData& data, const PathOfWheels& wheels);
 
 /// One flag per pair: whether its match is to be trusted by a fit. A pair far out on the tail may have
 /// failed.
 std::vector<bool> trusted_pairs(const FitResult& fit);
 /// By either of two: far out for both, a match has failed.
 std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b);
+
+/// Those that are trusted, or of which a map knows where both scans were taken: what the wheels did wrong
+/// there is part of odometry's error.
+std::vector<bool> measured_pairs(std::span<const FitData> data, std::vector<bool> trusted);
 
 /// @param folds of all pairs (see folds_of)
 /// @param fit gives mount and noise

@@ -69,6 +69,14 @@ TEST(Score, tail_of_chi_squared_agrees_with_tables) {
   EXPECT_EQ(chi_squared_tail(7.0, 0), 1.0);
 }
 
+TEST(Improvement, is_plain_where_nine_of_ten_drives_gain) {
+  EXPECT_TRUE((Improvement{0.9, 0.99, 0.82}).is_plain());
+  EXPECT_TRUE((Improvement{0.84, 0.98, 0.48}).is_plain()) << "whatever the other side is";
+  EXPECT_TRUE((Improvement{0.9, 1.02, 0.8}).is_plain());
+  EXPECT_FALSE((Improvement{0.97, 1.03, 0.91}).is_plain());
+  EXPECT_FALSE((Improvement{1.0, 1.0, 1.0}).is_plain());
+}
+
 TEST(Proof, what_makes_drives_worse_is_refused) {
   const DriveModel model = lively_model();
   FitData data = measured(model, {}, {});

@@ -133,6 +133,42 @@ TEST(DriveErrors, unknown_nominal_values_give_no_before) {
     EXPECT_FALSE(error.before.has_value()) << error.name;
 }
 
+/// In one pair in twelve the robot is pushed by 30 mm, which the matches see and the wheels do not.
+std::unique_ptr<World> pushed_world() {
+  auto world = make_world({}, {}, 13);
+  FitData& data = world->data.front();
+  for (std::size_t k = 5; k < data.pairs.size(); k += 12) data.pairs[k].motion.x += 0.03;
+  return world;
+}
+
+/// Places of all scans between which a world's pairs lie.
+std::vector<PlacedScan> places_along(const std::vector<SensorPair>& pairs) {
+  std::vector<PlacedScan> places;
+  Pose here;
+  for (const SensorPair& pair : pairs) {
+    for (const double before : {0.02, 0.01, 0.0})
+      places.push_back({pair.interval.begin - before, here, 1e-8 * Eigen::Matrix3d::Identity()});
+    here = compose(here, pair.motion);
+  }
+  return places;
+}
+
+TEST(DriveErrors, what_a_fit_leaves_out_counts_where_a_map_confirms_it) {
+  const auto world = pushed_world();
+  const FitResult fit = fitted(*world, {});
+  ASSERT_GT(fit.discarded, 40U) << "seed 13";
+  const auto over_ten_seconds = [&] {
+    return named(drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}}),
+                 "open_loop_10s_position");
+  };
+  const auto without = drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
+  EXPECT_FALSE(std::any_of(without.begin(), without.end(), [](const DriveError& error) {
+    return error.name == "open_loop_10s_position" && error.after->value > 0.01;
+  }));
+  world->data.front().places = places_along(world->data.front().pairs);
+  EXPECT_GT(over_ten_seconds().after->value, 0.025);
+}
+
 TEST(DriveErrors, too_short_a_recording_gives_no_figures) {
   const auto world = make_world({}, {}, 13);
   const FitResult fit = fitted(*world, {});

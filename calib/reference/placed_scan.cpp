@@ -1,0 +1,69 @@
+#include "calib/reference/placed_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/geometry/vector2.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+using Place = std::span<const PlacedScan>::iterator;
+
+Place first_since(std::span<const PlacedScan> places, double time) {
+  return std::lower_bound(places.begin(), places.end(), time,
+                          [](const PlacedScan& scan, double t) { return scan.time < t; });
+}
+
+PlacedScan carried(const PlacedScan& scan, double time, const PathOfWheels& wheels) {
+  return {time, compose(scan.pose, between(wheels(scan.time), wheels(time))), scan.covariance};
+}
+
+}  // namespace
+
+PlacedMotion motion_between(const PlacedScan& begin, const PlacedScan& end) {
+  PlacedMotion out{between(begin.pose, end.pose), {}};
+  const Eigen::Matrix3d into_begin = rotation_about_z(-begin.pose.yaw);
+  Eigen::Matrix3d by_begin = -into_begin;
+  by_begin(0, 2) = out.motion.y;
+  by_begin(1, 2) = -out.motion.x;
+  out.covariance = by_begin * begin.covariance * by_begin.transpose() +
+                   into_begin * end.covariance * into_begin.transpose();
+  return out;
+}
+
+PathOfWheels path_of_wheels(const Trajectory& trajectory) {
+  return [&trajectory, mount = to_base(trajectory.parameters()).mount](double time) {
+    return compose(trajectory.at(time), mount);
+  };
+}
+
+std::optional<PlacedScan> place_at(std::span<const PlacedScan> places, double time,
+                                   const PathOfWheels& wheels) {
+  constexpr double kReach = 0.15;  // s
+  const auto nearest = std::min_element(
+      first_since(places, time - kReach), first_since(places, time + kReach),
+      [&](const auto& a, const auto& b) { return std::abs(a.time - time) < std::abs(b.time - time); });
+  if (nearest == places.end() || std::abs(nearest->time - time) > kReach) return std::nullopt;
+  return carried(*nearest, time, wheels);
+}
+
+std::optional<PlacedScan> mean_place(std::span<const PlacedScan> places, double time,
+                                     const PathOfWheels& wheels) {
+  constexpr double kReach = 0.5;  // s
+  constexpr std::ptrdiff_t kFewest = 2;
+  const Place first = first_since(places, time - kReach), last = first_since(places, time + kReach);
+  if (last - first < kFewest) return std::nullopt;
+  const auto count = static_cast<double>(last - first);
+  PlacedScan mean{time, {0.0, 0.0, first->pose.yaw}, Eigen::Matrix3d::Zero()};
+  for (Place scan = first; scan != last; ++scan) {
+    const PlacedScan one = carried(*scan, time, wheels);
+    mean.pose.x += one.pose.x / count;
+    mean.pose.y += one.pose.y / count;
+    mean.pose.yaw += wrap_angle(one.pose.yaw - first->pose.yaw) / count;
+    mean.covariance += one.covariance / (count * count);
+  }
+  return mean;
+}
+
+}  // namespace odomcalib::calib

@@ -1,0 +1,91 @@
+// Places of scans in a map, and what the wheels may say about them.
+#include "calib/reference/placed_scan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr unsigned kSeed = 2112;
+constexpr double kNoise = 2e-3;   // m and rad
+constexpr double kPeriod = 0.05;  // s
+
+/// An arc that is driven faster and faster.
+Pose truth(double time) {
+  const double a = 0.05 * time * time;
+  return {2.0 * std::sin(a), 2.0 - 2.0 * std::cos(a), a};
+}
+
+/// Wheels that are a hundredth too large.
+Pose worn(double time) {
+  const double a = 1.01 * 0.05 * time * time;
+  return {2.0 * std::sin(a), 2.0 - 2.0 * std::cos(a), a};
+}
+
+std::vector<PlacedScan> places(double noise, unsigned seed = kSeed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> gauss(0.0, noise);
+  std::vector<PlacedScan> all;
+  for (double t = 0.0; t < 8.0; t += kPeriod) {
+    Pose pose = truth(t);
+    for (double* part : {&pose.x, &pose.y, &pose.yaw}) *part += gauss(engine);
+    all.push_back({t, pose, noise * noise * Eigen::Matrix3d::Identity()});
+  }
+  return all;
+}
+
+double distance(const Pose& a, const Pose& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+TEST(MeanPlace, errs_by_what_twenty_scans_leave) {
+  double sum = 0.0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    const auto mean = mean_place(places(kNoise, seed), 4.02, truth);
+    ASSERT_TRUE(mean);
+    sum += std::pow(distance(mean->pose, truth(4.02)), 2);
+    EXPECT_NEAR(std::sqrt(mean->covariance(0, 0)), kNoise / std::sqrt(20.0), 1e-9);
+  }
+  EXPECT_NEAR(std::sqrt(sum / 400.0), kNoise / std::sqrt(20.0), 0.1 * kNoise / std::sqrt(20.0))
+      << "seeds 0..199";
+}
+
+TEST(MeanPlace, forgives_the_wheels_what_they_do_before_and_after) {
+  const auto mean = mean_place(places(0.0), 4.02, worn);
+  ASSERT_TRUE(mean);
+  // Over half a second the wheels err by 2 mm; the mean by what the speed's change leaves of it.
+  EXPECT_GT(distance(worn(4.5), compose(worn(4.0), between(truth(4.0), truth(4.5)))), 1.9e-3);
+  EXPECT_LT(distance(mean->pose, truth(4.02)), 2e-4);
+}
+
+TEST(MeanPlace, needs_scans_nearby) {
+  std::vector<PlacedScan> few = places(0.0);
+  std::erase_if(few, [](const PlacedScan& scan) { return std::abs(scan.time - 4.0) < 0.42; });
+  EXPECT_TRUE(mean_place(few, 4.0, truth));
+  std::erase_if(few, [](const PlacedScan& scan) { return std::abs(scan.time - 4.0) < 0.6; });
+  EXPECT_FALSE(mean_place(few, 4.0, truth));
+  EXPECT_FALSE(mean_place({}, 4.0, truth));
+}
+
+TEST(PlaceAt, is_that_of_the_nearest_scan_carried_there) {
+  std::vector<PlacedScan> all = places(0.0);
+  EXPECT_LT(distance(place_at(all, 4.02, truth)->pose, truth(4.02)), 1e-12);
+  EXPECT_LT(distance(place_at(all, -0.1, truth)->pose, truth(-0.1)), 1e-12);
+  EXPECT_FALSE(place_at(all, -0.2, truth));
+  std::erase_if(all, [](const PlacedScan& scan) { return std::abs(scan.time - 4.0) < 0.16; });
+  EXPECT_FALSE(place_at(all, 4.0, truth));
+  EXPECT_FALSE(place_at({}, 4.0, truth));
+}
+
+TEST(MotionBetween, is_that_of_the_sensor_in_its_own_frame) {
+  const auto all = places(0.0);
+  const PlacedMotion motion = motion_between(all[10], all[50]);
+  const Pose end = compose(all[10].pose, motion.motion);
+  EXPECT_LT(distance(end, all[50].pose), 1e-12);
+  EXPECT_NEAR(end.yaw, all[50].pose.yaw, 1e-12);
+}
+
+}  // namespace
+}  // namespace odomcalib::calib
