@@ -221,6 +221,7 @@ class Filler {
   void fill_outliers() {
     outliers_ = trace_outliers(found_.session.data(), found_.outcome.model.fit);
     if (!outliers_) return;
+    outliers_->cause = cause_of_outliers(found_.session.data(), effects(), found_.outcome.model.fit);
     calibration_.extensions["outliers"] = to_json(*outliers_);
     if (!found_.was_searched || calibration_.unexplained || outliers_->depends_on.empty()) return;
     calibration_.unexplained = Unexplained{{}, outliers_->p_value, 0.0};

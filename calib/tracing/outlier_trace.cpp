@@ -195,11 +195,27 @@ class Tracer {
   std::vector<std::size_t> order_;
 };
 
+/// Whose fault they are, as far as a map tells.
+std::string to_text(const OutlierCause& cause) {
+  if (cause.confirmed == 0) return "";
+  std::ostringstream out;
+  out << "; the map confirms " << cause.confirmed << " of " << cause.placed
+      << ": there the robot moved otherwise than its wheels" << std::fixed << std::setprecision(1);
+  const auto excess = [&](double value, const char* verb, double unit, const char* name) {
+    if (value != 0.0)
+      out << ", " << verb << " " << std::abs(value) / unit << " " << name
+          << (value > 0.0 ? " farther" : " less far");
+  };
+  excess(cause.farther, "came", 1e-3, "mm");
+  excess(cause.turned_farther, "turned", 1e-3, "mrad");
+  return out.str();
+}
+
 }  // namespace
 
 std::optional<OutlierTrace> trace_outliers(std::span<const FitData> data, const FitResult& fit) {
   const std::vector<std::size_t> events = events_of(fit);
-  OutlierTrace trace{fit.discarded, fit.outlier.size(), {}, 1.0, 0.0, 0.0};
+  OutlierTrace trace{fit.discarded, fit.outlier.size(), {}, 1.0, 0.0, 0.0, {}};
   if (events.size() < kFewest ||
       static_cast<double>(trace.outliers) < kFewestShare * static_cast<double>(trace.pairs))
     return std::nullopt;
@@ -211,15 +227,12 @@ std::string to_text(const OutlierTrace& trace) {
   std::ostringstream out;
   out << trace.outliers << " of " << trace.pairs
       << " pairs of scans contradict all others by more than five deviations and are left out";
-  if (trace.depends_on.empty()) {
-    out << "; nothing that was observed goes with them";
-    return out.str();
-  }
-  out << "; they go with";
+  if (trace.depends_on.empty()) out << "; nothing that was observed goes with them";
   for (std::size_t k = 0; k < trace.depends_on.size(); ++k)
-    out << (k > 0 ? ", " : " ") << to_string(trace.depends_on[k]);
-  if (trace.depends_on.front() == Variable::time)
+    out << (k > 0 ? ", " : "; they go with ") << to_string(trace.depends_on[k]);
+  if (!trace.depends_on.empty() && trace.depends_on.front() == Variable::time)
     out << std::fixed << std::setprecision(0) << ", from " << trace.begin << " to " << trace.end << " s";
+  out << to_text(trace.cause);
   return out.str();
 }
 
@@ -229,7 +242,11 @@ std::string to_json(const OutlierTrace& trace) {
   const nlohmann::ordered_json json = {{"outliers", trace.outliers},
                                        {"pairs", trace.pairs},
                                        {"depends_on", names},
-                                       {"p_value", trace.p_value}};
+                                       {"p_value", trace.p_value},
+                                       {"placed", trace.cause.placed},
+                                       {"confirmed", trace.cause.confirmed},
+                                       {"farther", trace.cause.farther},
+                                       {"turned_farther", trace.cause.turned_farther}};
   return json.dump();
 }
 

@@ -10,6 +10,7 @@
 
 #include "calib/estimators/joint.hpp"
 #include "calib/model/carrier.hpp"
+#include "calib/tracing/outlier_cause.hpp"
 
 namespace odomcalib::calib {
 
@@ -19,6 +20,7 @@ struct OutlierTrace {
   std::vector<Variable> depends_on;  ///< that single out these pairs, the best first; empty: none does
   double p_value = 1.0;              ///< of the best of all variables, by permutation
   double begin = 0.0, end = 0.0;     ///< s, of what goes with time: when
+  OutlierCause cause;                ///< to be asked for: see cause_of_outliers
 };
 
 /// nullopt when so few pairs are left out that noise and single bad matches account for them. Neighbours
@@ -27,7 +29,7 @@ std::optional<OutlierTrace> trace_outliers(std::span<const FitData> data, const 
 
 /// One sentence for a person.
 std::string to_text(const OutlierTrace& trace);
-/// {"outliers", "pairs", "depends_on", "p_value"}
+/// {"outliers", "pairs", "depends_on", "p_value", "placed", "confirmed", "farther", "turned_farther"}
 std::string to_json(const OutlierTrace& trace);
 
 }  // namespace odomcalib::calib

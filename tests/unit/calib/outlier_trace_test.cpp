@@ -62,5 +62,64 @@ TEST(OutlierTrace, names_the_motion_that_goes_wrong) {
   EXPECT_EQ(trace->depends_on.front(), Variable::turn_rate) << to_text(*trace);
 }
 
+/// Where the scans of these pairs were taken.
+std::vector<PlacedScan> places_of(const std::vector<SensorPair>& pairs) {
+  std::vector<PlacedScan> places;
+  Pose here;
+  for (const SensorPair& pair : pairs) {
+    places.push_back({pair.interval.begin, here, 1e-8 * Eigen::Matrix3d::Identity()});
+    here = compose(here, pair.motion);
+  }
+  places.push_back({pairs.back().interval.end, here, 1e-8 * Eigen::Matrix3d::Identity()});
+  return places;
+}
+
+enum class Guilty { wheels, matches };
+
+/// Of pairs in which the robot comes 30 mm less far than its wheels, or in which a match says so.
+OutlierCause cause_when(Guilty guilty) {
+  const DriveModel model = jerky_model();
+  FitData data = measured(model, {}, {});
+  if (guilty == Guilty::matches) data.places = places_of(data.pairs);
+  for (const std::size_t k : pairs_between(3, 475, 31)) {
+    const double way = std::hypot(data.pairs[k].motion.x, data.pairs[k].motion.y);
+    data.pairs[k].motion.x -= 0.03 * data.pairs[k].motion.x / way;
+    data.pairs[k].motion.y -= 0.03 * data.pairs[k].motion.y / way;
+  }
+  if (guilty == Guilty::wheels) data.places = places_of(data.pairs);
+  const auto fit = fit_joint({&data, 1}, {}, to_vector(kBase));
+  EXPECT_TRUE(fit);
+  return cause_of_outliers({&data, 1}, {}, fit.value());
+}
+
+TEST(OutlierCause, a_map_tells_slip_from_failed_matches) {
+  const OutlierCause slip = cause_when(Guilty::wheels), failed = cause_when(Guilty::matches);
+  EXPECT_GE(slip.confirmed, 14U);
+  EXPECT_EQ(slip.confirmed, slip.placed);
+  EXPECT_NEAR(slip.farther, -0.03, 0.005);
+  EXPECT_GE(failed.placed, 14U);
+  EXPECT_EQ(failed.confirmed, 0U);
+  EXPECT_EQ(failed.farther, 0.0);
+}
+
+TEST(OutlierCause, nothing_is_said_without_a_map) {
+  const DriveModel model = jerky_model();
+  FitData data = measured(model, {}, {});
+  for (const std::size_t k : pairs_between(3, 475, 31)) data.pairs[k].motion.yaw += 0.02;
+  const auto fit = fit_joint({&data, 1}, {}, to_vector(kBase));
+  ASSERT_TRUE(fit);
+  auto trace = trace_outliers({&data, 1}, fit.value());
+  ASSERT_TRUE(trace);
+  trace->cause = cause_of_outliers({&data, 1}, {}, fit.value());
+  EXPECT_EQ(trace->cause.placed, 0U);
+  EXPECT_EQ(to_text(*trace).find("map"), std::string::npos) << to_text(*trace);
+  trace->cause = {14, 12, -0.0123, 0.0};
+  EXPECT_NE(
+      to_text(*trace).find("the map confirms 12 of 14: there the robot moved otherwise than its wheels, "
+                           "came 12.3 mm less far"),
+      std::string::npos)
+      << to_text(*trace);
+}
+
 }  // namespace
 }  // namespace odomcalib::calib
