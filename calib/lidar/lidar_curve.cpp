@@ -1,7 +1,13 @@
 #include "calib/lidar/lidar_curve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <string>
+
+#include "calib/geometry/se2.hpp"
+#include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -56,6 +62,57 @@ class OfBearing final : public UnnamedError {
   }
 };
 
+/// Hats every 15 degrees, less the mean of all that are seen, which is an offset: what a cover, a post or a
+/// reflection does to part of the view, harmonics would spread over all of it.
+class OfSector final : public UnnamedError {
+ public:
+  /// @param knots that are seen, two at least
+  explicit OfSector(std::vector<std::size_t> knots)
+      : UnnamedError("bearing", true, knots.size() - 1), knots_(std::move(knots)) {}
+  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
+    std::vector<LidarParameter> all = UnnamedError::parameters();
+    for (std::size_t k = 0; k < all.size(); ++k)
+      all[k].name = "radial_at_" + std::to_string(360 / kKnots * knots_[k + 1]);
+    return all;
+  }
+
+  /// What all parts have in common no scan shows well: most of the view is taken to be right.
+  [[nodiscard]] BeamShift total(const Sighting& sighting, std::span<const double> values) const override {
+    std::vector<double> at_knots{0.0};
+    at_knots.insert(at_knots.end(), values.begin(), values.end());
+    const double mean =
+        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(at_knots.size());
+    BeamShift shift = UnnamedError::total(sighting, values);
+    shift.radial -= median_of(std::move(at_knots)) - mean;
+    return shift;
+  }
+
+  static constexpr std::size_t kKnots = 24;
+  static double place_of(double bearing) {
+    return static_cast<double>(kKnots) * angle_of_turn(bearing) / (2.0 * kPi);
+  }
+
+ private:
+  static double hat(double place, std::size_t knot) {
+    const double apart = std::abs(place - static_cast<double>(knot));
+    return std::max(0.0, 1.0 - std::min(apart, static_cast<double>(kKnots) - apart));
+  }
+  [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
+    const double place = place_of(s.bearing);
+    std::vector<double> all;
+    double mean = 0.0;
+    for (const std::size_t knot : knots_) {
+      all.push_back(hat(place, knot));
+      mean += all.back() / static_cast<double>(knots_.size());
+    }
+    all.erase(all.begin());
+    for (double& f : all) f -= mean;
+    return all;
+  }
+
+  std::vector<std::size_t> knots_;
+};
+
 /// Hats over the logarithm of the range, of equal height from the nearest knot inwards and the farthest
 /// outwards. What they have in common with a scale no scan shows.
 class OfRange final : public UnnamedError {
@@ -96,6 +153,17 @@ std::array<double, 4> slants(const Sighting& s) {
 }
 
 LidarEffectPtr make_incidence_error() { return std::make_shared<OfIncidence>(); }
+
+LidarEffectPtr make_sector_error(const std::vector<double>& bearings) {
+  constexpr std::size_t kFewest = 30;
+  std::array<std::size_t, OfSector::kKnots> seen{};
+  for (const double bearing : bearings)
+    ++seen.at(static_cast<std::size_t>(std::round(OfSector::place_of(bearing))) % OfSector::kKnots);
+  std::vector<std::size_t> knots;
+  for (std::size_t k = 0; k < seen.size(); ++k)
+    if (seen.at(k) >= kFewest) knots.push_back(k);
+  return knots.size() < 2 ? nullptr : std::make_shared<OfSector>(std::move(knots));
+}
 
 std::vector<LidarEffectPtr> lidar_curves() {
   return {std::make_shared<OfBearing>(true), std::make_shared<OfBearing>(false), std::make_shared<OfRange>(),

@@ -15,6 +15,11 @@ std::array<double, 4> slants(const Sighting& sighting);
 /// Range error that depends on the incidence; its coefficients are those of slants().
 LidarEffectPtr make_incidence_error();
 
+/// Range error that is another in each part of the view.
+/// @param bearings rad, of all sightings; nothing is said where there are few
+/// @return null when they are too few anywhere
+LidarEffectPtr make_sector_error(const std::vector<double>& bearings);
+
 /// One for each variable and direction of the displacement: "bearing", "range", "incidence".
 std::vector<LidarEffectPtr> lidar_curves();
 

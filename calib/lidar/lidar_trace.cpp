@@ -33,6 +33,16 @@ bool is_plausible(const LidarEffect& effect, const std::vector<double>& values) 
   return size > 1.0;
 }
 
+std::vector<double> bearings_in(const std::vector<HeadingPair>& pairs) {
+  std::vector<double> all;
+  for (const HeadingPair& pair : pairs)
+    for (const DoubleSighting& point : pair.points) {
+      all.push_back(point.first.bearing);
+      all.push_back(point.second.bearing);
+    }
+  return all;
+}
+
 class Trace {
  public:
   Trace(const std::vector<HeadingPair>& pairs, const std::vector<LidarEffectPtr>& candidates)
@@ -163,6 +173,7 @@ std::vector<LidarFinding> trace_lidar(const std::vector<HeadingPair>& pairs, boo
   if (pairs.size() < kFewestPairs) return {};
   std::vector<LidarEffectPtr> candidates = lidar_catalogue(all_round);
   for (const auto& curve : lidar_curves()) candidates.push_back(curve);
+  if (auto sector = make_sector_error(bearings_in(pairs))) candidates.push_back(std::move(sector));
   const auto is_judged = [](const LidarEffectPtr& effect) {
     return effect->name() == make_range_bias()->name() || effect->name() == make_incidence_error()->name();
   };

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 
@@ -12,9 +13,17 @@
 namespace odomcalib::calib {
 namespace {
 
+/// Bearings of a lidar that sees 270 degrees.
+std::vector<double> front_view() {
+  std::vector<double> bearings;
+  for (int k = -1350; k <= 1350; ++k) bearings.push_back(k * std::numbers::pi / 1800.0);
+  return bearings;
+}
+
 std::vector<LidarEffectPtr> all_effects() {
   std::vector<LidarEffectPtr> all = lidar_catalogue(false);
   for (const auto& curve : lidar_curves()) all.push_back(curve);
+  all.push_back(make_sector_error(front_view()));
   return all;
 }
 
@@ -48,7 +57,9 @@ TEST(LidarEffect, has_a_shift_for_each_parameter) {
 TEST(LidarEffect, total_grows_from_the_shifts) {
   constexpr double kSmall = 1e-7;
   for (const auto& effect : all_effects()) {
-    if (effect->name() == "lidar_tilt") continue;  // has a common stretch besides, see below
+    const bool has_more_in_common =  // see below
+        effect->name() == "lidar_tilt" || effect->parameters().front().name.starts_with("radial_at");
+    if (has_more_in_common) continue;
     const std::size_t count = effect->parameters().size();
     for (std::size_t k = 0; k < count; ++k) {
       std::vector<double> values(count, 0.0);
@@ -60,6 +71,28 @@ TEST(LidarEffect, total_grows_from_the_shifts) {
       }
     }
   }
+}
+
+TEST(LidarEffect, of_parts_of_the_view_has_no_common_offset) {
+  const auto sector = make_sector_error(front_view());
+  ASSERT_TRUE(sector);
+  ASSERT_EQ(sector->parameters().size(), 18U) << "19 knots from -135 to 135 degrees";
+  EXPECT_EQ(sector->parameters().front().name, "radial_at_15");
+  std::vector<double> sums(18, 0.0);
+  for (int degrees = -120; degrees <= 135; degrees += 15) {
+    const auto shifts = sector->shifts({degrees * std::numbers::pi / 180.0, 2.0, 0.0});
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += shifts[k].radial;
+  }
+  const auto at_end = sector->shifts({-135.0 * std::numbers::pi / 180.0, 2.0, 0.0});
+  for (std::size_t k = 0; k < sums.size(); ++k) EXPECT_NEAR(sums[k] + at_end[k].radial, 0.0, 1e-9) << k;
+  EXPECT_EQ(sector->shifts({std::numbers::pi, 2.0, 0.0})[3].radial, 0.0) << "not seen";
+  std::vector<double> values(18, 0.01);
+  values[4] = values[5] = 0.04;  // all but two parts agree
+  values.front() = 0.01;
+  EXPECT_NEAR(sector->total({1.0, 2.0, 0.0}, values).radial, 0.0, 1e-12);
+  EXPECT_NEAR(sector->total({82.0 * std::numbers::pi / 180.0, 2.0, 0.0}, values).radial, 0.03, 1e-12);
+  EXPECT_FALSE(make_sector_error({}));
+  EXPECT_FALSE(make_sector_error(std::vector<double>(100, 0.1)));
 }
 
 TEST(LidarEffect, a_tilted_plane_meets_walls_late_along_the_slope_and_not_across) {
@@ -123,9 +156,10 @@ TEST(LidarEffect, too_few_pairs_tell_nothing) {
   EXPECT_TRUE(trace_lidar(std::vector<HeadingPair>(3), true).empty());
 }
 
-/// What two scans that face different ways disagree about, where beams lie at angles off by a share
-/// `epsilon`.
-HeadingPair seen_with_scaled_angles(double epsilon, double range, std::mt19937& random) {
+using ErrorOfBeam = std::function<BeamShift(const Sighting&)>;
+
+/// What two scans that face different ways disagree about.
+HeadingPair seen_with(const ErrorOfBeam& error, double range, std::mt19937& random) {
   constexpr double kNoise = 4e-3;  // m
   std::normal_distribution<double> noise(0.0, kNoise);
   std::uniform_real_distribution<double> angle(-2.3, 2.3), slant(-0.6, 0.6);
@@ -138,8 +172,11 @@ HeadingPair seen_with_scaled_angles(double epsilon, double range, std::mt19937& 
     p.first_beam = p.second_beam = {std::cos(towards), std::sin(towards)};
     p.normal = -Eigen::Vector2d(std::cos(towards + tilt), std::sin(towards + tilt));
     p.arm = range * p.second_beam;
-    const double shift = epsilon * (p.second.bearing - p.first.bearing) * range;
-    p.distance = shift * p.normal.dot(Eigen::Vector2d(-std::sin(towards), std::cos(towards))) + noise(random);
+    const BeamShift first = error(p.first), second = error(p.second);
+    const Eigen::Vector2d across(-std::sin(towards), std::cos(towards));
+    p.distance = p.normal.dot((second.radial - first.radial) * p.first_beam +
+                              (second.angular - first.angular) * range * across) +
+                 noise(random);
     p.deviation = kNoise;
     pair.points.push_back(p);
   }
@@ -147,27 +184,49 @@ HeadingPair seen_with_scaled_angles(double epsilon, double range, std::mt19937& 
 }
 
 /// Three of them look far.
-std::vector<HeadingPair> sixty_pairs(double epsilon, std::mt19937& random) {
+std::vector<HeadingPair> sixty_pairs(const ErrorOfBeam& error, std::mt19937& random) {
   std::vector<HeadingPair> pairs(60);
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    pairs[k] = seen_with_scaled_angles(epsilon, k % 20 == 0 ? 12.0 : 0.8, random);
+    pairs[k] = seen_with(error, k % 20 == 0 ? 12.0 : 0.8, random);
   return pairs;
 }
 
 TEST(LidarEffect, that_a_few_wide_views_show_best_is_found) {
   constexpr unsigned kSeed = 3;
   std::mt19937 random(kSeed);
-  const auto pairs = sixty_pairs(4e-3, random);
+  const auto pairs = sixty_pairs([](const Sighting& s) { return BeamShift{0.0, 4e-3 * s.bearing}; }, random);
   const auto found = trace_lidar(pairs, false);
   ASSERT_FALSE(found.empty()) << "seed " << kSeed;
   EXPECT_EQ(found.front().effect->name(), "angle_scale");
   EXPECT_NEAR(std::abs(found.front().values.front()), 4e-3, 4e-4);
 }
 
+TEST(LidarEffect, of_a_part_of_the_view_is_found_there) {
+  constexpr unsigned kSeed = 5;
+  constexpr double kError = 0.015, kMiddle = 1.0, kHalfWidth = 0.25;  // m, rad, rad
+  std::mt19937 random(kSeed);
+  const auto pairs = sixty_pairs(
+      [](const Sighting& s) {
+        return BeamShift{std::abs(s.bearing - kMiddle) < kHalfWidth ? kError : 0.0, 0.0};
+      },
+      random);
+  const auto found = trace_lidar(pairs, false);
+  ASSERT_FALSE(found.empty()) << "seed " << kSeed;
+  const auto radial = [&](double bearing) {
+    double sum = 0.0;
+    for (const LidarFinding& finding : found)
+      sum += finding.effect->total({bearing, 2.0, 0.0}, finding.values).radial;
+    return sum;
+  };
+  for (const double elsewhere : {-2.0, -1.0, 0.0, 2.0})
+    EXPECT_NEAR(radial(kMiddle) - radial(elsewhere), kError, 0.25 * kError)
+        << elsewhere << ", seed " << kSeed;
+}
+
 TEST(LidarEffect, of_none_is_found_in_noise) {
   constexpr unsigned kSeed = 4;
   std::mt19937 random(kSeed);
-  const auto pairs = sixty_pairs(0.0, random);
+  const auto pairs = sixty_pairs([](const Sighting&) { return BeamShift{}; }, random);
   EXPECT_TRUE(trace_lidar(pairs, false).empty()) << "seed " << kSeed;
 }
 
