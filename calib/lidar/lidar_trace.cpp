@@ -43,6 +43,14 @@ std::vector<double> bearings_in(const std::vector<HeadingPair>& pairs) {
   return all;
 }
 
+/// No value of it is beyond what chance leaves.
+bool is_superfluous(const LidarFinding& finding) {
+  constexpr double kWald = 1.960;  // normal quantile, 5 % on both sides
+  for (std::size_t k = 0; k < finding.values.size(); ++k)
+    if (std::abs(finding.values[k]) > kWald * finding.deviations[k]) return false;
+  return finding.effect->is_named();
+}
+
 class Trace {
  public:
   Trace(const std::vector<HeadingPair>& pairs, const std::vector<LidarEffectPtr>& candidates)
@@ -78,6 +86,7 @@ class Trace {
         continue;
       }
       add(c, scores[c].family_p_value, proof);
+      retire_superfluous();
       return true;
     }
     return false;
@@ -131,6 +140,16 @@ class Trace {
     accepted_.push_back(candidate);
     evidence_.push_back({scores_.candidates()[candidate].effect, {}, {}, p_value, proof.before, proof.after});
     refused_[candidate] = true;
+  }
+
+  /// A name that was only the best there was is none beside the law that was added last (Wald test, 5 %).
+  void retire_superfluous() {
+    const std::vector<LidarFinding> all = findings();
+    for (std::size_t k = all.size() - 1; k-- > 0;)
+      if (is_superfluous(all[k])) {
+        accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(k));
+        evidence_.erase(evidence_.begin() + static_cast<std::ptrdiff_t>(k));
+      }
   }
 
   [[nodiscard]] std::vector<LidarFinding> findings() const {

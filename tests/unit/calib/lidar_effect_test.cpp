@@ -159,10 +159,11 @@ TEST(LidarEffect, too_few_pairs_tell_nothing) {
 using ErrorOfBeam = std::function<BeamShift(const Sighting&)>;
 
 /// What two scans that face different ways disagree about.
-HeadingPair seen_with(const ErrorOfBeam& error, double range, std::mt19937& random) {
+/// @param view rad, to either side
+HeadingPair seen_with(const ErrorOfBeam& error, double range, double view, std::mt19937& random) {
   constexpr double kNoise = 4e-3;  // m
   std::normal_distribution<double> noise(0.0, kNoise);
-  std::uniform_real_distribution<double> angle(-2.3, 2.3), slant(-0.6, 0.6);
+  std::uniform_real_distribution<double> angle(-view, view), slant(-0.6, 0.6);
   HeadingPair pair;
   for (int k = 0; k < 60; ++k) {
     DoubleSighting p;
@@ -184,10 +185,10 @@ HeadingPair seen_with(const ErrorOfBeam& error, double range, std::mt19937& rand
 }
 
 /// Three of them look far.
-std::vector<HeadingPair> sixty_pairs(const ErrorOfBeam& error, std::mt19937& random) {
+std::vector<HeadingPair> sixty_pairs(const ErrorOfBeam& error, std::mt19937& random, double view = 2.3) {
   std::vector<HeadingPair> pairs(60);
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    pairs[k] = seen_with(error, k % 20 == 0 ? 12.0 : 0.8, random);
+    pairs[k] = seen_with(error, k % 20 == 0 ? 12.0 : 0.8, view, random);
   return pairs;
 }
 
@@ -221,6 +222,21 @@ TEST(LidarEffect, of_a_part_of_the_view_is_found_there) {
   for (const double elsewhere : {-2.0, -1.0, 0.0, 2.0})
     EXPECT_NEAR(radial(kMiddle) - radial(elsewhere), kError, 0.25 * kError)
         << elsewhere << ", seed " << kSeed;
+}
+
+TEST(LidarEffect, that_a_name_stood_in_for_takes_its_place) {
+  constexpr unsigned kSeed = 6;
+  constexpr double kError = 8e-3;  // rad: a head whose disc is off its centre
+  std::mt19937 random(kSeed);
+  const auto pairs = sixty_pairs(
+      [](const Sighting& s) {
+        return BeamShift{0.0, kError * std::sin(s.bearing)};
+      },
+      random, 3.0);
+  const auto found = trace_lidar(pairs, false);
+  ASSERT_FALSE(found.empty()) << "seed " << kSeed;
+  for (const LidarFinding& finding : found)
+    EXPECT_EQ(finding.effect->name(), "bearing") << finding.values.front() << ", seed " << kSeed;
 }
 
 TEST(LidarEffect, of_none_is_found_in_noise) {
