@@ -42,6 +42,8 @@ class LidarEffect {
   /// Whether scans may be corrected by it. What is nearly a common scale no scan shows well enough: it is
   /// reported, and the scans stay as they are.
   [[nodiscard]] virtual bool is_correctable() const { return true; }
+  /// Share of the squared disagreement between scans that it may leave, at most, to be worth its freedom.
+  [[nodiscard]] virtual double may_leave() const { return 0.9965; }
   /// The variable it depends on. A rest that depends on the same one is the same effect with another law.
   [[nodiscard]] virtual std::string variable() const = 0;
   [[nodiscard]] virtual std::vector<LidarParameter> parameters() const = 0;

@@ -12,11 +12,10 @@ namespace {
 
 constexpr std::size_t kFewestPairs = 25;  // sign flips of fewer cannot tell
 constexpr std::size_t kMostFindings = 2;
-constexpr double kLevel = 0.001;        // family-wise
-constexpr double kWorthwhile = 0.9965;  // of the squared disagreement that may be left at most
-constexpr double kHeldOutZ = 2.5;       // of the mean gain on held-out pairs
-constexpr double kSameLaw = 0.5;        // share of the curve's statistic that a name on its ground must reach
-constexpr double kAllRound = 6.1;       // rad (350 degrees)
+constexpr double kLevel = 0.001;   // family-wise
+constexpr double kHeldOutZ = 2.5;  // of the mean gain on held-out pairs
+constexpr double kSameLaw = 0.5;   // share of the curve's statistic that a name on its ground must reach
+constexpr double kAllRound = 6.1;  // rad (350 degrees)
 
 std::vector<double> slice(const Eigen::VectorXd& all, Eigen::Index first, Eigen::Index count) {
   return {all.data() + first, all.data() + first + count};
@@ -79,7 +78,7 @@ class Trace {
     for (const std::size_t c : in_order(scores)) {
       if (refused_[c]) continue;
       const auto proof = scores_.held_out(accepted_, c);
-      const bool holds = proof.z >= kHeldOutZ && is_worthwhile(proof);
+      const bool holds = proof.z >= kHeldOutZ && is_worthwhile(c, proof);
       if (!holds || !matters(c)) {
         refused_[c] = true;
         if (holds) refuse_lesser_names(c, scores);
@@ -123,8 +122,8 @@ class Trace {
     return *scores_.candidates()[candidate].effect;
   }
 
-  static bool is_worthwhile(const LidarScores::HeldOut& proof) {
-    return proof.after * proof.after < kWorthwhile * proof.before * proof.before;
+  [[nodiscard]] bool is_worthwhile(std::size_t candidate, const LidarScores::HeldOut& proof) const {
+    return proof.after * proof.after < effect(candidate).may_leave() * proof.before * proof.before;
   }
 
   [[nodiscard]] bool matters(std::size_t candidate) const {
