@@ -49,10 +49,9 @@ std::optional<PlacedScan> place_at(std::span<const PlacedScan> places, double ti
 }
 
 std::optional<PlacedScan> mean_place(std::span<const PlacedScan> places, double time,
-                                     const PathOfWheels& wheels) {
-  constexpr double kReach = 0.5;  // s
+                                     const PathOfWheels& wheels, double reach) {
   constexpr std::ptrdiff_t kFewest = 2;
-  const Place first = first_since(places, time - kReach), last = first_since(places, time + kReach);
+  const Place first = first_since(places, time - reach), last = first_since(places, time + reach);
   if (last - first < kFewest) return std::nullopt;
   const auto count = static_cast<double>(last - first);
   PlacedScan mean{time, {0.0, 0.0, first->pose.yaw}, Eigen::Matrix3d::Zero()};

@@ -37,10 +37,14 @@ PathOfWheels path_of_wheels(const Trajectory& trajectory);
 std::optional<PlacedScan> place_at(std::span<const PlacedScan> places, double time,
                                    const PathOfWheels& wheels);
 
-/// Mean of all scans within half a second, if there are some. What the wheels do wrong before and after
-/// cancels, and what they do right is no noise: for the error of a model it is to be asked with its own path.
+/// s, to either side: over so much wheels err by less than a place does.
+inline constexpr double kMeanReach = 0.5;
+
+/// Mean of all scans within `reach` of a time, s, if there are some. What the wheels do wrong before and
+/// after cancels, and what they do right is no noise: for the error of a model it is to be asked with its own
+/// path, and for that of a motion no scan may stand for both ends of it.
 /// @param places in time order
 std::optional<PlacedScan> mean_place(std::span<const PlacedScan> places, double time,
-                                     const PathOfWheels& wheels);
+                                     const PathOfWheels& wheels, double reach = kMeanReach);
 
 }  // namespace odomcalib::calib

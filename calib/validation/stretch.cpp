@@ -123,8 +123,9 @@ Pose at_rest(double /*time*/) { return {}; }
 /// By the places of the scans about both ends.
 std::optional<PlacedMotion> motion_by_places(const FitData& data, const Interval& interval,
                                              const PathOfWheels& wheels) {
-  const auto begin = mean_place(data.places, interval.begin, wheels);
-  const auto end = mean_place(data.places, interval.end, wheels);
+  const double reach = std::min(kMeanReach, 0.5 * (interval.end - interval.begin));
+  const auto begin = mean_place(data.places, interval.begin, wheels, reach);
+  const auto end = mean_place(data.places, interval.end, wheels, reach);
   return begin && end ? std::optional(motion_between(*begin, *end)) : std::nullopt;
 }
 
@@ -238,7 +239,8 @@ std::vector<bool> measured_pairs(std::span<const FitData> data, std::vector<bool
   auto flag = trusted.begin();
   for (const FitData& d : data)
     for (const SensorPair& pair : d.pairs) {
-      *flag = *flag || motion_by_places(d, pair.interval, at_rest);
+      *flag = *flag || (mean_place(d.places, pair.interval.begin, at_rest) &&
+                        mean_place(d.places, pair.interval.end, at_rest));
       ++flag;
     }
   return trusted;

@@ -60,6 +60,13 @@ TEST(MeanPlace, forgives_the_wheels_what_they_do_before_and_after) {
   EXPECT_LT(distance(mean->pose, truth(4.02)), 2e-4);
 }
 
+TEST(MeanPlace, reaches_as_far_as_it_is_told) {
+  const auto mean = mean_place(places(kNoise), 4.02, truth, 0.1);
+  ASSERT_TRUE(mean);
+  EXPECT_NEAR(std::sqrt(mean->covariance(0, 0)), kNoise / 2.0, 1e-9) << "four scans";
+  EXPECT_FALSE(mean_place(places(0.0), 4.02, truth, 0.01));
+}
+
 TEST(MeanPlace, needs_scans_nearby) {
   std::vector<PlacedScan> few = places(0.0);
   std::erase_if(few, [](const PlacedScan& scan) { return std::abs(scan.time - 4.0) < 0.42; });

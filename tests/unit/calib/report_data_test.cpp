@@ -146,7 +146,7 @@ std::vector<PlacedScan> places_along(const std::vector<SensorPair>& pairs) {
   std::vector<PlacedScan> places;
   Pose here;
   for (const SensorPair& pair : pairs) {
-    for (const double before : {0.02, 0.01, 0.0})
+    for (const double before : {1e-4, 0.0, -1e-4})
       places.push_back({pair.interval.begin - before, here, 1e-8 * Eigen::Matrix3d::Identity()});
     here = compose(here, pair.motion);
   }
@@ -167,6 +167,20 @@ TEST(DriveErrors, what_a_fit_leaves_out_counts_where_a_map_confirms_it) {
   }));
   world->data.front().places = places_along(world->data.front().pairs);
   EXPECT_GT(over_ten_seconds().after->value, 0.025);
+}
+
+TEST(DriveErrors, are_no_smaller_when_held_against_places) {
+  const auto world = make_world({}, {}, 11);
+  const FitResult fit = fitted(*world, {});
+  const auto metre = [&] {
+    return named(drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}}),
+                 "straight_metre_length");
+  };
+  const DriveError by_matches = metre();
+  world->data.front().places = places_along(world->data.front().pairs);
+  const DriveError by_places = metre();
+  EXPECT_EQ(by_places.stretches, by_matches.stretches);
+  EXPECT_NEAR(by_places.before->value, by_matches.before->value, 0.02 * by_matches.before->value);
 }
 
 TEST(DriveErrors, too_short_a_recording_gives_no_figures) {
