@@ -8,23 +8,27 @@
 #include "tests/unit/calib/tracing_support.hpp"
 
 namespace odomcalib::calib {
-
-static std::ostream& operator<<(std::ostream& out, const Curve& curve) {
-  return out << to_string(curve.law.variable);
-}
-
 namespace {
 
-class RollingWaves : public testing::TestWithParam<Curve> {};
+/// A type of its own: other tests print curves without this.
+struct Wave {
+  Curve curve;
+};
+
+std::ostream& operator<<(std::ostream& out, const Wave& wave) {
+  return out << to_string(wave.curve.law.variable);
+}
+
+class RollingWaves : public testing::TestWithParam<Wave> {};
 
 TEST_P(RollingWaves, are_found_with_their_length) {
   const DriveModel model = jerky_model();
-  const SearchResult result = searched(measured(model, {make_curve_effect(GetParam())}, {0.03, -0.02}));
+  const SearchResult result = searched(measured(model, {make_curve_effect(GetParam().curve)}, {0.03, -0.02}));
   EXPECT_TRUE(result.findings.empty()) << result.findings.front().effect->name();
   ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
   const Curve& found = result.curves.front().curve;
-  EXPECT_EQ(found.law, GetParam().law) << result.curves.front().effect->name();
-  EXPECT_NEAR(found.period, GetParam().period, 0.02 * GetParam().period);
+  EXPECT_EQ(found.law, GetParam().curve.law) << result.curves.front().effect->name();
+  EXPECT_NEAR(found.period, GetParam().curve.period, 0.02 * GetParam().curve.period);
   EXPECT_EQ(result.curves.front().effect->storage(), Storage::nowhere)
       << "the next drive begins at another phase";
 }
@@ -32,9 +36,9 @@ TEST_P(RollingWaves, are_found_with_their_length) {
 /// A caster that wobbles, and belts that go round once in 1.7 and 2.6 turns of their wheels.
 INSTANTIATE_TEST_SUITE_P(
     Curve, RollingWaves,
-    testing::Values(Curve{{Variable::distance, Carrier::yaw_path}, 0.0, 100.0, 0.41},
-                    Curve{{Variable::left_phase, Carrier::left_travel}, 0.0, 1000.0, 1.7 * 2.0 * kPi},
-                    Curve{{Variable::right_phase, Carrier::right_travel}, 0.0, 1000.0, 2.6 * 2.0 * kPi}),
+    testing::Values(Wave{{{Variable::distance, Carrier::yaw_path}, 0.0, 100.0, 0.41}},
+                    Wave{{{Variable::left_phase, Carrier::left_travel}, 0.0, 1000.0, 1.7 * 2.0 * kPi}},
+                    Wave{{{Variable::right_phase, Carrier::right_travel}, 0.0, 1000.0, 2.6 * 2.0 * kPi}}),
     testing::PrintToStringParamName());
 
 /// Names that the wave found competes with.
