@@ -116,8 +116,7 @@ class Judgement {
           error.after->value > kWarnResidual * *error.noise_floor && error.after->low > *error.noise_floor)
         warn("odometry over ten seconds is off by " + times(error.after->value / *error.noise_floor) +
              " the noise floor: something moves the robot that the counts do not show; look for counts that "
-             "get "
-             "lost, slip, and what touches the robot");
+             "get lost, slip, and what touches the robot");
   }
 
   [[nodiscard]] GateResult result() const {

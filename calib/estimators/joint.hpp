@@ -18,7 +18,7 @@ namespace odomcalib::calib {
 struct FitData {
   const DriveModel* model = nullptr;
   std::vector<SensorPair> pairs;
-  std::vector<PlacedScan> places = {};  ///< in time order: scans, where there is a map to tell theirs
+  std::vector<PlacedScan> places = {};  ///< of its scans in a map, in time order; empty without one
 };
 
 struct FitOptions {

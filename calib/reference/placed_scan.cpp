@@ -48,6 +48,12 @@ std::optional<PlacedScan> place_at(std::span<const PlacedScan> places, double ti
   return carried(*nearest, time, wheels);
 }
 
+std::optional<PlacedEnds> places_at_ends(std::span<const PlacedScan> places, const Interval& interval,
+                                         const PathOfWheels& wheels) {
+  const auto begin = place_at(places, interval.begin, wheels), end = place_at(places, interval.end, wheels);
+  return begin && end ? std::optional(PlacedEnds{*begin, *end}) : std::nullopt;
+}
+
 std::optional<PlacedScan> mean_place(std::span<const PlacedScan> places, double time,
                                      const PathOfWheels& wheels, double reach) {
   constexpr std::ptrdiff_t kFewest = 2;

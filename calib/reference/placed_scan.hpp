@@ -37,6 +37,13 @@ PathOfWheels path_of_wheels(const Trajectory& trajectory);
 std::optional<PlacedScan> place_at(std::span<const PlacedScan> places, double time,
                                    const PathOfWheels& wheels);
 
+/// Those of a motion's begin and end, if both are known.
+struct PlacedEnds {
+  PlacedScan begin, end;
+};
+std::optional<PlacedEnds> places_at_ends(std::span<const PlacedScan> places, const Interval& interval,
+                                         const PathOfWheels& wheels);
+
 /// s, to either side: over so much wheels err by less than a place does.
 inline constexpr double kMeanReach = 0.5;
 

@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <optional>
 
 #include "calib/geometry/vector2.hpp"
 
@@ -34,22 +33,17 @@ double length(const Eigen::Vector3d& error, const SensorPair& pair) {
   return error.cwiseAbs2().cwiseQuotient(pair.covariance.diagonal()).sum();
 }
 
-std::optional<Pose> placed_motion(const FitData& data, const SensorPair& pair, const PathOfWheels& wheels) {
-  const auto begin = place_at(data.places, pair.interval.begin, wheels);
-  const auto end = place_at(data.places, pair.interval.end, wheels);
-  return begin && end ? std::optional(between(begin->pose, end->pose)) : std::nullopt;
-}
-
 class Causes {
  public:
   /// @param error of the wheels: matched less predicted, in the sensor's frame
   void add(const FitData& data, const SensorPair& pair, const Eigen::Vector3d& error,
            const PathOfWheels& wheels) {
-    const auto placed = placed_motion(data, pair, wheels);
-    if (!placed) return;
+    const auto ends = places_at_ends(data.places, pair.interval, wheels);
+    if (!ends) return;
     ++cause_.placed;
+    const Pose placed = between(ends->begin.pose, ends->end.pose);
     constexpr double kNear = 0.25;  // half as far from the places as from the wheels, squared
-    if (length(difference(pair.motion, *placed), pair) > kNear * length(error, pair)) return;
+    if (length(difference(pair.motion, placed), pair) > kNear * length(error, pair)) return;
     ++cause_.confirmed;
     add_excess({pair.motion.x - error(0), pair.motion.y - error(1), pair.motion.yaw - error(2)}, error);
   }

@@ -202,7 +202,6 @@ class Finder {
     stretch.interval = {pairs_[first].interval.begin, pairs_[last].interval.end};
     stretch.chained = chain.end();
     const auto ends = motion_by_places(data_, stretch.interval, at_rest);
-    stretch.is_placed = ends.has_value();
     stretch.covariance = ends ? chain.covariance(mount_, ends->covariance) : chain.covariance(mount_);
     found_.push_back(stretch);
   }
@@ -231,7 +230,7 @@ std::vector<bool> trusted_pairs(const FitResult& a, const FitResult& b) {
 }
 
 Pose measured_motion(const Stretch& stretch, const FitData& data, const PathOfWheels& wheels) {
-  const auto placed = stretch.is_placed ? motion_by_places(data, stretch.interval, wheels) : std::nullopt;
+  const auto placed = motion_by_places(data, stretch.interval, wheels);
   return placed ? placed->motion : stretch.chained;
 }
 

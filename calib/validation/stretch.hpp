@@ -12,7 +12,7 @@ namespace odomcalib::calib {
 
 enum class StretchKind { open_loop, straight, turn };
 
-/// Unbroken, well-matched pairs first..last of one recording, inside one fold.
+/// Unbroken, measured pairs first..last of one recording, inside one fold.
 struct Stretch {
   std::size_t recording = 0;
   std::size_t first = 0, last = 0;  ///< pairs of the recording, both included
@@ -21,11 +21,11 @@ struct Stretch {
   double amount = 1.0;    ///< in units of the kind: 1 for open loop, m of length, full turns
   Interval interval;
   Pose chained;                ///< motion of the sensor in its frame at the begin, by the matches
-  bool is_placed = false;      ///< places in a map tell it better
   Eigen::Matrix3d covariance;  ///< of the base's motion as the noise model has it: reference and wheels
 };
 
-/// What the reference says of the sensor's motion over a stretch, in its frame at the begin.
+/// What the reference says of the sensor's motion over a stretch, in its frame at the begin: places in a map,
+/// where there are any, or else the chain.
 /// @param wheels of the model that is judged by it (see mean_place)
 Pose measured_motion(const Stretch& stretch, const FitData& data, const PathOfWheels& wheels);
 

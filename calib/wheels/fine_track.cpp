@@ -34,7 +34,7 @@ void append(WheelTrack& track, double t, double left, double right, int segment)
 
 /// Between two samples a cubic may go a little beyond them, and between two that are equal err by rounding: a
 /// wheel that stands would seem to reverse.
-double between(double from, double to, double value) {
+double within(double from, double to, double value) {
   return std::clamp(value, std::min(from, to), std::max(from, to));
 }
 
@@ -55,8 +55,8 @@ void append_refined(const WheelTrack& track, std::size_t begin, std::size_t end,
     const int parts = static_cast<int>(std::ceil(duration / kLongest));
     for (int part = 1; part < parts; ++part) {
       const double t = track.t[k] + duration * part / parts;
-      append(out, t, between(track.left[k], track.left[k + 1], left(t)),
-             between(track.right[k], track.right[k + 1], right(t)), track.segment[k]);
+      append(out, t, within(track.left[k], track.left[k + 1], left(t)),
+             within(track.right[k], track.right[k + 1], right(t)), track.segment[k]);
     }
   }
   copy(end - 1);
