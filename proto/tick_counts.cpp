@@ -69,8 +69,10 @@ class Speeds {
     return static_cast<double>(change) * metres_per_tick_ / usual_interval(interval);
   }
   [[nodiscard]] double usual_interval(double interval) const { return std::max(interval, floor_); }
+  /// Of one count in an interval: what a slow wheel seems to have, or not, by when its count comes.
+  [[nodiscard]] double of_one_count(double interval) const { return (*this)(1, interval); }
   [[nodiscard]] bool possible(std::int64_t change, double interval) const {
-    return !known() || std::abs((*this)(change, interval)) <= kFastest;
+    return !known() || std::abs((*this)(change, interval)) <= kFastest + of_one_count(interval);
   }
 
  private:
@@ -124,6 +126,7 @@ class Continuation {
       out[i] = between(ticks[i - 1], ticks[i], usual);
       if (out[i].continued) usual = out[i].counts;
     }
+    mend_glitches(ticks, out);
     break_at_spikes(ticks, out);
     return out;
   }
@@ -146,15 +149,53 @@ class Continuation {
                     speeds_(other.counts.at(side), other_interval));
   }
 
+  /// More than wheels can change by from one step to the next.
+  [[nodiscard]] double limit(double interval) const {
+    return std::max(kSpikeSpeed, kSpikeAcceleration * speeds_.usual_interval(interval)) +
+           2.0 * speeds_.of_one_count(interval);
+  }
+
+  /// @param share of the limit
+  [[nodiscard]] bool in_line(const Change& change, double interval, const Change& other,
+                             double other_interval, double share) const {
+    const double most = share * limit(interval);
+    return change.continued && excess(change, other, interval, other_interval, 0) <= most &&
+           excess(change, other, interval, other_interval, 1) <= most;
+  }
+
+  /// One sample that neither continues the one before nor is continued by the one after, while these two
+  /// continue each other, was read wrong. The motion across it is shared out over both its steps.
+  void mend_glitches(const std::vector<TickSample>& ticks, std::vector<Change>& changes) const {
+    constexpr double kClear = 0.5;  // neither step may pass for motion while the other breaks the track
+    if (!speeds_.known()) return;
+    for (std::size_t i = 2; i + 1 < ticks.size(); ++i) {
+      const Change& before = changes[i - 1];
+      if (!before.continued) continue;
+      const double usual = ticks[i - 1].t - ticks[i - 2].t, to = ticks[i].t - ticks[i - 1].t,
+                   from = ticks[i + 1].t - ticks[i].t;
+      if (in_line(changes[i], to, before, usual, kClear) ||
+          in_line(changes[i + 1], from, before, usual, kClear))
+        continue;
+      const Change across = between(ticks[i - 1], ticks[i + 1], before.counts);
+      if (!in_line(across, to + from, before, usual, 1.0)) continue;
+      changes[i] = changes[i + 1] = across;
+      for (std::size_t side = 0; side < 2; ++side) {
+        const auto whole = static_cast<double>(across.counts.at(side));
+        changes[i].counts.at(side) = std::llround(whole * to / (to + from));
+        changes[i + 1].counts.at(side) -= changes[i].counts.at(side);
+      }
+    }
+  }
+
   void break_at_spikes(const std::vector<TickSample>& ticks, std::vector<Change>& changes) const {
     if (!speeds_.known()) return;
     for (std::size_t i = 2; i + 1 < ticks.size(); ++i) {
       if (!changes[i].continued || !changes[i - 1].continued || !changes[i + 1].continued) continue;
       const double interval = ticks[i].t - ticks[i - 1].t;
-      const double limit = std::max(kSpikeSpeed, kSpikeAcceleration * speeds_.usual_interval(interval));
+      const double most = limit(interval);
       for (std::size_t side = 0; side < 2; ++side)
-        if (excess(changes[i], changes[i - 1], interval, ticks[i - 1].t - ticks[i - 2].t, side) > limit &&
-            excess(changes[i], changes[i + 1], interval, ticks[i + 1].t - ticks[i].t, side) > limit)
+        if (excess(changes[i], changes[i - 1], interval, ticks[i - 1].t - ticks[i - 2].t, side) > most &&
+            excess(changes[i], changes[i + 1], interval, ticks[i + 1].t - ticks[i].t, side) > most)
           changes[i].continued = false;
     }
   }

@@ -7,7 +7,8 @@
 
 namespace odomcalib {
 
-/// Unwraps counts of 16 and 32 bits and starts a new segment wherever a count cannot be continued: after a
+/// Unwraps counts of 16 and 32 bits, takes single samples that were read wrong for what lies between their
+/// neighbours, and starts a new segment wherever a count cannot be continued: after a
 /// reset, or after a step that no wheel can have made. Counts inside a segment differ by real motion only.
 /// Expects samples sorted by time with increasing stamps; samples that carry different segments already are
 /// never joined.

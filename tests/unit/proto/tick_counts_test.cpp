@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "tests/unit/proto/support.hpp"
@@ -127,6 +128,38 @@ TEST(TickCounts, are_not_broken_by_a_bus_that_hands_over_several_at_a_time) {
     EXPECT_EQ(continue_counts(handed_over, test::example_robot()), 0U) << batch << " at a time";
     expect_same_motion(handed_over, ticks);
   }
+}
+
+TEST(TickCounts, a_single_sample_that_was_read_wrong_moves_nobody) {
+  std::mt19937 random(11);
+  const auto drive_read_right = drive(random, 400, 1000, -500);
+  for (const std::int64_t wrong : {200, 300, -500, 128 << 8, 1 << 16, 1 << 24}) {
+    auto ticks = drive_read_right;
+    for (std::size_t i = 20; i < ticks.size(); i += 37) ticks[i].right += wrong;
+    ticks[30].left = ticks[30].right = 0;
+    EXPECT_EQ(continue_counts(ticks, test::example_robot()), 0U) << wrong;
+    for (std::size_t i = 20; i < ticks.size(); i += 37) {
+      EXPECT_NEAR(static_cast<double>(ticks[i].right - drive_read_right[i].right), 0.0, 30.0);
+      ticks[i] = drive_read_right[i];
+    }
+    ticks[30] = drive_read_right[30];
+    expect_same_motion(ticks, drive_read_right);
+  }
+}
+
+TEST(TickCounts, are_not_broken_by_a_disc_of_few_slots_that_is_read_often) {
+  RobotDescription robot = test::example_robot();
+  robot.ticks_per_rev = 20.0;  // 1.2 m/s for one sample whenever a count comes
+  robot.left_wheel_diameter = robot.right_wheel_diameter = 0.08;
+  std::vector<TickSample> ticks;
+  ticks.reserve(3000);
+  for (int i = 0; i < 3000; ++i)
+    ticks.push_back({0.01 * i, static_cast<std::int64_t>(std::floor(0.21 * i)), -(i / 11), 0});
+  const auto drive = ticks;
+  EXPECT_EQ(continue_counts(ticks, robot), 0U);
+  expect_same_motion(ticks, drive);
+  for (std::size_t i = 1500; i < ticks.size(); ++i) ticks[i].left += 10;
+  EXPECT_EQ(continue_counts(ticks, robot), 1U);
 }
 
 TEST(TickCounts, never_join_segments_that_the_source_has_told_apart) {
