@@ -1,6 +1,6 @@
 #include "calib/match.hpp"
 
-#include "calib/matching/point_to_line.hpp"
+#include "calib/matching/both_ways.hpp"
 #include "calib/matching/pose_search.hpp"
 
 namespace odomcalib::calib {
@@ -9,19 +9,19 @@ namespace {
 constexpr double kConvincing = 0.8;         ///< overlap above which no better pose is looked for
 constexpr std::size_t kSearchPoints = 150;  ///< of the scan; more tell little on cells of 10 cm
 
-MatchResult match_after_search(const MatchReference& reference, const Surface& scan, const Pose& guess,
+MatchResult match_after_search(const MatchReference& reference, const MatchReference& scan, const Pose& guess,
                                const MatchOptions& options) {
   LikelihoodField field(positions(reference.surface()), FieldOptions{});
-  const auto points = thinned(positions(scan), kSearchPoints);
+  const auto points = thinned(positions(scan.surface()), kSearchPoints);
   const SearchResult start = search_branch_and_bound(field, points, {.centre = guess});
-  return match_point_to_line(reference, scan, start.pose, options);
+  return match_both_ways(reference, scan, start.pose, options);
 }
 
 /// The match from the guess, or from a search around it when the guess did not
 /// lead to a convincing one.
-MatchResult match_best(const MatchReference& reference, const Surface& scan, const Pose& guess,
+MatchResult match_best(const MatchReference& reference, const MatchReference& scan, const Pose& guess,
                        const MatchOptions& options) {
-  MatchResult first = match_point_to_line(reference, scan, guess, options);
+  MatchResult first = match_both_ways(reference, scan, guess, options);
   if (first.status == MatchStatus::too_few_points) return first;
   if (first.is_usable() && first.overlap >= kConvincing) return first;
   MatchResult second = match_after_search(reference, scan, guess, options);
@@ -52,8 +52,8 @@ ScanMatch match_scans(const Scan& reference, const Scan& scan, const std::array<
   options.range_noise = range_noise.value_or(estimate_range_noise(both));
   const BeamMotion at_rest = [](double) { return Pose{}; };
   const MatchReference prepared(make_surface(reference, at_rest, options.range_noise), options.range_noise);
-  const Surface surface = make_surface(scan, at_rest, options.range_noise);
-  return describe(match_best(prepared, surface, {guess[0], guess[1], guess[2]}, options));
+  const MatchReference other(make_surface(scan, at_rest, options.range_noise), options.range_noise);
+  return describe(match_best(prepared, other, {guess[0], guess[1], guess[2]}, options));
 }
 
 }  // namespace odomcalib::calib

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "calib/geometry/vector2.hpp"
-#include "calib/matching/point_to_line.hpp"
+#include "calib/matching/both_ways.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -163,13 +163,13 @@ std::optional<DoubleSighting> compare(const MatchReference& reference, const Sur
 /// Matches the pair and collects its points; none when the match does not hold.
 void fill(const ScanSurfaces& scans, HeadingPair& pair) {
   const MatchReference reference(scans.surface(pair.from), scans.range_noise());
-  const Surface second = scans.surface(pair.to);
+  const MatchReference second(scans.surface(pair.to), scans.range_noise());
   MatchOptions options;
   options.range_noise = scans.range_noise();
-  const MatchResult match = match_point_to_line(reference, second, scans.guess(pair.from, pair.to), options);
+  const MatchResult match = match_both_ways(reference, second, scans.guess(pair.from, pair.to), options);
   if (!match.is_usable()) return;
   const Frame frame(match.motion);
-  for (const SurfacePoint& point : second.points)
+  for (const SurfacePoint& point : second.surface().points)
     if (const auto sighting = compare(reference, point, frame, scans.range_noise()))
       pair.points.push_back(*sighting);
 }

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "calib/map/range_trace.hpp"
-#include "calib/matching/point_to_line.hpp"
+#include "calib/matching/both_ways.hpp"
 #include "calib/reference/sweep_motion.hpp"
 
 namespace odomcalib::calib {
@@ -132,7 +132,8 @@ class Mapper {
     if (place.is_usable()) return place.pose;
     MatchOptions match;
     match.range_noise = options_.range_noise;
-    const MatchResult result = match_point_to_line(*key_, surface(k), between(key_pose_, guess), match);
+    const MatchResult result = match_both_ways(*key_, MatchReference(surface(k), options_.range_noise),
+                                               between(key_pose_, guess), match);
     if (!result.is_usable()) return std::nullopt;
     return compose(key_pose_, result.motion);
   }

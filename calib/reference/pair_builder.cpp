@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "calib/matching/point_to_line.hpp"
+#include "calib/matching/both_ways.hpp"
 #include "calib/reference/scan_surfaces.hpp"
 
 namespace odomcalib::calib {
@@ -95,20 +95,20 @@ class ScanChain {
     auto reference = std::make_unique<MatchReference>(scans_.surface(keyframes[0]), set_.range_noise);
     bool linked = false;
     for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) {
-      Surface next = scans_.surface(keyframes[k + 1]);
-      linked = add_pair(*reference, next, keyframes[k], keyframes[k + 1], linked);
-      reference = std::make_unique<MatchReference>(std::move(next), set_.range_noise);
+      auto next = std::make_unique<MatchReference>(scans_.surface(keyframes[k + 1]), set_.range_noise);
+      linked = add_pair(*reference, *next, keyframes[k], keyframes[k + 1], linked);
+      reference = std::move(next);
     }
   }
 
  private:
-  bool add_pair(const MatchReference& reference, const Surface& scan, std::size_t from, std::size_t to,
+  bool add_pair(const MatchReference& reference, const MatchReference& scan, std::size_t from, std::size_t to,
                 bool linked) {
     if (const char* reason = scans_.gap_between(from, to)) return reject(reason);
     MatchOptions match;
     match.range_noise = set_.range_noise;
     match.min_overlap = options_.min_overlap;
-    const MatchResult result = match_point_to_line(reference, scan, scans_.guess(from, to), match);
+    const MatchResult result = match_both_ways(reference, scan, scans_.guess(from, to), match);
     if (!result.is_usable()) {
       ++set_.unmatched;
       return reject("match: " + to_string(result.status));

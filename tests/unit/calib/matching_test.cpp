@@ -7,6 +7,7 @@
 
 #include "calib/geometry/se2.hpp"
 #include "calib/match.hpp"
+#include "calib/matching/both_ways.hpp"
 #include "calib/matching/point_to_line.hpp"
 #include "calib/matching/walls.hpp"
 #include "tests/unit/calib/room_scans.hpp"
@@ -85,6 +86,62 @@ TEST(Matching, the_result_does_not_depend_on_the_guess) {
   ASSERT_TRUE(left.ok() && right.ok());
   EXPECT_LT(std::abs(left.pose[0] - right.pose[0]), 0.02 * 0.04);
   EXPECT_LT(std::abs(left.pose[2] - right.pose[2]), 0.02 * 0.04);
+}
+
+/// Half an ellipse of 60 walls ahead of the origin, nothing behind.
+std::vector<RoomWall> apse(double deep, double wide) {
+  constexpr int kWalls = 60;
+  const auto at = [&](int k) {
+    const double angle = kPi * (static_cast<double>(k) / kWalls - 0.5);
+    return std::pair(deep * std::cos(angle), wide * std::sin(angle));
+  };
+  std::vector<RoomWall> walls;
+  walls.reserve(kWalls);
+  for (int k = 0; k < kWalls; ++k)
+    walls.push_back({at(k).first, at(k).second, at(k + 1).first, at(k + 1).second});
+  return walls;
+}
+
+// Lines fitted to a bent wall lie on its inner side and readings do not: a lidar that sees nothing but that
+// wall ahead seems to have gone backwards, standing or moving.
+TEST(Matching, both_ways_a_bent_wall_ahead_moves_nobody) {
+  constexpr double kNoise = 0.01;
+  constexpr unsigned kRuns = 300;
+  const BeamMotion at_rest = [](double) { return Pose{}; };
+  MatchOptions options;
+  options.range_noise = kNoise;
+  const auto seen = [&](unsigned seed) {
+    return MatchReference(make_surface(scan_from(apse(3.0, 2.0), {}, kNoise, seed), at_rest, kNoise), kNoise);
+  };
+  double one_way = 0.0, both_ways = 0.0;
+  for (unsigned run = 0; run < kRuns; ++run) {
+    const MatchReference first = seen(2 * run), second = seen(2 * run + 1);
+    one_way += match_point_to_line(first, second.surface(), {}, options).motion.x / kRuns;
+    both_ways += match_both_ways(first, second, {}, options).motion.x / kRuns;
+  }
+  std::printf("%u matches: %.3f mm one way, %.3f mm both ways\n", kRuns, 1e3 * one_way, 1e3 * both_ways);
+  EXPECT_LT(one_way, -2e-4);
+  EXPECT_NEAR(both_ways, 0.0, 2e-4);
+}
+
+TEST(Matching, both_ways_is_the_inverse_of_the_other_way_round) {
+  constexpr double kNoise = 0.008;
+  const BeamMotion at_rest = [](double) { return Pose{}; };
+  const Pose motion{0.2, -0.05, 0.3};
+  MatchOptions options;
+  options.range_noise = kNoise;
+  for (const double known : {0.0, 400.0}) {
+    options.guess_information = Eigen::Vector3d(known, known, known).asDiagonal();
+    const MatchReference first(make_surface(scan_from(kRoom, {}, kNoise, 1), at_rest, kNoise), kNoise);
+    const MatchReference second(make_surface(scan_from(kRoom, motion, kNoise, 2), at_rest, kNoise), kNoise);
+    const MatchResult there = match_both_ways(first, second, motion, options);
+    const MatchResult back = match_both_ways(second, first, inverse(motion), options);
+    ASSERT_TRUE(there.is_usable() && back.is_usable());
+    const Pose apart = compose(there.motion, back.motion);
+    EXPECT_NEAR(apart.x, 0.0, 3e-4) << known;
+    EXPECT_NEAR(apart.y, 0.0, 3e-4) << known;
+    EXPECT_NEAR(apart.yaw, 0.0, 1e-4) << known;
+  }
 }
 
 TEST(Matching, a_corridor_yields_no_pose_along_it) {

@@ -1,0 +1,39 @@
+#include "calib/matching/both_ways.hpp"
+
+#include <Eigen/LU>
+
+namespace odomcalib::calib {
+namespace {
+
+/// Of a motion's inverse, by the derivative of its x, y, yaw by those of the motion.
+Eigen::Matrix3d information_of_inverse(const Pose& motion, const Eigen::Matrix3d& information) {
+  const double c = std::cos(motion.yaw), s = std::sin(motion.yaw);
+  const Pose back = inverse(motion);
+  Eigen::Matrix3d derivative;
+  derivative << -c, -s, back.y, s, -c, -back.x, 0.0, 0.0, -1.0;
+  const Eigen::Matrix3d inverted = derivative.inverse();
+  return inverted.transpose() * information * inverted;
+}
+
+Pose mean(const Pose& a, const Pose& b) {
+  const Pose apart = between(a, b);
+  return compose(a, Pose{0.5 * apart.x, 0.5 * apart.y, 0.5 * wrap_angle(apart.yaw)});
+}
+
+}  // namespace
+
+MatchResult match_both_ways(const MatchReference& first, const MatchReference& second, const Pose& guess,
+                            const MatchOptions& options) {
+  MatchResult result = match_point_to_line(first, second.surface(), guess, options);
+  if (!result.is_usable()) return result;
+  MatchOptions back_options = options;
+  back_options.guess_information = information_of_inverse(guess, options.guess_information);
+  // With a prior about the guess the way back has to begin there, too.
+  const bool has_prior = !options.guess_information.isZero();
+  const Pose start = inverse(has_prior ? guess : result.motion);
+  const MatchResult back = match_point_to_line(second, first.surface(), start, back_options);
+  if (back.is_usable()) result.motion = mean(result.motion, inverse(back.motion));
+  return result;
+}
+
+}  // namespace odomcalib::calib
