@@ -166,9 +166,28 @@ BasisValues wave_functions(const Curve& curve, const StepContext& c) {
   return {cosine, sine, across * cosine, across * sine};
 }
 
+/// Speed or turn rate of what an acceleration is one of.
+double motion_of(Variable variable, const StepContext& c) {
+  switch (variable) {
+    case Variable::left_acceleration:
+      return c.left_speed;
+    case Variable::right_acceleration:
+      return c.right_speed;
+    case Variable::turn_acceleration:
+      return c.turn_rate;
+    default:
+      return c.speed;
+  }
+}
+
+double value_in(const Curve& curve, const StepContext& c) {
+  const double z = value_of(curve.law.variable, c, curve.memory);
+  return curve.with_motion ? growth_of_pace(z, motion_of(curve.law.variable, c)) : z;
+}
+
 BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   const Variable variable = curve.law.variable;
-  const double z = value_of(variable, c, curve.memory);
+  const double z = value_in(curve, c);
   if (concerns_sensor(curve)) return sway_functions(curve, z);
   if (curve.constant) return with_constant(harmonics(z, 1, kHarmonics));
   if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);

@@ -1,5 +1,6 @@
 #include "calib/curves/candidate_curves.hpp"
 
+#include <algorithm>
 #include <tuple>
 
 #include "calib/curves/curve_on_drives.hpp"
@@ -89,6 +90,20 @@ void add_harmonics(const Curve& curve, int first, int last, std::vector<Curve>& 
   }
 }
 
+/// What drives a wheel and what brakes it need not slip alike, whichever way it goes.
+void add_laws_of_pace(std::span<const DriveModel* const> models, std::vector<Curve>& curves) {
+  for (const Law& law : {Law{Variable::acceleration, Carrier::both_travel},
+                         {Variable::left_acceleration, Carrier::left_travel},
+                         {Variable::right_acceleration, Carrier::right_travel},
+                         {Variable::turn_acceleration, Carrier::track}}) {
+    const auto [low, high] = range_of(law.variable, models);
+    const double most = std::max(-low, high);
+    if (!(most > 1e-6)) continue;
+    curves.push_back({law, -most, most});
+    curves.back().with_motion = true;
+  }
+}
+
 bool may_have_knots(const Law& law) {
   return (is_signed_speed(law.variable) && law.carrier != Carrier::turn_path) ||
          is_acceleration(law.variable);
@@ -126,6 +141,7 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
     if (variable == Variable::time) add_periods(high - low, curves);
     if (variable == Variable::position) add_patches(low, high, curves);
   }
+  add_laws_of_pace(models, curves);
   return curves;
 }
 

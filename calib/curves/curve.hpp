@@ -47,7 +47,8 @@ struct Curve {
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
   bool constant = false;              ///< of heading only: with a constant as the first function
   bool patches = false;               ///< of position only
-  bool strong = false;  ///< a tenth and more, which few robots do and only plain data should be believed
+  bool with_motion = false;  ///< of accelerations only: growth of the pace, so that braking is negative
+  bool strong = false;       ///< a tenth and more, which few robots do and only plain data should be believed
   bool operator==(const Curve&) const = default;
   [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
 };

@@ -24,6 +24,7 @@ const EffectList& effect_catalogue() {
       make_track_depends_on_motion(),
       make_turn_direction_asymmetry(),
       make_caster_kick(),
+      make_stop_settling(),
       make_drift_with_time(),
       make_floor_slope(),
       make_carpet(),

@@ -20,6 +20,7 @@ std::shared_ptr<const Effect> make_lateral_slip();
 std::shared_ptr<const Effect> make_scan_skew();
 std::shared_ptr<const Effect> make_speed_dependent_radius();
 std::shared_ptr<const Effect> make_speed_dependent_track();
+std::shared_ptr<const Effect> make_stop_settling();
 std::shared_ptr<const Effect> make_tick_loss();
 std::shared_ptr<const Effect> make_time_offset();
 std::shared_ptr<const Effect> make_track_depends_on_motion();

@@ -62,6 +62,8 @@ void DriveHistory::advance(StepContext& c) {
   swing_caster(c, step);
   relax_turn(c, step);
   remember_stop(c);
+  wind_up(c, step);
+  unwind(c);
   remember_push(c);
   remember_turn(c, step.yaw);
   c.heading = pose_.yaw + step.yaw / 2.0;
@@ -105,7 +107,10 @@ void DriveHistory::relax_turn(StepContext& c, const Pose& step) {
 }
 
 void DriveHistory::remember_stop(StepContext& c) {
-  if (pace_ >= 1.0) stood_ = 0.0;
+  if (pace_ >= 1.0) {
+    if (stood_ > 0.0) fastest_ = 0.0;
+    stood_ = 0.0;
+  }
   stood_ += c.dt * share_below_one(pace_, c.pace);
   pace_ = c.pace;
   for (std::size_t k = 0; k < kStops.size(); ++k)
@@ -114,6 +119,36 @@ void DriveHistory::remember_stop(StepContext& c) {
   for (double& since : since_stop_)
     since +=
         0.5 * (base_.left_radius * std::abs(c.left_delta) + base_.right_radius * std::abs(c.right_delta));
+}
+
+/// Tyres, belts and gears; the state follows the motion over a distance of its own.
+void DriveHistory::wind_up(const StepContext& c, const Pose& step) {
+  constexpr double kWay = 0.05;   // m of the rims
+  constexpr double kTurn = 0.15;  // rad
+  const double left = base_.left_radius * c.left_delta, right = base_.right_radius * c.right_delta;
+  const double rims = std::abs(left) + std::abs(right);
+  const auto follow = [](double& state, double aim, double motion) {
+    state -= std::expm1(-motion) * (aim - state);
+  };
+  if (stood_ > 0.0 || !(rims > 0.0)) return;
+  auto& [brief, lasting] = wound_;
+  follow(brief.way, (left + right) / rims, 0.5 * rims / kWay);
+  follow(brief.turn, (right - left) / rims, 0.5 * rims / kWay);
+  follow(lasting.way, std::copysign(1.0, step.x), std::abs(step.x) / kWay);
+  follow(lasting.turn, std::copysign(1.0, step.yaw), std::abs(step.yaw) / kTurn);
+}
+
+void DriveHistory::unwind(StepContext& c) {
+  constexpr double kTime = 0.15;  // s
+  const double rim_speed = std::max(std::abs(c.left_speed), std::abs(c.right_speed));
+  if (stood_ == 0.0) fastest_ = std::max(fastest_, rim_speed);
+  c.fastest = fastest_;
+  const double share = -std::expm1(-std::min(stood_, c.dt) / kTime);
+  for (std::size_t k = 0; k < kWindings; ++k) {
+    c.unwound[k] = {share * wound_[k].way, share * wound_[k].turn};
+    wound_[k].way -= c.unwound[k].way;
+    wound_[k].turn -= c.unwound[k].turn;
+  }
 }
 
 /// Noise of the acceleration at steady speed must not wash the memory out.

@@ -33,6 +33,8 @@ class DriveHistory {
   void swing_caster(StepContext& context, const Pose& step);
   void relax_turn(StepContext& context, const Pose& step);
   void remember_stop(StepContext& context);
+  void wind_up(const StepContext& context, const Pose& step);
+  void unwind(StepContext& context);
   void remember_push(StepContext& context);
   void remember_turn(StepContext& context, double yaw);
 
@@ -45,6 +47,8 @@ class DriveHistory {
   double distance_ = 0.0;
   double pace_ = 0.0;
   double stood_ = 0.0;  ///< s
+  std::array<Unwound, kWindings> wound_{};
+  double fastest_ = 0.0;  ///< m/s
   std::array<double, kStops.size()> since_stop_;
   std::array<double, kRelaxations.size()> relaxed_turn_rate_{}, relaxed_lateral_acceleration_{};
   Memory previous_turn_{};

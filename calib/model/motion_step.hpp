@@ -17,6 +17,12 @@ struct WheelStep {
   T track{1.0};  ///< factor on the track width
 };
 
+/// Of an acceleration, how fast the speed or turn rate grows in magnitude: negative while it is braked,
+/// whichever way the motion goes.
+inline double growth_of_pace(double acceleration, double speed) {
+  return std::copysign(acceleration, acceleration * speed);
+}
+
 /// Place of the nearest of values of which only these are known.
 template <std::size_t N>
 std::size_t nearest_of(const std::array<double, N>& values, double value) {
@@ -58,6 +64,16 @@ inline constexpr std::array<double, 3> kRelaxations = {0.03, 0.07, 0.15};
 inline constexpr std::array<double, 4> kSwayLags = {0.05, 0.0, 0.1, 0.2};
 using Sways = std::array<double, kSwayLags.size()>;
 
+/// What unwinds after a stop of what a motion has wound up, as shares of the most it can: a straight motion
+/// winds up by its way, one on the spot by its turn, -1 to 1 in all.
+struct Unwound {
+  double way = 0.0;
+  double turn = 0.0;
+};
+/// The next few centimetres wind up anew whatever they are, as they do with the side walls of tyres; or a
+/// turn stays wound up until another.
+inline constexpr std::size_t kWindings = 2;
+
 /// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
 /// are smoothed, since differences of raw ticks are mostly quantisation noise.
 struct StepContext {
@@ -93,7 +109,9 @@ struct StepContext {
   /// Sine of the angle by which a caster behind the axle still points past the way its pivot moves, for each
   /// trail and lean: -1 to 1.
   std::array<double, kCasters> caster{};
-  double direction = 0.0;  ///< sign of the forward speed, kept while standing
+  std::array<Unwound, kWindings> unwound{};  ///< in this interval, by each way of winding up
+  double fastest = 0.0;                      ///< rim speed since the robot last stood, m/s
+  double direction = 0.0;                    ///< sign of the forward speed, kept while standing
 };
 
 }  // namespace odomcalib::calib

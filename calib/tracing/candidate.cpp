@@ -23,7 +23,7 @@ std::string key_of(const Effect& effect) { return effect.name() + "/" + effect.p
 std::string key_of(const Effect& effect, const Curve& curve) {
   return effect.name() + "/" + std::to_string(curve.period) + "/" + std::to_string(curve.harmonic) + "/" +
          std::to_string(curve.wave[0]) + "/" + std::to_string(curve.wave[1]) +
-         (curve.patches ? "/patches" : "");
+         (curve.patches ? "/patches" : "") + (curve.with_motion ? "/pace" : "");
 }
 
 bool belongs_to_one_recording(const Effect& effect) {
@@ -91,7 +91,8 @@ bool must_be_worthwhile(const Candidate& candidate) {
   if (depends_on_history(candidate)) return true;
   const auto laws = laws_of(candidate);
   return std::any_of(laws.begin(), laws.end(), [](const Law& law) {
-    return law.variable == Variable::heading || law.variable == Variable::position;
+    return law.variable == Variable::heading || law.variable == Variable::position ||
+           law.variable == Variable::since_stop;
   });
 }
 

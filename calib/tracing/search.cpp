@@ -220,10 +220,21 @@ class Search {
     return std::nullopt;
   }
 
+  /// Whether what lies outside each fold points to the candidate, in whichever of its shapes.
+  [[nodiscard]] FoldFlags selected_without_fold(std::size_t candidate) const {
+    FoldFlags selected{};
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      if (candidates_[k].key != candidates_[candidate].key) continue;
+      const FoldFlags of_shape = round_->table().selected_without(k, kFoldLevel);
+      for (std::size_t fold = 0; fold < selected.size(); ++fold) selected[fold] |= of_shape[fold];
+    }
+    return selected;
+  }
+
   /// How the trial fails its proof; empty when it does not.
   /// @param settled the trial on its own noise then
   std::string failure(const Trial& trial, Proof& proof, std::optional<Trial>& settled) {
-    const FoldFlags selected = round_->table().selected_without(trial.candidate, kFoldLevel);
+    const FoldFlags selected = selected_without_fold(trial.candidate);
     std::string reason =
         objection(task_, basis(), trial.model, selected, largest_ratio(candidates_[trial.candidate]), proof);
     if (!reason.empty()) return reason;

@@ -33,6 +33,7 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   curve.wave = entry.value("wave", curve.wave);
   curve.constant = entry.value("constant", false);
   curve.patches = entry.value("patches", false);
+  curve.with_motion = entry.value("with_motion", false);
   if (!(curve.high > curve.low) || curve.memory >= memories_of(*variable) ||
       std::find(kKnots.begin(), kKnots.end(), curve.knots) == kKnots.end() ||
       coefficients.size() != basis_size(curve))
@@ -69,6 +70,7 @@ std::string curves_to_json(const std::vector<FittedCurve>& curves) {
                     {"wave", curve.wave},
                     {"constant", curve.constant},
                     {"patches", curve.patches},
+                    {"with_motion", curve.with_motion},
                     {"coefficients", coefficients},
                     {"law_of", law_of}});
   return list.dump();

@@ -61,6 +61,17 @@ constexpr std::array kVariables = {
              [](const StepContext& c) { return c.direction * std::min(c.since_reversal, 0.5); }},
     Variable{"distance since a stop", "m", Variable::mean,
              [](const StepContext& c) { return std::min(c.since_stop[kUsualMemory], 0.5); }},
+    Variable{"stop after a straight motion", "", Variable::sum,
+             [](const StepContext& c) { return c.unwound[0].way; }},
+    Variable{"stop after a turn", "", Variable::sum, [](const StepContext& c) { return c.unwound[0].turn; }},
+    Variable{"growth of the left wheel's pace", "m/s^2", Variable::mean,
+             [](const StepContext& c) { return growth_of_pace(c.left_acceleration, c.left_speed); }},
+    Variable{"growth of the right wheel's pace", "m/s^2", Variable::mean,
+             [](const StepContext& c) { return growth_of_pace(c.right_acceleration, c.right_speed); }},
+    Variable{"growth of the pace", "m/s^2", Variable::mean,
+             [](const StepContext& c) {
+               return growth_of_pace(0.5 * (c.left_acceleration + c.right_acceleration), c.speed);
+             }},
     Variable{"last turn", "", Variable::mean,
              [](const StepContext& c) { return c.previous_turn[kUsualMemory]; }},
     Variable{"last push", "", Variable::mean,

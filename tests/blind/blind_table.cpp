@@ -54,6 +54,7 @@ const std::map<std::string, std::set<std::string>>& variables_of_names() {
       {"lateral_slip", {"lateral_acceleration"}},
       {"speed_dependent_radius", {"left_speed", "right_speed"}},
       {"speed_dependent_track", {"turn_rate"}},
+      {"stop_settling", {"since_stop"}},
       {"tick_loss", {"left_speed", "right_speed"}},
       {"track_depends_on_motion", {"speed", "turn_rate"}},
       {"turn_direction_asymmetry", {"turn_rate"}},

@@ -166,10 +166,19 @@ INSTANTIATE_TEST_SUITE_P(Simulated, Tour,
                                            Injected{"cable_pull", 0.033, ""}),
                          [](const auto& tested) { return std::string(tested.param.simulated); });
 
+/// A campaign's draw from before the simulator knew the newest kinds: a kind more, and all draws are others.
+sim::BlindOptions without_newest_kinds() {
+  sim::BlindOptions options;
+  for (const sim::EffectKind& kind : sim::effect_kinds())
+    if (kind.name != "brake_skid" && kind.name != "grabbing_brake" && kind.name != "sidewall_twist")
+      options.only.push_back(kind.name);
+  return options;
+}
+
 // Nine starts in five minutes are few enough to be taken for failed matches, and were: flagged, not
 // corrected.
 TEST(Seldom, a_wheel_that_sticks_after_few_stops_is_corrected) {
-  const sim::BlindCase drawn = sim::make_blind_case(381161, 82);
+  const sim::BlindCase drawn = sim::make_blind_case(381161, 82, without_newest_kinds());
   ASSERT_EQ(drawn.answer.effects.front().name, "sticky_start");
   const Calibration result = calib::solve({&drawn.run.recording, 1}, {});
   EXPECT_TRUE(testing::is_told(result, "since_stop")) << testing::told(result);
@@ -180,7 +189,7 @@ TEST(Seldom, a_wheel_that_sticks_after_few_stops_is_corrected) {
 
 // A threshold follows one side of a dip, and makes five per cent of a diameter up beyond the other.
 TEST(Dip, is_no_threshold) {
-  sim::BlindOptions options;
+  sim::BlindOptions options = without_newest_kinds();
   options.tour = true;
   const sim::BlindCase drawn = sim::make_blind_case(391152, 2, options);
   ASSERT_EQ(drawn.answer.effects.front().name, "resonance");

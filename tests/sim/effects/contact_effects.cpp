@@ -40,6 +40,63 @@ class TractionSlip : public Effect {
   }
 };
 
+/// Rim acceleration in the direction in which the wheel turns, m/s^2: negative while it is braked.
+double speeding_up(const StepView& view, const StepMotion& motion, std::size_t side) {
+  const double way = motion.travel[side];
+  return view.turned[side] == 0.0 ? 0.0 : view.acceleration[side] * way / view.turned[side] * sign(way);
+}
+
+/// The motors are gentle but the brakes are not: tyres slide on while a wheel is slowed down.
+class BrakeSkid : public Effect {
+ public:
+  BrakeSkid(double slip_at_one, Random& /*random*/) : Effect("brake_skid", slip_at_one) {}
+  void on_step(const StepView& view, StepMotion& motion) override {
+    for (const std::size_t side : {kLeft, kRight})
+      motion.travel[side] *= 1.0 + tyre_slip(std::max(0.0, -speeding_up(view, motion, side)), size_);
+  }
+};
+
+/// One brake grabs: that wheel is locked for short times as it is slowed down, and drags.
+class GrabbingBrake : public Effect {
+ public:
+  GrabbingBrake(double slip_at_one, Random& random)
+      : Effect("grabbing_brake", slip_at_one), side_(any_side(random)) {}
+  void on_step(const StepView& view, StepMotion& motion) override {
+    const double braking = std::max(0.0, -speeding_up(view, motion, side_));
+    motion.travel[side_] *= 1.0 + size_ * braking * braking / (0.3 + braking);
+  }
+
+ private:
+  std::size_t side_;
+};
+
+/// The side walls of the tyres twist in turns on the spot (Dahl's law), untwist as they roll on, and turn the
+/// base back when it has come to rest. Size: rad.
+class SidewallTwist : public Effect {
+ public:
+  SidewallTwist(double most, Random& /*random*/) : Effect("sidewall_twist", most) {}
+  void on_step(const StepView& view, StepMotion& motion) override {
+    if (size_ <= 0.0) return;
+    const double path = std::abs(forward(motion));
+    if (std::abs(view.rate[kLeft]) < kRest && std::abs(view.rate[kRight]) < kRest) {
+      const double back = twist_ * (1.0 - std::exp(-view.dt / kTime));
+      motion.yaw -= back;
+      twist_ -= back;
+      return;
+    }
+    const double yaw = view.yaw_rate * view.dt;
+    twist_ += (yaw - std::abs(yaw) * twist_ / size_) * size_ / kAngle;
+    twist_ *= std::exp(-path / kContact);
+  }
+
+ private:
+  static constexpr double kTime = 0.2;      // s
+  static constexpr double kAngle = 0.12;    // rad
+  static constexpr double kContact = 0.04;  // m
+  static constexpr double kRest = 0.02;     // rad/s of a wheel
+  double twist_ = 0.0;
+};
+
 /// In a curve the tyres run at a slip angle that builds up over a relaxation length.
 class CorneringCreep : public Effect {
  public:
@@ -146,6 +203,9 @@ std::vector<EffectKind> contact_effects() {
        0.015,
        0.06,
        maker<TractionSlip>()},
+      {"brake_skid", "acceleration_slip", {"acceleration"}, "1 at 1 m/s^2", 0.02, 0.1, maker<BrakeSkid>()},
+      {"grabbing_brake", "", {"acceleration"}, "1 at 1 m/s^2", 0.02, 0.1, maker<GrabbingBrake>()},
+      {"sidewall_twist", "stop_settling", {"stops"}, "rad", 0.002, 0.01, maker<SidewallTwist>()},
       {"cornering_creep",
        "lateral_slip",
        {"speed*yaw_rate"},

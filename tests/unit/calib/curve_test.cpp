@@ -34,6 +34,30 @@ TEST(Curve, of_a_speed_is_zero_at_rest_with_any_knots) {
   }
 }
 
+TEST(Curve, of_the_pace_is_the_same_both_ways) {
+  const std::array pace = {Law{Variable::acceleration, Carrier::both_travel},
+                           Law{Variable::left_acceleration, Carrier::left_travel},
+                           Law{Variable::right_acceleration, Carrier::right_travel},
+                           Law{Variable::turn_acceleration, Carrier::track}};
+  const auto moving = [](double way, double push) {
+    StepContext c;
+    c.speed = c.left_speed = c.right_speed = c.turn_rate = 0.3 * way;
+    c.left_acceleration = c.right_acceleration = 0.5 * way * push;
+    c.turn_acceleration_before.fill(0.5 * way * push);
+    c.turn_acceleration_after.fill(0.5 * way * push);
+    return c;
+  };
+  for (const Law& law : pace) {
+    Curve curve{law, -1.0, 1.0};
+    curve.with_motion = true;
+    for (const double push : {-1.0, 1.0}) {
+      const BasisValues ahead = basis(curve, moving(1.0, push)), back = basis(curve, moving(-1.0, push));
+      EXPECT_NEAR(ahead[0], 0.5 * push, 1e-12) << to_string(law.variable);
+      for (std::size_t k = 0; k < ahead.size(); ++k) EXPECT_EQ(ahead[k], back[k]) << to_string(law.variable);
+    }
+  }
+}
+
 /// Largest error of the curve that is nearest to a smooth bump, relative to its height.
 double misfit_of_bump(const Curve& curve) {
   constexpr int kSpeeds = 200;
@@ -166,10 +190,14 @@ TEST(Curve, survives_the_calibration_file) {
   Curve tiles{{Variable::position, Carrier::both_travel}};
   tiles.wave = {3.0, -0.5};
   const Curve rug = other_shapes({{Variable::position, Carrier::both_travel}, -1.0, 1.0}, {}).front();
+  Curve brake{{Variable::left_acceleration, Carrier::left_travel}, -0.8, 0.8};
+  brake.with_motion = true;
   const auto read = curves_from_json(curves_to_json({{curve, {0.01, -0.02}, "drift_with_time"},
                                                      {tiles, {0.01, 0.0, 0.0, 0.0}, ""},
-                                                     {rug, std::vector<double>(16, 0.01), ""}}));
-  ASSERT_EQ(read.size(), 3U);
+                                                     {rug, std::vector<double>(16, 0.01), ""},
+                                                     {brake, std::vector<double>(4, 0.01), ""}}));
+  ASSERT_EQ(read.size(), 4U);
+  EXPECT_EQ(read[3].curve, brake);
   EXPECT_EQ(read[2].curve, rug);
   EXPECT_EQ(read[1].curve.wave, tiles.wave);
   EXPECT_EQ(read[0].curve.law, curve.law);

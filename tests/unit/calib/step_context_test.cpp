@@ -205,6 +205,29 @@ TEST(StepContext, a_push_moves_a_seat_when_it_begins_however_hard_it_has_to_be) 
   EXPECT_EQ(static_cast<std::size_t>(moved_at(kPushes.size() - 1)), context.size());
 }
 
+TEST(StepContext, what_a_motion_has_wound_up_unwinds_once_in_the_stop_after_it) {
+  WheelTrack track = driven_at([](double t) { return t < 4.0 || (t > 5.0 && t < 5.01) ? 5.0 : 0.0; });
+  const auto sums = [](const std::vector<StepContext>& context, std::size_t winding) {
+    Unwound sum;
+    for (const StepContext& c : context) {
+      sum.way += c.unwound.at(winding).way;
+      sum.turn += c.unwound.at(winding).turn;
+    }
+    return sum;
+  };
+  const auto straight = make_context(track, kBase);
+  for (double& angle : track.left) angle = -angle;
+  const auto turn = make_context(track, kBase);
+  for (std::size_t winding = 0; winding < kWindings; ++winding) {
+    EXPECT_NEAR(sums(straight, winding).way, 1.0, 0.15);
+    EXPECT_NEAR(sums(straight, winding).turn, 0.0, 1e-9);
+    EXPECT_NEAR(sums(turn, winding).turn, 1.0, 0.15);
+  }
+  EXPECT_NEAR(sums(turn, 0).way, 0.0, 1e-9);
+  EXPECT_EQ(straight[150].unwound[0].way, 0.0);  // in motion
+  EXPECT_NEAR(straight[240].fastest, 5.0 * kBase.left_radius, 1e-3);
+}
+
 TEST(StepContext, counts_from_stops_that_last) {
   const WheelTrack track =
       driven_at([](double t) { return (t > 4.0 && t < 4.31) || (t > 6.0 && t < 6.11) ? 0.0 : 5.0; });

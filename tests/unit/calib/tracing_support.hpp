@@ -56,6 +56,25 @@ inline DriveModel jerky_model() {
   return {std::move(track), context};
 }
 
+/// Four minutes of straights and turns on the spot, both ways, a stop of a second after each.
+inline DriveModel stopping_model() {
+  constexpr double kStep = 0.04, kRamp = 0.4, kMove = 2.0, kLeg = 3.0;  // s
+  WheelTrack track;
+  double left = 0.0, right = 0.0;
+  for (int k = 0; k <= 6000; ++k) {
+    const double in_leg = std::fmod(kStep * k, kLeg);
+    const int leg = static_cast<int>(kStep * k / kLeg);
+    const double share = std::clamp(std::min(in_leg, kMove - in_leg) / kRamp, 0.0, 1.0);
+    const double way = leg % 5 < 2 ? 1.0 : -1.0, speed = way * (3.0 + leg % 3) * share;
+    track.t.push_back(kStep * k);
+    track.left.push_back(left += kStep * (leg % 2 == 0 ? speed : -speed));
+    track.right.push_back(right += kStep * speed);
+    track.segment.push_back(0);
+  }
+  const auto context = make_context(track, kBase);
+  return {std::move(track), context};
+}
+
 /// What a sensor with 0.5 mm and 0.5 mrad of noise would have measured, had the robot these effects.
 inline FitData measured(const DriveModel& model, const EffectList& effects, const std::vector<double>& values,
                         const std::vector<Interval>& intervals) {

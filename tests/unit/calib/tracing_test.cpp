@@ -146,6 +146,39 @@ TEST(Tracing, a_wheel_that_keeps_what_the_last_push_did_is_flagged) {
   EXPECT_EQ(result.curves[0].curve.law.variable, Variable::previous_push);
 }
 
+TEST(Tracing, a_wheel_that_slips_while_it_is_braked_follows_one_law_both_ways) {
+  const DriveModel model = jerky_model();
+  Curve brake{{Variable::left_acceleration, Carrier::left_travel}, -1.0, 1.0};
+  brake.with_motion = true;
+  const SearchResult result = searched(measured(model, {make_curve_effect(brake)}, {0.01, -0.01, 0.0, 0.0}));
+  ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
+  EXPECT_EQ(result.curves[0].curve.law, brake.law);
+  EXPECT_TRUE(result.curves[0].curve.with_motion);
+  EXPECT_TRUE(result.findings.empty());
+}
+
+TEST(Tracing, slip_of_braking_or_of_driving_alone_keeps_its_name) {
+  const DriveModel model = jerky_model();
+  for (const double side : {-1.0, 1.0}) {
+    const SearchResult result = searched(measured(model, {find_effect("acceleration_slip")}, {0.03, side}));
+    ASSERT_EQ(result.findings.size(), 1U) << "seed " << kSeed;
+    EXPECT_EQ(result.findings[0].effect->name(), "acceleration_slip");
+    EXPECT_EQ(result.findings[0].effect->parameters()[1].start, side);
+    EXPECT_NEAR(result.model.fit.parameters(kBaseCount), 0.03, 0.003);
+    EXPECT_TRUE(result.curves.empty());
+  }
+}
+
+TEST(Tracing, a_base_that_turns_back_after_stops_is_named) {
+  const DriveModel model = stopping_model();
+  const auto data = measured(model, {find_effect("stop_settling")}, {-0.004, 0.0, 0.0, 0.0});
+  const SearchResult result = searched(data);
+  ASSERT_EQ(result.findings.size(), 1U) << "seed " << kSeed;
+  EXPECT_EQ(result.findings[0].effect->name(), "stop_settling");
+  EXPECT_NEAR(result.model.fit.parameters(kBaseCount), -0.004, 0.0008);
+  EXPECT_NEAR(result.model.fit.parameters(kBaseCount + 1), 0.0, 0.0005);
+}
+
 TEST(Tracing, a_mast_that_sways_is_flagged_and_kept_out_of_odometry) {
   const DriveModel model = jerky_model();
   const Curve sway{{Variable::turn_acceleration, Carrier::sensor_yaw}, -3.0, 3.0};
