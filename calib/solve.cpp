@@ -129,7 +129,7 @@ class Solver {
     if (sweeping.empty() || !session_->reference_is_scans()) return fit;
     const State before = state(fit.value(), lidar_.size());
     auto session = std::move(session_);
-    auto better = measure_anew(sweeping);
+    auto better = begin_anew(sweeping);
     if (better && has(kOffset)) {
       take_stamps_for_middles(sweeping);
       better = measure_anew(sweeping);
@@ -145,6 +145,14 @@ class Solver {
     return fit;
   }
 
+  /// From nominal values: what was fitted to scans taken otherwise is no start.
+  Result<FitResult> begin_anew(std::span<const Recording> recordings) {
+    if (auto error = open(recordings)) return *error;
+    effects_ = given_;
+    if (auto error = start()) return *error;
+    return settle();
+  }
+
   std::optional<Error> open_and_measure(std::span<const Recording> recordings) {
     auto error = open(recordings);
     if (!error) measure();
@@ -158,10 +166,10 @@ class Solver {
 
   /// Of all three components together.
   static bool is_clearly_better(const std::optional<HeldOut>& before, const std::optional<HeldOut>& after) {
-    constexpr double kClearly = 0.9;  // product of the ratios
+    constexpr double kClearly = 0.95;  // product of the ratios
     if (!before || !after) return false;
     double ratio = 1.0;
-    for (std::size_t k = 0; k < before->rms.size(); ++k) ratio *= after->rms[k] / before->rms[k];
+    for (std::size_t k = 0; k < before->bounded.size(); ++k) ratio *= after->bounded[k] / before->bounded[k];
     return ratio < kClearly;
   }
 
@@ -177,6 +185,7 @@ class Solver {
       const EffectList found = find_effects(name);
       effects_.insert(effects_.end(), found.begin(), found.end());
     }
+    given_ = effects_;
     return std::nullopt;
   }
 
@@ -217,17 +226,20 @@ class Solver {
   }
 
   /// Fits, matches again with the fitted parameters (guess and de-skew), and fits again. Noise of a match
-  /// made with wrong parameters must not reach the result.
+  /// made with wrong parameters must not reach the result; a clock far off takes a few more passes.
   Result<FitResult> settle() {
+    constexpr int kPasses = 2, kMostPasses = 5;
     report("fitting", 0.0);
     auto fit = fit_now();
-    for (int pass = 0; pass < 2 && fit; ++pass) {
+    for (int pass = 0; pass < kMostPasses && fit; ++pass) {
+      const double delay_before = delay();
       parameters_ = fit.value().parameters;
-      if (pass == 0) drop_idle_clocks(fit.value());
-      if (is_as_measured()) break;
-      report("matching", 0.33 * (pass + 1));
+      const bool clock_moves = std::abs(delay() - delay_before) > kNegligibleOffset;
+      if (pass == 0 || clock_moves) drop_idle_clocks(fit.value());
+      if (is_as_measured() || (pass >= kPasses && !clock_moves)) break;
+      report("matching", std::min(0.33 * (pass + 1), 1.0));
       measure();
-      report("fitting", 0.5 * (pass + 1));
+      report("fitting", std::min(0.5 * (pass + 1), 1.0));
       fit = fit_now();
     }
     if (fit) parameters_ = fit.value().parameters;
@@ -512,7 +524,8 @@ class Solver {
   std::unique_ptr<Session> session_;
   bool automatic_ = false;
   bool every_scan_placed_ =
-      false;  ///< the parameters come from the whole path, not from matches of keyframes
+      false;          ///< the parameters come from the whole path, not from matches of keyframes
+  EffectList given_;  ///< asked for by name
   EffectList effects_;
   SearchResult outcome_;
   Eigen::VectorXd parameters_;

@@ -56,16 +56,17 @@ std::vector<HeldOutError> held_out_errors(std::span<const FitData> data, const E
 
 std::optional<HeldOut> held_out_residual(const std::vector<HeldOutError>& errors,
                                          const std::vector<HeldOutError>& other) {
-  Eigen::Vector3d squares = Eigen::Vector3d::Zero(), expected = Eigen::Vector3d::Zero();
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero(), expected = squares, bounded = squares;
   std::size_t count = 0;
   for (std::size_t k = 0; k < errors.size(); ++k) {
+    bounded += errors[k].error.cwiseAbs2().cwiseMin(kGrossError * kGrossError * errors[k].variance);
     if (is_gross(errors[k]) && is_gross(other[k])) continue;
     squares += errors[k].error.cwiseAbs2();
     expected += errors[k].variance;
     ++count;
   }
   if (count < kMinPairs) return std::nullopt;
-  return HeldOut{root(squares, count), root(expected, count), count};
+  return HeldOut{root(squares, count), root(expected, count), root(bounded, errors.size()), count};
 }
 
 std::optional<HeldOut> held_out_residual(std::span<const FitData> data, const EffectList& effects,

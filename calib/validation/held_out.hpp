@@ -14,6 +14,8 @@ namespace odomcalib::calib {
 struct HeldOut {
   std::array<double, 3> rms{};  ///< measured - predicted sensor motion per pair: m, m, rad; outliers left out
   std::array<double, 3> noise_floor{};  ///< what the noise model expects there
+  /// The same of all pairs, outliers counted as what is just no outlier: a model that makes fewer is better.
+  std::array<double, 3> bounded{};
   std::size_t pairs = 0;
 };
 
