@@ -54,11 +54,28 @@ double median_interval(const std::vector<TickSample>& ticks) {
   return std::max(*middle, 1e-3);
 }
 
+/// Between samples in which a count is another: a controller may be asked more often than it counts anew, and
+/// steps then come all at once.
+double interval_of_changes(const std::vector<TickSample>& ticks) {
+  constexpr double kLongest = 0.5;  // s; longer ones are stops
+  std::vector<double> intervals;
+  double last = ticks.empty() ? 0.0 : ticks.front().t;
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    if (ticks[i].left == ticks[i - 1].left && ticks[i].right == ticks[i - 1].right) continue;
+    if (ticks[i].t - last < kLongest) intervals.push_back(ticks[i].t - last);
+    last = ticks[i].t;
+  }
+  if (intervals.empty()) return 0.0;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
 /// Speeds in m/s from counts, with the nominal geometry.
 class Speeds {
  public:
   Speeds(const std::vector<TickSample>& ticks, const RobotDescription& robot)
-      : floor_(median_interval(ticks)), metres_per_tick_(0.0) {
+      : floor_(std::max(median_interval(ticks), interval_of_changes(ticks))), metres_per_tick_(0.0) {
     const double diameter = std::max(robot.left_wheel_diameter, robot.right_wheel_diameter);
     if (diameter > 0.0 && robot.ticks_per_rev > 0.0)
       metres_per_tick_ = diameter * std::numbers::pi / robot.ticks_per_rev;

@@ -105,6 +105,18 @@ TEST(HeldOut, two_models_are_compared_on_the_same_pairs) {
   EXPECT_NEAR(of_after->rms[2], 1e-3, 1e-12);
 }
 
+TEST(HeldOut, outliers_make_no_model_look_better) {
+  const Eigen::Vector3d variance(1e-6, 1e-6, 1e-6), usual(1e-3, 1e-3, 1e-3), gross(1.0, 1.0, 1.0);
+  const std::vector<HeldOutError> all(100, {usual, variance});
+  std::vector<HeldOutError> some(100, {0.9 * usual, variance});
+  for (std::size_t k = 0; k < 20; ++k) some[k].error = gross;
+  const auto of_all = held_out_residual(all, all), of_some = held_out_residual(some, some);
+  ASSERT_TRUE(of_all && of_some);
+  EXPECT_LT(of_some->rms[0], of_all->rms[0]);
+  EXPECT_NEAR(of_all->bounded[0], 1e-3, 1e-12);
+  EXPECT_NEAR(of_some->bounded[0], 1e-3 * std::sqrt(0.8 * 0.81 + 0.2 * 36.0), 1e-12);
+}
+
 TEST(StretchErrors, a_fold_that_would_not_have_chosen_keeps_its_error) {
   StretchErrors before, after;
   before.position = {1.0, 2.0, 3.0};

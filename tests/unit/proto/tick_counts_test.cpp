@@ -162,6 +162,19 @@ TEST(TickCounts, are_not_broken_by_a_disc_of_few_slots_that_is_read_often) {
   EXPECT_EQ(continue_counts(ticks, robot), 1U);
 }
 
+TEST(TickCounts, are_not_broken_where_a_controller_is_asked_more_often_than_it_counts) {
+  std::mt19937 random(5);
+  const auto drive_at_its_pace = drive(random, 400, 0, 0);
+  std::vector<TickSample> asked;
+  asked.reserve(8 * drive_at_its_pace.size());
+  for (const TickSample& sample : drive_at_its_pace)
+    for (int k = 0; k < 8; ++k)
+      asked.push_back({sample.t + k * kInterval / 8, sample.left, sample.right, sample.segment});
+  const auto drive_as_asked = asked;
+  EXPECT_EQ(continue_counts(asked, test::example_robot()), 0U);
+  expect_same_motion(asked, drive_as_asked);
+}
+
 TEST(TickCounts, never_join_segments_that_the_source_has_told_apart) {
   std::vector<TickSample> ticks{{0, 0, 0, 3}, {0.1, 10, 10, 3}, {0.2, 20, 20, 7}, {0.3, 30, 30, 7}};
   EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U);
