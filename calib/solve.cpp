@@ -305,6 +305,10 @@ class Solver {
   /// scans.
   Result<FitResult> correct_lidar(Result<FitResult> fit) {
     if (!may_trace_lidar()) return fit;
+    // Beams spread too wide bend the walls of a map, as ranges that are too short would.
+    if (asked_of_lidar_.empty() && overstates_a_turn(*session_))
+      fit = take_out(trace_lidar(lidar_pairs(), false, true), std::move(fit), true);
+    if (!fit) return fit;
     place_every_scan(asked_of_lidar_.empty());
     fit = take_out(common_findings(paths_), std::move(fit), false);
     if (!fit) return fit;

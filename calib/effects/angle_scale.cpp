@@ -4,7 +4,7 @@ namespace odomcalib::calib {
 namespace {
 
 // Beams are spread wider or narrower than stated: an increment made from n beams instead of n - 1 steps, a
-// nominal field of view. A head that goes all the way round has none.
+// nominal field of view. A head that goes all the way round has none if its stated steps add up to one turn.
 class AngleScale final : public LidarEffect {
  public:
   [[nodiscard]] std::string name() const override { return "angle_scale"; }

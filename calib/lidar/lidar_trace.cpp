@@ -178,12 +178,25 @@ bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all
   });
 }
 
-bool sees_all_round(const Scan& scan) {
-  if (scan.ranges.size() < 2) return false;
+namespace {
+
+/// Angle from one beam to the next in the mean, rad; 0 with less than two.
+double mean_step(const Scan& scan) {
+  if (scan.ranges.size() < 2) return 0.0;
   double swept = 0.0;  // angles that are stated beam by beam may start again at half a turn
   for (std::size_t k = 1; k < scan.ranges.size(); ++k) swept += wrap_angle(scan.angle(k) - scan.angle(k - 1));
-  const auto n = static_cast<double>(scan.ranges.size());
-  return std::abs(swept) * n / (n - 1.0) > kAllRound;
+  return std::abs(swept) / static_cast<double>(scan.ranges.size() - 1);
+}
+
+}  // namespace
+
+bool overstates_a_turn(const Scan& scan) {
+  const double step = mean_step(scan);
+  return step * static_cast<double>(scan.ranges.size()) >= 2.0 * kPi + 0.5 * step;
+}
+
+bool sees_all_round(const Scan& scan) {
+  return mean_step(scan) * static_cast<double>(scan.ranges.size()) > kAllRound && !overstates_a_turn(scan);
 }
 
 std::vector<LidarFinding> trace_lidar(const std::vector<HeadingPair>& pairs, bool all_round,

@@ -35,7 +35,9 @@ std::vector<LidarFinding> fit_lidar(const std::vector<HeadingPair>& pairs,
 /// The scan as it would be without the errors found.
 Scan corrected(const Scan& scan, const std::vector<LidarFinding>& findings);
 
-/// Whether scans cover (nearly) a whole turn.
+/// Whether scans cover (nearly) a whole turn, and state no more than that.
 bool sees_all_round(const Scan& scan);
+/// Whether the stated steps of all beams add up to more than a turn: no head has two beams in one direction.
+bool overstates_a_turn(const Scan& scan);
 
 }  // namespace odomcalib::calib

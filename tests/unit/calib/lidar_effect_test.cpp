@@ -147,6 +147,9 @@ TEST(LidarEffect, a_turn_that_begins_anywhere_is_seen_as_one) {
     scan.angles.push_back(static_cast<float>(std::remainder(2.0 - k * 0.0209, 2.0 * std::numbers::pi)));
   EXPECT_TRUE(sees_all_round(scan)) << "beam by beam, clockwise, across half a turn";
   scan.angles.clear();
+  scan.angle_increment *= 300.0 / 299.0;
+  EXPECT_FALSE(sees_all_round(scan)) << "a turn that is stated to be more than one";
+  scan.angle_increment *= 299.0 / 300.0;
   scan.ranges.resize(200);
   EXPECT_FALSE(sees_all_round(scan));
 }
