@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace odomcalib {
 namespace {
@@ -40,6 +41,13 @@ bool fits(const std::vector<TickSample>& ticks, std::int64_t modulus) {
   return inside(0) || inside(-modulus / 2);
 }
 
+/// The upper median of at least one value.
+double middle_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// Over many samples: where a bus hands over several at a time, most intervals are next to nothing.
 double median_interval(const std::vector<TickSample>& ticks) {
   constexpr std::size_t kMostAtATime = 20;
@@ -49,9 +57,7 @@ double median_interval(const std::vector<TickSample>& ticks) {
   intervals.reserve(ticks.size() - n);
   for (std::size_t i = n; i < ticks.size(); ++i)
     intervals.push_back((ticks[i].t - ticks[i - n].t) / static_cast<double>(n));
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return std::max(*middle, 1e-3);
+  return std::max(middle_of(std::move(intervals)), 1e-3);
 }
 
 /// Between samples in which a count is another: a controller may be asked more often than it counts anew, and
@@ -65,10 +71,7 @@ double interval_of_changes(const std::vector<TickSample>& ticks) {
     if (ticks[i].t - last < kLongest) intervals.push_back(ticks[i].t - last);
     last = ticks[i].t;
   }
-  if (intervals.empty()) return 0.0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return intervals.empty() ? 0.0 : middle_of(std::move(intervals));
 }
 
 /// Speeds in m/s from counts, with the nominal geometry.

@@ -180,14 +180,15 @@ double motion_of(Variable variable, const StepContext& c) {
   }
 }
 
-double value_in(const Curve& curve, const StepContext& c) {
+/// Of the curve's variable, as the curve understands it.
+double argument_of(const Curve& curve, const StepContext& c) {
   const double z = value_of(curve.law.variable, c, curve.memory);
   return curve.with_motion ? growth_of_pace(z, motion_of(curve.law.variable, c)) : z;
 }
 
 BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   const Variable variable = curve.law.variable;
-  const double z = value_in(curve, c);
+  const double z = argument_of(curve, c);
   if (concerns_sensor(curve)) return sway_functions(curve, z);
   if (curve.constant) return with_constant(harmonics(z, 1, kHarmonics));
   if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);

@@ -170,16 +170,6 @@ class Trace {
   std::vector<LidarFinding> evidence_;
 };
 
-}  // namespace
-
-bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all) {
-  return !finding.effect->is_named() && std::any_of(all.begin(), all.end(), [&](const LidarFinding& other) {
-    return other.effect->is_named() && other.effect->variable() == finding.effect->variable();
-  });
-}
-
-namespace {
-
 /// Angle from one beam to the next in the mean, rad; 0 with less than two.
 double mean_step(const Scan& scan) {
   if (scan.ranges.size() < 2) return 0.0;
@@ -189,6 +179,12 @@ double mean_step(const Scan& scan) {
 }
 
 }  // namespace
+
+bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all) {
+  return !finding.effect->is_named() && std::any_of(all.begin(), all.end(), [&](const LidarFinding& other) {
+    return other.effect->is_named() && other.effect->variable() == finding.effect->variable();
+  });
+}
 
 bool overstates_a_turn(const Scan& scan) {
   const double step = mean_step(scan);

@@ -1,6 +1,7 @@
 #include "calib/matching/both_ways.hpp"
 
 #include <Eigen/LU>
+#include <cmath>
 
 namespace odomcalib::calib {
 namespace {
