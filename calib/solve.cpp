@@ -209,7 +209,7 @@ class Solver {
   std::optional<Error> start() {
     report("matching", 0.0);
     parameters_ = to_vector(session_->nominal());
-    session_->measure(parameters_, {}, PairOptions{});
+    session_->measure(parameters_, {}, PairOptions{.rough = true});
     if (automatic_ && recordings_.front().increments.empty()) effects_.push_back(find_effect("time_offset"));
     const ClockStart clock = has(kOffset) ? search_clock(session_->data()) : ClockStart{};
     if (auto error = check_signs(wheel_motions(session_->data(), clock.delay), calibration_.robot,

@@ -161,7 +161,7 @@ BasisValues wave_functions(const Curve& curve, const StepContext& c) {
   // More than a thousand waves are asked at every step; single precision of a turn is a ten millionth of one.
   const std::complex<float> here =
       std::polar(1.0F, static_cast<float>(2.0 * kPi * (waves - std::floor(waves))));
-  const double across = (a * std::cos(c.heading) + b * std::sin(c.heading)) / std::sqrt(a * a + b * b);
+  const double across = (a * c.heading_cosine + b * c.heading_sine) / std::sqrt(a * a + b * b);
   const double cosine = static_cast<double>(here.real()), sine = static_cast<double>(here.imag());
   return {cosine, sine, across * cosine, across * sine};
 }

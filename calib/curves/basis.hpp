@@ -1,6 +1,7 @@
 // The functions that curves are sums of.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 
@@ -14,7 +15,7 @@ class BasisValues {
  public:
   BasisValues() = default;
   /// All zero.
-  explicit BasisValues(std::size_t count) : count_(count) {}
+  explicit BasisValues(std::size_t count) : count_(count) { std::fill_n(values_.begin(), count, 0.0); }
   BasisValues(std::initializer_list<double> values) {
     for (const double value : values) push_back(value);
   }
@@ -26,7 +27,7 @@ class BasisValues {
   [[nodiscard]] const double* end() const { return values_.data() + count_; }
 
  private:
-  std::array<double, kKnots.back() + 3> values_{};
+  std::array<double, kKnots.back() + 3> values_;  // NOLINT(*-member-init): the first `count_` are set
   std::size_t count_ = 0;
 };
 

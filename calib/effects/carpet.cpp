@@ -22,8 +22,7 @@ class Carpet final : public StepEffect<Carpet> {
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
     const double path = std::abs(c.speed) * c.dt;
-    const double cosine = std::cos(c.heading);
-    const double sine = std::sin(c.heading);
+    const double cosine = c.heading_cosine, sine = c.heading_sine;
     const T along = path * (p[0] * cosine + p[1] * sine);
     step.left += along;
     step.right += along;

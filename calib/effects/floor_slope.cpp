@@ -22,7 +22,7 @@ class FloorSlope final : public StepEffect<FloorSlope> {
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
     const double path = std::abs(c.speed) * c.dt;
-    const T creep = -path * (p[0] * std::cos(c.heading) + p[1] * std::sin(c.heading));
+    const T creep = -path * (p[0] * c.heading_cosine + p[1] * c.heading_sine);
     step.left += creep;
     step.right += creep;
   }

@@ -78,29 +78,36 @@ std::string parameter_names(const Eigen::VectorXd& direction) {
 /// Columns scaled to unit norm; fixed parameters drop out.
 struct NormalSystem {
   Eigen::VectorXd scale;
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd right_side;
+  Eigen::MatrixXd jacobian;  ///< whitened and scaled
+  Eigen::MatrixXd matrix;    ///< of the pairs, without the prior
 };
 
-NormalSystem normal_system(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
-                           const std::vector<bool>& fixed) {
+NormalSystem normal_system(const Eigen::MatrixXd& jacobian, const std::vector<bool>& fixed) {
   NormalSystem system;
   system.scale = jacobian.colwise().norm().transpose();
   for (Eigen::Index k = 0; k < system.scale.size(); ++k)
     system.scale(k) =
         !fixed[static_cast<std::size_t>(k)] && system.scale(k) > 0.0 ? 1.0 / system.scale(k) : 0.0;
-  const Eigen::MatrixXd scaled = jacobian * system.scale.asDiagonal();
-  system.matrix = scaled.transpose() * scaled;
-  system.right_side = scaled.transpose() * residual;
+  system.jacobian = jacobian * system.scale.asDiagonal();
+  system.matrix = system.jacobian.transpose() * system.jacobian;
   return system;
 }
 
-std::optional<Error> check_rank(const NormalSystem& system, const std::vector<bool>& fixed) {
+/// Rows of the priors: parameter over deviation, expected to be zero.
+Eigen::MatrixXd with_prior(const NormalSystem& system, const Eigen::VectorXd& information) {
+  Eigen::MatrixXd matrix = system.matrix;
+  matrix.diagonal() += information.cwiseProduct(system.scale.cwiseAbs2());
+  return matrix;
+}
+
+/// @param normal with the prior
+std::optional<Error> check_rank(const NormalSystem& system, const Eigen::MatrixXd& normal,
+                                const std::vector<bool>& fixed) {
   std::vector<Eigen::Index> free;
   // The shape of an effect of size zero changes nothing yet; it joins in as soon as the size does.
   for (Eigen::Index k = 0; k < system.scale.size(); ++k)
     if (!fixed[static_cast<std::size_t>(k)] && (k < kBaseCount || system.scale(k) > 0.0)) free.push_back(k);
-  const Eigen::MatrixXd matrix = system.matrix(free, free);
+  const Eigen::MatrixXd matrix = normal(free, free);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
   if (eigen.eigenvalues()(0) > kMinRelativePivot) return std::nullopt;
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(system.scale.size());
@@ -110,20 +117,20 @@ std::optional<Error> check_rank(const NormalSystem& system, const std::vector<bo
                "joint estimate", "record straight lines, arcs and turns on the spot, both ways"};
 }
 
-/// Rows of the priors: parameter over deviation, expected to be zero.
-void add_prior(const Eigen::VectorXd& information, const Eigen::VectorXd& p, NormalSystem& system) {
-  for (Eigen::Index k = 0; k < p.size(); ++k) {
-    system.matrix(k, k) += information(k) * system.scale(k) * system.scale(k);
-    system.right_side(k) -= information(k) * system.scale(k) * p(k);
-  }
-}
-
 double prior_cost(const Eigen::VectorXd& information, const Eigen::VectorXd& p) {
   return information.dot(p.cwiseAbs2());
 }
 
-/// Levenberg-Marquardt. The model is so nearly linear that a Jacobian serves for all steps that stay within a
-/// deviation of where it was taken, also when weights or noise have changed since.
+/// The problem near one point, whitened: what does not change from step to step.
+struct Linear {
+  StackWhitener whiten;
+  NormalSystem system;
+  Eigen::MatrixXd matrix;  ///< with the prior
+};
+
+/// Levenberg-Marquardt. The model is so nearly linear that a Jacobian, and with it what the noise depends on,
+/// serves for all steps that stay within a deviation of where it was taken, also when weights or noise have
+/// changed since.
 class Descent {
  public:
   Descent(std::span<const FitData> data, const EffectList& effects, const std::vector<bool>& fixed,
@@ -139,21 +146,20 @@ class Descent {
   Result<bool> settle(const std::vector<NoiseModel>& noise, const std::vector<double>& weights,
                       int iterations) {
     damping_ = 1e-9;
+    std::optional<Linear> linear;
     for (int i = 0; i < iterations; ++i) {
-      if (moved_ > kReach) linearise();
-      const Eigen::VectorXd residual = whitened(data_, stack_, noise, weights, stack_.residual);
-      const Eigen::MatrixXd jacobian = whitened(data_, stack_, noise, weights, stack_.jacobian);
-      NormalSystem system = normal_system(jacobian, residual, fixed_);
-      add_prior(prior_, p_, system);
-      if (auto error = check_rank(system, fixed_)) return *error;
-      const double before = residual.squaredNorm() + prior_cost(prior_, p_);
-      const auto length = descend(system, jacobian, before, noise, weights);
+      if (moved_ > kReach) linearise(), linear.reset();
+      if (!linear) {
+        linear = whitened(noise, weights);
+        if (auto error = check_rank(linear->system, linear->matrix, fixed_)) return *error;
+      }
+      const auto length = descend(*linear);
       if (length && *length < kSettled) return true;
       if (!length && moved_ == 0.0) return true;
       if (length)
         moved_ += *length;
       else
-        linearise();
+        linearise(), linear.reset();
     }
     return false;
   }
@@ -166,27 +172,34 @@ class Descent {
     moved_ = 0.0;
   }
 
-  [[nodiscard]] double cost(const Stack& stack, const Eigen::VectorXd& p,
-                            const std::vector<NoiseModel>& noise, const std::vector<double>& weights) const {
-    return whitened(data_, stack, noise, weights, stack.residual).squaredNorm() + prior_cost(prior_, p);
+  [[nodiscard]] Linear whitened(const std::vector<NoiseModel>& noise,
+                                const std::vector<double>& weights) const {
+    StackWhitener whiten(data_, stack_, noise, weights);
+    NormalSystem system = normal_system(whiten(stack_.jacobian), fixed_);
+    Eigen::MatrixXd matrix = with_prior(system, prior_);
+    return {std::move(whiten), std::move(system), std::move(matrix)};
   }
 
   /// Takes the first step that does not make it worse, more damped from one to the next. One that is short
   /// enough to end with is not damped further.
   /// @return its length, sigma
-  std::optional<double> descend(const NormalSystem& system, const Eigen::MatrixXd& jacobian, double before,
-                                const std::vector<NoiseModel>& noise, const std::vector<double>& weights) {
+  std::optional<double> descend(const Linear& linear) {
+    const NormalSystem& system = linear.system;
+    const Eigen::VectorXd residual = linear.whiten(stack_.residual);
+    const double before = residual.squaredNorm() + prior_cost(prior_, p_);
+    const Eigen::VectorXd right_side =
+        system.jacobian.transpose() * residual - prior_.cwiseProduct(system.scale).cwiseProduct(p_);
     for (int attempt = 0; attempt < 8; ++attempt) {
-      Eigen::MatrixXd damped = system.matrix;
+      Eigen::MatrixXd damped = linear.matrix;
       for (Eigen::Index k = 0; k < damped.rows(); ++k)
         damped(k, k) = system.scale(k) > 0.0 ? damped(k, k) + damping_ : 1.0;
-      const Eigen::VectorXd step = system.scale.asDiagonal() * damped.ldlt().solve(system.right_side);
-      const double length = (jacobian * step).norm();
-      Stack there = make_stack(data_, effects_, p_ + step, false);
-      if (cost(there, p_ + step, noise, weights) <= before * (1.0 + 1e-12)) {
-        p_ += step;
-        there.jacobian = std::move(stack_.jacobian);
-        stack_ = std::move(there);
+      const Eigen::VectorXd scaled_step = damped.ldlt().solve(right_side);
+      const double length = (system.jacobian * scaled_step).norm();
+      const Eigen::VectorXd there = p_ + system.scale.asDiagonal() * scaled_step;
+      const Eigen::VectorXd residual_there = stacked_residual(data_, effects_, there);
+      if (linear.whiten(residual_there).squaredNorm() + prior_cost(prior_, there) <= before * (1.0 + 1e-12)) {
+        p_ = there;
+        stack_.residual = residual_there;
         damping_ = std::max(damping_ * 0.1, 1e-12);
         return length;
       }
@@ -201,8 +214,8 @@ class Descent {
   const std::vector<bool>& fixed_;
   const Eigen::VectorXd& prior_;
   Eigen::VectorXd p_;
-  Stack stack_;         ///< residual at p_, Jacobian near it
-  double moved_ = 0.0;  ///< sigma, since the Jacobian was taken
+  Stack stack_;         ///< residual at p_, all else near it
+  double moved_ = 0.0;  ///< sigma, since all else was taken
   double damping_ = 0.0;
 };
 
@@ -223,9 +236,8 @@ ClusterRobust robust_covariance(std::span<const FitData> data, const Stack& stac
 /// Model covariance, each parameter's deviation raised to the robust one where that is larger.
 void set_covariance(std::span<const FitData> data, const Stack& stack, const std::vector<bool>& fixed,
                     FitResult& fit) {
-  NormalSystem system = normal_system(fit.whitened_jacobian, fit.whitened_residual, fixed);
-  add_prior(fit.prior_information, fit.parameters, system);
-  Eigen::MatrixXd matrix = system.matrix;
+  const NormalSystem system = normal_system(fit.whitened_jacobian, fixed);
+  Eigen::MatrixXd matrix = with_prior(system, fit.prior_information);
   for (Eigen::Index k = 0; k < matrix.rows(); ++k)
     if (!(system.scale(k) > 0.0)) matrix(k, k) = 1.0;
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
@@ -256,8 +268,9 @@ void conclude(std::span<const FitData> data, const EffectList& effects, const st
   fit.residuals = stack.residual.reshaped(3, stack.residual.rows() / 3).transpose();
   const std::vector<double> squared = distances(data, stack, fit.noise);
   fit.weights = robust_weights(squared);
-  fit.whitened_residual = whitened(data, stack, fit.noise, fit.weights, stack.residual);
-  fit.whitened_jacobian = whitened(data, stack, fit.noise, fit.weights, stack.jacobian);
+  const StackWhitener whiten(data, stack, fit.noise, fit.weights);
+  fit.whitened_residual = whiten(stack.residual);
+  fit.whitened_jacobian = whiten(stack.jacobian);
   fit.cost = 0.0;
   for (const double q : squared)
     fit.cost += (kStudentDof + 3.0) * std::log1p(kStudentConsistency * q / kStudentDof);
@@ -298,8 +311,9 @@ FitResult with_weights(std::span<const FitData> data, const EffectList& effects,
                        const std::vector<double>& weights) {
   const Stack stack = make_stack(data, effects, fit.parameters, true);
   fit.weights = weights;
-  fit.whitened_residual = whitened(data, stack, fit.noise, fit.weights, stack.residual);
-  fit.whitened_jacobian = whitened(data, stack, fit.noise, fit.weights, stack.jacobian);
+  const StackWhitener whiten(data, stack, fit.noise, fit.weights);
+  fit.whitened_residual = whiten(stack.residual);
+  fit.whitened_jacobian = whiten(stack.jacobian);
   return fit;
 }
 

@@ -12,6 +12,15 @@ PairState state_of(const Trajectory& trajectory, const Pose& mount, const Sensor
           sensor_velocity(trajectory, mount, pair.interval.end)};
 }
 
+/// 3 n.
+Eigen::VectorXd residual_along(const Trajectory& trajectory, const std::vector<SensorPair>& pairs) {
+  const auto predicted = trajectory.sensor_motions(intervals_of(pairs));
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(3 * pairs.size()));
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    residual.segment<3>(static_cast<Eigen::Index>(3 * k)) = difference(pairs[k].motion, predicted[k]);
+  return residual;
+}
+
 }  // namespace
 
 std::vector<Interval> intervals_of(const std::vector<SensorPair>& pairs) {
@@ -33,21 +42,36 @@ Stack make_stack(std::span<const FitData> data, const EffectList& effects, const
     stack.first.push_back(row);
     const auto intervals = intervals_of(d.pairs);
     const Trajectory trajectory = d.model->trajectory(as_span(p), effects);
-    const auto predicted = trajectory.sensor_motions(intervals);
+    stack.residual.middleRows(static_cast<Eigen::Index>(3 * row),
+                              static_cast<Eigen::Index>(3 * d.pairs.size())) =
+        residual_along(trajectory, d.pairs);
     if (derivatives)
       stack.jacobian.middleRows(static_cast<Eigen::Index>(3 * row),
                                 static_cast<Eigen::Index>(3 * intervals.size())) =
           Sensitivity(*d.model, trajectory, intervals).by_all();
     const Pose mount = to_base(as_span(p)).mount;
-    for (std::size_t k = 0; k < d.pairs.size(); ++k) {
-      stack.residual.block<3, 1>(static_cast<Eigen::Index>(3 * (row + k)), 0) =
-          difference(d.pairs[k].motion, predicted[k]);
-      stack.states.push_back(state_of(trajectory, mount, d.pairs[k]));
-    }
+    for (const SensorPair& pair : d.pairs) stack.states.push_back(state_of(trajectory, mount, pair));
     row += d.pairs.size();
   }
   stack.first.push_back(row);
   return stack;
+}
+
+Eigen::VectorXd stacked_residual(std::span<const FitData> data, const EffectList& effects,
+                                 const Eigen::VectorXd& p) {
+  std::vector<Eigen::VectorXd> parts;
+  Eigen::Index total = 0;
+  for (const FitData& d : data) {
+    parts.push_back(residual_along(d.model->trajectory(as_span(p), effects), d.pairs));
+    total += parts.back().size();
+  }
+  Eigen::VectorXd all(total);
+  Eigen::Index first = 0;
+  for (const Eigen::VectorXd& part : parts) {
+    all.segment(first, part.size()) = part;
+    first += part.size();
+  }
+  return all;
 }
 
 std::vector<Eigen::Vector3d> residuals_of(const Stack& stack, std::size_t d) {
@@ -67,13 +91,19 @@ Whitener whitener_of(std::span<const FitData> data, const Stack& stack, const No
           std::span(weights).subspan(stack.first[d], data[d].pairs.size())};
 }
 
-Eigen::MatrixXd whitened(std::span<const FitData> data, const Stack& stack,
-                         const std::vector<NoiseModel>& noise, const std::vector<double>& weights,
-                         Eigen::MatrixXd rows) {
-  for (std::size_t d = 0; d < data.size(); ++d) {
-    const auto first = static_cast<Eigen::Index>(3 * stack.first[d]);
-    Eigen::MatrixXd block = rows.middleRows(first, static_cast<Eigen::Index>(3 * data[d].pairs.size()));
-    whitener_of(data, stack, noise[d], weights, d).apply(block);
+StackWhitener::StackWhitener(std::span<const FitData> data, const Stack& stack,
+                             const std::vector<NoiseModel>& noise, const std::vector<double>& weights)
+    : first_(stack.first) {
+  for (std::size_t d = 0; d < data.size(); ++d)
+    whiteners_.push_back(whitener_of(data, stack, noise[d], weights, d));
+}
+
+Eigen::MatrixXd StackWhitener::operator()(Eigen::MatrixXd rows) const {
+  for (std::size_t d = 0; d < whiteners_.size(); ++d) {
+    const auto first = static_cast<Eigen::Index>(3 * first_[d]);
+    Eigen::MatrixXd block =
+        rows.middleRows(first, static_cast<Eigen::Index>(3 * (first_[d + 1] - first_[d])));
+    whiteners_[d].apply(block);
     rows.middleRows(first, block.rows()) = block;
   }
   return rows;

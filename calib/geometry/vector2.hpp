@@ -37,6 +37,20 @@ class Frame {
 /// Turned by 90 degrees, counter-clockwise.
 inline Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
 
+/// Of length 1, along which points spread most: half the angle of (xx - yy, 2 xy), -90 to 90 degrees.
+/// @param xx, xy, yy their moments about their centre
+inline Eigen::Vector2d direction_of_spread(double xx, double xy, double yy) {
+  const double size = std::hypot(xx - yy, 2.0 * xy);
+  if (!(size > 0.0)) return {1.0, 0.0};
+  const double cosine = (xx - yy) / size;  // of the double angle
+  if (cosine >= 0.0) {
+    const double c = std::sqrt(0.5 * (1.0 + cosine));
+    return {c, xy / (size * c)};
+  }
+  const double s = std::copysign(std::sqrt(0.5 * (1.0 - cosine)), xy);
+  return {xy / (size * s), s};
+}
+
 /// x, y and yaw of a minus those of b, the yaw in (-pi, pi].
 inline Eigen::Vector3d difference(const Pose& a, const Pose& b) {
   return {a.x - b.x, a.y - b.y, wrap_angle(a.yaw - b.yaw)};

@@ -92,13 +92,14 @@ class Meeting {
  public:
   Meeting(const MatchReference& reference, const Eigen::Vector2d& end, const Eigen::Vector2d& beam)
       : surface_(reference.surface()), walls_(reference.walls()) {
-    const Neighbour nearest = reference.tree().nearest(end);
-    wall_ = walls_.of_point[nearest.index];
-    if (wall_ == Walls::kNone || nearest.squared_distance > kGate * kGate) return;
+    const auto nearest = reference.order().nearest(end, kGate);
+    if (!nearest) return;
+    wall_ = walls_.of_point[nearest->index];
+    if (wall_ == Walls::kNone) return;
     const Wall& wall = walls_.walls[wall_];
     const double place = place_of_beam(wall.line, end, beam);
     if (place < wall.low + kMargin || place > wall.high - kMargin) return;
-    partner_ = nearest_beam(nearest.index, place);
+    partner_ = nearest_beam(nearest->index, place);
     place_ = wall.line.centre + place * wall.line.direction();
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numeric>
 #include <string>
 
@@ -33,6 +34,7 @@ class UnnamedError : public LidarEffect {
   }
   [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& sighting) const override {
     std::vector<BeamShift> all;
+    all.reserve(size_ + 1);
     for (const double f : functions(sighting)) all.push_back(radial_ ? BeamShift{f, 0.0} : BeamShift{0.0, f});
     return all;
   }
@@ -54,9 +56,12 @@ class OfBearing final : public UnnamedError {
  private:
   [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
     std::vector<double> all;
-    for (int k = 1; k <= 3; ++k) {
-      all.push_back(std::cos(k * s.bearing));
-      all.push_back(std::sin(k * s.bearing));
+    all.reserve(6);
+    const std::complex<double> turn = std::polar(1.0, s.bearing);
+    std::complex<double> here = turn;
+    for (int k = 1; k <= 3; ++k, here *= turn) {
+      all.push_back(here.real());
+      all.push_back(here.imag());
     }
     return all;
   }
@@ -102,6 +107,7 @@ class OfSector final : public UnnamedError {
   [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
     const double place = place_of(s.bearing);
     std::vector<double> all;
+    all.reserve(knots_.size());
     double mean = 0.0;
     for (const std::size_t knot : knots_) {
       all.push_back(hat(place, knot));

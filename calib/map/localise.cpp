@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/matching/observability.hpp"
 #include "calib/statistics/median.hpp"
 #include "calib/statistics/tukey.hpp"
@@ -17,10 +18,10 @@ constexpr double kMinEigenvalueRatio = 0.01;
 constexpr double kSettled = 0.1;  ///< sigma
 constexpr int kWholeSteps = 5;
 
-std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>& beams, const Pose& pose,
+std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>& beams,
+                                    const std::vector<Strike>& struck, const Pose& pose,
                                     const PlaceOptions& options, double gate, std::size_t& strikes) {
   std::vector<RangeTerm> terms;
-  const std::vector<Strike> struck = map.strikes(beams, pose);
   strikes = 0;
   terms.reserve(struck.size());
   const Frame frame(pose);
@@ -40,6 +41,11 @@ double robust_scale(const std::vector<RangeTerm>& terms) {
   sizes.reserve(terms.size());
   for (const RangeTerm& term : terms) sizes.push_back(std::abs(term.residual) / std::sqrt(term.variance));
   return std::max(1.0, kMadToSigma * median_of(std::move(sizes)));
+}
+
+bool is_apart(const Pose& a, const Pose& b) {
+  constexpr double kNear = 1e-3;  // m, rad
+  return difference(a, b).cwiseAbs().maxCoeff() > kNear;
 }
 
 /// One step, `share` of it taken; its whole length in sigmas.
@@ -78,7 +84,7 @@ std::optional<RangeTerm> range_term(const WallMap& map, const Beam& beam, std::s
 std::vector<RangeTerm> fitting_terms(const WallMap& map, const std::vector<Beam>& beams, const Pose& sensor,
                                      const PlaceOptions& options) {
   std::size_t strikes = 0;
-  return terms_within(map, beams, sensor, options, last_gate(options), strikes);
+  return terms_within(map, beams, map.strikes(beams, sensor), sensor, options, last_gate(options), strikes);
 }
 
 double weight_of(const RangeTerm& term, double scale) {
@@ -96,9 +102,16 @@ Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const Pose&
   Place place;
   place.pose = guess;
   const double last = last_gate(options);
+  std::vector<Strike> struck;
+  Pose cast_from;
   for (int i = 0; i < options.iterations && !place.converged; ++i) {
     const double gate = std::max(options.gate * std::pow(0.4, i), last);
-    const auto terms = terms_within(map, beams, place.pose, options, gate, place.strikes);
+    // A step so short leads few beams to another wall.
+    if (i == 0 || is_apart(place.pose, cast_from)) {
+      struck = map.strikes(beams, place.pose);
+      cast_from = place.pose;
+    }
+    const auto terms = terms_within(map, beams, struck, place.pose, options, gate, place.strikes);
     if (terms.size() < kMinInliers) return place;
     place.scale = robust_scale(terms);
     // Beams next to the end of a wall may strike it and miss it in turn; half steps settle between.

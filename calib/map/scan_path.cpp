@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "calib/map/range_trace.hpp"
-#include "calib/matching/both_ways.hpp"
+#include "calib/matching/point_to_line.hpp"
 #include "calib/reference/sweep_motion.hpp"
 
 namespace odomcalib::calib {
@@ -126,14 +126,13 @@ class Mapper {
     }
   }
 
-  /// In the map, or else by a match with the last key scan.
+  /// In the map, or else by a match with the last key scan: one way, since the map is adjusted afterwards.
   [[nodiscard]] std::optional<Pose> find(std::size_t k, const Pose& guess) const {
     const Place place = place_scan(path_.map, beams(k), guess, options_);
     if (place.is_usable()) return place.pose;
     MatchOptions match;
     match.range_noise = options_.range_noise;
-    const MatchResult result = match_both_ways(*key_, MatchReference(surface(k), options_.range_noise),
-                                               between(key_pose_, guess), match);
+    const MatchResult result = match_point_to_line(*key_, surface(k), between(key_pose_, guess), match);
     if (!result.is_usable()) return std::nullopt;
     return compose(key_pose_, result.motion);
   }

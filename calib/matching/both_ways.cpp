@@ -32,6 +32,7 @@ MatchResult match_both_ways(const MatchReference& first, const MatchReference& s
   // With a prior about the guess the way back has to begin there, too.
   const bool has_prior = !options.guess_information.isZero();
   const Pose start = inverse(has_prior ? guess : result.motion);
+  back_options.guess_is_near = !has_prior;
   const MatchResult back = match_point_to_line(second, first.surface(), start, back_options);
   if (back.is_usable()) result.motion = mean(result.motion, inverse(back.motion));
   return result;

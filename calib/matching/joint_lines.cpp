@@ -20,15 +20,6 @@ struct Reduced {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
 };
 
-/// What the second scan's readings on one wall add up to.
-struct WallTerms {
-  LineSums sums;  ///< in the reference frame
-  Eigen::Matrix3d motion = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, 2> mixed = Eigen::Matrix<double, 3, 2>::Zero();
-  Eigen::Matrix2d line = Eigen::Matrix2d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-};
-
 class Refinement {
  public:
   Refinement(const Walls& reference, const std::vector<WallPoint>& points, const Pose& start,
@@ -36,13 +27,14 @@ class Refinement {
       : reference_(reference), points_(points), prior_(prior), weights_(points.size(), 1.0), frame_(start) {
     estimate_.motion = start;
     for (const Wall& wall : reference.walls) lines_.push_back(wall.line);
+    for (const WallPoint& point : points) root_weights_.push_back(1.0 / std::sqrt(point.variance));
+    moved_.resize(points.size());
   }
 
   JointEstimate run() {
     for (int i = 0; i < kMaxIterations && !estimate_.converged; ++i) {
       weigh();
-      const std::vector<WallTerms> terms = fit_lines();
-      const Reduced system = reduce(terms);
+      const Reduced system = reduce(fit_lines());
       const double variance = estimate_.scale * estimate_.scale;
       const Eigen::Matrix3d information = system.information + variance * prior_.information;
       const Eigen::Matrix3d damped = information + 1e-9 * information.trace() * Eigen::Matrix3d::Identity();
@@ -60,80 +52,82 @@ class Refinement {
   }
 
  private:
-  [[nodiscard]] Eigen::Vector2d moved(const WallPoint& point) const {
-    return frame_.origin() + frame_.rotate(point.position);
-  }
-  [[nodiscard]] double distance(const WallPoint& point) const {
-    const FittedLine& line = lines_[point.wall];
-    return line.normal.dot(moved(point) - line.centre);
-  }
-
   /// Tukey's weights for distances from the lines as they are.
   void weigh() {
     std::vector<double> normalised;
     normalised.reserve(points_.size());
-    for (const WallPoint& point : points_)
-      normalised.push_back(std::abs(distance(point)) / std::sqrt(point.variance));
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const FittedLine& line = lines_[points_[i].wall];
+      moved_[i] = frame_.transform(points_[i].position);
+      normalised.push_back(std::abs(line.normal.dot(moved_[i] - line.centre)) * root_weights_[i]);
+    }
     estimate_.scale = std::max(1.0, kMadToSigma * median_of(normalised));
     estimate_.inliers = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const double weight = tukey_weight(normalised[i] / (estimate_.scale * kTukeyCut));
-      weights_[i] = weight / points_[i].variance;
+      weights_[i] = weight * root_weights_[i] * root_weights_[i];
       if (weight > 0.0) ++estimate_.inliers;
     }
   }
 
-  /// Lines through both scans' readings, and the sums that belong to them.
-  std::vector<WallTerms> fit_lines() {
-    std::vector<WallTerms> terms(reference_.walls.size());
+  /// Lines through both scans' readings.
+  /// @return what the second scan's add up to on each wall, in the axes of the reference
+  std::vector<LineSums> fit_lines() {
+    std::vector<LineSums> seen(reference_.walls.size());
     for (std::size_t i = 0; i < points_.size(); ++i)
       if (weights_[i] > 0.0)
-        terms[points_[i].wall].sums.add(moved(points_[i]), weights_[i], frame_.rotate(points_[i].spread));
-    for (std::size_t w = 0; w < terms.size(); ++w) {
-      if (terms[w].sums.count == 0) continue;
+        seen[points_[i].wall].add(moved_[i], weights_[i], frame_.rotate(points_[i].spread));
+    for (std::size_t w = 0; w < seen.size(); ++w) {
+      if (seen[w].count == 0) continue;
       LineSums both = reference_.walls[w].sums;
-      both += terms[w].sums;
+      both += seen[w];
       lines_[w] = fit_line(both);
     }
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      if (weights_[i] > 0.0) add(points_[i], weights_[i], terms[points_[i].wall]);
-    return terms;
-  }
-
-  void add(const WallPoint& point, double weight, WallTerms& terms) const {
-    const FittedLine& line = lines_[point.wall];
-    const Eigen::Vector2d arm = frame_.rotate(point.position);
-    const Eigen::Vector2d offset = moved(point) - line.centre;
-    const Eigen::Vector3d jacobian(line.normal.x(), line.normal.y(), -line.direction().dot(arm));
-    const Eigen::Vector2d line_jacobian(1.0, line.direction().dot(offset));
-    terms.motion += weight * jacobian * jacobian.transpose();
-    terms.mixed += weight * jacobian * line_jacobian.transpose();
-    terms.line += weight * line_jacobian * line_jacobian.transpose();
-    terms.gradient += weight * line.normal.dot(offset) * jacobian;
-    // The arm carries the noise of the distance: their mean product would turn the scan.
-    const Eigen::Vector2d spread = frame_.rotate(point.spread);
-    terms.gradient(2) -= weight * line.normal.dot(spread) * -line.direction().dot(spread);
+    return seen;
   }
 
   /// At the fitted line the gradient of its own parameters is zero: only the matrix changes.
-  [[nodiscard]] Reduced reduce(const std::vector<WallTerms>& terms) const {
+  [[nodiscard]] Reduced reduce(const std::vector<LineSums>& seen) const {
     Reduced system;
-    for (std::size_t w = 0; w < terms.size(); ++w) {
-      const WallTerms& t = terms[w];
-      if (t.sums.count == 0) continue;
-      const Eigen::Matrix2d line = t.line + own_information(reference_.walls[w], lines_[w]);
-      const Eigen::Matrix3d reduced = t.motion - t.mixed * line.ldlt().solve(t.mixed.transpose());
-      system.information += reduced;
-      system.gradient += t.gradient;
-      // A line that is off by an angle takes a motion along it for one across it.
-      const Eigen::Vector2d along = lines_[w].direction();
-      const Eigen::Vector2d arm = t.sums.centre() - frame_.origin();
-      const Eigen::Vector3d slide(along.x(), along.y(), lines_[w].normal.dot(arm));
-      const double own = reference_.walls[w].sums.weight;
-      const double offset_information = own * t.sums.weight / (own + t.sums.weight);
-      system.spurious += offset_information * lines_[w].angle_variance * slide * slide.transpose();
-    }
+    for (std::size_t w = 0; w < seen.size(); ++w)
+      if (seen[w].count > 0) add(seen[w], w, system);
     return system;
+  }
+
+  /// On one wall the Jacobian of a distance is (normal, -a), a the place of the reading along the wall from
+  /// the sensor, and that by the line's offset and angle (1, s), s from the line's centre: all sums of
+  /// products are moments of the readings.
+  void add(const LineSums& seen, std::size_t w, Reduced& system) const {
+    const FittedLine& line = lines_[w];
+    const Eigen::Vector2d normal = line.normal, along = line.direction();
+    const double n = seen.weight;
+    const Eigen::Vector2d arm = seen.centre() - frame_.origin(), offset = seen.centre() - line.centre;
+    const Eigen::Matrix2d scatter = seen.second - n * seen.centre() * seen.centre().transpose();
+    const double spread = along.dot(scatter * along), tilt = normal.dot(scatter * along);
+    const double a = along.dot(arm), s = along.dot(offset), d = normal.dot(offset);
+
+    Eigen::Matrix3d motion;
+    motion << n * normal * normal.transpose(), -n * a * normal, -n * a * normal.transpose(),
+        spread + n * a * a;
+    Eigen::Matrix<double, 3, 2> mixed;
+    mixed << n * normal, n * s * normal, -n * a, -(spread + n * a * s);
+    Eigen::Matrix2d own;
+    own << n, n * s, n * s, spread + n * s * s;
+    own += own_information(reference_.walls[w], line);
+    system.information += motion - mixed * own.ldlt().solve(mixed.transpose());
+    // The arm carries the noise of the distance: their mean product would turn the scan.
+    const double noise = normal.dot(seen.noise * along);
+    system.gradient += Eigen::Vector3d(n * d * normal.x(), n * d * normal.y(), noise - tilt - n * d * a);
+    system.spurious += spurious_information(seen, w);
+  }
+
+  /// A line that is off by an angle takes a motion along it for one across it.
+  [[nodiscard]] Eigen::Matrix3d spurious_information(const LineSums& seen, std::size_t w) const {
+    const Eigen::Vector2d along = lines_[w].direction();
+    const Eigen::Vector3d slide(along.x(), along.y(), lines_[w].normal.dot(seen.centre() - frame_.origin()));
+    const double own = reference_.walls[w].sums.weight;
+    const double offset_information = own * seen.weight / (own + seen.weight);
+    return offset_information * lines_[w].angle_variance * slide * slide.transpose();
   }
 
   /// Information of the reference scan's readings about the offset and the angle of a line.
@@ -152,7 +146,9 @@ class Refinement {
   const Walls& reference_;
   const std::vector<WallPoint>& points_;
   const GuessPrior& prior_;
+  std::vector<double> root_weights_;  ///< 1/m, by the points' variances alone
   std::vector<double> weights_;
+  std::vector<Eigen::Vector2d> moved_;  ///< the points at the estimate, m
   std::vector<FittedLine> lines_;
   JointEstimate estimate_;
   Frame frame_;  ///< at the estimate

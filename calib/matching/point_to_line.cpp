@@ -51,9 +51,10 @@ std::vector<Correspondence> correspond(const MatchReference& reference, const Su
   for (std::size_t k = 0; k < scan.points.size(); k += stride) {
     const SurfacePoint& point = scan.points[k];
     const Eigen::Vector2d moved = frame.transform(point.position);
-    const auto [index, squared] = reference.tree().nearest(moved);
-    const SurfacePoint& partner = reference.surface().points[index];
-    if (squared > gate * gate || !partner.has_line) continue;
+    const auto nearest = reference.order().nearest(moved, gate);
+    if (!nearest) continue;
+    const SurfacePoint& partner = reference.surface().points[nearest->index];
+    if (!partner.has_line) continue;
     if (point.has_line && frame.rotate(point.normal).dot(partner.normal) < kMinNormalAgreement) continue;
     const double cosine = frame.rotate(point.beam).dot(partner.normal);
     if (cosine > -kMinIncidence) continue;
@@ -112,14 +113,15 @@ std::vector<WallPoint> points_on_walls(const MatchReference& reference, const Su
   const Walls& walls = reference.walls();
   for (const SurfacePoint& point : scan.points) {
     const Eigen::Vector2d moved = frame.transform(point.position);
-    const auto [index, squared] = reference.tree().nearest(moved);
-    const std::size_t w = walls.of_point[index];
-    if (squared > gate * gate || w == Walls::kNone) continue;
+    const auto nearest = reference.order().nearest(moved, gate);
+    if (!nearest) continue;
+    const std::size_t w = walls.of_point[nearest->index];
+    if (w == Walls::kNone) continue;
     const Wall& wall = walls.walls[w];
     const Eigen::Vector2d beam = frame.rotate(point.beam);
     const double cosine = beam.dot(wall.line.normal);
     if (!lies_on(wall, moved, beam, gate) ||
-        !faces(wall, reference.surface().points[index], point, frame, cosine))
+        !faces(wall, reference.surface().points[nearest->index], point, frame, cosine))
       continue;
     found.push_back({point.position, w, distance_variance(cosine, range_noise), range_noise * point.beam});
   }
@@ -184,7 +186,7 @@ std::vector<Eigen::Vector2d> positions(const Surface& surface) {
 }
 
 MatchReference::MatchReference(Surface surface, double range_noise)
-    : surface_(std::move(surface)), walls_(find_walls(surface_, range_noise)), tree_(positions(surface_)) {}
+    : surface_(std::move(surface)), walls_(find_walls(surface_, range_noise)), order_(positions(surface_)) {}
 
 namespace {
 
@@ -267,6 +269,7 @@ MatchResult match_point_to_line(const MatchReference& reference, const Surface& 
   }
   LocalMatch match;
   match.motion = guess;
+  if (options.guess_is_near) match.iterations = kCoarseIterations;
   match.prior = {guess, options.guess_information};
   result.status = MatchStatus::no_overlap;
   if (!settle(reference, scan, options, kSettled, match)) return result;

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "calib/matching/nearest.hpp"
+#include "calib/matching/bearing_order.hpp"
 #include "calib/matching/surface.hpp"
 #include "calib/matching/walls.hpp"
 
@@ -27,6 +27,7 @@ struct MatchOptions {
   double min_overlap = 0.4;            ///< share of usable points that must find a partner
   double min_eigenvalue_ratio = 0.01;  ///< of the translation information; below: degenerate
   int max_iterations = 40;
+  bool guess_is_near = false;  ///< by a match before: the way from afar is spared
   /// Of the guess: x, y, yaw, in 1/m^2, 1/(m rad), 1/rad^2. Zero: the guess is a start and no prior. With it
   /// a scan does not slide along a corridor.
   Eigen::Matrix3d guess_information = Eigen::Matrix3d::Zero();
@@ -57,12 +58,12 @@ class MatchReference {
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const Walls& walls() const { return walls_; }
   /// Of the surface's points.
-  [[nodiscard]] const NearestTree& tree() const { return tree_; }
+  [[nodiscard]] const BearingOrder& order() const { return order_; }
 
  private:
   Surface surface_;
   Walls walls_;
-  NearestTree tree_;
+  BearingOrder order_;
 };
 
 /// Motion from `reference` to `scan`, starting at `guess`. Without `guess_information` the result does not

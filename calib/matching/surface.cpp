@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
@@ -53,9 +54,8 @@ class RunSums {
     const double xx = s(2) - s(0) * s(0);
     const double xy = s(3) - s(0) * s(1);
     const double yy = s(4) - s(1) * s(1);
-    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);  // direction of largest spread
     line.centre = s.head<2>();
-    line.normal = {-std::sin(angle), std::cos(angle)};
+    line.normal = quarter_turn(direction_of_spread(xx, xy, yy));
     const double smallest = 0.5 * (xx + yy - std::hypot(xx - yy, 2.0 * xy));
     line.rms = std::sqrt(std::max(smallest, 0.0) * n / std::max(n - 2.0, 1.0));
     return line;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/geometry/vector2.hpp"
 #include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
@@ -234,8 +235,7 @@ FittedLine fit_line(const LineSums& sums) {
   line.centre = sums.centre();
   const Eigen::Matrix2d scatter = sums.second - sums.weight * line.centre * line.centre.transpose();
   const Eigen::Matrix2d true_scatter = scatter - sums.noise;
-  const double angle = 0.5 * std::atan2(2.0 * true_scatter(0, 1), true_scatter(0, 0) - true_scatter(1, 1));
-  line.normal = {-std::sin(angle), std::cos(angle)};
+  line.normal = quarter_turn(direction_of_spread(true_scatter(0, 0), true_scatter(0, 1), true_scatter(1, 1)));
   const double half_spread = 0.5 * std::hypot(scatter(0, 0) - scatter(1, 1), 2.0 * scatter(0, 1));
   line.squares = std::max(line.normal.dot(scatter * line.normal), 0.0);
   line.angle_variance = 1.0 / std::max(0.5 * scatter.trace() + half_spread, 1e-30);

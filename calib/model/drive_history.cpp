@@ -66,7 +66,7 @@ void DriveHistory::advance(StepContext& c) {
   unwind(c);
   remember_push(c);
   remember_turn(c, step.yaw);
-  c.heading = pose_.yaw + step.yaw / 2.0;
+  c.face(pose_.yaw + step.yaw / 2.0);
   c.x = pose_.x;
   c.y = pose_.y;
   pose_ = compose(pose_, step);

@@ -59,7 +59,7 @@ void DriveModel::locate(std::span<const Fix> fixes, std::span<const double> para
     for (; next < fixes.size() && (next == 0 || path.encoder_time(fixes[next].time) <= track_.t[k]); ++next)
       origin = compose(fixes[next].pose, inverse(path.at(fixes[next].time)));
     const Pose here = compose(origin, path.poses_[k]);
-    c.heading = here.yaw + path.twists_[k].yaw / 2.0;
+    c.face(here.yaw + path.twists_[k].yaw / 2.0);
     c.x = here.x;
     c.y = here.y;
   }

@@ -96,9 +96,10 @@ struct StepContext {
   std::array<double, kRelaxations.size()> relaxed_turn_rate{}, relaxed_lateral_acceleration{};
   double way =
       0.0;  ///< of the base in its direction, m; not smoothed, so that in a spin ticks give either sign
-  double distance = 0.0;             ///< way so far, forward and backward alike, m
-  double heading = 0.0;              ///< rad, from the plain model
-  double x = 0.0, y = 0.0;           ///< m, from the plain model
+  double distance = 0.0;                            ///< way so far, forward and backward alike, m
+  double heading = 0.0;                             ///< rad, from the plain model
+  double heading_cosine = 1.0, heading_sine = 0.0;  ///< more than a thousand waves ask for them
+  double x = 0.0, y = 0.0;                          ///< m, from the plain model
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;
@@ -112,6 +113,12 @@ struct StepContext {
   std::array<Unwound, kWindings> unwound{};  ///< in this interval, by each way of winding up
   double fastest = 0.0;                      ///< rim speed since the robot last stood, m/s
   double direction = 0.0;                    ///< sign of the forward speed, kept while standing
+
+  void face(double yaw) {
+    heading = yaw;
+    heading_cosine = std::cos(yaw);
+    heading_sine = std::sin(yaw);
+  }
 };
 
 }  // namespace odomcalib::calib

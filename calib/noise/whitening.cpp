@@ -77,11 +77,12 @@ Whitener::Whitener(std::span<const SensorPair> pairs, std::span<const PairState>
 }
 
 void Whitener::apply(Eigen::MatrixXd& rows) const {
+  Eigen::Matrix3Xd block(3, rows.cols());
   for (std::size_t k = 0; k < turn_.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(3 * k);
-    Eigen::MatrixXd block = turn_[k] * rows.middleRows<3>(row);
-    if (k > 0) block -= link_[k] * rows.middleRows<3>(row - 3);
-    rows.middleRows<3>(row) = inverse_[k] * block;
+    block.noalias() = turn_[k] * rows.middleRows<3>(row);
+    if (k > 0) block.noalias() -= link_[k] * rows.middleRows<3>(row - 3);
+    rows.middleRows<3>(row).noalias() = inverse_[k] * block;
   }
 }
 

@@ -108,7 +108,9 @@ class ScanChain {
     MatchOptions match;
     match.range_noise = set_.range_noise;
     match.min_overlap = options_.min_overlap;
-    const MatchResult result = match_both_ways(reference, scan, scans_.guess(from, to), match);
+    const Pose guess = scans_.guess(from, to);
+    const MatchResult result = options_.rough ? match_point_to_line(reference, scan.surface(), guess, match)
+                                              : match_both_ways(reference, scan, guess, match);
     if (!result.is_usable()) {
       ++set_.unmatched;
       return reject("match: " + to_string(result.status));

@@ -15,6 +15,7 @@ struct PairOptions {
   double rotation = 0.25;  ///< rad (14 degrees), ... or this rotation ...
   double duration = 0.75;  ///< s, ... or this time, if the wheels turned at all
   double min_overlap = 0.4;
+  bool rough = false;  ///< scans matched one way only, for a first look
 };
 
 /// The customary keyframe spacing of 0.5 m and 0.5 rad. A pose reference does not drift and its error does

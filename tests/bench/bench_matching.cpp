@@ -1,11 +1,12 @@
 // Branch and bound against brute force on a thousand random cases: the same optimum, from how much of the
-// time? And what a hill climb gives away for its speed, over its parameters. Run
-// build/release/bin/bench_matching.
+// time? And what a hill climb gives away for its speed, over its parameters. And nearest neighbours in a scan
+// by the order of its bearings beside nanoflann's kd-tree. Run build/release/bin/bench_matching.
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <random>
 
+#include "calib/matching/bearing_order.hpp"
 #include "calib/matching/pose_search.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
@@ -112,10 +113,47 @@ void sweep_climbs() {
                       {.step = step, .angle_step = 0.2 * step, .halvings = halvings});
 }
 
+/// Scans 5 cm and 3 degrees apart, every reading's neighbour within 10 cm. Whether all are the same.
+bool compare_nearest(int beams) {
+  constexpr unsigned kScans = 200;
+  constexpr double kReach = 0.1;  // m
+  double tree_time = 0.0, order_time = 0.0, queries = 0.0;
+  bool same = true;
+  for (unsigned seed = 1; seed <= kScans; ++seed) {
+    const auto points = points_of(testing::scan_from(testing::kRoom, {}, 0.01, seed, beams), 1);
+    const auto others =
+        points_of(testing::scan_from(testing::kRoom, {0.05, 0.0, 0.05}, 0.01, seed + kScans, beams), 1);
+    std::vector<double> by_tree, by_order;
+    by_tree.reserve(others.size());
+    by_order.reserve(others.size());
+    tree_time += timed([&] {
+      const calib::NearestTree tree(points);
+      for (const Eigen::Vector2d& p : others) {
+        const double squared = tree.nearest(p).squared_distance;
+        by_tree.push_back(squared <= kReach * kReach ? squared : -1.0);
+      }
+    });
+    order_time += timed([&] {
+      const calib::BearingOrder order(points);
+      for (const Eigen::Vector2d& p : others) {
+        const auto nearest = order.nearest(p, kReach);
+        by_order.push_back(nearest ? nearest->squared_distance : -1.0);
+      }
+    });
+    queries += static_cast<double>(others.size());
+    same = same && by_tree == by_order;
+  }
+  std::printf("nearest of %d beams, made and asked once for each: kd-tree %.0f ns, bearings %.0f ns; %s\n",
+              beams, 1e9 * tree_time / queries, 1e9 * order_time / queries,
+              same ? "the same" : "NOT THE SAME");
+  return same;
+}
+
 }  // namespace
 
 int main() {
   const bool coarse = compare(0.1), fine = compare(0.05);
+  const bool few = compare_nearest(360), many = compare_nearest(1440);
   sweep_climbs();
-  return coarse && fine ? 0 : 1;
+  return coarse && fine && few && many ? 0 : 1;
 }
