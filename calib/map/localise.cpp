@@ -73,10 +73,8 @@ double improve(const std::vector<RangeTerm>& terms, double share, Place& place) 
 
 std::optional<RangeTerm> range_term(const WallMap& map, const Beam& beam, std::size_t wall,
                                     const Frame& sensor, const PlaceOptions& options) {
-  constexpr double kCertain = 4.0;  // deviations
   RangeTerm term = map.term(beam, wall, sensor, options.range_noise);
-  if (options.range_max > 0.0 && term.sighting.range > options.range_max - kCertain * options.range_noise)
-    return std::nullopt;
+  if (term.sighting.range > far_limit(options.range_max, options.range_noise)) return std::nullopt;
   if (!options.range_error.isZero()) term.residual -= options.range_error.dot(by_coefficient(term.sighting));
   return term;
 }

@@ -121,7 +121,8 @@ std::vector<WallPoint> points_on_walls(const MatchReference& reference, const Su
     const Eigen::Vector2d beam = frame.rotate(point.beam);
     const double cosine = beam.dot(wall.line.normal);
     if (!lies_on(wall, moved, beam, gate) ||
-        !faces(wall, reference.surface().points[nearest->index], point, frame, cosine))
+        !faces(wall, reference.surface().points[nearest->index], point, frame, cosine) ||
+        range_to_line(point, wall.line.normal.dot(moved - wall.line.centre), cosine) > scan.far_limit)
       continue;
     found.push_back({point.position, w, distance_variance(cosine, range_noise), range_noise * point.beam});
   }

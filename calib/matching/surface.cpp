@@ -116,6 +116,11 @@ void set_line(SurfacePoint& point, const Line& line) {
   point.has_line = true;
 }
 
+/// m
+double range_to_own_line(const SurfacePoint& point) {
+  return point.range - point.normal.dot(point.position - point.anchor) / point.normal.dot(point.beam);
+}
+
 /// Lines within the usual neighbourhood; where these are rare because the beams are, wider ones, too.
 void attach_lines(std::vector<SurfacePoint>& points, double angular_step, double range_noise) {
   const RunSums sums(points);
@@ -215,12 +220,22 @@ double reference_time(const Scan& scan) {
   return scan.ranges.empty() ? 0.0 : beam_time(scan, scan.ranges.size() - 1) / 2.0;
 }
 
+double far_limit(double range_max, double range_noise) {
+  constexpr double kCertain = 4.0;     // deviations
+  constexpr double kNoiseAfar = 0.03;  // of the range: some lidars' noise grows with it
+  if (!(range_max > 0.0)) return std::numeric_limits<double>::infinity();
+  return range_max - std::max(kCertain * range_noise, kNoiseAfar * range_max);
+}
+
 Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_noise) {
   Surface surface;
   surface.points.reserve(scan.ranges.size());
   for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam)
     if (is_usable(scan, beam)) surface.points.push_back(beam_end(scan, beam, motion));
   attach_lines(surface.points, angular_step(scan), range_noise);
+  surface.far_limit = far_limit(scan.range_max, range_noise);
+  for (SurfacePoint& point : surface.points)
+    if (point.has_line && range_to_own_line(point) > surface.far_limit) point.has_line = false;
   return surface;
 }
 

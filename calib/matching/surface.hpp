@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,13 +19,19 @@ struct SurfacePoint {
   Eigen::Vector2d anchor;  ///< point of the local line next to `position`
   Eigen::Vector2d normal;  ///< unit normal of the local line, towards the sensor
   double range = 0.0;
-  double bearing = 0.0;  ///< rad, as the sensor stated it, before de-skewing
-  bool has_line = false;
+  double bearing = 0.0;   ///< rad, as the sensor stated it, before de-skewing
+  bool has_line = false;  ///< and lies within the surface's far limit
 };
 
 struct Surface {
   std::vector<SurfacePoint> points;  ///< in beam order
+  /// m; of walls farther away only the readings come through that noise has shortened.
+  double far_limit = std::numeric_limits<double>::infinity();
 };
+
+/// Short of the range at which the sensor gives up by so much that no noise gets there, m; infinite where
+/// nobody states that range.
+double far_limit(double range_max, double range_noise);
 
 /// Motion of the sensor from the scan's reference time to the time of a beam, s after Scan::t.
 using BeamMotion = std::function<Pose(double seconds_after_first_beam)>;

@@ -196,8 +196,10 @@ void take(const JoinedPieces& pieces, const Surface& surface, double range_noise
   for (const auto& [i, s] : places) {
     if (s < wall.low || s > wall.high) continue;
     const SurfacePoint& point = surface.points[i];
-    wall.sums.add(point.position, 1.0 / distance_variance(point.beam.dot(line.normal), range_noise),
-                  range_noise * point.beam);
+    const double cosine = point.beam.dot(line.normal);
+    if (range_to_line(point, line.normal.dot(point.position - line.centre), cosine) > surface.far_limit)
+      continue;
+    wall.sums.add(point.position, 1.0 / distance_variance(cosine, range_noise), range_noise * point.beam);
   }
   if (wall.sums.count < kMinWallPoints) return;
   wall.line = fit_line(wall.sums);
@@ -247,6 +249,10 @@ double place_of_beam(const FittedLine& line, const Eigen::Vector2d& end, const E
   const double place = line.direction().dot(offset), cosine = line.normal.dot(beam);
   if (std::abs(cosine) < kFlat) return place;
   return place - line.normal.dot(offset) / cosine * line.direction().dot(beam);
+}
+
+double range_to_line(const SurfacePoint& point, double distance, double cosine_of_incidence) {
+  return point.range - distance / cosine_of_incidence;
 }
 
 double distance_variance(double cosine_of_incidence, double range_noise) {

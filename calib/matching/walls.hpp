@@ -46,6 +46,11 @@ inline constexpr double kMinWallIncidence = 0.17;
 /// @param end anywhere on the beam
 double place_of_beam(const FittedLine& line, const Eigen::Vector2d& end, const Eigen::Vector2d& beam);
 
+/// Where a reading's beam meets the line, m from the sensor. Chosen by it instead of by its range, readings
+/// are not chosen by their noise.
+/// @param distance of the reading from the line along `normal`, m
+double range_to_line(const SurfacePoint& point, double distance, double cosine_of_incidence);
+
 /// Variance of a reading's distance from a line, m^2: range noise acts along the beam, unevenness of surfaces
 /// and the angular error of beams in every direction.
 double distance_variance(double cosine_of_incidence, double range_noise);

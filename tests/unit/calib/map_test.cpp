@@ -136,7 +136,7 @@ TEST(PlaceScan, walls_where_noise_decides_whether_they_are_seen_say_nothing) {
   const auto all = fitting_terms(map, beams, pose, options);
   options.range_max = 3.0;
   const auto certain = fitting_terms(map, beams, pose, options);
-  const auto near = [](const RangeTerm& term) { return term.sighting.range < 3.0 - 4.0 * kNoise; };
+  const auto near = [](const RangeTerm& term) { return term.sighting.range <= far_limit(3.0, kNoise); };
   EXPECT_EQ(certain.size(), static_cast<std::size_t>(std::count_if(all.begin(), all.end(), near)));
   EXPECT_TRUE(std::all_of(certain.begin(), certain.end(), near));
   EXPECT_LT(certain.size(), all.size());
