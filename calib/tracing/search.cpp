@@ -240,6 +240,7 @@ class Search {
     if (!reason.empty()) return reason;
     if (may_be_chance(candidates_[trial.candidate], proof)) {
       no_more_curves_ = true;
+      if (!has_drives(proof)) return "may be chance, and the reference is too broken for drives to prove it";
       return "a gain that may be chance: error times " + std::to_string(proof.improvement.ratio).substr(0, 5);
     }
     settled = round_->refit(trial.candidate, {});
@@ -247,13 +248,17 @@ class Search {
     return spoils_drives(task_, basis(), settled->model) ? "drives get worse" : "";
   }
 
-  /// Of a curve that odometry would use, whose gain must show over ten seconds. A reference that errs with
-  /// the motion, as in a nearly round room, asks for one curve after the other: where the best is none, no
-  /// other is.
+  /// Whether the proof is one of drives of ten seconds, not of single pairs.
+  static bool has_drives(const Proof& proof) { return proof.before > 0.0; }
+
+  /// Of a curve that odometry would use, whose gain must show over ten seconds; where the reference is too
+  /// broken for that, its score must leave no doubt. A reference that errs with the motion, as in a nearly
+  /// round room, asks for one curve after the other: where the best is none, no other is.
   [[nodiscard]] bool may_be_chance(const Candidate& candidate, const Proof& proof) const {
-    return candidate.curve && candidate.effect->storage() == Storage::host &&
-           std::isfinite(largest_ratio(candidate)) && !result_.owner_of(candidate.curve->law) &&
-           proof.before > 0.0 && !proof.improvement.is_plain();
+    if (!candidate.curve || candidate.effect->storage() != Storage::host ||
+        !std::isfinite(largest_ratio(candidate)) || result_.owner_of(candidate.curve->law))
+      return false;
+    return has_drives(proof) ? !proof.improvement.is_plain() : proof.family_p_value > kNamedLevel;
   }
 
   void adopt(FittedModel model) {
