@@ -305,9 +305,7 @@ class Solver {
   /// scans.
   Result<FitResult> correct_lidar(Result<FitResult> fit) {
     if (!may_trace_lidar()) return fit;
-    // Beams spread too wide bend the walls of a map, as ranges that are too short would.
-    if (asked_of_lidar_.empty() && overstates_a_turn(*session_))
-      fit = take_out(trace_lidar(lidar_pairs(), false, true), std::move(fit), true);
+    fit = take_out(wrong_angles(), std::move(fit), true);
     if (!fit) return fit;
     place_every_scan(asked_of_lidar_.empty());
     fit = take_out(common_findings(paths_), std::move(fit), false);
@@ -317,6 +315,15 @@ class Solver {
                            ? trace_lidar(lidar_pairs(), sees_all_round(*session_), !paths_.empty())
                            : fit_lidar(lidar_pairs(), asked_of_lidar_);
     return take_out(found, std::move(fit), true);
+  }
+
+  /// Asked before the map: beams spread too wide bend its walls, as ranges that are too short would.
+  [[nodiscard]] std::vector<LidarFinding> wrong_angles() const {
+    if (!asked_of_lidar_.empty()) return {};
+    std::vector<LidarFinding> found = trace_lidar(lidar_pairs(), sees_all_round(*session_), true);
+    if (found.empty() || found.front().effect->name() != make_angle_scale()->name()) return {};
+    found.resize(1);
+    return found;
   }
 
   /// Without the errors found everything is measured and fitted anew, and scans have to be placed again.

@@ -22,9 +22,7 @@ std::vector<std::pair<std::string, Quantity>> LidarEffect::quantities(
 }
 
 std::vector<LidarEffectPtr> lidar_catalogue(bool all_round) {
-  std::vector<LidarEffectPtr> all = {make_range_bias(), make_lidar_tilt()};
-  if (!all_round) all.push_back(make_angle_scale());
-  return all;
+  return {make_range_bias(), make_lidar_tilt(), make_angle_scale(all_round)};
 }
 
 LidarEffectPtr find_lidar_effect(const std::string& name) {

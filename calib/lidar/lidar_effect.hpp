@@ -44,6 +44,10 @@ class LidarEffect {
   [[nodiscard]] virtual bool is_correctable() const { return true; }
   /// Share of the squared disagreement between scans that it may leave, at most, to be worth its freedom.
   [[nodiscard]] virtual double may_leave() const { return 0.9965; }
+  /// How many deviations the mean gain on held-out pairs must lie above zero.
+  [[nodiscard]] virtual double proof_wanted() const { return 2.5; }
+  /// Share of the statistic of a free law of its variable that it must reach to be taken instead.
+  [[nodiscard]] virtual double share_of_free_law() const { return 0.5; }
   /// The variable it depends on. A rest that depends on the same one is the same effect with another law.
   [[nodiscard]] virtual std::string variable() const = 0;
   [[nodiscard]] virtual std::vector<LidarParameter> parameters() const = 0;
@@ -60,10 +64,11 @@ class LidarEffect {
 using LidarEffectPtr = std::shared_ptr<const LidarEffect>;
 
 LidarEffectPtr make_range_bias();
-LidarEffectPtr make_angle_scale();
+/// @param all_round whether the head sees all directions, so that its stated steps add up to a turn
+LidarEffectPtr make_angle_scale(bool all_round = false);
 LidarEffectPtr make_lidar_tilt();
 
-/// Every named effect of the lidar. The scale of angles is known where the head goes all the way round.
+/// Every named effect of the lidar.
 std::vector<LidarEffectPtr> lidar_catalogue(bool all_round);
 LidarEffectPtr find_lidar_effect(const std::string& name);
 

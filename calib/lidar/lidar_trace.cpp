@@ -13,8 +13,6 @@ namespace {
 constexpr std::size_t kFewestPairs = 25;  // sign flips of fewer cannot tell
 constexpr std::size_t kMostFindings = 2;
 constexpr double kLevel = 0.001;   // family-wise
-constexpr double kHeldOutZ = 2.5;  // of the mean gain on held-out pairs
-constexpr double kSameLaw = 0.5;   // share of the curve's statistic that a name on its ground must reach
 constexpr double kAllRound = 6.1;  // rad (350 degrees)
 
 std::vector<double> slice(const Eigen::VectorXd& all, Eigen::Index first, Eigen::Index count) {
@@ -78,7 +76,7 @@ class Trace {
     for (const std::size_t c : in_order(scores)) {
       if (refused_[c]) continue;
       const auto proof = scores_.held_out(accepted_, c);
-      const bool holds = proof.z >= kHeldOutZ && is_worthwhile(c, proof);
+      const bool holds = proof.z >= effect(c).proof_wanted() && is_worthwhile(c, proof);
       if (!holds || !matters(c)) {
         refused_[c] = true;
         if (holds) refuse_lesser_names(c, scores);
@@ -91,17 +89,17 @@ class Trace {
     return false;
   }
 
-  /// What is too small as a free law is no larger under a name that explains less than half of it.
+  /// What is too small as a free law is no larger under a name that explains too little of it.
   void refuse_lesser_names(std::size_t curve, const std::vector<LidarScores::Score>& scores) {
     if (effect(curve).is_named()) return;
     for (std::size_t c = 0; c < scores.size(); ++c)
       if (effect(c).is_named() && effect(c).variable() == effect(curve).variable() &&
-          scores[c].statistic < kSameLaw * scores[curve].statistic)
+          scores[c].statistic < effect(c).share_of_free_law() * scores[curve].statistic)
         refused_[c] = true;
   }
 
   /// Significant candidates, the best first; a name before the free curve on its own ground unless that
-  /// explains about twice as much.
+  /// explains much more.
   [[nodiscard]] std::vector<std::size_t> in_order(const std::vector<LidarScores::Score>& scores) const {
     std::vector<std::size_t> order;
     for (std::size_t c = 0; c < scores.size(); ++c)
@@ -111,7 +109,7 @@ class Trace {
     const auto is_name_of_best = [&](std::size_t c) {
       const LidarEffect &own = effect(c), &best = effect(order.front());
       return own.is_named() && !best.is_named() && own.variable() == best.variable() &&
-             scores[c].statistic > kSameLaw * scores[order.front()].statistic;
+             scores[c].statistic > own.share_of_free_law() * scores[order.front()].statistic;
     };
     const auto name = std::find_if(order.begin(), order.end(), is_name_of_best);
     if (name != order.end()) std::rotate(order.begin(), name, name + 1);

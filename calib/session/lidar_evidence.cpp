@@ -45,19 +45,14 @@ std::vector<HeadingPair> heading_pairs(const Session& session, const Eigen::Vect
   return all;
 }
 
-namespace {
+namespace {}  // namespace
 
-bool all_scans(const Session& session, bool (*is_so)(const Scan&)) {
-  return std::all_of(session.recordings().begin(), session.recordings().end(),
-                     [&](const Recording& recording) {
-                       return !recording.scans.empty() && is_so(recording.scans[recording.scans.size() / 2]);
-                     });
+bool sees_all_round(const Session& session) {
+  return std::all_of(
+      session.recordings().begin(), session.recordings().end(), [](const Recording& recording) {
+        return !recording.scans.empty() && sees_all_round(recording.scans[recording.scans.size() / 2]);
+      });
 }
-
-}  // namespace
-
-bool sees_all_round(const Session& session) { return all_scans(session, sees_all_round); }
-bool overstates_a_turn(const Session& session) { return all_scans(session, overstates_a_turn); }
 
 std::vector<Recording> corrected(std::span<const Recording> recordings,
                                  const std::vector<LidarFinding>& findings) {

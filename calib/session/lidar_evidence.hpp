@@ -17,7 +17,6 @@ std::vector<HeadingPair> heading_pairs(const Session& session, const Eigen::Vect
 
 /// Whether the scans of all recordings cover whole turns.
 bool sees_all_round(const Session& session);
-bool overstates_a_turn(const Session& session);
 
 std::vector<Recording> corrected(std::span<const Recording> recordings,
                                  const std::vector<LidarFinding>& findings);

@@ -242,11 +242,36 @@ TEST(LidarEffect, that_a_name_stood_in_for_takes_its_place) {
     EXPECT_EQ(finding.effect->name(), "bearing") << finding.values.front() << ", seed " << kSeed;
 }
 
+/// What a head that goes all the way round sees in a room of one size.
+std::vector<LidarFinding> found_all_round(const std::function<double(double)>& angular,
+                                          std::mt19937& random) {
+  const auto error = [&](const Sighting& s) { return BeamShift{0.0, angular(s.bearing)}; };
+  std::vector<HeadingPair> pairs(60);
+  for (HeadingPair& pair : pairs) pair = seen_with(error, 2.0, std::numbers::pi, random);
+  return trace_lidar(pairs, true);
+}
+
+/// A driver's wrong increment, though its steps add up to a turn; a disc off its centre is not taken for it.
+TEST(LidarEffect, of_the_scale_of_a_whole_turn_is_named_where_it_is_plain) {
+  constexpr unsigned kSeed = 10;
+  constexpr double kScale = 5e-3;
+  std::mt19937 random(kSeed);
+  const auto scaled = found_all_round([](double bearing) { return kScale * bearing; }, random);
+  ASSERT_FALSE(scaled.empty()) << "seed " << kSeed;
+  EXPECT_EQ(scaled.front().effect->name(), "angle_scale");
+  EXPECT_NEAR(scaled.front().values.front(), kScale, 0.05 * kScale);
+  const auto off_centre = found_all_round([](double bearing) { return kScale * std::sin(bearing); }, random);
+  ASSERT_FALSE(off_centre.empty()) << "seed " << kSeed;
+  for (const LidarFinding& finding : off_centre) EXPECT_EQ(finding.effect->name(), "bearing");
+}
+
 TEST(LidarEffect, of_none_is_found_in_noise) {
   constexpr unsigned kSeed = 4;
   std::mt19937 random(kSeed);
-  const auto pairs = sixty_pairs([](const Sighting&) { return BeamShift{}; }, random);
-  EXPECT_TRUE(trace_lidar(pairs, false).empty()) << "seed " << kSeed;
+  for (const bool all_round : {false, true}) {
+    const auto pairs = sixty_pairs([](const Sighting&) { return BeamShift{}; }, random);
+    EXPECT_TRUE(trace_lidar(pairs, all_round).empty()) << all_round << ", seed " << kSeed;
+  }
 }
 
 }  // namespace
