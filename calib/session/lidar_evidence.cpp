@@ -45,8 +45,6 @@ std::vector<HeadingPair> heading_pairs(const Session& session, const Eigen::Vect
   return all;
 }
 
-namespace {}  // namespace
-
 bool sees_all_round(const Session& session) {
   return std::all_of(
       session.recordings().begin(), session.recordings().end(), [](const Recording& recording) {

@@ -77,6 +77,12 @@ bool spoils_drives(const FitTask& task, const FittedModel& before, const FittedM
          is_spoilt(StretchKind::open_loop);
 }
 
+double ratio_over_drives(const FitTask& task, const FittedModel& before, const FittedModel& after) {
+  const auto errors =
+      compared(StretchKind::open_loop, task, before, after, trusted_pairs(before.fit, after.fit));
+  return errors ? compare(errors->without, errors->with).ratio : 1.0;
+}
+
 std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,
                       const FoldFlags& selected, double largest_ratio, Proof& proof) {
   if (const auto gain = best_gain(task, before, after, selected, largest_ratio)) {

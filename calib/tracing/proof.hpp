@@ -23,6 +23,10 @@ inline constexpr std::size_t kFewestStretches = 10;
 /// twentieth from one model to the other, beyond its 95 % interval. Each may have its own noise model.
 bool spoils_drives(const FitTask& task, const FittedModel& before, const FittedModel& after);
 
+/// Held-out error over ten seconds of the other model to that of the first; 1 where there are too few
+/// stretches.
+double ratio_over_drives(const FitTask& task, const FittedModel& before, const FittedModel& after);
+
 /// On one noise model: error over ten seconds, or else whitened residual per block.
 /// @param selected the choice itself is held out: a fold counts only if the others point to the candidate
 /// @param largest_ratio of the errors over ten seconds after and before

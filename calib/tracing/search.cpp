@@ -245,19 +245,27 @@ class Search {
     }
     settled = round_->refit(trial.candidate, {});
     if (!settled) return "the fit does not settle";
-    return spoils_drives(task_, basis(), settled->model) ? "drives get worse" : "";
+    const bool spoils = spoils_drives(task_, basis(), settled->model) ||
+                        (odometry_uses(candidates_[trial.candidate]) &&
+                         ratio_over_drives(task_, basis(), settled->model) > 1.0);
+    return spoils ? "drives get worse" : "";
   }
 
   /// Whether the proof is one of drives of ten seconds, not of single pairs.
   static bool has_drives(const Proof& proof) { return proof.before > 0.0; }
 
+  /// A curve that odometry follows. What folds that do not point to it make of it counts too: the next drive
+  /// may be like them.
+  static bool odometry_uses(const Candidate& candidate) {
+    return candidate.curve && candidate.effect->storage() == Storage::host &&
+           std::isfinite(largest_ratio(candidate));
+  }
+
   /// Of a curve that odometry would use, whose gain must show over ten seconds; where the reference is too
   /// broken for that, its score must leave no doubt. A reference that errs with the motion, as in a nearly
   /// round room, asks for one curve after the other: where the best is none, no other is.
   [[nodiscard]] bool may_be_chance(const Candidate& candidate, const Proof& proof) const {
-    if (!candidate.curve || candidate.effect->storage() != Storage::host ||
-        !std::isfinite(largest_ratio(candidate)) || result_.owner_of(candidate.curve->law))
-      return false;
+    if (!odometry_uses(candidate) || result_.owner_of(candidate.curve->law)) return false;
     return has_drives(proof) ? !proof.improvement.is_plain() : proof.family_p_value > kNamedLevel;
   }
 

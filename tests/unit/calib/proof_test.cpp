@@ -90,6 +90,9 @@ TEST(Proof, what_makes_drives_worse_is_refused) {
   EXPECT_TRUE(spoils_drives(task, right, wrong));
   EXPECT_FALSE(spoils_drives(task, wrong, right));
   EXPECT_FALSE(spoils_drives(task, right, right));
+  EXPECT_GT(ratio_over_drives(task, right, wrong), 1.0);
+  EXPECT_LT(ratio_over_drives(task, wrong, right), 1.0);
+  EXPECT_EQ(ratio_over_drives(task, right, right), 1.0);
 }
 
 TEST(HeldOut, two_models_are_compared_on_the_same_pairs) {
