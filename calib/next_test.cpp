@@ -38,6 +38,7 @@ constexpr std::array kForEffects = {Named{"time_offset", "accelerations"},
 
 constexpr std::array kForVariables = {Named{"left_speed", "straights"},
                                       Named{"right_speed", "straights"},
+                                      Named{"wheel_speed", "straights"},
                                       Named{"speed", "straights"},
                                       Named{"turn_rate", "turns"},
                                       Named{"lateral_acceleration", "arcs"},

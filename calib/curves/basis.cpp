@@ -209,14 +209,21 @@ BasisValues raw_basis(const Curve& curve, const StepContext& c) {
 
 }  // namespace
 
-BasisValues basis(const Curve& curve, const StepContext& c) {
-  BasisValues functions = raw_basis(curve, c);
+std::span<const Carrier> acts_on(const Curve& curve) {
+  static constexpr std::array kEachWheel = {Carrier::left_travel, Carrier::right_travel};
+  if (curve.law == kOfEachWheel) return kEachWheel;
+  return {&curve.law.carrier, 1};
+}
+
+BasisValues basis(const Curve& curve, const StepContext& c, std::size_t part) {
+  const bool of_right_wheel = part > 0;
+  BasisValues functions = of_right_wheel ? speed_functions(curve, c.right_speed) : raw_basis(curve, c);
   for (std::size_t k = 0; k < curve.mean.size(); ++k) functions[k] -= curve.mean[k];
   return functions;
 }
 
-BasisValues functions_in(const Curve& curve, const StepContext& c) {
-  return concerns_sensor(curve) ? growth(curve, c) : basis(curve, c);
+BasisValues functions_in(const Curve& curve, const StepContext& c, std::size_t part) {
+  return concerns_sensor(curve) ? growth(curve, c) : basis(curve, c, part);
 }
 
 std::size_t basis_size(const Curve& curve) { return basis(curve, StepContext{}).size(); }

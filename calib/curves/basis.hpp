@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <span>
 
 #include "calib/curves/curve.hpp"
 
@@ -31,10 +32,15 @@ class BasisValues {
   std::size_t count_ = 0;
 };
 
-BasisValues basis(const Curve& curve, const StepContext& context);
+/// The carriers that a curve acts on, all with the same coefficients: its own, or, of a variable that each
+/// wheel has for itself, the travel of the left and of the right wheel.
+std::span<const Carrier> acts_on(const Curve& curve);
+
+/// @param part index of the carrier among those it acts on
+BasisValues basis(const Curve& curve, const StepContext& context, std::size_t part = 0);
 std::size_t basis_size(const Curve& curve);
 
 /// What the coefficients are multiplied by in an interval: the basis, or on the sensor's yaw its growth.
-BasisValues functions_in(const Curve& curve, const StepContext& context);
+BasisValues functions_in(const Curve& curve, const StepContext& context, std::size_t part = 0);
 
 }  // namespace odomcalib::calib

@@ -23,6 +23,8 @@ Carriers carriers_of(Variable variable) {
       return {left_travel, left_path, right_travel, right_path};
     case Variable::right_speed:
       return {right_travel, right_path, left_travel, left_path};
+    case Variable::wheel_speed:
+      return {both_travel};
     case Variable::left_phase:
     case Variable::left_since_reversal:
       return {left_travel};

@@ -31,10 +31,13 @@ class CurveEffect final : public StepEffect<CurveEffect> {
 
   template <typename T>
   void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) const {
-    const BasisValues functions = functions_in(curve_, c);
-    T f(0.0);
-    for (std::size_t k = 0; k < functions.size(); ++k) f += p[k] * functions[k];
-    carry(curve_.law.carrier, c, f, step);
+    const std::span<const Carrier> carriers = acts_on(curve_);
+    for (std::size_t part = 0; part < carriers.size(); ++part) {
+      const BasisValues functions = functions_in(curve_, c, part);
+      T f(0.0);
+      for (std::size_t k = 0; k < functions.size(); ++k) f += p[k] * functions[k];
+      carry(carriers[part], c, f, step);
+    }
   }
 
  private:

@@ -34,9 +34,16 @@ bool is_at_rest(const StepContext& c) {
   return std::abs(c.left_speed) <= kMoving && std::abs(c.right_speed) <= kMoving;
 }
 
-double value_in(const Curve& curve, std::span<const double> coefficients, const StepContext& c) {
-  const BasisValues functions = basis(curve, c);
-  return std::inner_product(functions.begin(), functions.end(), coefficients.begin(), 0.0);
+/// Each of the curve's values in an interval, with how much motion it acts on.
+template <typename Visit>
+void for_each_value(const Curve& curve, std::span<const double> coefficients, const StepContext& c,
+                    const Visit& visit) {
+  const std::span<const Carrier> carriers = acts_on(curve);
+  for (std::size_t part = 0; part < carriers.size(); ++part) {
+    const BasisValues functions = basis(curve, c, part);
+    visit(std::inner_product(functions.begin(), functions.end(), coefficients.begin(), 0.0),
+          amount(carriers[part], c));
+  }
 }
 
 }  // namespace
@@ -49,6 +56,7 @@ std::pair<double, double> range_of(Variable variable, std::span<const DriveModel
       if (is_at_rest(c)) continue;
       values.push_back(value_of(variable, c, memory));
       if (variable == Variable::position) values.push_back(c.y);
+      if (variable == Variable::wheel_speed) values.push_back(c.right_speed);
     }
   if (values.size() < 10) return {0.0, 0.0};
   const auto at = [&](double share) {
@@ -75,10 +83,13 @@ Curve centred(Curve curve, std::span<const DriveModel* const> models) {
   double total = 0.0;
   for (const DriveModel* model : models)
     for (const StepContext& c : model->context()) {
-      const double weight = amount(curve.law.carrier, c);
-      const BasisValues functions = basis(curve, c);
-      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * functions[k];
-      total += weight;
+      const std::span<const Carrier> carriers = acts_on(curve);
+      for (std::size_t part = 0; part < carriers.size(); ++part) {
+        const double weight = amount(carriers[part], c);
+        const BasisValues functions = basis(curve, c, part);
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * functions[k];
+        total += weight;
+      }
     }
   for (double& value : sum) value /= std::max(total, 1e-12);
   curve.mean = std::move(sum);
@@ -89,12 +100,11 @@ double spread_of(const Curve& curve, std::span<const double> coefficients,
                  std::span<const DriveModel* const> models) {
   double sum = 0.0, total = 0.0;
   for (const DriveModel* model : models)
-    for (const StepContext& c : model->context()) {
-      const double f = value_in(curve, coefficients, c);
-      const double weight = amount(curve.law.carrier, c);
-      sum += weight * f * f;
-      total += weight;
-    }
+    for (const StepContext& c : model->context())
+      for_each_value(curve, coefficients, c, [&](double f, double weight) {
+        sum += weight * f * f;
+        total += weight;
+      });
   return std::sqrt(sum / std::max(total, 1e-12));
 }
 
@@ -104,9 +114,10 @@ double half_span_of(const Curve& curve, std::span<const double> coefficients,
   for (const DriveModel* model : models)
     for (const StepContext& c : model->context()) {
       if (is_at_rest(c)) continue;
-      const double f = value_in(curve, coefficients, c);
-      low = std::min(low, f);
-      high = std::max(high, f);
+      for_each_value(curve, coefficients, c, [&](double f, double /*motion*/) {
+        low = std::min(low, f);
+        high = std::max(high, f);
+      });
     }
   return std::max(0.0, 0.5 * (high - low));
 }

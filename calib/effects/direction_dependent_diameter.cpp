@@ -19,7 +19,8 @@ class DirectionDependentDiameter final : public StepEffect<DirectionDependentDia
     return "straight lines forward and backward at the same speed, and spins both ways";
   }
   [[nodiscard]] std::vector<Law> laws() const override {
-    return {{Variable::left_speed, Carrier::left_travel},
+    return {kOfEachWheel,
+            {Variable::left_speed, Carrier::left_travel},
             {Variable::right_speed, Carrier::right_travel},
             {Variable::speed, Carrier::both_travel},
             {Variable::left_since_reversal, Carrier::left_travel},

@@ -30,7 +30,8 @@ class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
     return all;
   }
   [[nodiscard]] std::vector<Law> laws() const override {
-    return {{Variable::left_speed, Carrier::left_travel},
+    return {kOfEachWheel,
+            {Variable::left_speed, Carrier::left_travel},
             {Variable::right_speed, Carrier::right_travel},
             {Variable::speed, Carrier::both_travel}};
   }

@@ -29,7 +29,9 @@ class TickLoss final : public StepEffect<TickLoss> {
     return all;
   }
   [[nodiscard]] std::vector<Law> laws() const override {
-    return {{Variable::left_speed, Carrier::left_travel}, {Variable::right_speed, Carrier::right_travel}};
+    return {kOfEachWheel,
+            {Variable::left_speed, Carrier::left_travel},
+            {Variable::right_speed, Carrier::right_travel}};
   }
 
   template <typename T>

@@ -7,6 +7,7 @@ namespace odomcalib::calib {
 std::string to_string(Variable variable) {
   static constexpr const char* kNames[] = {"left_speed",
                                            "right_speed",
+                                           "wheel_speed",
                                            "speed",
                                            "turn_rate",
                                            "lateral_acceleration",
@@ -61,7 +62,7 @@ bool begins_with_the_recording(Variable variable) {
 
 bool is_signed_speed(Variable variable) {
   return variable == Variable::left_speed || variable == Variable::right_speed ||
-         variable == Variable::speed || variable == Variable::turn_rate;
+         variable == Variable::wheel_speed || variable == Variable::speed || variable == Variable::turn_rate;
 }
 
 bool is_acceleration(Variable variable) {
@@ -106,6 +107,7 @@ bool is_relay(Variable variable, std::size_t memory) {
 double value_of(Variable variable, const StepContext& c, std::size_t memory) {
   switch (variable) {
     case Variable::left_speed:
+    case Variable::wheel_speed:
       return c.left_speed;
     case Variable::right_speed:
       return c.right_speed;

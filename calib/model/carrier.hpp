@@ -11,6 +11,7 @@ namespace odomcalib::calib {
 enum class Variable {
   left_speed,
   right_speed,
+  wheel_speed,  ///< of each wheel for itself, both alike
   speed,
   turn_rate,
   lateral_acceleration,
@@ -55,7 +56,7 @@ std::size_t memories_of(Variable variable);
 /// Its sign stays until the opposite happens, instead of fading.
 bool is_relay(Variable variable, std::size_t memory);
 
-/// Value in an interval; of the position, x.
+/// Value in an interval; of the position, x; of each wheel's own variable, the left wheel's.
 /// @param memory index of the span over which what happened before fades, of the strength that a push must
 /// have (kPushes, after the spans), of the time for which it must have stood still
 double value_of(Variable variable, const StepContext& context, std::size_t memory = kUsualMemory);
@@ -151,5 +152,8 @@ struct Law {
   Carrier carrier = Carrier::both_travel;
   friend bool operator==(const Law&, const Law&) = default;
 };
+
+/// Of both wheels alike, of each by its own speed.
+inline constexpr Law kOfEachWheel{Variable::wheel_speed, Carrier::both_travel};
 
 }  // namespace odomcalib::calib

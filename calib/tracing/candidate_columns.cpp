@@ -42,14 +42,10 @@ class Tried {
         whitener_(std::move(whitener)) {}
 
   [[nodiscard]] Eigen::MatrixXd by_curve(const Curve& curve) const {
-    const auto steps = static_cast<Eigen::Index>(model_.context().size());
-    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(basis_size(curve)));
-    for (Eigen::Index k = 0; k < steps; ++k) {
-      const BasisValues values = functions_in(curve, model_.context()[static_cast<std::size_t>(k)]);
-      for (Eigen::Index j = 0; j < functions.cols(); ++j)
-        functions(k, j) = values[static_cast<std::size_t>(j)];
-    }
-    return whitened(responses_[static_cast<std::size_t>(curve.law.carrier)].by_coefficients(functions));
+    const std::span<const Carrier> carriers = acts_on(curve);
+    Eigen::MatrixXd sum = by_part(curve, carriers.front(), 0);
+    for (std::size_t part = 1; part < carriers.size(); ++part) sum += by_part(curve, carriers[part], part);
+    return whitened(std::move(sum));
   }
 
   [[nodiscard]] Eigen::MatrixXd by_effects(const EffectList& effects) const {
@@ -57,6 +53,17 @@ class Tried {
   }
 
  private:
+  [[nodiscard]] Eigen::MatrixXd by_part(const Curve& curve, Carrier carrier, std::size_t part) const {
+    const auto steps = static_cast<Eigen::Index>(model_.context().size());
+    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(basis_size(curve)));
+    for (Eigen::Index k = 0; k < steps; ++k) {
+      const BasisValues values = functions_in(curve, model_.context()[static_cast<std::size_t>(k)], part);
+      for (Eigen::Index j = 0; j < functions.cols(); ++j)
+        functions(k, j) = values[static_cast<std::size_t>(j)];
+    }
+    return responses_[static_cast<std::size_t>(carrier)].by_coefficients(functions);
+  }
+
   [[nodiscard]] Eigen::MatrixXd whitened(Eigen::MatrixXd rows) const {
     whitener_.apply(rows);
     return rows;

@@ -4,10 +4,13 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "calib/curves/basis.hpp"
 #include "calib/curves/candidate_curves.hpp"
 #include "calib/curves/curve.hpp"
+#include "calib/curves/curve_effect.hpp"
 #include "calib/curves/curve_on_drives.hpp"
 #include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/tracing_json.hpp"
@@ -148,6 +151,39 @@ TEST(Curve, about_its_mean_it_has_none_over_the_drive) {
   const auto read = curves_from_json(curves_to_json(written));
   ASSERT_EQ(read.size(), 1U);
   EXPECT_EQ(read[0].curve.mean, curve.mean);
+}
+
+TEST(Curve, of_each_wheel_acts_on_both_by_their_own_speeds) {
+  Curve curve{kOfEachWheel, -0.4, 0.4};
+  ASSERT_EQ(acts_on(curve).size(), 2U);
+  std::vector<double> coefficients(basis_size(curve), 0.0);
+  coefficients[3] = 0.01;  // at the highest speed
+  StepContext c;
+  c.left_speed = 0.4;
+  c.right_speed = -0.2;
+  WheelStep<double> step{0.006, -0.003};
+  make_curve_effect(curve)->apply(c, coefficients, step);
+  EXPECT_NEAR(step.left, 0.006 * 1.01, 1e-12);
+  EXPECT_NEAR(step.right, -0.003, 1e-12);
+  std::swap(c.left_speed, c.right_speed);
+  step = {-0.003, 0.006};
+  make_curve_effect(curve)->apply(c, coefficients, step);
+  EXPECT_NEAR(step.left, -0.003, 1e-12);
+  EXPECT_NEAR(step.right, 0.006 * 1.01, 1e-12);
+  EXPECT_EQ(acts_on({{Variable::left_speed, Carrier::left_travel}}).size(), 1U);
+}
+
+TEST(Curve, of_each_wheel_is_spread_over_the_ways_of_both) {
+  const DriveModel model = lively_model();
+  const DriveModel* models[] = {&model};
+  Curve curve{kOfEachWheel};
+  std::tie(curve.low, curve.high) = range_of(curve.law.variable, models);
+  const Curve about_mean = centred(curve, models);
+  double sum = 0.0;
+  for (const StepContext& c : model.context())
+    sum += std::abs(c.left_delta) * basis(about_mean, c, 0)[2] +
+           std::abs(c.right_delta) * basis(about_mean, c, 1)[2];
+  EXPECT_NEAR(sum, 0.0, 1e-9);
 }
 
 TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {

@@ -34,6 +34,7 @@ std::vector<FreeLawCase> free_law_cases() {
   for (const Carrier carrier : {Carrier::both_path, Carrier::left_travel, Carrier::sideways_path})
     all.push_back({{Variable::speed, carrier}, hump});
   all.push_back({{Variable::left_speed, Carrier::right_travel}, hump});
+  all.push_back({kOfEachWheel, hump});
   for (const Carrier carrier : {Carrier::right_path, Carrier::sideways_path, Carrier::yaw_path})
     all.push_back({{Variable::turn_rate, carrier}, hump});
   for (const Carrier carrier : {Carrier::left_travel, Carrier::yaw_path})
