@@ -48,9 +48,13 @@ bool shows_offset(const RangeEvidence& e) {
          std::abs(e.values(0) - e.offset_alone) < kMostChange * std::abs(e.values(0));
 }
 
+bool matters_at_a_slant(const RangeLaw& law) {
+  const double at_45_degrees = law(1) + kUsualDistance * law(3);
+  return std::abs(at_45_degrees) > kSmallest;
+}
+
 bool shows_slant(const RangeEvidence& e) {
-  const double at_45_degrees = e.values(1) + kUsualDistance * e.values(3);
-  return std::abs(at_45_degrees) > kSmallest && slant_statistic(e) > kSigmas * kSigmas + kSlants;
+  return matters_at_a_slant(e.values) && slant_statistic(e) > kSigmas * kSigmas + kSlants;
 }
 
 double p_value_of_offset(const RangeEvidence& e) { return chance(std::pow(offset_in_sigmas(e), 2), 1.0); }

@@ -32,6 +32,9 @@ bool shows_offset(const RangeEvidence& evidence);
 /// A dependence on incidence beside which an offset is not needed.
 bool shows_slant(const RangeEvidence& evidence);
 
+/// Whether a law errs at a slant by more than surfaces of a room differ.
+bool matters_at_a_slant(const RangeLaw& law);
+
 /// Probability of so large an offset, or so large coefficients of the incidence, where there is none.
 double p_value_of_offset(const RangeEvidence& evidence);
 double p_value_of_slant(const RangeEvidence& evidence);

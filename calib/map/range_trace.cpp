@@ -132,9 +132,12 @@ class Trace {
                        Eigen::VectorXd::Constant(1, deviation))};
   }
 
+  /// None where next to nothing is left once the map has settled: what was gained then is the map's.
   std::vector<LidarFinding> slant() {
     const double p_value = p_value_of_slant(state_.evidence);
-    const auto proof = advance(adjusted_with(slant_step, state_, used_));
+    Adjusted better = adjusted_with(slant_step, state_, used_);
+    if (!matters_at_a_slant(better.options.range_error)) return {};
+    const auto proof = advance(std::move(better));
     if (!proof) return {};
     const RangeLaw deviations = state_.evidence.covariance.diagonal().cwiseSqrt();
     return {finding_of(make_incidence_error(), p_value, *proof,
