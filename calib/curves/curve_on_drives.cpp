@@ -34,16 +34,21 @@ bool is_at_rest(const StepContext& c) {
   return std::abs(c.left_speed) <= kMoving && std::abs(c.right_speed) <= kMoving;
 }
 
+/// The curve's functions in an interval on each of its carriers, with how much motion they act on.
+template <typename Visit>
+void for_each_part(const Curve& curve, const StepContext& c, const Visit& visit) {
+  const std::span<const Carrier> carriers = acts_on(curve);
+  for (std::size_t part = 0; part < carriers.size(); ++part)
+    visit(basis(curve, c, part), amount(carriers[part], c));
+}
+
 /// Each of the curve's values in an interval, with how much motion it acts on.
 template <typename Visit>
 void for_each_value(const Curve& curve, std::span<const double> coefficients, const StepContext& c,
                     const Visit& visit) {
-  const std::span<const Carrier> carriers = acts_on(curve);
-  for (std::size_t part = 0; part < carriers.size(); ++part) {
-    const BasisValues functions = basis(curve, c, part);
-    visit(std::inner_product(functions.begin(), functions.end(), coefficients.begin(), 0.0),
-          amount(carriers[part], c));
-  }
+  for_each_part(curve, c, [&](const BasisValues& functions, double weight) {
+    visit(std::inner_product(functions.begin(), functions.end(), coefficients.begin(), 0.0), weight);
+  });
 }
 
 }  // namespace
@@ -82,15 +87,11 @@ Curve centred(Curve curve, std::span<const DriveModel* const> models) {
   curve.mean.clear();
   double total = 0.0;
   for (const DriveModel* model : models)
-    for (const StepContext& c : model->context()) {
-      const std::span<const Carrier> carriers = acts_on(curve);
-      for (std::size_t part = 0; part < carriers.size(); ++part) {
-        const double weight = amount(carriers[part], c);
-        const BasisValues functions = basis(curve, c, part);
+    for (const StepContext& c : model->context())
+      for_each_part(curve, c, [&](const BasisValues& functions, double weight) {
         for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * functions[k];
         total += weight;
-      }
-    }
+      });
   for (double& value : sum) value /= std::max(total, 1e-12);
   curve.mean = std::move(sum);
   return curve;

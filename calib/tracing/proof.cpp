@@ -66,21 +66,17 @@ std::optional<Gain> best_gain(const FitTask& task, const FittedModel& before, co
 
 }  // namespace
 
-bool spoils_drives(const FitTask& task, const FittedModel& before, const FittedModel& after) {
+DriveChange change_of_drives(const FitTask& task, const FittedModel& before, const FittedModel& after) {
   constexpr double kTolerated = 1.05;
   const auto trusted = trusted_pairs(before.fit, after.fit);
-  const auto is_spoilt = [&](StretchKind kind) {
+  const auto improvement_of = [&](StretchKind kind) {
     const auto errors = compared(kind, task, before, after, trusted);
-    return errors && compare(errors->without, errors->with).lower > kTolerated;
+    return errors ? compare(errors->without, errors->with) : Improvement{};
   };
-  return is_spoilt(StretchKind::turn) || is_spoilt(StretchKind::straight) ||
-         is_spoilt(StretchKind::open_loop);
-}
-
-double ratio_over_drives(const FitTask& task, const FittedModel& before, const FittedModel& after) {
-  const auto errors =
-      compared(StretchKind::open_loop, task, before, after, trusted_pairs(before.fit, after.fit));
-  return errors ? compare(errors->without, errors->with).ratio : 1.0;
+  const auto is_spoilt = [&](StretchKind kind) { return improvement_of(kind).lower > kTolerated; };
+  const Improvement drives = improvement_of(StretchKind::open_loop);
+  return {drives.ratio,
+          drives.lower > kTolerated || is_spoilt(StretchKind::turn) || is_spoilt(StretchKind::straight)};
 }
 
 std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,

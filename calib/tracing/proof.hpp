@@ -19,13 +19,15 @@ struct Proof {
 /// Fewer stretches than these say nothing.
 inline constexpr std::size_t kFewestStretches = 10;
 
-/// Whether the held-out error of full turns, of straight metres or of ten seconds rises by more than a
-/// twentieth from one model to the other, beyond its 95 % interval. Each may have its own noise model.
-bool spoils_drives(const FitTask& task, const FittedModel& before, const FittedModel& after);
+/// What another model makes of held-out drives.
+struct DriveChange {
+  double ratio = 1.0;      ///< of the error over ten seconds; 1 where there are too few stretches
+  bool is_spoilt = false;  ///< full turns, straight metres or ten seconds grow worse by more than a
+                           ///< twentieth, beyond the 95 % interval
+};
 
-/// Held-out error over ten seconds of the other model to that of the first; 1 where there are too few
-/// stretches.
-double ratio_over_drives(const FitTask& task, const FittedModel& before, const FittedModel& after);
+/// From one model to the other; each may have its own noise model.
+DriveChange change_of_drives(const FitTask& task, const FittedModel& before, const FittedModel& after);
 
 /// On one noise model: error over ten seconds, or else whitened residual per block.
 /// @param selected the choice itself is held out: a fold counts only if the others point to the candidate

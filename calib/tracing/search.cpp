@@ -245,10 +245,9 @@ class Search {
     }
     settled = round_->refit(trial.candidate, {});
     if (!settled) return "the fit does not settle";
-    const bool spoils = spoils_drives(task_, basis(), settled->model) ||
-                        (odometry_uses(candidates_[trial.candidate]) &&
-                         ratio_over_drives(task_, basis(), settled->model) > 1.0);
-    return spoils ? "drives get worse" : "";
+    const DriveChange drives = change_of_drives(task_, basis(), settled->model);
+    const bool is_followed = odometry_uses(candidates_[trial.candidate]);
+    return drives.is_spoilt || (is_followed && drives.ratio > 1.0) ? "drives get worse" : "";
   }
 
   /// Whether the proof is one of drives of ten seconds, not of single pairs.

@@ -87,12 +87,12 @@ TEST(Proof, what_makes_drives_worse_is_refused) {
   const FittedModel right{{}, fit.value()};
   FittedModel wrong = right;
   wrong.fit.parameters(kTrackWidth) *= 1.02;
-  EXPECT_TRUE(spoils_drives(task, right, wrong));
-  EXPECT_FALSE(spoils_drives(task, wrong, right));
-  EXPECT_FALSE(spoils_drives(task, right, right));
-  EXPECT_GT(ratio_over_drives(task, right, wrong), 1.0);
-  EXPECT_LT(ratio_over_drives(task, wrong, right), 1.0);
-  EXPECT_EQ(ratio_over_drives(task, right, right), 1.0);
+  EXPECT_TRUE(change_of_drives(task, right, wrong).is_spoilt);
+  EXPECT_FALSE(change_of_drives(task, wrong, right).is_spoilt);
+  EXPECT_FALSE(change_of_drives(task, right, right).is_spoilt);
+  EXPECT_GT(change_of_drives(task, right, wrong).ratio, 1.0);
+  EXPECT_LT(change_of_drives(task, wrong, right).ratio, 1.0);
+  EXPECT_EQ(change_of_drives(task, right, right).ratio, 1.0);
 }
 
 TEST(HeldOut, two_models_are_compared_on_the_same_pairs) {
