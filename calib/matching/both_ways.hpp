@@ -10,7 +10,8 @@ namespace odomcalib::calib {
 /// match is off by the same amount and in the same direction in the sensor's frame whichever way the robot
 /// went: where a lidar does not see all round, that does not cancel. The way back is off the opposite way (a
 /// symmetric objective, after Rusinkiewicz: A symmetric objective function for ICP, ACM Trans. Graph. 38(4),
-/// 2019). Everything but the motion is that of the first match; where the way back fails, the motion too.
+/// 2019). The information is that of both together; everything else, and all where the way back fails, is
+/// that of the first match.
 /// @param guess, result motion from `first` to `second`
 MatchResult match_both_ways(const MatchReference& first, const MatchReference& second, const Pose& guess,
                             const MatchOptions& options);

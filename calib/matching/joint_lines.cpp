@@ -64,7 +64,7 @@ class Refinement {
     estimate_.scale = std::max(1.0, kMadToSigma * median_of(normalised));
     estimate_.inliers = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const double weight = tukey_weight(normalised[i] / (estimate_.scale * kTukeyCut));
+      const double weight = tukey_weight(normalised[i] / (estimate_.scale * kTukeyCut)) / kTukeyMeanWeight;
       weights_[i] = weight * root_weights_[i] * root_weights_[i];
       if (weight > 0.0) ++estimate_.inliers;
     }
