@@ -41,18 +41,6 @@ void arcs(Builder& build) {
   build.four_arcs(wide, 0.35 * kPi, 0.3 / wide);
 }
 
-/// How long a robot has to stand until something sticks only stops of different lengths can tell.
-void vary_rests(Builder& build) {
-  constexpr std::array<double, 7> kRests = {0.2, 0.45, 0.3, 0.15, 0.6, 0.25, 0.35};  // s
-  for (std::size_t k = 0; k < build.moves.size(); ++k) build.moves[k].settle = kRests[k % kRests.size()];
-}
-
-/// How hard a push has to be until something gives way only pushes of different strengths can tell.
-void vary_pushes(Builder& build) {
-  constexpr std::array<double, 5> kHastes = {1.0, 0.35, 0.7, 0.25, 0.5};
-  for (std::size_t k = 0; k < build.moves.size(); ++k) build.moves[k].haste = kHastes[k % kHastes.size()];
-}
-
 /// Starts and stops at low and at high speed, forward and backward, and in turns.
 void accelerations(Builder& build) {
   for (const double speed : {0.3, 0.1, 0.3}) {
@@ -61,8 +49,8 @@ void accelerations(Builder& build) {
   }
   build.both_spins(0.5 * kPi, 0.6);
   build.both_spins(0.3 * kPi, 0.2);
-  vary_rests(build);
-  vary_pushes(build);
+  vary_rests(build.moves);
+  vary_pushes(build.moves);
 }
 
 /// Every wheel reverses often, slowly and fast, with and without the robot's direction of travel.
@@ -96,6 +84,16 @@ void straights_on_four_headings(Builder& build) {
   build.face(-0.5 * kPi);
   build.out_and_back(d, 0.1, 0.3);
   build.face(0.0);
+}
+
+void vary_rests(std::span<Move> moves) {
+  constexpr std::array<double, 7> kRests = {0.5, 0.15, 0.8, 0.3, 0.6, 0.2, 0.4};  // s
+  for (std::size_t k = 0; k < moves.size(); ++k) moves[k].settle = kRests[k % kRests.size()];
+}
+
+void vary_pushes(std::span<Move> moves) {
+  constexpr std::array<double, 5> kHastes = {1.0, 0.35, 0.7, 0.25, 0.5};
+  for (std::size_t k = 0; k < moves.size(); ++k) moves[k].haste = kHastes[k % kHastes.size()];
 }
 
 std::optional<Plan> manoeuvre_plan(const std::string& name, const PatternOptions& options) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "daemon/routines/builder.hpp"
@@ -13,6 +14,11 @@ namespace odomcalib::routines {
 Builder builder_for(const PatternOptions& options);
 
 void straights_on_four_headings(Builder& build);
+
+/// How long a robot has to stand until something sticks only stops of different lengths can tell.
+void vary_rests(std::span<Move> moves);
+/// How hard a push has to be until something gives way only pushes of different strengths can tell.
+void vary_pushes(std::span<Move> moves);
 
 /// straights, slow_straights, turns, arcs, accelerations, reversals, headings; nullopt for another name.
 std::optional<Plan> manoeuvre_plan(const std::string& name, const PatternOptions& options);

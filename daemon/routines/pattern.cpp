@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A law of speed is known where the robot drove: with the straights on four headings these are seven speeds.
+/// With the straights on four headings these are seven speeds.
 void slow_and_fast_straights(Builder& build) {
   build.out_and_back(0.5 * build.half, 0.1);
   build.out_and_back(0.8 * build.half, 0.3);
@@ -20,9 +20,7 @@ void slow_and_fast_straights(Builder& build) {
 
 void all_spins(Builder& build) {
   build.both_spins(2.0 * kPi, 0.6);
-  build.both_spins(0.5 * kPi, 0.45);
   build.both_spins(0.5 * kPi, 0.3);
-  build.both_spins(0.4 * kPi, 0.22);
   build.both_spins(0.3 * kPi, 0.15);
 }
 
@@ -31,13 +29,27 @@ void all_arcs(Builder& build) {
   const double wide = 0.7 * build.scale;
   build.four_arcs(tight, 0.6 * kPi, 0.12 / tight);
   build.four_arcs(tight, 0.6 * kPi, 0.6);
-  build.four_arcs(wide, 0.45 * kPi, 0.15 / wide);
+  build.four_arcs(wide, 0.3 * kPi, 0.15 / wide);
   build.four_arcs(wide, 0.45 * kPi, 0.3 / wide);
 }
 
 void single_wheel_turns(Builder& build, double track_width) {
   const double radius = 0.5 * track_width;
   build.four_arcs(radius, 0.75 * kPi, 0.5);
+}
+
+/// A law of speed is known where the robot drove: every speed of either wheel is passed, slowly (the
+/// quasi-static test of system identification), forward and backward.
+void slow_ramps(Builder& build) {
+  constexpr double kStraightHaste = 0.2, kSpinHaste = 0.1;
+  const double way = 1.4 * build.half;
+  build.moves.push_back(straight(-0.5 * way, 0.2, Builder::kRest));
+  const std::size_t first = build.moves.size();
+  build.out_and_back(way, 0.3);
+  build.both_spins(1.5 * kPi, 0.6);
+  for (std::size_t k = first; k < build.moves.size(); ++k)
+    build.moves[k].haste = build.moves[k].direction.w == 0.0 ? kStraightHaste : kSpinHaste;
+  build.moves.push_back(straight(0.5 * way, 0.2, Builder::kRest));
 }
 
 void full_pattern(Builder& build, double track_width) {
@@ -48,6 +60,10 @@ void full_pattern(Builder& build, double track_width) {
   all_arcs(build);
   build.face(0.0);
   single_wheel_turns(build, track_width);
+  vary_rests(build.moves);
+  vary_pushes(build.moves);
+  build.face(0.0);
+  slow_ramps(build);
   build.face(0.0);
 }
 

@@ -1,5 +1,6 @@
-// The motion that keeps all parameters and effects apart: every direction, several speeds and radii, single
-// wheels, four headings, many starts and stops, and the first straight once more at the end (drift).
+// The motion that keeps all parameters and effects apart: every direction, every speed slowly and several
+// steadily, several radii, single wheels, four headings, many starts and stops of different strengths and
+// lengths, and the first straight once more at the end (drift).
 #pragma once
 
 #include "daemon/routines/motion.hpp"
@@ -17,7 +18,8 @@ struct PatternOptions {
 };
 
 /// Every move is undone by its opposite, so that the robot is near its start after each block: driven from
-/// the odometry pose with a Runner it stays inside the area. About four minutes, quick: one and a half.
+/// the odometry pose with a Runner it stays inside the area. About five and a half minutes, quick: one and a
+/// half.
 Plan pattern_plan(const PatternOptions& options);
 
 }  // namespace odomcalib::routines

@@ -3,13 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "tests/blind/blind_table.hpp"
 #include "tests/blind/blind_trial.hpp"
-#include "tests/sim/effects/effect.hpp"
+#include "tests/sim/effects/blind_cli.hpp"
 
 namespace {
 
@@ -46,18 +45,7 @@ int main(int argc, char** argv) try {
   app.add_option("--seed", campaign, "of the campaign");
   app.add_option("--first", first, "number of the first recording");
   app.add_option("--count", count, "number of recordings");
-  app.add_option("--without", options.share_without_effect, "share of recordings without effect");
-  app.add_option("--effects", options.effects, "effects in one recording");
-  app.add_flag("--catalogue", options.only_catalogue, "only effects that the catalogue has");
-  app.add_flag("--any-machine", options.any_machine,
-               "other lidars, encoders and sizes than the usual robot's");
-  app.add_flag("--tour", options.tour, "drives at work, forward only, instead of drives for calibration");
-  app.add_flag("--free-laws", options.free_laws,
-               "anything the robot does changes anything it moves by, by no mechanism");
-  std::set<std::string> names;
-  for (const auto& kind : odomcalib::sim::effect_kinds()) names.insert(kind.name);
-  app.add_option("--only", options.only, "only these effects, for a closer look")
-      ->check(CLI::IsMember(names));
+  odomcalib::sim::add_blind_options(app, options);
   app.add_option("--table", files, "make the table of these files of lines instead");
   CLI11_PARSE(app, argc, argv);
   return files.empty() ? run(campaign, first, count, options) : print_table(files);

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "proto/file_bytes.hpp"
-#include "tests/sim/effects/blind_case.hpp"
+#include "tests/sim/effects/blind_cli.hpp"
 
 namespace {
 
@@ -24,21 +24,20 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Draws robots, rooms, drives and effects; writes recordings, and the answers into a file of their own"};
   std::uint64_t seed = 1;
-  unsigned count = 10;
+  unsigned first = 0, count = 10;
   fs::path folder;
   odomcalib::sim::BlindOptions options;
   app.add_option("--seed", seed, "of the campaign");
+  app.add_option("--first", first, "number of the first recording");
   app.add_option("--count", count, "number of recordings");
   app.add_option("--out", folder, "folder for case-N.jsonl.gz and answers.json")->required();
-  app.add_option("--size-factor", options.size_factor, "scales every effect")->check(CLI::PositiveNumber);
-  app.add_option("--without", options.share_without_effect, "share of recordings without effect")
-      ->check(CLI::Range(0.0, 1.0));
+  odomcalib::sim::add_blind_options(app, options);
   CLI11_PARSE(app, argc, argv);
 
   std::error_code error;
   fs::create_directories(folder, error);
   std::vector<odomcalib::sim::BlindAnswer> answers;
-  for (unsigned number = 0; number < count; ++number) {
+  for (unsigned number = first; number < first + count; ++number) {
     const auto drawn = odomcalib::sim::make_blind_case(seed, number, options);
     const fs::path file = folder / ("case-" + std::to_string(number) + ".jsonl.gz");
     if (const auto written = odomcalib::write_recording_jsonl(drawn.run.recording, file); !written) {

@@ -56,13 +56,17 @@ Disturbances draw_effects(Random& random, const BlindOptions& options, BlindAnsw
   return disturbances;
 }
 
-/// Pieces of the guided pattern that end about where they began may come in any order.
-std::vector<Manoeuvre> shuffled_pattern(Random& random) {
+std::vector<Manoeuvre> pattern_for(const BlindOptions& options) {
+  return options.few_speeds ? guided_pattern(kRest) : varied_pattern();
+}
+
+/// Pieces of a pattern that end about where they began may come in any order.
+std::vector<Manoeuvre> shuffled(const std::vector<Manoeuvre>& pattern, Random& random) {
   std::vector<std::vector<Manoeuvre>> pieces(1);
   double forward = 0.0;
-  for (const Manoeuvre& move : guided_pattern(kRest)) {
+  for (const Manoeuvre& move : pattern) {
     pieces.back().push_back(move);
-    forward += move.speed * move.duration;
+    forward += way_of(move);
     const bool at_home = std::abs(forward) < 1e-9;
     if (at_home) pieces.emplace_back();
   }
@@ -79,8 +83,8 @@ Drive draw_drive(Random& random, const Geometry& nominal, const BlindOptions& op
   }
   const double kind = uniform(random, 0.0, 1.0);
   answer.drive = kind < 0.5 ? "guided" : kind < 0.85 ? "shuffled" : "random";
-  if (answer.drive == "guided") return follow(nominal, guided_pattern(kRest));
-  if (answer.drive == "shuffled") return follow(nominal, shuffled_pattern(random));
+  if (answer.drive == "guided") return follow(nominal, pattern_for(options));
+  if (answer.drive == "shuffled") return follow(nominal, shuffled(pattern_for(options), random));
   return random_drive(nominal, random(), 1.1);
 }
 
@@ -95,7 +99,7 @@ Geometry draw_nominal(Random& random) {
 
 SimulationConfig draw_config(Random& random, std::uint64_t seed, const BlindOptions& options) {
   SimulationConfig config = standard_config(seed);
-  config.duration = std::min(kLongest, total_duration(guided_pattern(kRest)));
+  config.duration = std::min(kLongest, total_duration(pattern_for(options)));
   config.nominal = draw_nominal(random);
   config.truth = draw_truth(config.nominal, seed);
   config.room = options.tour ? random_room(seed, kTourRoom) : random_room(seed);

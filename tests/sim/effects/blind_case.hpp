@@ -41,6 +41,7 @@ struct BlindOptions {
   bool free_laws = false;         ///< laws of no mechanism instead of effects
   std::vector<std::string> only;  ///< kinds by name; empty: all
   bool any_machine = false;       ///< other lidars, encoders, sizes and durations than the usual robot's
+  bool few_speeds = false;        ///< guided drives at a few speeds, with equal rests and pushes
   bool tour = false;              ///< drives at work instead of drives for calibration, in larger rooms
 };
 

@@ -133,6 +133,8 @@ WheelCommand wheel_command(const Geometry& nominal, double speed, double yaw_rat
   return {(speed - edge) / (0.5 * nominal.left_diameter), (speed + edge) / (0.5 * nominal.right_diameter)};
 }
 
+double way_of(const Manoeuvre& move) { return 0.5 * (move.from + move.to) * move.speed * move.duration; }
+
 double total_duration(const std::vector<Manoeuvre>& manoeuvres) {
   double sum = 0.0;
   for (const Manoeuvre& move : manoeuvres) sum += move.duration;
@@ -141,10 +143,13 @@ double total_duration(const std::vector<Manoeuvre>& manoeuvres) {
 
 Drive follow(const Geometry& nominal, std::vector<Manoeuvre> manoeuvres) {
   return [nominal, list = std::move(manoeuvres)](double t, const Pose&) {
-    double end = 0.0;
+    double begin = 0.0;
     for (const Manoeuvre& move : list) {
-      end += move.duration;
-      if (t < end) return wheel_command(nominal, move.speed, move.yaw_rate);
+      if (t < begin + move.duration) {
+        const double share = move.from + (move.to - move.from) * (t - begin) / move.duration;
+        return wheel_command(nominal, share * move.speed, share * move.yaw_rate);
+      }
+      begin += move.duration;
     }
     return WheelCommand{};
   };
@@ -178,6 +183,90 @@ std::vector<Manoeuvre> guided_pattern(double rest) {
   pattern.shuttle(0.25, 0.0, 3.2, true);
   pattern.move({0.0, 0.0, 1.0});
   return pattern.list;
+}
+
+namespace {
+
+/// Rests and pushes of all lengths, by turns.
+class VariedPattern {
+ public:
+  VariedPattern() : list_{{0.0, 0.0, 1.0}} {}
+
+  /// There and back again over the same way.
+  void shuttle(double speed, double yaw_rate, double duration) {
+    for (const double way : {1.0, -1.0}) move(way * speed, way * yaw_rate, duration);
+  }
+
+  void turn(double yaw_rate, double angle) { move(0.0, yaw_rate, angle / std::abs(yaw_rate)); }
+
+  /// From rest through every speed up to this one, and from there to rest at once.
+  void sweep(double speed, double yaw_rate, double duration) {
+    for (const double way : {1.0, -1.0}) {
+      list_.push_back({way * speed, way * yaw_rate, duration, 0.0, 1.0});
+      rest();
+    }
+  }
+
+  /// Without a rest before or after it.
+  void pass(const Manoeuvre& one) { list_.push_back(one); }
+
+  void rest() {
+    constexpr double kRests[] = {0.8, 0.5, 1.2, 0.65, 0.35};  // s, braking included
+    list_.push_back({0.0, 0.0, kRests[rests_++ % std::size(kRests)]});
+  }
+
+  std::vector<Manoeuvre> take() { return std::move(list_); }
+
+ private:
+  /// Over the way that a push without delay would go.
+  void move(double speed, double yaw_rate, double duration) {
+    constexpr double kPushes[] = {0.0, 0.8, 0.3, 1.5};  // s until the speed is reached
+    const double push = std::min(kPushes[pushes_++ % std::size(kPushes)], duration);
+    if (push > 0.0) list_.push_back({speed, yaw_rate, push, 0.0, 1.0});
+    list_.push_back({speed, yaw_rate, duration - 0.5 * push});
+    rest();
+  }
+
+  std::vector<Manoeuvre> list_;
+  std::size_t rests_ = 0, pushes_ = 0;
+};
+
+void drive_heading(VariedPattern& pattern, int heading) {
+  constexpr double kSpeeds[] = {0.15, 0.25, 0.4, 0.2};
+  const double speed = kSpeeds[heading];
+  pattern.shuttle(speed, 0.0, 0.7 / speed);
+  pattern.sweep(0.5, 0.0, 3.6);
+  if (heading % 2 == 0) pattern.sweep(-0.35, 0.0, 4.5);
+  pattern.pass({0.15, 0.0, 1.5});  // from slow to fast without a stop
+  pattern.pass({0.40, 0.0, 1.2});
+  pattern.pass({-0.40, 0.0, 1.2});
+  pattern.pass({-0.15, 0.0, 1.5});
+}
+
+}  // namespace
+
+std::vector<Manoeuvre> varied_pattern() {
+  VariedPattern pattern;
+  constexpr double kQuarter = 0.5 * std::numbers::pi;
+  for (int heading = 0; heading < 4; ++heading) {
+    drive_heading(pattern, heading);
+    pattern.turn(heading % 2 == 0 ? 0.8 : 0.5, kQuarter);
+  }
+  pattern.sweep(0.0, 1.3, 8.0);
+  pattern.sweep(0.0, -1.3, 6.0);
+  for (const double hand : {1.0, -1.0}) {
+    pattern.turn(hand * 0.3, 2.0 * kQuarter);
+    pattern.turn(hand * 0.8, 4.0 * kQuarter);
+  }
+  for (const double speed : {0.15, 0.35})
+    for (const double yaw_rate : {0.4, -0.4, 0.9, -0.9}) pattern.shuttle(speed, yaw_rate, 2.0);
+  for (const double speed : {0.12, -0.12, 0.2}) {  // one wheel stands still
+    pattern.shuttle(speed, speed / 0.2, 1.8);
+    pattern.shuttle(speed, -speed / 0.2, 1.8);
+  }
+  pattern.shuttle(0.25, 0.0, 2.8);
+  pattern.pass({0.0, 0.0, 1.0});
+  return pattern.take();
 }
 
 std::vector<Manoeuvre> lazy_pattern() {

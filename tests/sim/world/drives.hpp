@@ -21,7 +21,12 @@ using Drive = std::function<WheelCommand(double t, const Pose& odometry)>;
 /// v in m/s, yaw rate in rad/s, for a time in s.
 struct Manoeuvre {
   double speed = 0.0, yaw_rate = 0.0, duration = 0.0;
+  double from = 1.0,
+         to = 1.0;  ///< shares of both at the beginning and at the end, changing evenly in between
 };
+
+/// Way of the base, m, negative backward.
+double way_of(const Manoeuvre& move);
 
 WheelCommand wheel_command(const Geometry& nominal, double speed, double yaw_rate);
 double total_duration(const std::vector<Manoeuvre>& manoeuvres);
@@ -32,6 +37,9 @@ Drive follow(const Geometry& nominal, std::vector<Manoeuvre> manoeuvres);
 /// quadrants, turns on one wheel, with and without stops in between: some five minutes on about 2 m x 2 m.
 /// @param rest of a stop, s, braking included: with 0.4 fast wheels hardly come to stand still
 std::vector<Manoeuvre> guided_pattern(double rest = 0.4);
+/// The same kinds of motion as a careful engineer drives them: every speed up to the highest is passed slowly
+/// too, and no two stops or pushes in a row are alike. Some five minutes on about 2 m x 2 m.
+std::vector<Manoeuvre> varied_pattern();
 /// Forward only at one speed with a few wide turns: what an impatient user drives. Needs about 3 m about the
 /// start.
 std::vector<Manoeuvre> lazy_pattern();

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "tests/sim/world/rooms.hpp"
 
@@ -179,6 +180,22 @@ TEST(Simulate, guided_pattern_excites_both_signs_of_everything_in_about_five_min
   const double duration = total_duration(guided_pattern());
   EXPECT_GT(duration, 240.0);
   EXPECT_LT(duration, 360.0);
+}
+
+TEST(Simulate, varied_pattern_passes_all_speeds_slowly_and_comes_home) {
+  const std::vector<Manoeuvre> pattern = varied_pattern();
+  EXPECT_GT(total_duration(pattern), 270.0);
+  EXPECT_LE(total_duration(pattern), 300.0);
+  double way = 0.0, fastest_sweep = 0.0;
+  std::set<double> rests;
+  for (const Manoeuvre& move : pattern) {
+    way += way_of(move);
+    if (move.speed == 0.0 && move.yaw_rate == 0.0) rests.insert(move.duration);
+    if (move.from == 0.0 && move.duration > 2.0) fastest_sweep = std::max(fastest_sweep, move.speed);
+  }
+  EXPECT_NEAR(way, 0.0, 1e-9);
+  EXPECT_GE(fastest_sweep, 0.5);
+  EXPECT_GE(rests.size(), 5U);
 }
 
 TEST(Simulate, four_minutes_take_less_than_three_seconds) {
