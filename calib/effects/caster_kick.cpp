@@ -19,7 +19,7 @@ class CasterKick final : public StepEffect<CasterKick> {
     return {{"kappa", "rad", 0.01, -0.2, 0.2},
             {"kappa_turn", "rad", 0.01, -0.2, 0.2},
             {"kappa_side", "rad", 0.01, -0.2, 0.2},
-            {"length", "m", 1e9, 0.005, 1.0, length_, 0.0, true},
+            {"length", "m", 1e9, 0.005, 1.0, length_, 0.0, order_ == 0.0},
             {"order", "1", 1e9, 0.0, 2.0, order_, 0.0, true},
             {"lean", "rad", 1e9, -0.1, 0.1, lean_, 0.0, true}};
   }

@@ -7,8 +7,11 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kStanding =
-    0.005;  ///< m/s; below, the direction of travel is undefined and the last one is kept
+/// m/s; below, the direction of travel is undefined and the last one is kept ...
+constexpr double kStanding = 0.005;
+/// ... as below this share of the rims' speed in a turn: on the spot, wheels that are not quite alike and
+/// drives that do not quite keep their speed move the middle of the axle to and fro.
+constexpr double kOnTheSpot = 0.1;
 
 /// Of a time in which a quantity goes from one value to another.
 double share_below_one(double from, double to) {
@@ -48,7 +51,8 @@ double DriveHistory::Wheel::advance(double delta, double dither) {
 void DriveHistory::advance(StepContext& c) {
   const Pose step =
       wheel_arc(base_.left_radius * c.left_delta, base_.right_radius * c.right_delta, base_.track_width);
-  const double now = std::abs(c.speed) > kStanding ? std::copysign(1.0, c.speed) : direction_;
+  const double least = std::max(kStanding, kOnTheSpot * 0.5 * base_.track_width * std::abs(c.turn_rate));
+  const double now = std::abs(c.speed) > least ? std::copysign(1.0, c.speed) : direction_;
   if (direction_ != 0.0 && now != direction_) since_reversal_ = 0.0;
   direction_ = now;
   c.direction = direction_;
