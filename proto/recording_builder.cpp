@@ -211,7 +211,8 @@ Result<Recording> RecordingBuilder::finish(const std::string& where, const Robot
   if (need == RobotNeed::required)
     if (auto problem = check_robot(recording_.robot, where)) return *problem;
   sort_streams();
-  continue_counts(recording_.ticks, recording_.robot);
+  const ContinuedCounts counts = continue_counts(recording_.ticks, recording_.robot);
+  discard("ticks", "count read wrong once", counts.misread);
   for (const auto& [key, count] : discarded_) recording_.discarded.push_back({key.first, key.second, count});
   return std::move(recording_);
 }

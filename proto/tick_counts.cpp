@@ -130,6 +130,7 @@ std::optional<std::int64_t> difference(std::int64_t now, std::int64_t before) {
 struct Change {
   Counts counts{};
   bool continued = false;
+  bool misread = false;  ///< the count that it leads to
 };
 
 class Continuation {
@@ -199,6 +200,7 @@ class Continuation {
       const Change across = between(ticks[i - 1], ticks[i + 1], before.counts);
       if (!in_line(across, to + from, before, usual, 1.0)) continue;
       changes[i] = changes[i + 1] = across;
+      changes[i].misread = true;
       for (std::size_t side = 0; side < 2; ++side) {
         const auto whole = static_cast<double>(across.counts.at(side));
         changes[i].counts.at(side) = std::llround(whole * to / (to + from));
@@ -226,11 +228,13 @@ class Continuation {
 
 }  // namespace
 
-std::size_t continue_counts(std::vector<TickSample>& ticks, const RobotDescription& robot) {
+ContinuedCounts continue_counts(std::vector<TickSample>& ticks, const RobotDescription& robot) {
   const auto changes = Continuation(ticks, robot).changes(ticks);
+  ContinuedCounts found;
   std::int32_t segment = 0;
   Counts counts{};
   for (std::size_t i = 0; i < ticks.size(); ++i) {
+    if (changes[i].misread) ++found.misread;
     if (i == 0 || !changes[i].continued) {
       segment += i == 0 ? 0 : 1;
       counts = {ticks[i].left, ticks[i].right};
@@ -241,7 +245,8 @@ std::size_t continue_counts(std::vector<TickSample>& ticks, const RobotDescripti
     ticks[i].right = counts[1];
     ticks[i].segment = segment;
   }
-  return static_cast<std::size_t>(segment);
+  found.breaks = static_cast<std::size_t>(segment);
+  return found;
 }
 
 }  // namespace odomcalib

@@ -7,6 +7,11 @@
 
 namespace odomcalib {
 
+struct ContinuedCounts {
+  std::size_t breaks = 0;   ///< new segments
+  std::size_t misread = 0;  ///< samples that were taken for what lies between their neighbours
+};
+
 /// Unwraps counts of 16 and 32 bits, takes single samples that were read wrong for what lies between their
 /// neighbours, and starts a new segment wherever a count cannot be continued: after a
 /// reset, or after a step that no wheel can have made. Counts inside a segment differ by real motion only.
@@ -14,7 +19,6 @@ namespace odomcalib {
 /// never joined.
 /// @param robot nominal geometry: turns counts into speeds; zero fields: only wraps and resets to zero are
 /// recognised
-/// @return number of new segments
-std::size_t continue_counts(std::vector<TickSample>& ticks, const RobotDescription& robot);
+ContinuedCounts continue_counts(std::vector<TickSample>& ticks, const RobotDescription& robot);
 
 }  // namespace odomcalib

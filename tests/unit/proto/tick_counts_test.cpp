@@ -62,7 +62,7 @@ TYPED_TEST(Wrapping, counters_give_the_motion_of_counters_that_never_wrap) {
                        std::int64_t{1000} * round;
     const auto truth = drive(random, 1500, start, -start);
     auto ticks = wrapped<TypeParam>(truth);
-    EXPECT_EQ(continue_counts(ticks, test::example_robot()), 0U);
+    EXPECT_EQ(continue_counts(ticks, test::example_robot()).breaks, 0U);
     expect_same_motion(ticks, truth);
   }
 }
@@ -78,7 +78,7 @@ TEST(TickCounts, start_a_new_segment_when_they_are_reset_and_keep_the_motion_of_
       ticks[i].left -= before[50].left;
       ticks[i].right -= before[50].right;
     }
-    EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U) << start;
+    EXPECT_EQ(continue_counts(ticks, test::example_robot()).breaks, 1U) << start;
     EXPECT_EQ(ticks[49].segment, 0);
     EXPECT_EQ(ticks[50].segment, 1);
     EXPECT_EQ(ticks[50].left, 0);
@@ -91,7 +91,7 @@ TEST(TickCounts, start_a_new_segment_at_a_jump_that_no_wheel_can_make) {
   for (const std::int64_t jump : {3000, -3000, 70000, 1 << 20}) {
     auto ticks = drive(random, 100, 0, 0);
     for (std::size_t i = 60; i < ticks.size(); ++i) ticks[i].right += jump;
-    EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U) << jump;
+    EXPECT_EQ(continue_counts(ticks, test::example_robot()).breaks, 1U) << jump;
     EXPECT_EQ(ticks[60].segment, 1);
   }
 }
@@ -100,7 +100,7 @@ TEST(TickCounts, start_a_new_segment_at_a_single_step_out_of_line) {
   std::mt19937 random(7);
   auto ticks = drive(random, 100, 0, 0);
   for (std::size_t i = 60; i < ticks.size(); ++i) ticks[i].left += 500;  // 2.4 m/s more in one sample
-  EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U);
+  EXPECT_EQ(continue_counts(ticks, test::example_robot()).breaks, 1U);
 }
 
 TEST(TickCounts, are_not_broken_by_jittering_stamps_or_lost_samples) {
@@ -114,7 +114,7 @@ TEST(TickCounts, are_not_broken_by_jittering_stamps_or_lost_samples) {
     sample.t += jitter(random);
     if (random() % 10 != 0) ticks.push_back(sample);
   }
-  EXPECT_EQ(continue_counts(ticks, test::example_robot()), 0U);
+  EXPECT_EQ(continue_counts(ticks, test::example_robot()).breaks, 0U);
 }
 
 TEST(TickCounts, are_not_broken_by_a_bus_that_hands_over_several_at_a_time) {
@@ -125,7 +125,7 @@ TEST(TickCounts, are_not_broken_by_a_bus_that_hands_over_several_at_a_time) {
     for (std::size_t i = 0; i < ticks.size(); ++i)
       handed_over[i].t =
           ticks[std::min(i - i % batch + batch, ticks.size()) - 1].t + 1e-4 * static_cast<double>(i % batch);
-    EXPECT_EQ(continue_counts(handed_over, test::example_robot()), 0U) << batch << " at a time";
+    EXPECT_EQ(continue_counts(handed_over, test::example_robot()).breaks, 0U) << batch << " at a time";
     expect_same_motion(handed_over, ticks);
   }
 }
@@ -137,7 +137,9 @@ TEST(TickCounts, a_single_sample_that_was_read_wrong_moves_nobody) {
     auto ticks = drive_read_right;
     for (std::size_t i = 20; i < ticks.size(); i += 37) ticks[i].right += wrong;
     ticks[30].left = ticks[30].right = 0;
-    EXPECT_EQ(continue_counts(ticks, test::example_robot()), 0U) << wrong;
+    const auto found = continue_counts(ticks, test::example_robot());
+    EXPECT_EQ(found.breaks, 0U) << wrong;
+    EXPECT_EQ(found.misread, 12U) << wrong << ": eleven, and both counts once";
     for (std::size_t i = 20; i < ticks.size(); i += 37) {
       EXPECT_NEAR(static_cast<double>(ticks[i].right - drive_read_right[i].right), 0.0, 30.0);
       ticks[i] = drive_read_right[i];
@@ -156,10 +158,10 @@ TEST(TickCounts, are_not_broken_by_a_disc_of_few_slots_that_is_read_often) {
   for (int i = 0; i < 3000; ++i)
     ticks.push_back({0.01 * i, static_cast<std::int64_t>(std::floor(0.21 * i)), -(i / 11), 0});
   const auto drive = ticks;
-  EXPECT_EQ(continue_counts(ticks, robot), 0U);
+  EXPECT_EQ(continue_counts(ticks, robot).breaks, 0U);
   expect_same_motion(ticks, drive);
   for (std::size_t i = 1500; i < ticks.size(); ++i) ticks[i].left += 10;
-  EXPECT_EQ(continue_counts(ticks, robot), 1U);
+  EXPECT_EQ(continue_counts(ticks, robot).breaks, 1U);
 }
 
 TEST(TickCounts, are_not_broken_where_a_controller_is_asked_more_often_than_it_counts) {
@@ -171,13 +173,13 @@ TEST(TickCounts, are_not_broken_where_a_controller_is_asked_more_often_than_it_c
     for (int k = 0; k < 8; ++k)
       asked.push_back({sample.t + k * kInterval / 8, sample.left, sample.right, sample.segment});
   const auto drive_as_asked = asked;
-  EXPECT_EQ(continue_counts(asked, test::example_robot()), 0U);
+  EXPECT_EQ(continue_counts(asked, test::example_robot()).breaks, 0U);
   expect_same_motion(asked, drive_as_asked);
 }
 
 TEST(TickCounts, never_join_segments_that_the_source_has_told_apart) {
   std::vector<TickSample> ticks{{0, 0, 0, 3}, {0.1, 10, 10, 3}, {0.2, 20, 20, 7}, {0.3, 30, 30, 7}};
-  EXPECT_EQ(continue_counts(ticks, test::example_robot()), 1U);
+  EXPECT_EQ(continue_counts(ticks, test::example_robot()).breaks, 1U);
   EXPECT_EQ(ticks[1].segment, 0);
   EXPECT_EQ(ticks[2].segment, 1);
   EXPECT_EQ(ticks[3].left, 30);
@@ -195,10 +197,10 @@ TEST(TickCounts, survive_any_numbers) {
       ticks.push_back({i * 0.1, static_cast<std::int64_t>(random()) >> 10 >> (shift / 2),
                        static_cast<std::int64_t>(random()) >> 10, 0});
     const auto robot = round % 2 == 0 ? test::example_robot() : RobotDescription{};
-    EXPECT_LT(continue_counts(ticks, robot), ticks.size());
+    EXPECT_LT(continue_counts(ticks, robot).breaks, ticks.size());
   }
   std::vector<TickSample> none;
-  EXPECT_EQ(continue_counts(none, {}), 0U);
+  EXPECT_EQ(continue_counts(none, {}).breaks, 0U);
 }
 
 }  // namespace
