@@ -10,6 +10,7 @@
 #include "calib/report.hpp"
 #include "calib/report_data.hpp"
 #include "calib/tracing/outlier_trace.hpp"
+#include "calib/tracing/search_round.hpp"
 #include "calib/tracing/tracing_json.hpp"
 #include "calib/validation/held_out.hpp"
 
@@ -66,6 +67,7 @@ class Filler {
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
     const ReportData report = make_report_data(found_.session, found_.outcome, plain_);
     store_report_data(report, calibration_);
+    if (odometry_is_off(report.drive_errors)) tell_what_failed_its_proof();
     const GateResult gate = judge(calibration_, footing(report.drive_errors));
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;
@@ -150,6 +152,9 @@ class Filler {
 
   void fill_effects() {
     calibration_.effects = effect_results(found_.lidar);
+    if (found_.was_searched)
+      for (EffectResult& effect : effects_of(found_.stamps))
+        calibration_.effects.push_back(std::move(effect));
     Eigen::Index index = kBaseCount;
     for (const auto& effect : effects()) {
       const auto curve = std::find_if(found_.outcome.curves.begin(), found_.outcome.curves.end(),
@@ -226,6 +231,21 @@ class Filler {
     if (!found_.was_searched || calibration_.unexplained || outliers_->depends_on.empty()) return;
     calibration_.unexplained = Unexplained{{}, outliers_->p_value, 0.0};
     for (const Variable variable : outliers_->depends_on)
+      calibration_.unexplained->depends_on.push_back(to_string(variable));
+  }
+
+  /// Where odometry is plainly off and nothing is told of it, what goes with it is, although no law of it
+  /// foretells anything: it is not compensated.
+  void tell_what_failed_its_proof() {
+    if (!found_.was_searched || calibration_.unexplained || !calibration_.effects.empty()) return;
+    const Considered* best = nullptr;
+    for (const Considered& one : found_.outcome.considered)
+      if (!one.depends_on.empty() && one.family_p_value <= kNamedLevel &&
+          (best == nullptr || one.statistic > best->statistic))
+        best = &one;
+    if (best == nullptr) return;
+    calibration_.unexplained = Unexplained{{}, best->family_p_value, 0.0};
+    for (const Variable variable : best->depends_on)
       calibration_.unexplained->depends_on.push_back(to_string(variable));
   }
 

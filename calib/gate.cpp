@@ -1,5 +1,6 @@
 #include "calib/gate.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iomanip>
@@ -52,6 +53,11 @@ std::optional<double> relative_deviation(const QuantityList& quantities, const s
   for (const auto& [own, quantity] : quantities)
     if (own == name) return quantity.std / quantity.value;
   return std::nullopt;
+}
+
+bool is_off(const DriveError& error) {
+  return error.name == "open_loop_10s_position" && error.after && error.noise_floor &&
+         error.after->value > kWarnResidual * *error.noise_floor && error.after->low > *error.noise_floor;
 }
 
 class Judgement {
@@ -112,8 +118,7 @@ class Judgement {
   /// What loses counts or slips now and then leaves most pairs clean, and adds up on the way.
   void check_drives(const std::vector<DriveError>& errors) {
     for (const DriveError& error : errors)
-      if (error.name == "open_loop_10s_position" && error.after && error.noise_floor &&
-          error.after->value > kWarnResidual * *error.noise_floor && error.after->low > *error.noise_floor)
+      if (is_off(error))
         warn("odometry over ten seconds is off by " + times(error.after->value / *error.noise_floor) +
              " the noise floor: something moves the robot that the counts do not show; look for counts that "
              "get lost, slip, and what touches the robot");
@@ -139,6 +144,10 @@ class Judgement {
 };
 
 }  // namespace
+
+bool odometry_is_off(const std::vector<DriveError>& errors) {
+  return std::any_of(errors.begin(), errors.end(), is_off);
+}
 
 GateResult judge(const Calibration& calibration, const Footing& footing) {
   Judgement judgement;

@@ -27,6 +27,9 @@ struct Footing {
   std::vector<DriveError> drive_errors = {};
 };
 
+/// Odometry over ten seconds errs by plainly more than the reference and the wheels' noise make of it.
+bool odometry_is_off(const std::vector<DriveError>& errors);
+
 /// Refuses implausible or badly determined values, or those of the few scans that happened to match, and says
 /// what is missing; warns of what a user should know.
 GateResult judge(const Calibration& calibration, const Footing& footing);

@@ -1,6 +1,7 @@
 #include "calib/solve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -10,6 +11,7 @@
 #include "calib/effects/catalogue.hpp"
 #include "calib/estimators/path_fit.hpp"
 #include "calib/findings.hpp"
+#include "calib/reference/placed_poses.hpp"
 #include "calib/report.hpp"
 #include "calib/session/lidar_evidence.hpp"
 #include "calib/session/location.hpp"
@@ -44,6 +46,7 @@ class Solver {
     if (auto error = choose_effects()) return refuse(*error);
     if (auto error = start()) return refuse(*error);
     auto fit = settle();
+    if (fit) fit = seat_reference(std::move(fit));
     if (fit) fit = even_out_scans(std::move(fit));
     if (fit) fit = let_scans_sweep(std::move(fit));
     if (fit) fit = correct_lidar(std::move(fit));
@@ -87,7 +90,9 @@ class Solver {
   std::optional<Error> open(std::span<const Recording> recordings) {
     auto session = Session::open(recordings);
     if (!session) return session.error();
+    const bool sits_anywhere = session_ && session_->reference_sits_anywhere();
     session_ = std::make_unique<Session>(std::move(session).value());
+    session_->let_reference_sit_anywhere(sits_anywhere);
     return std::nullopt;
   }
 
@@ -134,10 +139,13 @@ class Solver {
       take_stamps_for_middles(sweeping);
       better = measure_anew(sweeping);
     }
-    if (better && is_clearly_better(before.held_out, held_out_now(better.value()))) {
+    const auto after = better ? held_out_now(better.value()) : std::nullopt;
+    if (better && is_clearly_better(before.held_out, after)) {
       evened_ = std::move(sweeping);
       recordings_ = evened_;
       stamps_.sweep = *evened_.front().scans.front().time_increment;
+      stamps_.turn = turn_of_head(evened_.front());
+      stamps_.sweep_p_value = p_value_of(*before.held_out, *after);
       return better;
     }
     go_back_to(before);
@@ -171,6 +179,14 @@ class Solver {
     double ratio = 1.0;
     for (std::size_t k = 0; k < before->bounded.size(); ++k) ratio *= after->bounded[k] / before->bounded[k];
     return ratio < kClearly;
+  }
+
+  /// By the likelihood ratio of what is left on data that were not fitted.
+  static double p_value_of(const HeldOut& before, const HeldOut& after) {
+    double ratio = 0.0;
+    for (std::size_t k = 0; k < before.bounded.size(); ++k)
+      ratio += 2.0 * static_cast<double>(after.pairs) * std::log(before.bounded[k] / after.bounded[k]);
+    return std::erfc(std::sqrt(std::max(0.5 * ratio, 0.0)));
   }
 
   std::optional<Error> choose_effects() {
@@ -244,6 +260,29 @@ class Solver {
     }
     if (fit) parameters_ = fit.value().parameters;
     return fit;
+  }
+
+  /// Poses of the base may be those of a marker beside the middle of the axle, which in turns looks like a
+  /// base that moves sideways.
+  Result<FitResult> seat_reference(Result<FitResult> fit) {
+    if (!session_->reference_is_base()) return fit;
+    const State before = state(fit.value(), lidar_.size());
+    session_->let_reference_sit_anywhere(true);
+    auto better = settle();
+    if (better && sits_elsewhere(better.value())) return better;
+    session_->let_reference_sit_anywhere(false);
+    go_back_to(before);
+    return settle();
+  }
+
+  /// Plainly, and by more than anybody measures with a tape.
+  static bool sits_elsewhere(const FitResult& fit) {
+    constexpr std::array<std::pair<BaseIndex, double>, 3> kNegligible = {
+        {{kMountX, 5e-4}, {kMountY, 5e-4}, {kMountYaw, 2e-3}}};  // m, m, rad
+    return std::any_of(kNegligible.begin(), kNegligible.end(), [&](const auto& one) {
+      const double value = std::abs(fit.parameters(one.first));
+      return value > one.second && value > kSignificance * std::sqrt(fit.covariance(one.first, one.first));
+    });
   }
 
   void measure() {
@@ -464,7 +503,7 @@ class Solver {
   void place_every_scan(bool trace_ranges) {
     paths_.clear();
     placed_with_ = parameters_;
-    if (!session_->reference_is_scans()) return;
+    if (!session_->reference_is_scans() && !session_->reference_is_base()) return;
     paths_.resize(recordings_.size());
     place_again(0.0, trace_ranges);
   }
@@ -473,11 +512,22 @@ class Solver {
   void place_again(double done, bool trace_ranges = false) {
     if (!paths_.empty()) report("placing every scan", done);
     for (std::size_t i = 0; i < paths_.size(); ++i) {
-      const PathOptions options{session_->pair_sets()[i].range_noise, trace_ranges};
-      paths_[i] = place_scans(session_->recordings()[i], *session_->data()[i].model, as_span(parameters_),
-                              effects_, options, paths_[i]);
+      paths_[i] = path_of(i, trace_ranges);
       if (!paths_[i].is_usable()) return paths_.clear();
     }
+  }
+
+  [[nodiscard]] ScanPath path_of(std::size_t recording, bool trace_ranges) const {
+    const Recording& given = session_->recordings()[recording];
+    const DriveModel& model = *session_->data()[recording].model;
+    if (session_->reference_is_base()) {
+      const Trajectory trajectory = model.trajectory(as_span(parameters_), effects_);
+      ScanPath path;
+      path.scans = placed_poses(given.poses, path_of_wheels(trajectory));
+      return path;
+    }
+    const PathOptions options{session_->pair_sets()[recording].range_noise, trace_ranges};
+    return place_scans(given, model, as_span(parameters_), effects_, options, paths_[recording]);
   }
 
   /// The same parameters from every scan instead of keyframes.

@@ -118,7 +118,7 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
   const bool both_ways = goes_both_ways(models);
   for (int v = 0; v <= static_cast<int>(kLastVariable); ++v) {
     const auto variable = static_cast<Variable>(v);
-    if (models.size() > 1 && begins_with_the_recording(variable)) continue;
+    if (models.size() > 1 && (begins_with_the_recording(variable) || is_memory(variable))) continue;
     const auto [low, high] = range_of(variable, models);
     if (!(high - low > 1e-6)) continue;
     for (const Carrier carrier : carriers_of(variable)) {

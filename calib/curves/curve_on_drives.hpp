@@ -16,6 +16,9 @@ std::pair<double, double> range_of(Variable variable, std::span<const DriveModel
 /// What an unsigned way adds to a signed one, a drive that goes only one way cannot tell from the wheels.
 bool goes_both_ways(std::span<const DriveModel* const> models);
 
+/// What is left of a wheel's or the track's law about its mean is a law of the same kind; a constant that
+/// pushes the same way whichever way the wheel turns is none.
+bool may_be_centred(const Curve& curve);
 /// The same curve about its mean over these drives.
 Curve centred(Curve curve, std::span<const DriveModel* const> models);
 

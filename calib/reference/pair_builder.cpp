@@ -5,13 +5,13 @@
 #include <optional>
 
 #include "calib/matching/both_ways.hpp"
+#include "calib/reference/placed_poses.hpp"
 #include "calib/reference/scan_surfaces.hpp"
+#include "calib/statistics/median.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
-constexpr double kPoseNoise = 5e-4;      ///< m, motion capture or localiser; scaled by the fit
-constexpr double kPoseYawNoise = 1e-3;   ///< rad
 constexpr double kTupleNoise = 1e-3;     ///< m, a scan match whose covariance is not recorded
 constexpr double kTupleYawNoise = 2e-3;  ///< rad
 
@@ -53,34 +53,30 @@ PairSet pairs_from_increments(const Recording& recording) {
   return set;
 }
 
-PairSet pairs_from_poses(const Recording& recording, const DriveModel& model,
-                         std::span<const double> parameters, const EffectList& effects,
-                         const PairOptions& options) {
-  PairSet set;
-  std::vector<double> times;
-  for (const PoseSample& pose : recording.poses) times.push_back(pose.t);
-  const auto keyframes =
-      choose_keyframes(times, poses_at(model.trajectory(parameters, effects), times), options);
-  bool linked = false;
-  for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) {
-    const PoseSample& a = recording.poses[keyframes[k]];
-    const PoseSample& b = recording.poses[keyframes[k + 1]];
-    const bool interrupted = has_gap(times, keyframes[k], keyframes[k + 1]);
-    if (interrupted || !model.track().covers(a.t, b.t)) {
-      ++set.rejected[interrupted ? "reference interrupted" : "no ticks"];
-      linked = false;
-      continue;
-    }
-    SensorPair pair;
-    pair.interval = {a.t, b.t};
-    pair.motion = between(Pose{a.x, a.y, a.yaw}, Pose{b.x, b.y, b.yaw});
-    pair.motion.yaw = wrap_angle(pair.motion.yaw);
-    pair.covariance = diagonal_covariance(kPoseNoise, kPoseYawNoise);
-    pair.follows_previous = linked;
-    linked = true;
-    set.pairs.push_back(pair);
+/// s to either side of a keyframe in which poses stand for it: enough of them to average their noise away,
+/// over no more time than wheels carry them well.
+double reach_of_keyframes(const std::vector<PlacedScan>& places) {
+  constexpr double kGood = 5e-4;  // m, of a mean; scan matching is no better
+  if (places.size() < 2) return 0.0;
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < places.size(); ++k) steps.push_back(places[k].time - places[k - 1].time);
+  const double wanted = places.front().covariance(0, 0) / (kGood * kGood);
+  return std::min(0.5 * wanted * median_of(std::move(steps)), kMeanReach);
+}
+
+/// Means of the poses about each keyframe; none stands for two of them.
+std::vector<PlacedScan> places_of_keyframes(const std::vector<PlacedScan>& places,
+                                            const std::vector<std::size_t>& keyframes, double reach,
+                                            const PathOfWheels& wheels) {
+  std::vector<PlacedScan> means;
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    const double time = places[keyframes[k]].time;
+    double own = reach;
+    if (k > 0) own = std::min(own, 0.5 * (time - places[keyframes[k - 1]].time));
+    if (k + 1 < keyframes.size()) own = std::min(own, 0.5 * (places[keyframes[k + 1]].time - time));
+    means.push_back(mean_place(places, time, wheels, own).value_or(places[keyframes[k]]));
   }
-  return set;
+  return means;
 }
 
 /// Matches keyframe scans one after the other; every scan's surface is made once.
@@ -132,11 +128,38 @@ class ScanChain {
 
 }  // namespace
 
+PairSet pairs_of_poses(const Recording& recording, const DriveModel& model,
+                       std::span<const double> parameters, const EffectList& effects,
+                       const PairOptions& options) {
+  PairSet set;
+  const Trajectory trajectory = model.trajectory(parameters, effects);
+  const PathOfWheels wheels = path_of_wheels(trajectory);
+  const std::vector<PlacedScan> places = placed_poses(recording.poses, wheels);
+  std::vector<double> times;
+  for (const PlacedScan& place : places) times.push_back(place.time);
+  const auto keyframes = choose_keyframes(times, poses_at(trajectory, times), options);
+  const auto means = places_of_keyframes(places, keyframes, reach_of_keyframes(places), wheels);
+  bool linked = false;
+  for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) {
+    const Interval interval{times[keyframes[k]], times[keyframes[k + 1]]};
+    const bool interrupted = has_gap(times, keyframes[k], keyframes[k + 1]);
+    if (interrupted || !model.track().covers(interval.begin, interval.end)) {
+      ++set.rejected[interrupted ? "reference interrupted" : "no ticks"];
+      linked = false;
+      continue;
+    }
+    const auto [motion, covariance] = motion_between(means[k], means[k + 1]);
+    set.pairs.push_back({interval, motion, covariance, linked});
+    linked = true;
+  }
+  return set;
+}
+
 PairSet build_pairs(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
                     const EffectList& effects, const PairOptions& options) {
   if (!recording.increments.empty()) return pairs_from_increments(recording);
   if (!recording.poses.empty())
-    return pairs_from_poses(recording, model, parameters, effects, pose_pair_options());
+    return pairs_of_poses(recording, model, parameters, effects, pose_pair_options());
   PairSet set;
   set.range_noise = estimate_range_noise(recording.scans);
   const ScanSurfaces scans(recording, model, parameters, effects, set.range_noise);

@@ -67,7 +67,8 @@ bool Session::reference_is_scans() const {
 
 std::vector<bool> Session::fixed(std::size_t effect_parameters) const {
   std::vector<bool> fixed(kBaseCount + effect_parameters, false);
-  for (const auto k : {kMountX, kMountY, kMountYaw}) fixed[k] = reference_is_base_;
+  for (const auto k : {kMountX, kMountY, kMountYaw})
+    fixed[k] = reference_is_base_ && !reference_sits_anywhere_;
   return fixed;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <deque>
 #include <span>
 #include <string>
@@ -27,6 +28,10 @@ class Session {
   [[nodiscard]] bool reference_is_base() const { return reference_is_base_; }
   /// True when scans are the reference.
   [[nodiscard]] bool reference_is_scans() const;
+  /// The poses of the reference are those of a marker beside the middle of the axle, or look elsewhere: where
+  /// it sits is to be fitted, as for a lidar.
+  void let_reference_sit_anywhere(bool anywhere) { reference_sits_anywhere_ = anywhere; }
+  [[nodiscard]] bool reference_sits_anywhere() const { return reference_sits_anywhere_; }
   /// Which of the base parameters stay at their nominal value.
   [[nodiscard]] std::vector<bool> fixed(std::size_t effect_parameters) const;
 
@@ -55,6 +60,7 @@ class Session {
   std::span<const Recording> recordings_;
   BaseParameters nominal_;
   bool reference_is_base_ = false;
+  bool reference_sits_anywhere_ = false;
   std::deque<DriveModel> models_;  ///< addresses stay valid: FitData points here
   std::vector<FitData> data_;
   std::vector<PairSet> sets_;

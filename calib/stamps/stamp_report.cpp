@@ -3,6 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "calib/effects/factories.hpp"
+#include "calib/geometry/se2.hpp"
+
 namespace odomcalib::calib {
 
 std::string to_json(const StampReport& report) {
@@ -27,6 +30,15 @@ std::vector<std::string> remarks_on(const StampReport& report) {
         "scans do not say when their beams were sent; a head that turns once from scan to scan explains the "
         "motion better, and was assumed: record time_increment");
   return remarks;
+}
+
+std::vector<EffectResult> effects_of(const StampReport& report) {
+  if (report.turn == 0.0) return {};
+  EffectResult skew;
+  skew.name = make_scan_skew()->name();
+  skew.parameters = {{"c", {report.turn / (2.0 * kPi), -1.0, "s"}}};
+  skew.evidence.p_value = report.sweep_p_value;
+  return {skew};
 }
 
 }  // namespace odomcalib::calib

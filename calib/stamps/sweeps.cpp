@@ -37,6 +37,14 @@ std::vector<Recording> with_sweeps(std::span<const Recording> recordings) {
   return sweeping;
 }
 
+double turn_of_head(const Recording& sweeping) {
+  const Scan& scan = sweeping.scans.front();
+  const double step = angle_between_beams(scan);
+  if (!(step > 0.0) || scan.ranges.size() < 2) return 0.0;
+  const double turn = scan.time_increment.value_or(0.0) * 2.0 * kPi / step;
+  return std::copysign(turn, scan.angle(1) - scan.angle(0));
+}
+
 void take_stamps_for_middles(std::vector<Recording>& recordings) {
   for (Recording& recording : recordings)
     for (Scan& scan : recording.scans) scan.t -= reference_time(scan);

@@ -13,6 +13,9 @@ namespace odomcalib::calib {
 /// scans, or those of several sensors.
 std::vector<Recording> with_sweeps(std::span<const Recording> recordings);
 
+/// Of the head, s, by scans that sweep; negative where it turns clockwise.
+double turn_of_head(const Recording& sweeping);
+
 /// A stamp is that of the first beam. Where there is a delay anyway, let it be the delay of the sweep's
 /// middle, as it would be of scans taken for instants.
 void take_stamps_for_middles(std::vector<Recording>& recordings);

@@ -146,7 +146,7 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
   };
   for (const Curve& shape : shapes) {
     auto fitted = fitted_in_shape(task, model, shape, noise);
-    if (!fitted && shape.mean.empty())
+    if (!fitted && shape.mean.empty() && may_be_centred(shape))
       fitted = fitted_in_shape(task, model, centred(shape, task.models()), noise);
     if (fitted && (!best || misfit(fitted->model) < misfit(best->model))) best = std::move(fitted);
   }

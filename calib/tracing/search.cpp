@@ -197,8 +197,13 @@ class Search {
 
   void consider(const Trial& trial, const std::string& outcome) {
     const Score& score = round_->score(trial.candidate);
-    result_.considered.push_back(
-        {candidates_[trial.candidate].effect->name(), score.statistic, score.family_p_value, outcome});
+    const Candidate& candidate = candidates_[trial.candidate];
+    Considered one{candidate.effect->name(), score.statistic, score.family_p_value, outcome};
+    if (candidate.curve) {
+      one.depends_on = variables_like(candidates_, round_->table(), trial.candidate);
+      one.depends_on.insert(one.depends_on.begin(), candidate.curve->law.variable);
+    }
+    result_.considered.push_back(std::move(one));
   }
 
   /// With what was added later a quiet effect may have become one that matters.
@@ -313,7 +318,8 @@ class Search {
     auto trial = round_->refit(index);
     if (trial && is_held_back(*candidates_[index].effect, trial->model.fit))
       trial = refit_as(index, strong(*candidates_[index].curve));
-    if (trial && curve_spoils_base(*candidates_[index].effect, basis().fit, trial->model.fit))
+    if (trial && may_be_centred(*candidates_[index].curve) &&
+        curve_spoils_base(*candidates_[index].effect, basis().fit, trial->model.fit))
       trial = refit_as(index, centred(*candidates_[index].curve, task_.models()));
     const auto law_of = result_.owner_of(candidates_[index].curve->law);
     const std::vector<Variable> alike = variables_like(candidates_, round_->table(), index);

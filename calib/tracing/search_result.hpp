@@ -36,6 +36,7 @@ struct Considered {
   double statistic = 0.0;
   double family_p_value = 1.0;
   std::string outcome;
+  std::vector<Variable> depends_on = {};  ///< of a curve: its variable, and those that would do as well
 };
 
 struct SearchResult {

@@ -232,7 +232,7 @@ INSTANTIATE_TEST_SUITE_P(
         Edit{"tick_stamps_jitter", [](Recording& r) { jitter(r.ticks, 3e-3); }, ""},
         Edit{"scan_stamps_jitter", [](Recording& r) { jitter(r.scans, 4e-3); }, ""},
         Edit{"ticks_in_bursts", burst, "time_offset"},
-        Edit{"beams_without_times", forget_beam_times, "", "time_increment"}),
+        Edit{"beams_without_times", forget_beam_times, "scan_skew", "time_increment"}),
     [](const auto& edited) { return edited.param.name; });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Places of scans in a map, and what the wheels may say about them.
+// Places of scans in a map and of poses, and what the wheels may say about them.
 #include "calib/reference/placed_scan.hpp"
 
 #include <gtest/gtest.h>
@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "calib/reference/placed_poses.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -92,6 +94,46 @@ TEST(MotionBetween, is_that_of_the_sensor_in_its_own_frame) {
   const Pose end = compose(all[10].pose, motion.motion);
   EXPECT_LT(distance(end, all[50].pose), 1e-12);
   EXPECT_NEAR(end.yaw, all[50].pose.yaw, 1e-12);
+}
+
+/// As a tracker gives them: every 20 ms, headings between -pi and pi.
+std::vector<PoseSample> poses(double noise) {
+  std::mt19937 engine(kSeed);
+  std::normal_distribution<double> gauss(0.0, noise);
+  std::vector<PoseSample> all;
+  for (double t = 0.0; t < 12.0; t += 0.02) {
+    const Pose pose = truth(t);
+    all.push_back({t, pose.x + gauss(engine), pose.y + gauss(engine), wrap_angle(pose.yaw + gauss(engine))});
+  }
+  return all;
+}
+
+TEST(PlacedPoses, average_their_noise_along_the_path_of_the_wheels) {
+  auto places = placed_poses(poses(kNoise), worn);
+  places.pop_back();  // what was left over
+  ASSERT_NEAR(static_cast<double>(places.size()), 110.0, 12.0) << "five or six poses each";
+  double squares = 0.0;
+  for (const PlacedScan& place : places) {
+    squares += std::pow(place.pose.x - truth(place.time).x, 2);
+    EXPECT_NEAR(std::sqrt(place.covariance(0, 0)), kNoise / std::sqrt(5.0), 0.15e-3) << "seed " << kSeed;
+    EXPECT_NEAR(std::sqrt(place.covariance(2, 2)), kNoise / std::sqrt(5.0), 0.15e-3) << "seed " << kSeed;
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(places.size())), 1.2 * kNoise / std::sqrt(5.0));
+}
+
+TEST(PlacedPoses, go_on_beyond_half_a_turn) {
+  const auto places = placed_poses(poses(1e-4), truth);
+  ASSERT_GT(truth(11.9).yaw, 2.0 * kPi);
+  EXPECT_NEAR(places.back().pose.yaw, truth(places.back().time).yaw, 1e-3);
+}
+
+TEST(PlacedPoses, a_gap_is_no_noise_and_few_are_none) {
+  std::vector<PoseSample> interrupted = poses(kNoise);
+  interrupted.erase(interrupted.begin() + 200, interrupted.begin() + 400);
+  EXPECT_NEAR(std::sqrt(placed_poses(interrupted, truth).front().covariance(0, 0)), kNoise / std::sqrt(5.0),
+              0.3e-3);
+  EXPECT_TRUE(placed_poses({}, truth).empty());
+  EXPECT_EQ(placed_poses(std::vector{interrupted[0], interrupted[1]}, truth).size(), 1U);
 }
 
 }  // namespace

@@ -1,0 +1,80 @@
+#include "calib/reference/placed_poses.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/geometry/vector2.hpp"
+#include "calib/reference/scan_surfaces.hpp"
+#include "calib/statistics/median.hpp"
+
+namespace odomcalib::calib {
+namespace {
+
+constexpr double kSpan = 0.1;           // s, over which wheels err by less than a pose does
+constexpr double kLeastNoise = 1e-4;    // m and rad: nothing is measured better
+constexpr double kUnknownNoise = 1e-3;  // m and rad
+
+Pose pose_of(const PoseSample& sample) { return {sample.x, sample.y, wrap_angle(sample.yaw)}; }
+
+/// What each motion from one pose to the next has beyond that of the wheels; the step before a gap is left
+/// out.
+std::vector<Eigen::Vector3d> steps_beyond_wheels(std::span<const PoseSample> poses,
+                                                 const PathOfWheels& wheels) {
+  std::vector<Eigen::Vector3d> steps;
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    if (poses[k].t - poses[k - 1].t > kMaxGap) continue;
+    steps.push_back(difference(between(pose_of(poses[k - 1]), pose_of(poses[k])),
+                               between(wheels(poses[k - 1].t), wheels(poses[k].t))));
+  }
+  return steps;
+}
+
+/// Of a single pose, x, y, yaw. Of three poses the middle one shows the noise, whatever scale the wheels
+/// have: the second difference has six times the variance of one.
+Eigen::Vector3d noise_of(std::span<const PoseSample> poses, const PathOfWheels& wheels) {
+  const std::vector<Eigen::Vector3d> steps = steps_beyond_wheels(poses, wheels);
+  if (steps.size() < 3) return Eigen::Vector3d::Constant(kUnknownNoise);
+  Eigen::Vector3d noise;
+  for (Eigen::Index i = 0; i < noise.size(); ++i) {
+    std::vector<double> sizes;
+    for (std::size_t k = 1; k < steps.size(); ++k) sizes.push_back(std::abs(steps[k](i) - steps[k - 1](i)));
+    noise(i) = std::max(kMadToSigma * median_of(std::move(sizes)) / std::sqrt(6.0), kLeastNoise);
+  }
+  const double position = std::sqrt(0.5 * (noise(0) * noise(0) + noise(1) * noise(1)));
+  return {position, position, noise(2)};
+}
+
+PlacedScan mean_of(std::span<const PoseSample> poses, const PathOfWheels& wheels,
+                   const Eigen::Vector3d& noise) {
+  const auto count = static_cast<double>(poses.size());
+  double time = 0.0;
+  for (const PoseSample& sample : poses) time += sample.t / count;
+  PlacedScan mean{time, {0.0, 0.0, poses.front().yaw}, noise.cwiseAbs2().asDiagonal()};
+  mean.covariance /= count;
+  for (const PoseSample& sample : poses) {
+    const Pose one = compose(pose_of(sample), between(wheels(sample.t), wheels(time)));
+    mean.pose.x += one.x / count;
+    mean.pose.y += one.y / count;
+    mean.pose.yaw += wrap_angle(one.yaw - poses.front().yaw) / count;
+  }
+  return mean;
+}
+
+}  // namespace
+
+std::vector<PlacedScan> placed_poses(std::span<const PoseSample> poses, const PathOfWheels& wheels) {
+  const Eigen::Vector3d noise = noise_of(poses, wheels);
+  std::vector<PlacedScan> places;
+  for (std::size_t first = 0; first < poses.size();) {
+    std::size_t end = first + 1;
+    while (end < poses.size() && poses[end].t - poses[first].t < kSpan) ++end;
+    PlacedScan place = mean_of(poses.subspan(first, end - first), wheels, noise);
+    if (!places.empty())
+      place.pose.yaw = places.back().pose.yaw + wrap_angle(place.pose.yaw - places.back().pose.yaw);
+    places.push_back(place);
+    first = end;
+  }
+  return places;
+}
+
+}  // namespace odomcalib::calib
