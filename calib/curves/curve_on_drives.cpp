@@ -82,9 +82,7 @@ bool goes_both_ways(std::span<const DriveModel* const> models) {
   return std::min(ahead, back) > kLeast * (ahead + back);
 }
 
-bool may_be_centred(const Curve& curve) {
-  return signed_counterpart(curve.law.carrier) == curve.law.carrier;
-}
+bool may_be_centred(const Curve& curve) { return signed_counterpart(curve.law.carrier) == curve.law.carrier; }
 
 Curve centred(Curve curve, std::span<const DriveModel* const> models) {
   std::vector<double> sum(basis_size(curve), 0.0);
