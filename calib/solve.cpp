@@ -275,14 +275,22 @@ class Solver {
     return settle();
   }
 
-  /// Plainly, and by more than anybody measures with a tape.
+  /// Plainly, by more than anybody measures with a tape, and where the motion determines it.
   static bool sits_elsewhere(const FitResult& fit) {
-    constexpr std::array<std::pair<BaseIndex, double>, 3> kNegligible = {
-        {{kMountX, 5e-4}, {kMountY, 5e-4}, {kMountYaw, 2e-3}}};  // m, m, rad
-    return std::any_of(kNegligible.begin(), kNegligible.end(), [&](const auto& one) {
-      const double value = std::abs(fit.parameters(one.first));
-      return value > one.second && value > kSignificance * std::sqrt(fit.covariance(one.first, one.first));
-    });
+    struct Limits {
+      BaseIndex index;
+      double negligible, known;  // m or rad; largest deviation
+    };
+    constexpr std::array<Limits, 3> kLimits = {
+        {{kMountX, 5e-4, 5e-3}, {kMountY, 5e-4, 5e-3}, {kMountYaw, 2e-3, 2e-2}}};
+    const auto deviation = [&](const Limits& of) { return std::sqrt(fit.covariance(of.index, of.index)); };
+    const auto is_known = [&](const Limits& of) { return deviation(of) < of.known; };
+    const auto is_plain = [&](const Limits& of) {
+      const double value = std::abs(fit.parameters(of.index));
+      return value > of.negligible && value > kSignificance * deviation(of);
+    };
+    return std::all_of(kLimits.begin(), kLimits.end(), is_known) &&
+           std::any_of(kLimits.begin(), kLimits.end(), is_plain);
   }
 
   void measure() {

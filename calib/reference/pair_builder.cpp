@@ -136,6 +136,7 @@ PairSet pairs_of_poses(const Recording& recording, const DriveModel& model,
   const PathOfWheels wheels = path_of_wheels(trajectory);
   const std::vector<PlacedScan> places = placed_poses(recording.poses, wheels);
   std::vector<double> times;
+  times.reserve(places.size());
   for (const PlacedScan& place : places) times.push_back(place.time);
   const auto keyframes = choose_keyframes(times, poses_at(trajectory, times), options);
   const auto means = places_of_keyframes(places, keyframes, reach_of_keyframes(places), wheels);

@@ -1,6 +1,7 @@
 // odomcalib-sim-blind: a campaign of recordings with unknown effects, and the sealed answers.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 
@@ -20,7 +21,7 @@ bool write_answers(const fs::path& path, const std::string& text) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{
       "Draws robots, rooms, drives and effects; writes recordings, and the answers into a file of their own"};
   std::uint64_t seed = 1;
@@ -54,4 +55,7 @@ int main(int argc, char** argv) {
   std::printf("%u recordings in %s\nseal of answers.json (SHA-256): %s\n", count, folder.c_str(),
               odomcalib::sha256_hex(text).c_str());
   return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "odomcalib-sim-blind: %s\n", error.what());
+  return 1;
 }
