@@ -42,7 +42,7 @@ double turn_of_head(const Recording& sweeping) {
   const double step = angle_between_beams(scan);
   if (!(step > 0.0) || scan.ranges.size() < 2) return 0.0;
   const double turn = scan.time_increment.value_or(0.0) * 2.0 * kPi / step;
-  return std::copysign(turn, scan.angle(1) - scan.angle(0));
+  return std::copysign(turn, wrap_angle(scan.angle(1) - scan.angle(0)));
 }
 
 void take_stamps_for_middles(std::vector<Recording>& recordings) {
