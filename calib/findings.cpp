@@ -229,9 +229,7 @@ class Filler {
     outliers_->cause = cause_of_outliers(found_.session.data(), effects(), found_.outcome.model.fit);
     calibration_.extensions["outliers"] = to_json(*outliers_);
     if (!found_.was_searched || calibration_.unexplained || outliers_->depends_on.empty()) return;
-    calibration_.unexplained = Unexplained{{}, outliers_->p_value, 0.0};
-    for (const Variable variable : outliers_->depends_on)
-      calibration_.unexplained->depends_on.push_back(to_string(variable));
+    flag(outliers_->depends_on, outliers_->p_value);
   }
 
   /// Where odometry is plainly off and nothing is told of it, what goes with it is, although no law of it
@@ -243,9 +241,13 @@ class Filler {
       if (!one.depends_on.empty() && one.family_p_value <= kNamedLevel &&
           (best == nullptr || one.statistic > best->statistic))
         best = &one;
-    if (best == nullptr) return;
-    calibration_.unexplained = Unexplained{{}, best->family_p_value, 0.0};
-    for (const Variable variable : best->depends_on)
+    if (best != nullptr) flag(best->depends_on, best->family_p_value);
+  }
+
+  /// What goes with variables, but is no part of the model.
+  void flag(const std::vector<Variable>& variables, double p_value) {
+    calibration_.unexplained = Unexplained{{}, p_value, 0.0};
+    for (const Variable variable : variables)
       calibration_.unexplained->depends_on.push_back(to_string(variable));
   }
 

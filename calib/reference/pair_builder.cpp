@@ -79,6 +79,33 @@ std::vector<PlacedScan> places_of_keyframes(const std::vector<PlacedScan>& place
   return means;
 }
 
+PairSet pairs_from_poses(const Recording& recording, const DriveModel& model,
+                         std::span<const double> parameters, const EffectList& effects) {
+  PairSet set;
+  const Trajectory trajectory = model.trajectory(parameters, effects);
+  const PathOfWheels wheels = path_of_wheels(trajectory);
+  const std::vector<PlacedScan> places = placed_poses(recording.poses, wheels);
+  std::vector<double> times;
+  times.reserve(places.size());
+  for (const PlacedScan& place : places) times.push_back(place.time);
+  const auto keyframes = choose_keyframes(times, poses_at(trajectory, times), pose_pair_options());
+  const auto means = places_of_keyframes(places, keyframes, reach_of_keyframes(places), wheels);
+  bool linked = false;
+  for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) {
+    const Interval interval{times[keyframes[k]], times[keyframes[k + 1]]};
+    const bool interrupted = has_gap(times, keyframes[k], keyframes[k + 1]);
+    if (interrupted || !model.track().covers(interval.begin, interval.end)) {
+      ++set.rejected[interrupted ? "reference interrupted" : "no ticks"];
+      linked = false;
+      continue;
+    }
+    const auto [motion, covariance] = motion_between(means[k], means[k + 1]);
+    set.pairs.push_back({interval, motion, covariance, linked});
+    linked = true;
+  }
+  return set;
+}
+
 /// Matches keyframe scans one after the other; every scan's surface is made once.
 class ScanChain {
  public:
@@ -128,39 +155,10 @@ class ScanChain {
 
 }  // namespace
 
-PairSet pairs_of_poses(const Recording& recording, const DriveModel& model,
-                       std::span<const double> parameters, const EffectList& effects,
-                       const PairOptions& options) {
-  PairSet set;
-  const Trajectory trajectory = model.trajectory(parameters, effects);
-  const PathOfWheels wheels = path_of_wheels(trajectory);
-  const std::vector<PlacedScan> places = placed_poses(recording.poses, wheels);
-  std::vector<double> times;
-  times.reserve(places.size());
-  for (const PlacedScan& place : places) times.push_back(place.time);
-  const auto keyframes = choose_keyframes(times, poses_at(trajectory, times), options);
-  const auto means = places_of_keyframes(places, keyframes, reach_of_keyframes(places), wheels);
-  bool linked = false;
-  for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) {
-    const Interval interval{times[keyframes[k]], times[keyframes[k + 1]]};
-    const bool interrupted = has_gap(times, keyframes[k], keyframes[k + 1]);
-    if (interrupted || !model.track().covers(interval.begin, interval.end)) {
-      ++set.rejected[interrupted ? "reference interrupted" : "no ticks"];
-      linked = false;
-      continue;
-    }
-    const auto [motion, covariance] = motion_between(means[k], means[k + 1]);
-    set.pairs.push_back({interval, motion, covariance, linked});
-    linked = true;
-  }
-  return set;
-}
-
 PairSet build_pairs(const Recording& recording, const DriveModel& model, std::span<const double> parameters,
                     const EffectList& effects, const PairOptions& options) {
   if (!recording.increments.empty()) return pairs_from_increments(recording);
-  if (!recording.poses.empty())
-    return pairs_of_poses(recording, model, parameters, effects, pose_pair_options());
+  if (!recording.poses.empty()) return pairs_from_poses(recording, model, parameters, effects);
   PairSet set;
   set.range_noise = estimate_range_noise(recording.scans);
   const ScanSurfaces scans(recording, model, parameters, effects, set.range_noise);

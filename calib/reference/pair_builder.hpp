@@ -29,11 +29,6 @@ struct PairSet {
   double range_noise = 0.0;                     ///< m; 0 for recordings without scans
 };
 
-/// Pairs of an external reference's poses; those about a keyframe are averaged where they are noisy.
-PairSet pairs_of_poses(const Recording& recording, const DriveModel& model,
-                       std::span<const double> parameters, const EffectList& effects,
-                       const PairOptions& options);
-
 /// Pairs of a recording. Scans are de-skewed and matched from guesses made with `parameters` and `effects`;
 /// poses come at a spacing of their own, tuples as they are.
 PairSet build_pairs(const Recording& recording, const DriveModel& model, std::span<const double> parameters,

@@ -44,34 +44,37 @@ Eigen::Vector3d noise_of(std::span<const PoseSample> poses, const PathOfWheels& 
   return {position, position, noise(2)};
 }
 
-PlacedScan mean_of(std::span<const PoseSample> poses, const PathOfWheels& wheels,
-                   const Eigen::Vector3d& noise) {
-  const auto count = static_cast<double>(poses.size());
-  double time = 0.0;
-  for (const PoseSample& sample : poses) time += sample.t / count;
-  PlacedScan mean{time, {0.0, 0.0, poses.front().yaw}, noise.cwiseAbs2().asDiagonal()};
-  mean.covariance /= count;
+/// Each by itself; headings go on beyond half a turn.
+std::vector<PlacedScan> single_places(std::span<const PoseSample> poses, const Eigen::Vector3d& noise) {
+  std::vector<PlacedScan> places;
+  places.reserve(poses.size());
   for (const PoseSample& sample : poses) {
-    const Pose one = compose(pose_of(sample), between(wheels(sample.t), wheels(time)));
-    mean.pose.x += one.x / count;
-    mean.pose.y += one.y / count;
-    mean.pose.yaw += wrap_angle(one.yaw - poses.front().yaw) / count;
+    Pose pose = pose_of(sample);
+    if (!places.empty()) {
+      const double before = places.back().pose.yaw;
+      pose.yaw = before + wrap_angle(pose.yaw - before);
+    }
+    places.push_back({sample.t, pose, noise.cwiseAbs2().asDiagonal()});
   }
-  return mean;
+  return places;
+}
+
+double mean_time(std::span<const PlacedScan> places) {
+  double sum = 0.0;
+  for (const PlacedScan& place : places) sum += place.time;
+  return sum / static_cast<double>(places.size());
 }
 
 }  // namespace
 
 std::vector<PlacedScan> placed_poses(std::span<const PoseSample> poses, const PathOfWheels& wheels) {
-  const Eigen::Vector3d noise = noise_of(poses, wheels);
+  const std::vector<PlacedScan> singles = single_places(poses, noise_of(poses, wheels));
   std::vector<PlacedScan> places;
-  for (std::size_t first = 0; first < poses.size();) {
+  for (std::size_t first = 0; first < singles.size();) {
     std::size_t end = first + 1;
-    while (end < poses.size() && poses[end].t - poses[first].t < kSpan) ++end;
-    PlacedScan place = mean_of(poses.subspan(first, end - first), wheels, noise);
-    if (!places.empty())
-      place.pose.yaw = places.back().pose.yaw + wrap_angle(place.pose.yaw - places.back().pose.yaw);
-    places.push_back(place);
+    while (end < singles.size() && singles[end].time - singles[first].time < kSpan) ++end;
+    const auto span = std::span(singles).subspan(first, end - first);
+    places.push_back(mean_of(span, mean_time(span), wheels));
     first = end;
   }
   return places;

@@ -54,21 +54,26 @@ std::optional<PlacedEnds> places_at_ends(std::span<const PlacedScan> places, con
   return begin && end ? std::optional(PlacedEnds{*begin, *end}) : std::nullopt;
 }
 
+PlacedScan mean_of(std::span<const PlacedScan> places, double time, const PathOfWheels& wheels) {
+  const auto count = static_cast<double>(places.size());
+  const double yaw = places.front().pose.yaw;
+  PlacedScan mean{time, {0.0, 0.0, yaw}, Eigen::Matrix3d::Zero()};
+  for (const PlacedScan& place : places) {
+    const PlacedScan one = carried(place, time, wheels);
+    mean.pose.x += one.pose.x / count;
+    mean.pose.y += one.pose.y / count;
+    mean.pose.yaw += wrap_angle(one.pose.yaw - yaw) / count;
+    mean.covariance += one.covariance / (count * count);
+  }
+  return mean;
+}
+
 std::optional<PlacedScan> mean_place(std::span<const PlacedScan> places, double time,
                                      const PathOfWheels& wheels, double reach) {
   constexpr std::ptrdiff_t kFewest = 2;
   const Place first = first_since(places, time - reach), last = first_since(places, time + reach);
   if (last - first < kFewest) return std::nullopt;
-  const auto count = static_cast<double>(last - first);
-  PlacedScan mean{time, {0.0, 0.0, first->pose.yaw}, Eigen::Matrix3d::Zero()};
-  for (Place scan = first; scan != last; ++scan) {
-    const PlacedScan one = carried(*scan, time, wheels);
-    mean.pose.x += one.pose.x / count;
-    mean.pose.y += one.pose.y / count;
-    mean.pose.yaw += wrap_angle(one.pose.yaw - first->pose.yaw) / count;
-    mean.covariance += one.covariance / (count * count);
-  }
-  return mean;
+  return mean_of({first, last}, time, wheels);
 }
 
 }  // namespace odomcalib::calib

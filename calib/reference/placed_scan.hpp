@@ -44,6 +44,9 @@ struct PlacedEnds {
 std::optional<PlacedEnds> places_at_ends(std::span<const PlacedScan> places, const Interval& interval,
                                          const PathOfWheels& wheels);
 
+/// Mean of places, at least one, each carried to the time, s.
+PlacedScan mean_of(std::span<const PlacedScan> places, double time, const PathOfWheels& wheels);
+
 /// s, to either side: over so much wheels err by less than a place does.
 inline constexpr double kMeanReach = 0.5;
 

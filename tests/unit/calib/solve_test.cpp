@@ -151,7 +151,9 @@ TEST(Solve, optiodom_fitted_on_straight_and_spin_holds_on_squares_and_circles) {
     EXPECT_LE(square.heading + circle.heading, kPublishedSquare.heading + kPublishedCircle.heading)
         << effects[0];
     EXPECT_LE(square.position, 1.1 * kPublishedSquare.position) << effects[0];
+    EXPECT_LE(square.heading, 1.1 * kPublishedSquare.heading) << effects[0];
     EXPECT_LE(circle.position, kPublishedCircle.position) << effects[0];
+    EXPECT_LE(circle.heading, kPublishedCircle.heading) << effects[0];
     EXPECT_NEAR(quantity(result.parameters, "lidar_x").value, 1e-3, 2e-4) << effects[0];
   }
 }
