@@ -9,7 +9,6 @@
 namespace odomcalib::calib {
 namespace {
 
-constexpr std::size_t kDegrees = 4;
 constexpr double kNearestLength = 0.03;  ///< m of the base
 constexpr double kNearestAngle = 0.2;    ///< rad of a wheel
 
@@ -106,8 +105,7 @@ BasisValues speed_functions(const Curve& curve, double z) {
   if (curve.law.carrier == Carrier::turn_path) return {1.0, magnitude, direction, relative};
   // A law is found by few straight pieces; one that bends is described by many splines.
   const double place = curve.knots * magnitude;
-  BasisValues functions =
-      curve.knots == kKnots.front() ? hats(curve.knots, place) : cubic_splines(curve.knots, place);
+  BasisValues functions = has_splines(curve) ? cubic_splines(curve.knots, place) : hats(curve.knots, place);
   functions.push_back(goes_the_way_of(curve.law.variable, curve.law.carrier) ? 1.0 : direction);
   functions.push_back(relative);
   return functions;
@@ -125,14 +123,14 @@ BasisValues fading(Variable variable, double distance) {
   return functions;
 }
 
-/// Legendre polynomials of degree 1 to kDegrees by Bonnet's recursion.
-BasisValues legendre(double x) {
+/// Legendre polynomials of degree 1 to the highest by Bonnet's recursion.
+BasisValues legendre(double x, int highest) {
   BasisValues functions;
   double before = 1.0;
   double here = x;
-  for (std::size_t n = 1; n <= kDegrees; ++n) {
+  for (int n = 1; n <= highest; ++n) {
     functions.push_back(here);
-    const double order = static_cast<double>(n);
+    const double order = n;
     const double next = ((2.0 * order + 1.0) * x * here - order * before) / (order + 1.0);
     before = here;
     here = next;
@@ -142,8 +140,8 @@ BasisValues legendre(double x) {
 
 /// Zero at rest, so that the base parameters keep their meaning of slow, steady motion.
 BasisValues zero_at_rest(const Curve& curve, double z) {
-  BasisValues functions = legendre(scaled(curve, z));
-  const BasisValues at_rest = legendre(scaled(curve, 0.0));
+  BasisValues functions = legendre(scaled(curve, z), curve.degree);
+  const BasisValues at_rest = legendre(scaled(curve, 0.0), curve.degree);
   for (std::size_t k = 0; k < functions.size(); ++k) functions[k] -= at_rest[k];
   return functions;
 }
@@ -196,14 +194,14 @@ BasisValues raw_basis(const Curve& curve, const StepContext& c) {
     return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
   if (is_distance_since(variable)) return fading(variable, z);
   if (is_relay(variable, curve.memory)) return {z};
-  if (variable == Variable::time) return legendre(scaled(curve, z));
+  if (variable == Variable::time) return legendre(scaled(curve, z), curve.degree);
   if (curve.is_wave()) return wave_functions(curve, c);
   if (curve.patches) return patches(curve, c.x, c.y);
   if (variable == Variable::position) {
     const double x = scaled(curve, c.x), y = scaled(curve, c.y);
     return {x, y, x * x, x * y, y * y};
   }
-  const bool has_knots = is_signed_speed(variable) || curve.knots > kKnots.front();
+  const bool has_knots = is_signed_speed(variable) || has_splines(curve);
   return has_knots ? speed_functions(curve, z) : zero_at_rest(curve, z);
 }
 

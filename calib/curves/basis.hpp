@@ -28,7 +28,7 @@ class BasisValues {
   [[nodiscard]] const double* end() const { return values_.data() + count_; }
 
  private:
-  std::array<double, kKnots.back() + 3> values_;  // NOLINT(*-member-init): the first `count_` are set
+  std::array<double, kMostKnots + 3> values_;  // NOLINT(*-member-init): the first `count_` are set
   std::size_t count_ = 0;
 };
 

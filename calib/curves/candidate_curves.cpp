@@ -149,10 +149,16 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
 
 std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models) {
   std::vector<Curve> shapes;
-  for (const int knots : kKnots) {
-    if (!may_have_knots(curve.law) || knots <= curve.knots) continue;
+  for (const double roughness : kRoughness) {
+    if (!may_have_knots(curve.law)) continue;
     shapes.push_back(curve);
-    shapes.back().knots = knots;
+    shapes.back().knots = kMostKnots;
+    shapes.back().roughness.assign(kMostKnots - 1, roughness);
+  }
+  for (int degree = kPlainest; has_polynomials(curve) && degree <= kDegrees; ++degree) {
+    if (degree == curve.degree) continue;
+    shapes.push_back(curve);
+    shapes.back().degree = degree;
   }
   if (curve.law.variable == Variable::position && !curve.is_wave() && !curve.patches) {
     shapes.push_back(curve);

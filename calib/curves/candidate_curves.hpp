@@ -14,7 +14,7 @@ namespace odomcalib::calib {
 /// recording.
 std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models);
 
-/// The same law in other shapes: more knots, other ways to understand what happened before.
+/// The same law in other shapes: splines more or less smooth, other ways to understand what happened before.
 std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* const> models);
 
 }  // namespace odomcalib::calib

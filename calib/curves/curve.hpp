@@ -8,8 +8,13 @@
 
 namespace odomcalib::calib {
 
-/// Knots over the magnitude of a speed: the first to find a law, the others to describe it.
-inline constexpr std::array<int, 4> kKnots = {4, 8, 12, 16};
+/// Knots over the magnitude of a speed to find a law, and the most to describe it.
+inline constexpr int kKnots = 4, kMostKnots = 24;
+/// Highest degree of the polynomials of a law; one that was found may be as plain as the least.
+inline constexpr int kDegrees = 4, kPlainest = 1;
+/// How rough a law may be that is described: deviation of the second differences of neighbouring splines, in
+/// typical sizes.
+inline constexpr std::array<double, 4> kRoughness = {0.04, 0.16, 0.64, 2.56};
 /// Of an angle, together; higher ones are tried one by one.
 inline constexpr int kHarmonics = 3;
 /// Of a distance since an event, each at twice the distance of the one before.
@@ -25,14 +30,15 @@ inline constexpr int kPatches = 4;
 ///   bilinear between kPatches knots each way; or, of a floor that repeats itself, one wave: its cosine and
 ///   sine, and both times the cosine of the angle between the heading and the way across the crests;
 /// - a push that stays until the opposite one: its sign;
-/// - speeds and turn rate: piecewise linear in the magnitude at four knots or cubic splines at more, a step
+/// - speeds and turn rate: piecewise linear in the magnitude at four knots or cubic splines at more, smooth
+/// by a prior on their second differences (P-splines, Eilers and Marx, Stat. Sci. 11, 1996, eq. 6), a step
 /// with the direction (on the unsigned way that has this direction a constant), and the magnitude times the
 /// direction;
 /// - accelerations, once found, may take the splines of speeds: a law of the side that is pushed has a step;
 /// - on the sensor's yaw: the variable and its signed square;
-/// - all others: Legendre polynomials of degree 1 to 4 on [low, high], clamped outside and zero at rest.
-/// Any other constant is a base parameter's, except on carriers of the unsigned way in drives both ways, and
-/// on the turn path, where it is the first function.
+/// - all others: Legendre polynomials of degree 1 to `degree` on [low, high], clamped outside and zero at
+/// rest. Any other constant is a base parameter's, except on carriers of the unsigned way in drives both
+/// ways, and on the turn path, where it is the first function.
 struct Curve {
   Law law;
   double low = -1.0;
@@ -42,13 +48,16 @@ struct Curve {
   /// Subtracted from the functions; none: 0. Functions that are zero at rest leave the base parameters the
   /// meaning of slow motion; functions without a mean leave them that of the drive they were fitted to.
   std::vector<double> mean = {};
-  int knots = kKnots.front();         ///< of speeds and accelerations only
+  int knots = kKnots;                 ///< of speeds and accelerations only
   std::size_t memory = kUsualMemory;  ///< of what happened before only: which way to understand it
   std::array<double, 2> wave{};       ///< of position only: cycles per m along x and y; zero: none
   bool constant = false;              ///< of heading only: with a constant as the first function
   bool patches = false;               ///< of position only
   bool with_motion = false;  ///< of accelerations only: growth of the pace, so that braking is negative
   bool strong = false;       ///< a tenth and more, which few robots do and only plain data should be believed
+  int degree = kDegrees;     ///< of Legendre polynomials only
+  /// Of splines only: of each second difference, see kRoughness; none: each spline by itself.
+  std::vector<double> roughness = {};
   bool operator==(const Curve&) const = default;
   [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
 };
@@ -61,6 +70,12 @@ bool is_of_one_drive(const Curve& curve);
 
 /// Begins with a stop or a push, of which it is not known how long or how hard it has to be.
 bool takes_an_event(const Curve& curve);
+
+/// Described by Legendre polynomials.
+bool has_polynomials(const Curve& curve);
+
+/// Described by splines, which also accelerations may be.
+bool has_splines(const Curve& curve);
 
 /// The same curve, expected to be large.
 Curve strong(Curve curve);

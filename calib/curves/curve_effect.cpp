@@ -9,6 +9,19 @@
 namespace odomcalib::calib {
 namespace {
 
+/// Relative; rad per m; m per rad.
+double typical_size_of(const Curve& curve) {
+  if (curve.law.carrier == Carrier::yaw_path || concerns_sensor(curve)) return 0.02;
+  // What a scan matcher's own bias in one room amounts to is a part of this.
+  if (curve.law.variable == Variable::heading || curve.law.variable == Variable::position) return 0.015;
+  // An error of the encoder's angle shows in its rate, n times as large for the n-th harmonic.
+  if (curve.harmonic > 0) return 5e-3 * curve.harmonic;
+  const bool per_turn = curve.law.carrier == Carrier::turn_path || curve.law.carrier == Carrier::turn_side;
+  return per_turn ? 1e-3 : 5e-3;
+}
+
+double strength_of(const Curve& curve) { return curve.strong ? 6.0 : 1.0; }
+
 class CurveEffect final : public StepEffect<CurveEffect> {
  public:
   explicit CurveEffect(const Curve& curve) : curve_(curve) {}
@@ -23,6 +36,16 @@ class CurveEffect final : public StepEffect<CurveEffect> {
                       largest_size(), 0.0, prior(k)});
     }
     return list;
+  }
+  [[nodiscard]] std::vector<std::vector<double>> expected_zeros() const override {
+    std::vector<std::vector<double>> differences;
+    for (std::size_t k = 0; k < curve_.roughness.size(); ++k) {
+      const double weight = 1.0 / (curve_.roughness[k] * strength() * typical_size());
+      differences.emplace_back(basis_size(curve_), 0.0);
+      differences.back()[k] = differences.back()[k + 2] = weight;
+      differences.back()[k + 1] = -2.0 * weight;
+    }
+    return differences;
   }
   [[nodiscard]] Storage storage() const override {
     if (concerns_sensor(curve_)) return Storage::driver;
@@ -41,23 +64,14 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   }
 
  private:
-  /// Relative; rad per m; m per rad.
-  [[nodiscard]] double typical_size() const {
-    if (curve_.law.carrier == Carrier::yaw_path || concerns_sensor(curve_)) return 0.02;
-    // What a scan matcher's own bias in one room amounts to is a part of this.
-    if (curve_.law.variable == Variable::heading || curve_.law.variable == Variable::position) return 0.015;
-    // An error of the encoder's angle shows in its rate, n times as large for the n-th harmonic.
-    if (curve_.harmonic > 0) return 5e-3 * curve_.harmonic;
-    const bool per_turn =
-        curve_.law.carrier == Carrier::turn_path || curve_.law.carrier == Carrier::turn_side;
-    return per_turn ? 1e-3 : 5e-3;
-  }
+  [[nodiscard]] double typical_size() const { return typical_size_of(curve_); }
   /// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
   /// bad.
   [[nodiscard]] double largest_size() const {
-    return typical_size() * (is_distance_since(curve_.law.variable) ? 100.0 : 10.0 * strength());
+    if (is_distance_since(curve_.law.variable)) return 100.0 * typical_size();
+    return (curve_.strong ? 60.0 : 20.0) * typical_size();
   }
-  [[nodiscard]] double strength() const { return curve_.strong ? 6.0 : 1.0; }
+  [[nodiscard]] double strength() const { return strength_of(curve_); }
   /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a curve must
   /// do no harm in other drives.
   [[nodiscard]] double prior(std::size_t function) const {
@@ -72,7 +86,31 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   Curve curve_;
 };
 
+/// Of the value and its neighbours.
+double mean_about(std::span<const double> values, std::size_t k) {
+  const std::size_t first = k > 0 ? k - 1 : 0, end = std::min(k + 2, values.size());
+  double sum = 0.0;
+  for (const double value : values.subspan(first, end - first)) sum += value;
+  return sum / static_cast<double>(end - first);
+}
+
 }  // namespace
+
+std::vector<Curve> as_rough_as(const Curve& curve, std::span<const double> coefficients) {
+  const std::size_t count = curve.roughness.size();
+  std::vector<double> bends;
+  for (std::size_t k = 0; k < count; ++k)
+    bends.push_back(std::abs(coefficients[k] - 2.0 * coefficients[k + 1] + coefficients[k + 2]) /
+                    (strength_of(curve) * typical_size_of(curve)));
+  std::vector<Curve> shapes;
+  for (const double least : kRoughness) {
+    if (count == 0 || least == kRoughness.back()) break;
+    shapes.push_back(curve);
+    for (std::size_t k = 0; k < count; ++k)
+      shapes.back().roughness[k] = std::hypot(least, mean_about(bends, k));
+  }
+  return shapes;
+}
 
 std::shared_ptr<const Effect> make_curve_effect(const Curve& curve) {
   return std::make_shared<CurveEffect>(curve);

@@ -93,11 +93,27 @@ NormalSystem normal_system(const Eigen::MatrixXd& jacobian, const std::vector<bo
   return system;
 }
 
-/// Rows of the priors: parameter over deviation, expected to be zero.
-Eigen::MatrixXd with_prior(const NormalSystem& system, const Eigen::VectorXd& information) {
-  Eigen::MatrixXd matrix = system.matrix;
-  matrix.diagonal() += information.cwiseProduct(system.scale.cwiseAbs2());
-  return matrix;
+/// Of the parameters, those of the effects behind those of the base.
+Eigen::MatrixXd prior_information(Eigen::Index parameters, const EffectList& effects) {
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(parameters, parameters);
+  Eigen::Index first = kBaseCount;
+  for (const auto& effect : effects) {
+    const auto own = effect->parameters();
+    for (std::size_t k = 0; k < own.size(); ++k)
+      if (own[k].prior > 0.0)
+        information.diagonal()(first + static_cast<Eigen::Index>(k)) = 1.0 / (own[k].prior * own[k].prior);
+    const auto count = static_cast<Eigen::Index>(own.size());
+    for (const std::vector<double>& row : effect->expected_zeros()) {
+      const Eigen::Map<const Eigen::VectorXd> factors(row.data(), count);
+      information.block(first, first, count, count) += factors * factors.transpose();
+    }
+    first += count;
+  }
+  return information;
+}
+
+Eigen::MatrixXd with_prior(const NormalSystem& system, const Eigen::MatrixXd& information) {
+  return system.matrix + system.scale.asDiagonal() * information * system.scale.asDiagonal();
 }
 
 /// @param normal with the prior
@@ -117,8 +133,8 @@ std::optional<Error> check_rank(const NormalSystem& system, const Eigen::MatrixX
                "joint estimate", "record straight lines, arcs and turns on the spot, both ways"};
 }
 
-double prior_cost(const Eigen::VectorXd& information, const Eigen::VectorXd& p) {
-  return information.dot(p.cwiseAbs2());
+double prior_cost(const Eigen::MatrixXd& information, const Eigen::VectorXd& p) {
+  return p.dot(information * p);
 }
 
 /// The problem near one point, whitened: what does not change from step to step.
@@ -134,7 +150,7 @@ struct Linear {
 class Descent {
  public:
   Descent(std::span<const FitData> data, const EffectList& effects, const std::vector<bool>& fixed,
-          const Eigen::VectorXd& prior, Eigen::VectorXd start)
+          const Eigen::MatrixXd& prior, Eigen::VectorXd start)
       : data_(data), effects_(effects), fixed_(fixed), prior_(prior), p_(std::move(start)) {
     linearise();
   }
@@ -188,7 +204,7 @@ class Descent {
     const Eigen::VectorXd residual = linear.whiten(stack_.residual);
     const double before = residual.squaredNorm() + prior_cost(prior_, p_);
     const Eigen::VectorXd right_side =
-        system.jacobian.transpose() * residual - prior_.cwiseProduct(system.scale).cwiseProduct(p_);
+        system.jacobian.transpose() * residual - system.scale.cwiseProduct(prior_ * p_);
     for (int attempt = 0; attempt < 8; ++attempt) {
       Eigen::MatrixXd damped = linear.matrix;
       for (Eigen::Index k = 0; k < damped.rows(); ++k)
@@ -212,7 +228,7 @@ class Descent {
   std::span<const FitData> data_;
   const EffectList& effects_;
   const std::vector<bool>& fixed_;
-  const Eigen::VectorXd& prior_;
+  const Eigen::MatrixXd& prior_;
   Eigen::VectorXd p_;
   Stack stack_;         ///< residual at p_, all else near it
   double moved_ = 0.0;  ///< sigma, since all else was taken
@@ -285,9 +301,7 @@ Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& eff
   FitResult fit;
   std::vector<bool> fixed = options.fixed;
   fixed.resize(static_cast<std::size_t>(start.size()), false);
-  const std::vector<double> prior = prior_information(kBaseCount, effects);
-  fit.prior_information =
-      Eigen::Map<const Eigen::VectorXd>(prior.data(), static_cast<Eigen::Index>(prior.size()));
+  fit.prior_information = prior_information(start.size(), effects);
   fit.noise = options.noise.empty() ? std::vector<NoiseModel>(data.size()) : options.noise;
   Descent descent(data, effects, fixed, fit.prior_information, start);
   if (descent.stack().states.empty())

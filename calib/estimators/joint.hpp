@@ -36,7 +36,7 @@ struct FitResult {
   std::vector<NoiseModel> noise;      ///< per recording
   Eigen::VectorXd whitened_residual;  ///< 3 n, unit variance if the model is complete
   Eigen::MatrixXd whitened_jacobian;  ///< 3 n x parameters, of the prediction
-  Eigen::VectorXd prior_information;  ///< per parameter, of priors about zero; already part of the covariance
+  Eigen::MatrixXd prior_information;  ///< of priors about zero; already part of the covariance
   Eigen::Vector3d rms;                ///< of the residuals of the pairs that are not outliers: m, m, rad
   double cost = 0.0;                  ///< robust -2 log likelihood up to a constant, on `noise`
   std::size_t used = 0;

@@ -269,8 +269,8 @@ class Fitter {
   [[nodiscard]] System make_system() const {
     System system;
     const Eigen::Index n = fit_.parameters.size();
-    system.matrix = options_.prior_information.asDiagonal();
-    system.right_side = -options_.prior_information.cwiseProduct(fit_.parameters);
+    system.matrix = options_.prior_information;
+    system.right_side = -options_.prior_information * fit_.parameters;
     for (std::size_t d = 0; d < parts_.size(); ++d) {
       const Innovations innovations(parts_[d].links, fit_.noise[d], out_[d]);
       system.jacobians.push_back(parts_[d].jacobian);

@@ -31,7 +31,7 @@ struct PathData {
 
 struct PathFitOptions {
   std::vector<bool> fixed;            ///< parameters that keep their value
-  Eigen::VectorXd prior_information;  ///< per parameter, about zero
+  Eigen::MatrixXd prior_information;  ///< of the parameters, about zero
 };
 
 struct PathFit {

@@ -43,6 +43,9 @@ class Effect {
   virtual ~Effect() = default;
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::vector<EffectParameter> parameters() const = 0;
+  /// Combinations of the parameters, in deviations, that a prior expects to be zero beside the parameters'
+  /// own: a row each, a factor for each parameter.
+  [[nodiscard]] virtual std::vector<std::vector<double>> expected_zeros() const { return {}; }
   /// Names of the effects that look alike, and the motion that tells them apart.
   [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
   /// Names that no motion can tell from this one: listed beside it whenever it is found.

@@ -54,16 +54,6 @@ inline std::vector<double> start_of(const EffectList& effects) {
   return values;
 }
 
-/// Information (1 / variance) of the prior of each parameter; zero where there is none.
-/// @param base number of parameters before those of the effects
-inline std::vector<double> prior_information(std::size_t base, const EffectList& effects) {
-  std::vector<double> information(base, 0.0);
-  for (const auto& effect : effects)
-    for (const EffectParameter& p : effect->parameters())
-      information.push_back(p.prior > 0.0 ? 1.0 / (p.prior * p.prior) : 0.0);
-  return information;
-}
-
 /// Flags of the base parameters, then those of the effects.
 inline std::vector<bool> fixed_with(std::vector<bool> base_fixed, const EffectList& effects) {
   for (const auto& effect : effects)

@@ -1,5 +1,6 @@
 #include "calib/tracing/law_shape.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -105,16 +106,16 @@ std::optional<Reshaped> fitted_in_shape(const FitTask& task, const FittedModel& 
 
 }  // namespace
 
-std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, const Curve& curve) {
+std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now, const std::vector<Curve>& shapes) {
+  const FittedModel& model = now.model;
   std::vector<Reshaped> all;
-  const auto models = task.models();
   const Eigen::Index kept = first_parameter(model.effects, model.effects.size() - 1);
-  for (const Curve& shape : other_shapes(curve, models)) {
+  for (const Curve& shape : shapes) {
     EffectList effects = model.effects;
     effects.back() = make_curve_effect(shape);
     Eigen::VectorXd start = model.fit.parameters;
     // As many functions say much the same; which pairs are outliers hangs on where the fit begins.
-    if (basis_size(shape) != basis_size(curve)) {
+    if (basis_size(shape) != basis_size(now.curve)) {
       start = Eigen::VectorXd::Zero(kept + static_cast<Eigen::Index>(basis_size(shape)));
       start.head(kept) = model.fit.parameters.head(kept);
     }
@@ -139,10 +140,12 @@ const Reshaped& most_sensible_event(const std::vector<Reshaped>& shapes, double 
 std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& model, const Curve& curve,
                                       const std::vector<NoiseModel>& noise) {
   std::vector<Curve> shapes = other_shapes(curve, task.models());
+  // What is as plain as a name proves nothing against it.
+  std::erase_if(shapes, [&](const Curve& shape) { return shape.degree < curve.degree; });
   shapes.push_back(curve);
   std::optional<Reshaped> best;
   const auto misfit = [&](const FittedModel& m) {
-    return m.fit.cost + schwarz(m.fit) * static_cast<double>(m.fit.parameters.size());
+    return m.fit.cost + schwarz(m.fit) * effective_parameters(m.fit);
   };
   for (const Curve& shape : shapes) {
     auto fitted = fitted_in_shape(task, model, shape, noise);
@@ -159,11 +162,22 @@ bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::siz
   return without && without->fit.cost - named.fit.cost > kNearlyAll * (without->fit.cost - free.fit.cost);
 }
 
+double effective_parameters(const FitResult& fit) {
+  const Eigen::MatrixXd data = fit.whitened_jacobian.transpose() * fit.whitened_jacobian;
+  const Eigen::MatrixXd all = data + fit.prior_information;
+  Eigen::VectorXd scale = all.diagonal().cwiseSqrt();
+  for (double& s : scale) s = s > 0.0 ? 1.0 / s : 0.0;
+  Eigen::MatrixXd scaled = scale.asDiagonal() * all * scale.asDiagonal();
+  for (Eigen::Index k = 0; k < scale.size(); ++k)
+    if (scale(k) == 0.0) scaled(k, k) = 1.0;
+  return scaled.ldlt().solve(scale.asDiagonal() * data * scale.asDiagonal()).trace();
+}
+
 double schwarz(const FitResult& fit) { return std::log(static_cast<double>(fit.whitened_residual.size())); }
 
 bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other,
                double per_parameter) {
-  const auto more = static_cast<double>(other.fit.parameters.size() - given.fit.parameters.size());
+  const double more = effective_parameters(other.fit) - effective_parameters(given.fit);
   return given.fit.cost - other.fit.cost > per_parameter * more &&
          compared_on_held_out(task, given, other, all_folds()).total > 0.0;
 }

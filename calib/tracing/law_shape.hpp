@@ -13,9 +13,10 @@ struct Reshaped {
   Curve curve;
   FittedModel model;  ///< on the noise of the given one
 };
-/// The shapes that the drive can tell from the wheels, of sizes that a robot may have.
-/// @param model whose last effect is the curve's
-std::vector<Reshaped> reshaped(const FitTask& task, const FittedModel& model, const Curve& curve);
+
+/// Those of the shapes that the drive can tell from the wheels, of sizes that a robot may have.
+/// @param now whose model ends with its curve
+std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now, const std::vector<Curve>& shapes);
 
 /// How long a stop or how hard a push it takes, of the curves whose -2 log L is below `enough`: the middle of
 /// what the events of this drive leave open. Where no stop was too short the longest, so that nothing is made
@@ -28,6 +29,10 @@ const Reshaped& most_sensible_event(const std::vector<Reshaped>& shapes, double 
 inline constexpr double kAkaike = 2.0;
 /// The same when that is what is asked (Schwarz, Ann. Statist. 6, 1978).
 double schwarz(const FitResult& fit);
+
+/// Number of parameters that the data decide rather than the priors: the trace of what maps the data to what
+/// is fitted to them (Hastie, Tibshirani and Friedman, The Elements of Statistical Learning, 2009, eq. 7.32).
+double effective_parameters(const FitResult& fit);
 
 /// Share of what a freer law explains that leaves no doubt about a name.
 inline constexpr double kNearlyAll = 0.9;

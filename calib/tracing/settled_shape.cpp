@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "calib/curves/basis.hpp"
+#include "calib/curves/candidate_curves.hpp"
+#include "calib/curves/curve_effect.hpp"
 #include "calib/tracing/law_shape.hpp"
 
 namespace odomcalib::calib {
@@ -43,16 +45,49 @@ void take_shape(const Reshaped& shape, SearchResult& result) {
   result.curves.back().effect = shape.model.effects.back();
 }
 
+/// On noise that is estimated anew: the coarser shape's misfit was a part of it.
+void fit_anew_on_estimated_noise(const FitTask& task, FittedModel& model) {
+  if (auto again = task.fit(model.effects, model.fit.parameters, {})) model.fit = std::move(*again);
+  fit_anew_on_own_noise(task, model);
+}
+
+/// A law's splines are smooth all alike at first, then each bend as it was found.
+std::vector<Curve> shapes_to_try(const FitTask& task, const Reshaped& now) {
+  if (now.curve.roughness.empty()) return other_shapes(now.curve, task.models());
+  return as_rough_as(now.curve, as_span(now.model.fit.parameters).last(basis_size(now.curve)));
+}
+
+bool take_best_shape(const FitTask& task, const std::vector<Reshaped>& shapes, SearchResult& result) {
+  bool is_new = false;
+  for (const Reshaped& other : shapes) {
+    if (bends_too_often(other) || !is_better(task, result.model, other.model, kAkaike)) continue;
+    take_shape(other, result);
+    is_new = true;
+  }
+  return is_new;
+}
+
+/// Shape and noise settle each other.
+/// @return the shapes that were tried last, the one before them at the end
+std::vector<Reshaped> settle_shape(const FitTask& task, SearchResult& result) {
+  constexpr int kRounds = 3;
+  std::vector<Reshaped> shapes;
+  for (int round = 0; round < kRounds; ++round) {
+    const Reshaped now{result.curves.back().curve, result.model};
+    shapes = reshaped(task, now, shapes_to_try(task, now));
+    const bool is_new = take_best_shape(task, shapes, result);
+    shapes.push_back(now);
+    if (!is_new) break;
+    fit_anew_on_estimated_noise(task, result.model);
+  }
+  return shapes;
+}
+
 }  // namespace
 
 void settle_shape_of_newest_curve(const FitTask& task, SearchResult& result) {
   fit_anew_on_own_noise(task, result.model);
-  const Reshaped first{result.curves.back().curve, result.model};
-  std::vector<Reshaped> shapes = reshaped(task, first.model, first.curve);
-  for (const Reshaped& other : shapes)
-    if (!bends_too_often(other) && is_better(task, result.model, other.model, kAkaike))
-      take_shape(other, result);
-  shapes.push_back(first);
+  const std::vector<Reshaped> shapes = settle_shape(task, result);
   if (takes_an_event(result.curves.back().curve))
     take_shape(most_sensible_event(shapes, result.model.fit.cost + kAkaike), result);
   for (const Reshaped& other : shapes)

@@ -21,21 +21,18 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   const auto variable = enum_from(entry.value("variable", ""), kLastVariable);
   const auto carrier = enum_from(entry.value("carrier", ""), kLastCarrier);
   if (!variable || !carrier) return std::nullopt;
-  Curve curve{{*variable, *carrier},
-              entry.value("low", 0.0),
-              entry.value("high", 0.0),
-              entry.value("period", 0.0),
-              entry.value("harmonic", 0),
-              {},
-              entry.value("knots", kKnots.front())};
+  Curve curve{{*variable, *carrier},       entry.value("low", 0.0),    entry.value("high", 0.0),
+              entry.value("period", 0.0),  entry.value("harmonic", 0), {},
+              entry.value("knots", kKnots)};
   const auto coefficients = entry.value("coefficients", std::vector<double>{});
+  curve.degree = entry.value("degree", kDegrees);
   curve.memory = entry.value("memory", kUsualMemory);
   curve.wave = entry.value("wave", curve.wave);
   curve.constant = entry.value("constant", false);
   curve.patches = entry.value("patches", false);
   curve.with_motion = entry.value("with_motion", false);
-  if (!(curve.high > curve.low) || curve.memory >= memories_of(*variable) ||
-      std::find(kKnots.begin(), kKnots.end(), curve.knots) == kKnots.end() ||
+  if (!(curve.high > curve.low) || curve.memory >= memories_of(*variable) || curve.knots < kKnots ||
+      curve.knots > kMostKnots || curve.degree < kPlainest || curve.degree > kDegrees ||
       coefficients.size() != basis_size(curve))
     return std::nullopt;
   curve.mean = entry.value("mean", std::vector<double>{});
@@ -66,6 +63,7 @@ std::string curves_to_json(const std::vector<FittedCurve>& curves) {
                     {"mean", curve.mean},
                     {"harmonic", curve.harmonic},
                     {"knots", curve.knots},
+                    {"degree", curve.degree},
                     {"memory", curve.memory},
                     {"wave", curve.wave},
                     {"constant", curve.constant},

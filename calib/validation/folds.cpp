@@ -37,8 +37,8 @@ Eigen::VectorXd without_fold(const FitResult& fit, const std::vector<std::size_t
     gradient.noalias() +=
         rows.transpose() * fit.whitened_residual.segment<3>(static_cast<Eigen::Index>(3 * k));
   }
-  normal.diagonal() += fit.prior_information;
-  gradient -= fit.prior_information.cwiseProduct(fit.parameters);
+  normal += fit.prior_information;
+  gradient -= fit.prior_information * fit.parameters;
   for (Eigen::Index k = 0; k < p; ++k) {
     if (!fixed[static_cast<std::size_t>(k)]) continue;
     normal.row(k).setZero();

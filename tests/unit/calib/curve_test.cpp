@@ -31,7 +31,7 @@ TEST(Curve, is_zero_at_rest_but_on_the_turn_path) {
 }
 
 TEST(Curve, of_a_speed_is_zero_at_rest_with_any_knots) {
-  for (const int knots : kKnots) {
+  for (const int knots : {kKnots, kMostKnots}) {
     const Curve curve{{Variable::speed, Carrier::both_travel}, -0.5, 0.5, 0.0, 0, {}, knots};
     for (const double f : basis(curve, StepContext{})) EXPECT_NEAR(f, 0.0, 1e-12) << knots;
   }
@@ -78,20 +78,46 @@ double misfit_of_bump(const Curve& curve) {
   return (columns * nearest - bump).cwiseAbs().maxCoeff();
 }
 
-TEST(Curve, more_knots_describe_a_bump_better) {
+TEST(Curve, splines_describe_a_bump_better) {
   const Curve coarse{{Variable::speed, Carrier::both_travel}, -0.5, 0.5};
   const auto shapes = other_shapes(coarse, {});
-  ASSERT_EQ(shapes.size(), kKnots.size() - 1);
-  EXPECT_EQ(shapes.back().knots, kKnots.back());
-  EXPECT_TRUE(other_shapes(shapes.back(), {}).empty());
+  ASSERT_EQ(shapes.size(), kRoughness.size());
   EXPECT_TRUE(other_shapes({{Variable::heading, Carrier::both_travel}, -1.0, 1.0}, {}).empty());
-  double before = misfit_of_bump(coarse);
-  for (const Curve& shape : shapes) {
-    const double misfit = misfit_of_bump(shape);
-    EXPECT_LT(misfit, 0.5 * before) << shape.knots;
-    before = misfit;
+  EXPECT_LT(misfit_of_bump(shapes.front()), 0.005);
+  EXPECT_GT(misfit_of_bump(coarse), 0.1);
+}
+
+TEST(Curve, of_splines_expects_straight_lines) {
+  const Curve coarse{{Variable::speed, Carrier::both_travel}, -0.5, 0.5};
+  EXPECT_TRUE(make_curve_effect(coarse)->expected_zeros().empty());
+  for (const Curve& shape : other_shapes(coarse, {})) {
+    const auto rows = make_curve_effect(shape)->expected_zeros();
+    ASSERT_EQ(rows.size(), static_cast<std::size_t>(kMostKnots) - 1);
+    for (const std::vector<double>& row : rows) {
+      double of_line = 0.0, of_parabola = 0.0;
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        const auto x = static_cast<double>(k);
+        of_line += row[k] * (3.0 + 2.0 * x);
+        of_parabola += row[k] * x * x;
+      }
+      EXPECT_NEAR(of_line, 0.0, 1e-9);
+      EXPECT_NEAR(of_parabola, 2.0 / (shape.roughness.front() * 5e-3), 1e-6)
+          << "second difference of x^2 is 2";
+    }
   }
-  EXPECT_LT(before, 0.01);
+}
+
+TEST(Curve, may_be_as_rough_as_it_was_found) {
+  const Curve smooth = other_shapes({{Variable::speed, Carrier::both_travel}, -0.5, 0.5}, {}).front();
+  std::vector<double> coefficients(basis_size(smooth), 0.0);
+  coefficients[12] = 0.02;  // one kink, far from both ends
+  const auto shapes = as_rough_as(smooth, coefficients);
+  ASSERT_FALSE(shapes.empty());
+  const std::vector<double>& roughness = shapes.front().roughness;
+  EXPECT_NEAR(roughness[2], kRoughness.front(), 1e-12);
+  EXPECT_NEAR(roughness[20], kRoughness.front(), 1e-12);
+  EXPECT_GT(roughness[11], 3.0);
+  EXPECT_TRUE(as_rough_as({{Variable::speed, Carrier::both_travel}, -0.5, 0.5}, coefficients).empty());
 }
 
 /// Of the best sum of the curve's functions and a constant to what is 1 in a square and 0 elsewhere.
