@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "calib/effects/factories.hpp"
 #include "calib/effects/step_effect.hpp"
 
@@ -5,8 +7,7 @@ namespace odomcalib::calib {
 namespace {
 
 /// The motor turns through the play before the wheel follows: after each reversal of a wheel that wheel
-/// misses the play g, whatever its speed. The loss is spread over the first hundredths of a radian, which for
-/// g of that size no sampling can tell from a step.
+/// misses the play g, whatever its speed; after one within the play it misses what it has to go back.
 class Backlash final : public StepEffect<Backlash> {
  public:
   [[nodiscard]] std::string name() const override { return "backlash"; }
@@ -25,17 +26,24 @@ class Backlash final : public StepEffect<Backlash> {
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
-    lose(c.left_since_reversal, c.left_delta, p[0], step.left);
-    lose(c.right_since_reversal, c.right_delta, p[1], step.right);
+    lose(c.left_lost, c.left_delta, p[0], step.left);
+    lose(c.right_lost, c.right_delta, p[1], step.right);
   }
 
  private:
+  /// What a play loses is known of kPlays; in between it is interpolated, from nothing on.
   template <typename T>
-  static void lose(double since, double delta, const T& play, T& travel) {
-    constexpr double kSpread = 0.02;  // rad
-    if (since > 20.0 * kSpread || std::abs(delta) < 1e-9) return;
-    const double share = std::exp(-since / kSpread) - std::exp(-(since + std::abs(delta)) / kSpread);
-    travel *= 1.0 - play * (share / std::abs(delta));
+  static void lose(const LostToPlay& lost, double delta, const T& play, T& travel) {
+    if (std::abs(delta) < 1e-9) return;
+    const double size = std::min(std::abs(plain(play)), kPlays.back());
+    const auto next =
+        static_cast<std::size_t>(std::lower_bound(kPlays.begin(), kPlays.end(), size) - kPlays.begin());
+    const double play_before = next > 0 ? kPlays[next - 1] : 0.0,
+                 lost_before = next > 0 ? lost[next - 1] : 0.0;
+    const double slope = (lost[next] - lost_before) / (kPlays[next] - play_before);
+    const T magnitude = plain(play) < 0.0 ? T(-play) : play;
+    const T loss = lost_before + slope * (magnitude - play_before);
+    travel *= 1.0 - (plain(play) < 0.0 ? T(-loss) : loss) / delta;
   }
 };
 

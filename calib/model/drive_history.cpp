@@ -48,6 +48,24 @@ double DriveHistory::Wheel::advance(double delta, double dither) {
   return before;
 }
 
+/// The play operator (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, section 2). What a
+/// standing wheel shows of two counts is no motion, so a play of less loses its share of what is one. The
+/// drive begins with the flanks that its first motion needs.
+LostToPlay DriveHistory::Gears::advance(double delta, double dither) {
+  LostToPlay lost{};
+  if (delta == 0.0) return lost;
+  for (std::size_t k = 0; k < kPlays.size(); ++k) {
+    const double play = std::max(kPlays[k], dither);
+    if (!has_moved) gap[k] = delta > 0.0 ? play : 0.0;
+    const double moved = gap[k] + delta;
+    const double pushed = moved > play ? moved - play : std::min(moved, 0.0);
+    gap[k] = moved - pushed;
+    lost[k] = (delta - pushed) * kPlays[k] / play;
+  }
+  has_moved = true;
+  return lost;
+}
+
 void DriveHistory::advance(StepContext& c) {
   const Pose step =
       wheel_arc(base_.left_radius * c.left_delta, base_.right_radius * c.right_delta, base_.track_width);
@@ -63,6 +81,8 @@ void DriveHistory::advance(StepContext& c) {
   distance_ += c.way;
   c.left_since_reversal = left_.advance(c.left_delta, dither_);
   c.right_since_reversal = right_.advance(c.right_delta, dither_);
+  c.left_lost = left_gears_.advance(c.left_delta, dither_);
+  c.right_lost = right_gears_.advance(c.right_delta, dither_);
   swing_caster(c, step);
   relax_turn(c, step);
   remember_stop(c);

@@ -30,6 +30,13 @@ class DriveHistory {
     /// @return rotation since the last reversal before this interval, rad
     double advance(double delta, double dither);
   };
+  /// A motor that turns to and fro within the play of its gears, for each of kPlays.
+  struct Gears {
+    bool has_moved = false;
+    std::array<double, kPlays.size()> gap{};  ///< rad, from the flank that drives backwards
+    /// @return rotation of this interval that does not reach the wheel, rad
+    LostToPlay advance(double delta, double dither);
+  };
   void swing_caster(StepContext& context, const Pose& step);
   void relax_turn(StepContext& context, const Pose& step);
   void remember_stop(StepContext& context);
@@ -42,6 +49,7 @@ class DriveHistory {
   double dither_;  ///< rad
   Pose pose_;
   Wheel left_, right_;
+  Gears left_gears_, right_gears_;
   double direction_ = 0.0;
   double since_reversal_ = kFarBack;
   double distance_ = 0.0;

@@ -32,8 +32,9 @@ std::size_t nearest_of(const std::array<double, N>& values, double value) {
   return best;
 }
 
-/// What happened lately, fading over several spans: nobody knows how long a robot remembers.
-inline constexpr std::array<double, 3> kMemorySpans = {1.0 / 3.0, 1.0, 3.0};
+/// What happened lately, fading over several spans, the usual one second: nobody knows how long a robot
+/// remembers.
+inline constexpr std::array<double, 8> kMemorySpans = {0.3, 1.0, 3.3, 0.2, 0.45, 0.67, 1.5, 2.2};
 inline constexpr std::size_t kUsualMemory = 1;
 using Memory = std::array<double, kMemorySpans.size()>;
 
@@ -47,6 +48,12 @@ using PushMemory = std::array<double, kMemorySpans.size() + kPushes.size()>;
 /// s; how long a robot has to stand until something sticks is not known either. Shorter stops are reversals.
 inline constexpr std::array<double, 14> kStops = {0.12,  0.14, 0.155, 0.17, 0.19, 0.21, 0.23,
                                                   0.255, 0.28, 0.31,  0.34, 0.37, 0.41, 0.45};
+
+/// rad; the play of a gear train is not known either (Renard numbers, ISO 3, R10).
+inline constexpr std::array<double, 20> kPlays = {0.004, 0.005, 0.0063, 0.008, 0.01, 0.0125, 0.016,
+                                                  0.02,  0.025, 0.0315, 0.04,  0.05, 0.063,  0.08,
+                                                  0.1,   0.125, 0.16,   0.2,   0.25, 0.315};
+using LostToPlay = std::array<double, kPlays.size()>;
 
 /// m; trails of casters are not known either ...
 inline constexpr std::array<double, 6> kCasterTrails = {0.02, 0.028, 0.04, 0.057, 0.08, 0.113};
@@ -103,6 +110,8 @@ struct StepContext {
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;
+  /// Of the wheel's rotation in the interval, what a gear train with each of kPlays loses, rad.
+  LostToPlay left_lost{}, right_lost{};
   /// Mean way of the two rims since the robot last stood still for each of kStops, m.
   std::array<double, kStops.size()> since_stop{};
   Memory previous_turn{};      ///< which way it turned lately: mean of the turn's sign over a radian, -1 to 1

@@ -2,10 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "calib/geometry/se2.hpp"
 
 namespace odomcalib::calib {
+namespace {
+
+/// Far below zero a count is taken for one of 32 bits that has gone past its largest: a turn of the wheel
+/// seldom divides 2^32, and its phase would be lost there.
+double without_wrap(std::int64_t count) {
+  constexpr std::int64_t kFar = std::int64_t{1} << 30, kWrap = std::int64_t{1} << 32;
+  return static_cast<double>(count < -kFar && count >= -2 * kFar ? count + kWrap : count);
+}
+
+}  // namespace
 
 std::size_t WheelTrack::interval_at(double time) const {
   const auto next = std::upper_bound(t.begin(), t.end(), time);
@@ -35,8 +46,8 @@ WheelTrack wheel_track_from_ticks(const Recording& recording) {
   const TickSample& first = recording.ticks.front();
   // Angles begin within the first turn of the counter: a wheel's phase is the same in every recording until
   // the counter restarts.
-  const double left = std::fmod(static_cast<double>(first.left), recording.robot.ticks_per_rev);
-  const double right = std::fmod(static_cast<double>(first.right), recording.robot.ticks_per_rev);
+  const double left = std::fmod(without_wrap(first.left), recording.robot.ticks_per_rev);
+  const double right = std::fmod(without_wrap(first.right), recording.robot.ticks_per_rev);
   for (const TickSample& sample : recording.ticks) {
     if (!track.t.empty() && !(sample.t > track.t.back())) continue;
     track.t.push_back(sample.t);

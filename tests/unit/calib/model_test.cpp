@@ -119,7 +119,8 @@ TEST_P(JacobianOf, agrees_with_central_differences) {
   std::vector<double> steps(kBaseCount, 1e-6);
   for (const auto& effect : effects)
     for (const EffectParameter& parameter : effect->parameters()) {
-      const double typical = parameter.start != 0.0 ? parameter.start : 0.25 * parameter.scale;
+      // Where a play lies between two that are known: at one of them the derivative has a step.
+      const double typical = parameter.start != 0.0 ? parameter.start : 0.23 * parameter.scale;
       p(static_cast<Eigen::Index>(steps.size())) = typical;
       steps.push_back(4e-4 * typical);
     }
@@ -179,6 +180,35 @@ TEST(Context, speeds_and_accelerations_are_those_of_the_wheels) {
     EXPECT_NEAR(context[k].right_acceleration,
                 -kBase.right_radius * 7.0 * 0.43 * 0.43 * std::sin(0.43 * t + 0.5), 2e-2);
   }
+}
+
+TEST(Backlash, is_that_of_the_plays_beside_it) {
+  StepContext c;
+  c.left_delta = 0.1;
+  for (std::size_t k = 0; k < kPlays.size(); ++k) c.left_lost[k] = std::min(kPlays[k], c.left_delta);
+  const auto travel = [&](double play) {
+    WheelStep<double> step{0.2, 0.0};
+    find_effect("backlash")->apply(c, std::array{play, 0.0}, step);
+    return step.left;
+  };
+  for (const double play : {0.0, 0.001, 0.004, 0.03, 0.09}) {
+    EXPECT_NEAR(travel(play), 0.2 * (1.0 - play / 0.1), 1e-12) << play;
+    EXPECT_NEAR(travel(-play), 0.2 * (1.0 + play / 0.1), 1e-12) << play;
+  }
+  EXPECT_NEAR(travel(0.3), 0.0, 1e-12);
+}
+
+TEST(WheelTrack, keeps_its_phase_where_a_signed_counter_of_32_bits_wraps) {
+  Recording recording;
+  recording.robot.ticks_per_rev = 1000.0;
+  constexpr std::int64_t kLargest = 2147483647;
+  recording.ticks = {{0.0, kLargest - 9, -5}, {1.0, kLargest - 4, 5}};
+  const WheelTrack before = wheel_track_from_ticks(recording);
+  recording.ticks = {{0.0, -kLargest - 1, 10}, {1.0, -kLargest + 9, 20}};  // five counts on
+  const WheelTrack after = wheel_track_from_ticks(recording);
+  const auto turns = [](double angle) { return std::remainder(angle, 2.0 * kPi); };
+  EXPECT_NEAR(turns(after.left[0] - before.left[1]), 5.0 * before.tick_angle, 1e-9);
+  EXPECT_NEAR(turns(after.right[0] - before.right[1]), 5.0 * before.tick_angle, 1e-9);
 }
 
 TEST(WheelTrack, interpolates_with_the_weights_the_right_way_round) {

@@ -58,6 +58,34 @@ TEST(Reversal, counts_from_where_the_wheel_turned) {
   EXPECT_NEAR(contexts[5].left_since_reversal, 0.07, 1e-12);
 }
 
+/// Of what is lost to a play of 0.05 rad, in each interval.
+std::vector<double> lost_of_counts(const std::vector<int>& counts) {
+  const auto play = static_cast<std::size_t>(std::find(kPlays.begin(), kPlays.end(), 0.05) - kPlays.begin());
+  std::vector<double> lost;
+  for (const StepContext& c : contexts_of_counts(counts)) lost.push_back(c.left_lost.at(play));
+  return lost;
+}
+
+TEST(Play, is_lost_once_after_each_reversal) {
+  const std::vector<double> expected = {0.0, 0.0, 0.0, -0.03, -0.02, 0.0, 0.05, 0.0};
+  const std::vector<double> lost = lost_of_counts({0, 10, 20, 30, 27, 20, 10, 20, 30});
+  ASSERT_EQ(lost.size(), expected.size());
+  for (std::size_t k = 0; k < lost.size(); ++k) EXPECT_NEAR(lost[k], expected[k], 1e-12) << k;
+}
+
+TEST(Play, loses_no_more_than_there_and_back_within_it) {
+  const std::vector<double> expected = {0.0, -0.03, 0.02, 0.01, 0.0};
+  const std::vector<double> lost = lost_of_counts({0, 30, 27, 29, 35, 45});
+  ASSERT_EQ(lost.size(), expected.size());
+  for (std::size_t k = 0; k < lost.size(); ++k) EXPECT_NEAR(lost[k], expected[k], 1e-12) << k;
+}
+
+TEST(Play, of_less_than_a_count_loses_its_share_of_what_is_no_dither) {
+  const auto contexts = contexts_of_counts({0, 5, 10, 9, 10, 5});
+  EXPECT_EQ(contexts[2].left_lost.front() + contexts[3].left_lost.front(), 0.0) << "a count to and fro";
+  EXPECT_NEAR(contexts[4].left_lost.front(), -kPlays.front(), 1e-12);
+}
+
 TEST(Reversal, needs_no_fast_start) {
   const auto contexts = contexts_of_counts({0, 1, 2, 3, 2, 1, 0});
   EXPECT_GT(contexts[3].left_since_reversal, 100.0);
