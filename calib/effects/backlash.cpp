@@ -7,17 +7,28 @@ namespace odomcalib::calib {
 namespace {
 
 /// The motor turns through the play before the wheel follows: after each reversal of a wheel that wheel
-/// misses the play g, whatever its speed; after one within the play it misses what it has to go back.
+/// misses the play g, whatever its speed; after one within the play it misses what it has to go back. What
+/// gives way instead of being loose (a belt, a friction wheel) misses as much over a longer way, the more the
+/// nearer to the reversal.
 class Backlash final : public StepEffect<Backlash> {
  public:
+  /// @param spread over which the loss falls off exponentially, rad; 0: play
+  explicit Backlash(double spread) : spread_(spread) {}
   [[nodiscard]] std::string name() const override { return "backlash"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
-    return {{"left_play", "rad", 0.02, -0.3, 0.3}, {"right_play", "rad", 0.02, -0.3, 0.3}};
+    return {{"left_play", "rad", 0.02, -0.3, 0.3},
+            {"right_play", "rad", 0.02, -0.3, 0.3},
+            {"spread", "rad", 1e9, 0.0, 1.0, spread_, 0.0, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"time_offset", "caster_kick"}; }
   [[nodiscard]] std::string separating_motion() const override {
     return "reversals at low and high speed; spins left and right, where the wheels reverse and the robot "
            "does not";
+  }
+  [[nodiscard]] std::vector<std::shared_ptr<const Effect>> variants() const override {
+    std::vector<std::shared_ptr<const Effect>> all;
+    for (const double spread : {0.0, 0.05, 0.15}) all.push_back(std::make_shared<Backlash>(spread));
+    return all;
   }
   [[nodiscard]] std::vector<Law> laws() const override {
     return {{Variable::left_since_reversal, Carrier::left_travel},
@@ -26,11 +37,24 @@ class Backlash final : public StepEffect<Backlash> {
 
   template <typename T>
   static void act(const StepContext& c, std::span<const T> p, WheelStep<T>& step) {
+    const double spread = plain(p[2]);
+    if (spread > 0.0) {
+      fade(c.left_since_reversal, c.left_delta, p[0], spread, step.left);
+      fade(c.right_since_reversal, c.right_delta, p[1], spread, step.right);
+      return;
+    }
     lose(c.left_lost, c.left_delta, p[0], step.left);
     lose(c.right_lost, c.right_delta, p[1], step.right);
   }
 
  private:
+  template <typename T>
+  static void fade(double since, double delta, const T& play, double spread, T& travel) {
+    if (since > 20.0 * spread || std::abs(delta) < 1e-9) return;
+    const double share = std::exp(-since / spread) - std::exp(-(since + std::abs(delta)) / spread);
+    travel *= 1.0 - play * (share / std::abs(delta));
+  }
+
   /// What a play loses is known of kPlays; in between it is interpolated, from nothing on.
   template <typename T>
   static void lose(const LostToPlay& lost, double delta, const T& play, T& travel) {
@@ -45,10 +69,12 @@ class Backlash final : public StepEffect<Backlash> {
     const T loss = lost_before + slope * (magnitude - play_before);
     travel *= 1.0 - (plain(play) < 0.0 ? T(-loss) : loss) / delta;
   }
+
+  double spread_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Effect> make_backlash() { return std::make_shared<Backlash>(); }
+std::shared_ptr<const Effect> make_backlash() { return std::make_shared<Backlash>(0.0); }
 
 }  // namespace odomcalib::calib

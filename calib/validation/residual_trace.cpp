@@ -27,11 +27,9 @@ struct Variable {
 };
 
 /// 1 when the wheel just turned to forward, -1 to backward, otherwise 0.
-double reversal(double since, double delta) {
-  return since == 0.0 && delta != 0.0 ? std::copysign(1.0, delta) : 0.0;
-}
-double left_reversal(const StepContext& c) { return reversal(c.left_since_reversal, c.left_delta); }
-double right_reversal(const StepContext& c) { return reversal(c.right_since_reversal, c.right_delta); }
+constexpr std::size_t kUsualPlay = 9;  ///< of kPlays: as much of a reversal as goes by until it is taken up
+double left_reversal(const StepContext& c) { return c.left_lost[kUsualPlay] / kPlays[kUsualPlay]; }
+double right_reversal(const StepContext& c) { return c.right_lost[kUsualPlay] / kPlays[kUsualPlay]; }
 
 constexpr std::array kVariables = {
     Variable{"speed", "m/s", Variable::mean, [](const StepContext& c) { return c.speed; }},

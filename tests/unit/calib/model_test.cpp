@@ -188,7 +188,7 @@ TEST(Backlash, is_that_of_the_plays_beside_it) {
   for (std::size_t k = 0; k < kPlays.size(); ++k) c.left_lost[k] = std::min(kPlays[k], c.left_delta);
   const auto travel = [&](double play) {
     WheelStep<double> step{0.2, 0.0};
-    find_effect("backlash")->apply(c, std::array{play, 0.0}, step);
+    find_effect("backlash")->apply(c, std::array{play, 0.0, 0.0}, step);
     return step.left;
   };
   for (const double play : {0.0, 0.001, 0.004, 0.03, 0.09}) {

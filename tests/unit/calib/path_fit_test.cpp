@@ -64,7 +64,7 @@ Drive make_drive(unsigned seed, double place_error, double slip) {
 
 Eigen::VectorXd start() { return to_vector({0.0765, 0.0735, 0.41, {0.10, 0.0, 0.38}}); }
 
-PathFitOptions free_options() { return {{}, Eigen::VectorXd::Zero(kBaseCount)}; }
+PathFitOptions free_options() { return {{}, Eigen::MatrixXd::Zero(kBaseCount, kBaseCount)}; }
 
 TEST(PathFit, exact_places_and_ideal_wheels_give_the_truth) {
   const Drive drive = make_drive(1, 0.0, 0.0);

@@ -239,7 +239,7 @@ TEST_P(Traces, show_the_variable_that_the_effect_acts_by_and_that_it_is_gone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(effects, Traces,
-                         ::testing::Values(Expected{"backlash", {0.06, 0.06}, "reversals of", 0.2},
+                         ::testing::Values(Expected{"backlash", {0.06, 0.06}, "reversals", 0.2},
                                            Expected{
                                                "wheel_eccentricity", {0.01, 0.005}, "left wheel angle", 0.5},
                                            Expected{"time_offset", {0.03}, "acceleration", 0.5}),
