@@ -17,6 +17,11 @@ def load(folder, name):
     return json.loads((folder / name).read_text())
 
 
+def spread(value):
+    """Two deviations; nothing of a shape that was tried at a few values instead of being fitted."""
+    return f" +- {2 * value['std']:.2g}" if value["std"] else ""
+
+
 def print_parameters(calibration, truth, kept):
     print(f"{'':<22}{'papers':>10}{'found':>10}{'+-2 sigma':>11}{'true':>10}{'in the drive':>14}")
     for name, label in (("left_wheel_diameter", "left wheel diameter"),
@@ -42,8 +47,8 @@ def print_defect(calibration, truth):
         print("  true   nothing")
     found = 0
     for effect in calibration["effects"]:
-        values = ", ".join(f"{name} {value['value']:.4g} +- {2 * (value['std'] or 0):.2g} {value['unit']}"
-                           for name, value in effect["parameters"].items())
+        values = ", ".join(f"{name} {value['value']:.4g}{spread(value)} {value['unit']}"
+                           for name, value in effect["parameters"].items() if value["value"] or value["std"])
         others = f"; cannot be told from {', '.join(effect['aliases'])}" if effect["aliases"] else ""
         print(f"  found  {effect['name']}: {values}{others}")
         found += 1
