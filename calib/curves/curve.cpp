@@ -1,5 +1,7 @@
 #include "calib/curves/curve.hpp"
 
+#include "calib/curves/basis.hpp"
+
 namespace odomcalib::calib {
 
 bool concerns_sensor(const Curve& curve) { return curve.law.carrier == Carrier::sensor_yaw; }
@@ -13,11 +15,11 @@ bool takes_an_event(const Curve& curve) {
 }
 
 bool has_polynomials(const Curve& curve) {
-  const Variable variable = curve.law.variable;
-  const bool is_other = concerns_sensor(curve) || curve.period > 0.0 || is_angle(variable) ||
-                        is_distance_since(variable) || is_relay(variable, curve.memory) ||
-                        variable == Variable::position || is_signed_speed(variable) || has_splines(curve);
-  return !is_other;
+  Curve plain = curve, bent = curve;
+  plain.mean = bent.mean = {};
+  plain.degree = kPlainest;
+  bent.degree = kDegrees;
+  return basis_size(plain) != basis_size(bent);
 }
 
 bool has_splines(const Curve& curve) { return curve.knots > kKnots; }

@@ -1,6 +1,5 @@
 #include "calib/tracing/tracing_json.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
