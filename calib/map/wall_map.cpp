@@ -15,8 +15,8 @@ constexpr double kMaxOffset = 0.06;   ///< m across, between pieces of one wall
 constexpr double kMinAlike = 0.995;   ///< cosine between their normals, 5.7 degrees
 constexpr double kMinAlong = 0.9;     ///< the same, of a double
 constexpr double kMaxGapAlong = 0.5;  ///< m, between pieces of one wall
-constexpr double kShade = 0.1;        ///< m, a wall may be this much longer than what was seen of it
-constexpr double kEndMargin = 0.02;   ///< m, at ends that are already short of what was seen
+constexpr double kMaxOverhang = 0.1;  ///< m, of a double beyond the end of its wall
+constexpr double kShade = 0.03;       ///< m, a wall is longer than what counts of it: both its ends are cut
 
 LineSums moved(const LineSums& sums, const Frame& frame) {
   const Eigen::Matrix2d turn = frame.rotation();
@@ -55,7 +55,7 @@ std::pair<double, double> ends_along(const MapWall& from, const MapWall& wall) {
 bool lies_along(const MapWall& piece, const MapWall& wall, double tolerance) {
   if (piece.normal.dot(wall.normal) < kMinAlong) return false;
   const auto [low, high] = ends_along(piece, wall);
-  if (low > wall.high + kShade || high < wall.low - kShade) return false;
+  if (low > wall.high + kMaxOverhang || high < wall.low - kMaxOverhang) return false;
   const auto across = [&](double s) {
     return std::abs(wall.normal.dot(piece.centre + s * piece.direction() - wall.centre));
   };
@@ -133,7 +133,7 @@ std::optional<std::size_t> WallMap::struck_by(const Eigen::Vector2d& from, const
     const double s = wall.direction().dot(from + range * direction - wall.centre);
     if (s < wall.low - kShade || s > wall.high + kShade) continue;
     nearest = range;
-    const bool inside = s > wall.low + kEndMargin && s < wall.high - kEndMargin;
+    const bool inside = s > wall.low && s < wall.high;
     struck = inside && towards < -kMinWallIncidence ? std::optional<std::size_t>(w) : std::nullopt;
   }
   return struck;
