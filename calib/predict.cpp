@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "calib/curves/curve_effect.hpp"
+#include "calib/drive_clock.hpp"
 #include "calib/effects/catalogue.hpp"
 #include "calib/effects/reference_effect.hpp"
 #include "calib/lidar/lidar_effect.hpp"
@@ -20,23 +21,24 @@ namespace {
 /// Samples kept for smoothing: effects see speeds, and speeds need a little history.
 constexpr std::size_t kHistory = 32;
 
+constexpr std::string_view kDrift = "drift_with_time";
+
 struct Correction {
   Eigen::VectorXd parameters;
   EffectList effects;
-  double time = 0.0;  ///< s, at which whatever changes with time is taken
 };
 
 double value_or(const Calibration& calibration, const std::string& name, double otherwise) {
   return calibration.parameter(name).value_or(otherwise);
 }
 
-/// Wheels that change with time are used as they were on the average of the drive: when the next drive
-/// begins, nobody knows how warm they are.
-bool counts_by_its_mean(const Effect& effect) { return effect.name() == "drift_with_time"; }
+/// Wheels that changed with time begin the next drive as they ended this one.
+bool stays_with_the_wheels(const Effect& effect) { return effect.name() == kDrift; }
 
-/// Half the duration of the drive that the calibration comes from, s.
-double middle_of_drive(const Calibration& calibration) {
-  return calibration.data.empty() ? 0.0 : calibration.data.front().duration / 2.0;
+/// What goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
+bool stays_with_the_wheels(const FittedCurve& fitted) {
+  return fitted.curve.law.variable == Variable::time && !fitted.curve.is_wave() &&
+         (fitted.curve.period == 0.0 || fitted.law_of == kDrift);
 }
 
 /// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the
@@ -44,8 +46,12 @@ double middle_of_drive(const Calibration& calibration) {
 Place place_of(const Effect& effect, const std::string& parameter = "") {
   if (concerns_wheels_too(effect, parameter)) return Place::odometry;
   if (concerns_reference(effect)) return Place::reference;
-  const bool stays_behind = effect.storage() == Storage::nowhere && !counts_by_its_mean(effect);
+  const bool stays_behind = effect.storage() == Storage::nowhere && !stays_with_the_wheels(effect);
   return stays_behind ? Place::nowhere : Place::odometry;
+}
+
+Place place_of(const FittedCurve& fitted) {
+  return stays_with_the_wheels(fitted) ? Place::odometry : place_of(*make_curve_effect(fitted.curve));
 }
 
 bool acts_on_odometry(const Effect& effect) {
@@ -74,14 +80,15 @@ std::vector<FittedCurve> curves_of(const Calibration& calibration) {
                                                 : curves_from_json(member->second);
 }
 
-Correction correction_of(const Calibration& calibration) {
+/// A curve of time is about its mean: where the time is not known, nothing is better known than that.
+Correction correction_of(const Calibration& calibration, const DriveClock& clock) {
   BaseParameters base;
   base.left_radius =
       value_or(calibration, "left_wheel_diameter", calibration.robot.left_wheel_diameter) / 2.0;
   base.right_radius =
       value_or(calibration, "right_wheel_diameter", calibration.robot.right_wheel_diameter) / 2.0;
   base.track_width = value_or(calibration, "track_width", calibration.robot.track_width);
-  Correction correction{to_vector(base), {}, middle_of_drive(calibration)};
+  Correction correction{to_vector(base), {}};
   std::vector<double> values(correction.parameters.data(), correction.parameters.data() + kBaseCount);
   for (const EffectResult& result : calibration.effects) {
     const auto effect = effect_of(result);
@@ -90,10 +97,11 @@ Correction correction_of(const Calibration& calibration) {
     const std::vector<double> own = values_of(result, effect);
     values.insert(values.end(), own.begin(), own.end());
   }
-  for (const auto& [curve, coefficients, law_of] : curves_of(calibration)) {
-    if (place_of(*make_curve_effect(curve)) != Place::odometry) continue;
-    correction.effects.push_back(make_curve_effect(curve));
-    values.insert(values.end(), coefficients.begin(), coefficients.end());
+  for (const FittedCurve& fitted : curves_of(calibration)) {
+    if (place_of(fitted) != Place::odometry) continue;
+    if (fitted.curve.law.variable == Variable::time && !clock.is_known()) continue;
+    correction.effects.push_back(make_curve_effect(fitted.curve));
+    values.insert(values.end(), fitted.coefficients.begin(), fitted.coefficients.end());
   }
   correction.parameters =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -110,10 +118,9 @@ std::vector<Placement> effect_placements(const Calibration& calibration) {
     for (const auto& [name, quantity] : result.parameters)
       placements.push_back({result.name, name, quantity, effect ? place_of(*effect, name) : otherwise});
   }
-  for (const auto& [curve, coefficients, law_of] : curves_of(calibration)) {
-    const auto effect = make_curve_effect(curve);
-    const Quantity count{static_cast<double>(coefficients.size()), -1.0, "coefficients"};
-    placements.push_back({effect->name(), "", count, place_of(*effect)});
+  for (const FittedCurve& fitted : curves_of(calibration)) {
+    const Quantity count{static_cast<double>(fitted.coefficients.size()), -1.0, "coefficients"};
+    placements.push_back({make_curve_effect(fitted.curve)->name(), "", count, place_of(fitted)});
   }
   return placements;
 }
@@ -143,9 +150,10 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
   if (const auto even = even_ticks(recording)) set_stamps(counted.ticks, even->t);
   const WheelTrack track = wheel_track_from_ticks(counted);
   if (track.empty()) return poses;
-  const Correction correction = correction_of(calibration);
+  const DriveClock clock(calibration, track.t.front());
+  const Correction correction = correction_of(calibration, clock);
   std::vector<StepContext> context = make_context(track, to_base(as_span(correction.parameters)));
-  for (StepContext& c : context) c.t = correction.time;
+  for (StepContext& c : context) c.t = clock.at(track.t.front() + c.t);
   const DriveModel model(track, std::move(context));
   const std::vector<Pose> base = model.trajectory(as_span(correction.parameters), correction.effects).poses();
   std::size_t k = 0;
@@ -158,18 +166,25 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
 }
 
 struct Odometry::State {
+  Calibration calibration;
+  DriveClock clock;
   Correction correction;
   double ticks_per_rev = 0.0;
   std::deque<TickSample> history;
   Pose pose;
   DriveHistory drive{{}, 0.0};
+
+  void begin(double stamp) {
+    clock = DriveClock(calibration, stamp);
+    correction = correction_of(calibration, clock);
+    ticks_per_rev = calibration.robot.ticks_per_rev;
+    const double tick_angle = ticks_per_rev > 0.0 ? 2.0 * kPi / ticks_per_rev : 0.0;
+    drive = DriveHistory(to_base(as_span(correction.parameters)), tick_angle);
+  }
 };
 
 Odometry::Odometry(const Calibration& calibration) : state_(std::make_unique<State>()) {
-  state_->correction = correction_of(calibration);
-  state_->ticks_per_rev = calibration.robot.ticks_per_rev;
-  const double tick_angle = state_->ticks_per_rev > 0.0 ? 2.0 * kPi / state_->ticks_per_rev : 0.0;
-  state_->drive = DriveHistory(to_base(as_span(state_->correction.parameters)), tick_angle);
+  state_->calibration = calibration;
 }
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
@@ -177,6 +192,7 @@ Odometry& Odometry::operator=(Odometry&&) noexcept = default;
 
 PoseSample Odometry::update(const TickSample& sample) {
   State& s = *state_;
+  if (s.history.empty()) s.begin(sample.t);
   const bool advances = !s.history.empty() && sample.t > s.history.back().t;
   if (s.history.empty() || advances) s.history.push_back(sample);
   if (s.history.size() > kHistory) s.history.pop_front();
@@ -192,7 +208,7 @@ PoseSample Odometry::update(const TickSample& sample) {
   const BaseParameters base = to_base(as_span(s.correction.parameters));
   StepContext context = make_context_of_moment(track, base, n - std::min<std::size_t>(n, 3)).back();
   see_from_the_past(context, track, base);
-  context.t = s.correction.time;
+  context.t = s.clock.at(sample.t);
   s.drive.advance(context);
 
   WheelTrack last{{track.t[n - 2], track.t[n - 1]},

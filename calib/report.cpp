@@ -174,7 +174,10 @@ std::vector<DataUse> data_use(std::span<const Recording> recordings, std::span<c
     DataUse use;
     use.name = recording.name;
     use.sha256 = recording.sha256;
-    if (recording.ticks.size() > 1) use.duration = recording.ticks.back().t - recording.ticks.front().t;
+    if (!recording.ticks.empty()) {
+      use.begin = recording.ticks.front().t;
+      use.duration = recording.ticks.back().t - recording.ticks.front().t;
+    }
     for (const IncrementSample& sample : recording.increments) use.duration += sample.duration;
     use.counts = {{"ticks", recording.ticks.size()},
                   {"scans", recording.scans.size()},

@@ -69,7 +69,8 @@ struct ResidualReport {
 struct DataUse {
   std::string name;
   std::string sha256;
-  double duration = 0.0;
+  std::optional<double> begin;                                 ///< s, stamp of the first ticks
+  double duration = 0.0;                                       ///< s
   std::vector<std::pair<std::string, std::size_t>> counts;     ///< e.g. ticks, scans, pairs
   std::vector<std::pair<std::string, std::size_t>> discarded;  ///< reason -> count
 };

@@ -195,7 +195,7 @@ std::vector<std::pair<std::string, std::size_t>> counts(const Node& node) {
 std::vector<DataUse> data(const Node& node) {
   std::vector<DataUse> out;
   node.each([&](const Node& value) {
-    out.push_back({value["file"].text(), value["sha256"].text(),
+    out.push_back({value["file"].text(), value["sha256"].text(), value["begin"].optional_number(),
                    value["duration"].optional_number().value_or(0.0), counts(value["counts"]),
                    counts(value["discarded"])});
   });

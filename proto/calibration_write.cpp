@@ -126,6 +126,7 @@ Json data(const std::vector<DataUse>& uses) {
   for (const auto& use : uses)
     out.push_back({{"file", use.name},
                    {"sha256", use.sha256},
+                   {"begin", number(use.begin)},
                    {"duration", number(use.duration)},
                    {"counts", counts(use.counts)},
                    {"discarded", counts(use.discarded)}});

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/curves/basis.hpp"
 #include "calib/effects/catalogue.hpp"
 #include "calib/next_test.hpp"
 #include "calib/predict.hpp"
+#include "calib/tracing/tracing_json.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -54,23 +56,86 @@ double distance(const PoseSample& a, const PoseSample& b) {
   return std::hypot(a.x - b.x, a.y - b.y) + 0.2 * std::abs(std::remainder(a.yaw - b.yaw, 2.0 * M_PI));
 }
 
+Calibration with_drift(double growth) {
+  Calibration calibration = nominal_calibration(kRobot);
+  calibration.data.resize(1);
+  calibration.data[0].duration = 200.0;
+  calibration.effects = {{"drift_with_time",
+                          {{"common", {growth, -1.0, "1/(100 s)"}},
+                           {"differential", {0.0, -1.0, "1/(100 s)"}},
+                           {"time_constant", {1e5, -1.0, "s"}}},
+                          {},
+                          {},
+                          "host"}};
+  return calibration;
+}
+
+Calibration with_wheels_larger_by(double share) {
+  Calibration calibration = nominal_calibration(kRobot);
+  for (std::size_t k = 0; k < 2; ++k) calibration.parameters[k].second.value *= 1.0 + share;
+  return calibration;
+}
+
+/// That wheels without a law, larger by `share`, lead to the same end (`drive` takes 60 s).
+void expect_as_larger(const Calibration& calibration, double share, const std::string& what) {
+  const Recording recording = drive();
+  const Calibration larger = with_wheels_larger_by(share);
+  EXPECT_LT(distance(predict(recording, calibration).back(), predict(recording, larger).back()), 1e-4)
+      << what;
+  EXPECT_LT(distance(end_of(recording, calibration), end_of(recording, larger)), 1e-4) << what;
+}
+
 // A drive may begin with cold wheels or warm ones: odometry takes what they were on the average.
 TEST(Odometry, wheels_that_change_with_time_count_by_their_mean_over_the_drive) {
+  expect_as_larger(with_drift(0.01), 0.01, "the time is not known");
+}
+
+// Growth of 1 % in 100 s; the drive of the calibration took 200 s.
+TEST(Odometry, wheels_that_change_with_time_are_known_on_the_same_clock) {
+  for (const auto& [since, share] : {std::pair{300.0, 0.02}, {399.0, 0.02}, {401.0, 0.01}, {-10.0, 0.01}}) {
+    Calibration drifting = with_drift(0.01);
+    drifting.data[0].begin = -since;
+    expect_as_larger(drifting, share, std::to_string(since) + " s since the calibration's drive began");
+    drifting.data.push_back(drifting.data[0]);
+    expect_as_larger(drifting, 0.01, "of two drives");
+  }
+}
+
+TEST(Odometry, wheels_go_on_to_change_while_the_drive_of_the_calibration_lasts) {
+  Calibration drifting = with_drift(0.01);
+  drifting.data[0].begin = 0.0;
   const Recording recording = drive();
-  Calibration drifting = nominal_calibration(kRobot);
-  drifting.data.resize(1);
-  drifting.data[0].duration = 200.0;
-  drifting.effects = {{"drift_with_time",
-                       {{"common", {0.01, -1.0, "1/(100 s)"}},
-                        {"differential", {0.0, -1.0, "1/(100 s)"}},
-                        {"time_constant", {1e5, -1.0, "s"}}},
-                       {},
-                       {},
-                       "host"}};
-  Calibration larger = nominal_calibration(kRobot);  // by 1 % after the first 100 s of 200
-  for (std::size_t k = 0; k < 2; ++k) larger.parameters[k].second.value *= 1.01;
-  EXPECT_LT(distance(predict(recording, drifting).back(), predict(recording, larger).back()), 1e-4);
-  EXPECT_LT(distance(end_of(recording, drifting), end_of(recording, larger)), 1e-4);
+  const auto grown = predict(recording, drifting);
+  const auto larger = predict(recording, with_wheels_larger_by(0.006));
+  const auto nominal = predict(recording, nominal_calibration(kRobot));
+  const auto step = [](const std::vector<PoseSample>& path, std::size_t k) {
+    return std::hypot(path[k + 1].x - path[k].x, path[k + 1].y - path[k].y);
+  };
+  EXPECT_NEAR(step(grown, 100), step(nominal, 100), 3e-4 * step(nominal, 100)) << "after 2 s";
+  EXPECT_NEAR(step(grown, 2900), step(larger, 2900), 3e-4 * step(larger, 2900)) << "after 58 s";
+}
+
+// A straight line from -1 to 1 over 200 s (the first Legendre polynomial), or a cosine.
+TEST(Odometry, a_curve_of_time_acts_where_the_time_is_known) {
+  Calibration bent = nominal_calibration(kRobot);
+  bent.data.resize(1);
+  bent.data[0].duration = 200.0;
+  const auto set_curve = [&bent](double period, const std::string& law_of) {
+    const Curve curve{{Variable::time, Carrier::both_travel}, 0.0, 200.0, period};
+    std::vector<double> coefficients(basis_size(curve), 0.0);
+    coefficients[0] = 0.01;
+    bent.extensions[kCurvesMember] = curves_to_json({{curve, coefficients, law_of}});
+  };
+  set_curve(0.0, "");
+  expect_as_larger(bent, 0.0, "another clock");
+  EXPECT_EQ(effect_placements(bent).front().place, Place::odometry);
+  bent.data[0].begin = -300.0;
+  expect_as_larger(bent, 0.01, "as at the end");
+  set_curve(100.0, "");
+  expect_as_larger(bent, 0.0, "up and down");
+  EXPECT_EQ(effect_placements(bent).front().place, Place::nowhere);
+  set_curve(100.0, "drift_with_time");
+  expect_as_larger(bent, 0.01, "what is left of a drift, as at the end");
 }
 
 // The daemon sees speeds from the past only; apart from that it does what predict does.

@@ -29,8 +29,12 @@ Calibration example() {
   c.residual = {true, std::array<double, 3>{1, 2, 3}, std::array<double, 3>{0.1, 0.2, 0.3}, std::nullopt};
   c.verdict = Verdict::accepted_with_warnings;
   c.reasons = {"line 1\nwith \"quotes\" and ä"};
-  c.data = {
-      {"a.jsonl.gz", std::string(64, 'a'), 12.5, {{"ticks", 100}, {"scans", 20}}, {{"scan: cut off", 1}}}};
+  c.data = {{"a.jsonl.gz",
+             std::string(64, 'a'),
+             1.5e9,
+             12.5,
+             {{"ticks", 100}, {"scans", 20}},
+             {{"scan: cut off", 1}}}};
   c.extensions = {{"zz_own", R"({"b":1,"a":[null,true]})"}, {"aa", "\"text\""}};
   return c;
 }
@@ -66,6 +70,7 @@ TEST(CalibrationFile, has_the_members_of_the_format) {
   EXPECT_TRUE(json["residual"]["noise_floor"].is_null());
   EXPECT_EQ(json["verdict"], "accepted_with_warnings");
   EXPECT_EQ(json["data"][0]["file"], "a.jsonl.gz");
+  EXPECT_EQ(json["data"][0]["begin"], 1.5e9);
   EXPECT_EQ(json["zz_own"]["b"], 1);
 }
 
