@@ -48,7 +48,7 @@ Carriers carriers_of(Variable variable) {
     case Variable::lateral_acceleration:
       return {sideways, sideways_path, track, both_travel, left_travel, right_travel, both_path, yaw_path};
     case Variable::time:
-      return {both_travel, left_travel, right_travel, track, sideways, turn_side, scale};
+      return {both_travel, left_travel, right_travel, track, sideways, turn_side, scale, yaw_path};
     case Variable::heading:
     case Variable::position:
       return {both_travel, left_travel, right_travel, both_path, sideways_path, yaw_path};
@@ -68,14 +68,15 @@ bool is_unsigned(Carrier carrier) {
   return carrier == Carrier::both_path || carrier == Carrier::sideways_path || carrier == Carrier::yaw_path;
 }
 
-/// Of both wheels, as the day goes, or of one, as its brake or its motor does. Periods closer than kStep
-/// cycles per recording look alike.
+/// Of both wheels, as the day goes, of one, as its brake or its motor does, or of where the base is turned
+/// to, as the wind does. Periods closer than kStep cycles per recording look alike.
 void add_periods(double duration, std::vector<Curve>& curves) {
   constexpr double kShortest = 8.0;  // s
   constexpr double kFewestCycles = 1.5;
   constexpr double kStep = 0.7;  // cycles
   for (double cycles = kFewestCycles; duration / cycles > kShortest; cycles += kStep)
-    for (const auto carrier : {Carrier::both_travel, Carrier::left_travel, Carrier::right_travel})
+    for (const auto carrier :
+         {Carrier::both_travel, Carrier::left_travel, Carrier::right_travel, Carrier::yaw_path})
       curves.push_back({{Variable::time, carrier}, 0.0, duration, duration / cycles, 0});
 }
 

@@ -125,6 +125,14 @@ void delay_left(Recording& recording) {
   }
 }
 
+/// A gust turns the base to and fro as it goes, whichever way it goes.
+void blow(Recording& recording) {
+  recount(recording, [](const Interval& i) {
+    const double more = 0.006 * std::cos(2.0 * kPi * i.t / 55.0) * 0.5 * std::abs(i.left + i.right);
+    return std::pair(i.left - more, i.right + more);
+  });
+}
+
 /// The head slips on its mount half-way.
 void turn_head(Recording& recording) {
   for (Scan& scan : recording.scans)
@@ -216,6 +224,7 @@ INSTANTIATE_TEST_SUITE_P(
             "time"),
         Edit{"play", give_play, "backlash"}, Edit{"gear", bend_gear, "left_phase"},
         Edit{"late_left_counts", delay_left, "encoder_lag"}, Edit{"turned_head", turn_head, "time"},
+        Edit{"wind", blow, "time"},
         Edit{"a_little_late",
              [](Recording& r) {
                for (Scan& scan : r.scans) scan.t += 1.5e-3;
