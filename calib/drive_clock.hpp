@@ -1,6 +1,8 @@
 // What the time of a law is in another drive than the one that it was fitted to.
 #pragma once
 
+#include <optional>
+
 #include "proto/calibration.hpp"
 
 namespace odomcalib::calib {

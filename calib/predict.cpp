@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <string_view>
 
 #include "calib/curves/curve_effect.hpp"
 #include "calib/drive_clock.hpp"
@@ -37,7 +38,7 @@ bool stays_with_the_wheels(const Effect& effect) { return effect.name() == kDrif
 
 /// What goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
 bool stays_with_the_wheels(const FittedCurve& fitted) {
-  return fitted.curve.law.variable == Variable::time && !fitted.curve.is_wave() &&
+  return fitted.curve.law.variable == Variable::time &&
          (fitted.curve.period == 0.0 || fitted.law_of == kDrift);
 }
 
@@ -169,16 +170,16 @@ struct Odometry::State {
   Calibration calibration;
   DriveClock clock;
   Correction correction;
-  double ticks_per_rev = 0.0;
   std::deque<TickSample> history;
   Pose pose;
   DriveHistory drive{{}, 0.0};
 
+  [[nodiscard]] double ticks_per_rev() const { return calibration.robot.ticks_per_rev; }
+
   void begin(double stamp) {
     clock = DriveClock(calibration, stamp);
     correction = correction_of(calibration, clock);
-    ticks_per_rev = calibration.robot.ticks_per_rev;
-    const double tick_angle = ticks_per_rev > 0.0 ? 2.0 * kPi / ticks_per_rev : 0.0;
+    const double tick_angle = ticks_per_rev() > 0.0 ? 2.0 * kPi / ticks_per_rev() : 0.0;
     drive = DriveHistory(to_base(as_span(correction.parameters)), tick_angle);
   }
 };
@@ -196,12 +197,12 @@ PoseSample Odometry::update(const TickSample& sample) {
   const bool advances = !s.history.empty() && sample.t > s.history.back().t;
   if (s.history.empty() || advances) s.history.push_back(sample);
   if (s.history.size() > kHistory) s.history.pop_front();
-  if (!advances || !(s.ticks_per_rev > 0.0)) return {sample.t, s.pose.x, s.pose.y, wrap_angle(s.pose.yaw)};
+  if (!advances || !(s.ticks_per_rev() > 0.0)) return {sample.t, s.pose.x, s.pose.y, wrap_angle(s.pose.yaw)};
 
   // The last interval, seen with the history before it; what accumulates over the whole drive is carried
   // along.
   Recording recent;
-  recent.robot.ticks_per_rev = s.ticks_per_rev;
+  recent.robot.ticks_per_rev = s.ticks_per_rev();
   recent.ticks.assign(s.history.begin(), s.history.end());
   const WheelTrack track = wheel_track_from_ticks(recent);
   const std::size_t n = track.t.size();

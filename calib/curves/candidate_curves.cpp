@@ -68,8 +68,8 @@ bool is_unsigned(Carrier carrier) {
   return carrier == Carrier::both_path || carrier == Carrier::sideways_path || carrier == Carrier::yaw_path;
 }
 
-/// Of both wheels, as the day goes, of one, as its brake or its motor does, or of where the base is turned
-/// to, as the wind does. Periods closer than kStep cycles per recording look alike.
+/// Of both wheels, as the day goes, of one, as its brake or its motor does, or of the heading, as the wind
+/// turns it. Periods closer than kStep cycles per recording look alike.
 void add_periods(double duration, std::vector<Curve>& curves) {
   constexpr double kShortest = 8.0;  // s
   constexpr double kFewestCycles = 1.5;

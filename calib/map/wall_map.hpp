@@ -56,8 +56,8 @@ class WallMap {
   /// @return whether there were any
   bool drop_doubles(double tolerance);
 
-  /// For each beam the nearest wall on its way; beams that would strike near the end of a wall are left out,
-  /// since they may as well miss it, and so are those that strike too flat.
+  /// For each beam the nearest wall on its way; beams that would strike just beyond what was seen of a wall
+  /// are left out, since they may as well miss it, and so are those that strike too flat.
   [[nodiscard]] std::vector<Strike> strikes(const std::vector<Beam>& beams, const Pose& sensor) const;
 
   /// @param sensor pose in the map

@@ -2,18 +2,16 @@
 // the stated covariance, and the share of truths outside of the stated 99 % ellipse. Of a hundred pairs one
 // is expected there and none is found every third time, so that only large sets tell. Run
 // build/release/bin/bench_consistency [PAIRS].
-#include <Eigen/LU>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
-#include <vector>
 
 #include "calib/match.hpp"
 #include "tests/sim/world/random.hpp"
 #include "tests/sim/world/rooms.hpp"
+#include "tests/unit/calib/match_error.hpp"
 
 namespace {
 
@@ -65,15 +63,10 @@ struct Errors {
   void add(const calib::ScanMatch& match, const sim::Pose& motion) {
     ++pairs;
     if (!match.ok()) return;
-    const Eigen::Vector3d error(match.pose[0] - motion.x, match.pose[1] - motion.y,
-                                std::remainder(match.pose[2] - motion.yaw, 2.0 * std::numbers::pi));
+    const Eigen::Vector3d error = testing::error_of(match, {motion.x, motion.y, motion.yaw});
     if (error.head<2>().norm() > 0.05 || std::abs(error(2)) > kDegrees) return;
     ++right;
-    Eigen::Matrix3d covariance;
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j)
-        covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = match.covariance[i][j];
-    const double squared = error.dot(covariance.inverse() * error);
+    const double squared = testing::normalised_squared(match, error);
     way += error.head<2>().squaredNorm();
     yaw += error(2) * error(2);
     normalised += squared;

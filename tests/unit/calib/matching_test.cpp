@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -10,6 +9,7 @@
 #include "calib/matching/both_ways.hpp"
 #include "calib/matching/point_to_line.hpp"
 #include "calib/matching/walls.hpp"
+#include "tests/unit/calib/match_error.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
 namespace odomcalib::calib {
@@ -32,14 +32,8 @@ TEST(Matching, S2_04_recovers_a_known_motion_from_noise_free_scans) {
   EXPECT_NEAR(match.pose[2], 0.15, 1e-6);
 }
 
-/// e' C^-1 e; three are expected.
 double normalised_error_squared(const ScanMatch& match, const Pose& motion) {
-  Eigen::Matrix3d covariance;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      covariance(i, j) = match.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-  const Eigen::Vector3d error(match.pose[0] - motion.x, match.pose[1] - motion.y, match.pose[2] - motion.yaw);
-  return error.dot(covariance.inverse() * error);
+  return testing::normalised_squared(match, testing::error_of(match, {motion.x, motion.y, motion.yaw}));
 }
 
 TEST(Matching, S2_40_errors_agree_with_the_reported_covariance) {
