@@ -46,12 +46,15 @@ double nominal_value(const RobotDescription& robot, const std::string& name) {
 }
 
 std::string motion_for(const std::string& name) {
-  return name == "track_width" ? "turn on the spot, both ways" : "drive straight lines, forward and backward";
+  if (name == "track_width") return "turn on the spot, both ways";
+  return "drive straight lines, forward and backward, and turn on the spot";
 }
+
+double relative_deviation(const Quantity& quantity) { return quantity.std / std::abs(quantity.value); }
 
 std::optional<double> relative_deviation(const QuantityList& quantities, const std::string& name) {
   for (const auto& [own, quantity] : quantities)
-    if (own == name) return quantity.std / quantity.value;
+    if (own == name) return relative_deviation(quantity);
   return std::nullopt;
 }
 
@@ -65,8 +68,15 @@ class Judgement {
   void refuse(const std::string& reason) { refusals_.push_back(reason); }
   void warn(const std::string& reason) { warnings_.push_back(reason); }
 
+  /// Of a length that the motion does not determine its value says nothing.
   /// @param measured relative deviation that the motion leaves
   void check(const std::string& name, const Quantity& quantity, double nominal, double measured) {
+    if (!(quantity.std >= 0.0) || measured > kMaxRelativeDeviation) {
+      const std::string how =
+          measured < 1.0 ? "is determined to " + percent(measured) + " only" : "is not determined";
+      refuse(name + " " + how + "; to fix that, " + motion_for(name));
+      return;
+    }
     if (!std::isfinite(quantity.value) || quantity.value <= 0.0) {
       refuse(name +
              " came out as a non-positive length: left and right wheels may be swapped, or the lidar's "
@@ -74,10 +84,8 @@ class Judgement {
              "rotation is wrong");
       return;
     }
-    const double relative = quantity.std / quantity.value;
-    if (!(quantity.std >= 0.0) || measured > kMaxRelativeDeviation)
-      refuse(name + " is determined to " + percent(measured) + " only; to fix that, " + motion_for(name));
-    else if (measured > kWarnRelativeDeviation)
+    const double relative = relative_deviation(quantity);
+    if (measured > kWarnRelativeDeviation)
       warn(name + " is determined to " + percent(measured) + " only; a longer recording would help");
     else if (relative > kWarnRelativeDeviation)
       warn(name + " without what was found is known to " + percent(relative) +
@@ -156,7 +164,7 @@ GateResult judge(const Calibration& calibration, const Footing& footing) {
       judgement.check_lidar_yaw(quantity.value, (*calibration.robot.lidar_pose)[2]);
     if (name.starts_with("lidar_")) continue;
     judgement.check(name, quantity, nominal_value(calibration.robot, name),
-                    relative_deviation(footing.measured, name).value_or(quantity.std / quantity.value));
+                    relative_deviation(footing.measured, name).value_or(relative_deviation(quantity)));
   }
   judgement.check_matches(footing.matched, footing.unmatched);
   judgement.check_residual(calibration.residual);

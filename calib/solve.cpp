@@ -58,7 +58,7 @@ class Solver {
       joint.name = "joint";
       joint.refused = fit.error().what;
       calibration_.methods.push_back(joint);
-      return refuse(fit.error());
+      return refuse(cause_of(fit.error()));
     }
     if (automatic_ && recordings_.front().increments.empty())
       search(fit.value());
@@ -72,6 +72,15 @@ class Solver {
  private:
   void report(const std::string& phase, double fraction) const {
     if (progress_) progress_(phase, fraction);
+  }
+
+  /// Where no scan matched, the fit has nothing to say but that.
+  [[nodiscard]] Error cause_of(const Error& error) const {
+    std::size_t unmatched = 0;
+    for (const PairSet& set : session_->pair_sets()) unmatched += set.unmatched;
+    if (error.code != ErrorCode::empty || unmatched == 0) return error;
+    return {ErrorCode::refused, "none of " + std::to_string(unmatched) + " pairs of scans could be matched",
+            "scan matching", "drive where the lidar sees walls on all sides, not along a corridor"};
   }
 
   Calibration refuse(const Error& error) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace odomcalib::calib {
 namespace {
 
@@ -38,6 +40,15 @@ TEST(Gate, refuses_a_badly_determined_length_and_names_the_motion_for_it) {
   EXPECT_EQ(gate.verdict, Verdict::refused);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons[0].find("turn on the spot"), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, of_a_length_that_is_not_determined_the_value_says_nothing) {
+  for (const double track : {-20.0, 0.05}) {
+    const GateResult gate = judge(with_track(track, 0.7 * std::abs(track)), kFirm);
+    EXPECT_EQ(gate.verdict, Verdict::refused);
+    ASSERT_EQ(gate.reasons.size(), 1U) << "neither swapped wheels nor wrong units";
+    EXPECT_NE(gate.reasons[0].find("is determined to 70 % only"), std::string::npos) << gate.reasons[0];
+  }
 }
 
 TEST(Gate, accepts_what_only_a_law_of_unknown_shape_makes_uncertain_and_says_so) {

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "calib/predict.hpp"
+#include "tests/unit/calib/room_scans.hpp"
 #include "tests/unit/calib/shared_data.hpp"
 
 namespace odomcalib::calib {
@@ -46,6 +48,27 @@ TEST(Solve, a_recording_without_scans_is_refused_with_the_cause) {
   ASSERT_EQ(result.data.size(), 1U) << "what was refused is told";
   EXPECT_EQ(result.data.front().name, "no-lidar");
   EXPECT_EQ(result.data.front().counts.front(), (std::pair<std::string, std::size_t>{"ticks", 2}));
+}
+
+TEST(Solve, a_corridor_is_refused_as_a_place_that_scans_cannot_tell) {
+  Recording recording;
+  recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
+  constexpr double kSpeed = 0.2, kCountsPerMetre = 4096.0 / (kPi * 0.15);
+  for (int k = 0; k <= 1500; ++k) {
+    const auto counts = static_cast<std::int64_t>(std::lround(kSpeed * 0.02 * k * kCountsPerMetre));
+    recording.ticks.push_back({0.02 * k, counts, counts, 0});
+  }
+  for (unsigned k = 0; k < 300; ++k) {
+    recording.scans.push_back(odomcalib::testing::scan_from(odomcalib::testing::kCorridor,
+                                                            {kSpeed * 0.1 * k, 0.0, 0.0}, 0.01, k, 360));
+    recording.scans.back().t = 0.1 * k;
+  }
+  const Calibration result = solve({&recording, 1}, {});
+  EXPECT_EQ(result.verdict, Verdict::refused);
+  ASSERT_FALSE(result.reasons.empty());
+  EXPECT_NE(result.reasons[0].find("pairs of scans could be matched; drive where the lidar sees walls"),
+            std::string::npos)
+      << result.reasons[0];
 }
 
 TEST(Solve, an_unknown_effect_is_refused_by_name) {
