@@ -9,6 +9,7 @@
 #include "calib/lidar/metre.hpp"
 #include "calib/report.hpp"
 #include "calib/report_data.hpp"
+#include "calib/tracing/event_text.hpp"
 #include "calib/tracing/outlier_trace.hpp"
 #include "calib/tracing/search_round.hpp"
 #include "calib/tracing/tracing_json.hpp"
@@ -92,6 +93,9 @@ class Filler {
     footing.measured = measured_;
     if (outliers_) footing.remarks.push_back(to_text(*outliers_));
     for (const std::string& remark : remarks_on(found_.stamps)) footing.remarks.push_back(remark);
+    const Pose mount = to_base(as_span(found_.outcome.model.fit.parameters)).mount;
+    for (const FittedCurve& curve : fitted_curves_)
+      if (happens_at_once(curve.curve)) footing.remarks.push_back(event_to_text(curve, mount));
     if (!found_.session.reference_is_scans() || found_.every_scan_placed) return footing;
     for (const PairSet& set : found_.session.pair_sets()) {
       footing.matched += set.pairs.size();

@@ -38,8 +38,9 @@ bool stays_with_the_wheels(const Effect& effect) { return effect.name() == kDrif
 
 /// What goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
 bool stays_with_the_wheels(const FittedCurve& fitted) {
-  return fitted.curve.law.variable == Variable::time &&
-         (fitted.curve.period == 0.0 || fitted.law_of == kDrift);
+  const Curve& curve = fitted.curve;
+  return curve.law.variable == Variable::time && !is_the_lidars(curve) &&
+         (curve.period == 0.0 || fitted.law_of == kDrift);
 }
 
 /// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the

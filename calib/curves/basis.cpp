@@ -184,16 +184,27 @@ double argument_of(const Curve& curve, const StepContext& c) {
   return curve.with_motion ? growth_of_pace(z, motion_of(curve.law.variable, c)) : z;
 }
 
+/// One function of each carrier. What is stated of a sensor's place is where it is now.
+BasisValues event(const Curve& curve, double t) {
+  const bool is_now = t >= curve.moment;
+  BasisValues functions;
+  for (std::size_t part = 0; part < acts_on(curve).size(); ++part)
+    functions.push_back(is_now == is_bump(curve) ? 0.0 : 1.0);
+  return functions;
+}
+
 BasisValues raw_basis(const Curve& curve, const StepContext& c) {
   const Variable variable = curve.law.variable;
   const double z = argument_of(curve, c);
-  if (concerns_sensor(curve)) return sway_functions(curve, z);
+  if (is_sway(curve)) return sway_functions(curve, z);
   if (curve.constant) return with_constant(harmonics(z, 1, kHarmonics));
   if (curve.period > 0.0) return harmonics(2.0 * kPi * z / curve.period, 1, 1);
   if (is_angle(variable))
     return curve.harmonic > 0 ? harmonics(z, curve.harmonic, curve.harmonic) : harmonics(z, 1, kHarmonics);
   if (is_distance_since(variable)) return fading(variable, z);
   if (is_relay(variable, curve.memory)) return {z};
+  if (happens_at_once(curve)) return event(curve, z);
+  if (curve.fading > 0.0) return {std::exp(-z / curve.fading)};
   if (variable == Variable::time) return legendre(scaled(curve, z), curve.degree);
   if (curve.is_wave()) return wave_functions(curve, c);
   if (curve.patches) return patches(curve, c.x, c.y);
@@ -209,19 +220,29 @@ BasisValues raw_basis(const Curve& curve, const StepContext& c) {
 
 std::span<const Carrier> acts_on(const Curve& curve) {
   static constexpr std::array kEachWheel = {Carrier::left_travel, Carrier::right_travel};
-  if (curve.law == kOfEachWheel) return kEachWheel;
+  // Levers first: the sensor's way is that of its place, seen by axes that were turned.
+  static constexpr std::array kPlace = {Carrier::turn_side, Carrier::turn_ahead, Carrier::way_turned};
+  if (is_bump(curve)) return kPlace;
+  const bool is_of_both_wheels = happens_at_once(curve) && curve.law.carrier == Carrier::both_travel;
+  if (curve.law == kOfEachWheel || is_of_both_wheels) return kEachWheel;
   return {&curve.law.carrier, 1};
 }
 
+bool belongs_to(const Curve& curve, std::size_t function, std::size_t part) {
+  return !happens_at_once(curve) || function == part;
+}
+
 BasisValues basis(const Curve& curve, const StepContext& c, std::size_t part) {
-  const bool of_right_wheel = part > 0;
-  BasisValues functions = of_right_wheel ? speed_functions(curve, c.right_speed) : raw_basis(curve, c);
+  const bool of_right_speed = part > 0 && curve.law == kOfEachWheel;
+  BasisValues functions = of_right_speed ? speed_functions(curve, c.right_speed) : raw_basis(curve, c);
   for (std::size_t k = 0; k < curve.mean.size(); ++k) functions[k] -= curve.mean[k];
+  for (std::size_t k = 0; k < functions.size(); ++k)
+    if (!belongs_to(curve, k, part)) functions[k] = 0.0;
   return functions;
 }
 
 BasisValues functions_in(const Curve& curve, const StepContext& c, std::size_t part) {
-  return concerns_sensor(curve) ? growth(curve, c) : basis(curve, c, part);
+  return is_sway(curve) ? growth(curve, c) : basis(curve, c, part);
 }
 
 std::size_t basis_size(const Curve& curve) { return basis(curve, StepContext{}).size(); }

@@ -32,9 +32,12 @@ class BasisValues {
   std::size_t count_ = 0;
 };
 
-/// The carriers that a curve acts on, all with the same coefficients: its own, or, of a variable that each
-/// wheel has for itself, the travel of the left and of the right wheel.
+/// The carriers that a curve acts on: its own, or, of a variable that each wheel has for itself, the travel
+/// of the left and of the right wheel with the same coefficients, or, of an event, with one for each; of a
+/// sensor that was moved, its three.
 std::span<const Carrier> acts_on(const Curve& curve);
+/// Whether the function is one of that carrier's; otherwise it is zero there.
+bool belongs_to(const Curve& curve, std::size_t function, std::size_t part);
 
 /// @param part index of the carrier among those it acts on
 BasisValues basis(const Curve& curve, const StepContext& context, std::size_t part = 0);

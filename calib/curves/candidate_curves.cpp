@@ -1,6 +1,7 @@
 #include "calib/curves/candidate_curves.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "calib/curves/curve_on_drives.hpp"
@@ -80,6 +81,40 @@ void add_periods(double duration, std::vector<Curve>& curves) {
       curves.push_back({{Variable::time, carrier}, 0.0, duration, duration / cycles, 0});
 }
 
+/// A load that is taken up or slips, a tyre that lets its air out, a lidar that is knocked: from one moment
+/// on all is different.
+void add_moments(double duration, std::vector<Curve>& curves) {
+  for (int k = 1; k < kMoments; ++k)
+    for (const auto carrier : {Carrier::both_travel, Carrier::track, Carrier::way_turned}) {
+      curves.push_back({{Variable::time, carrier}, 0.0, duration});
+      curves.back().moment = duration * k / kMoments;
+    }
+}
+
+/// A lidar's metre as it warms up, which is a matter of minutes.
+void add_fading(double duration, std::vector<Curve>& curves) {
+  for (const double time_constant : {30.0, 100.0}) {
+    curves.push_back({{Variable::time, Carrier::scale}, 0.0, duration});
+    curves.back().fading = time_constant;
+  }
+}
+
+void add_time_constants_about(const Curve& curve, std::vector<Curve>& shapes) {
+  for (const double factor : {0.5, 0.71, 1.41, 2.0}) {
+    shapes.push_back(curve);
+    shapes.back().fading *= factor;
+  }
+}
+
+/// Close to where it was found.
+void add_moments_about(const Curve& curve, std::vector<Curve>& shapes) {
+  for (int k = 3; k <= 5; ++k)
+    for (const double way : {-1.0, 1.0}) {
+      shapes.push_back(curve);
+      shapes.back().moment += std::ldexp(way * curve.high / kMoments, -k);
+    }
+}
+
 /// Of what lies on the floor; wheels sink in, both alike.
 void add_patches(double low, double high, std::vector<Curve>& curves) {
   curves.push_back({{Variable::position, Carrier::both_travel}, low, high});
@@ -141,7 +176,11 @@ std::vector<Curve> candidate_curves(std::span<const DriveModel* const> models) {
       // A drive seldom shows all headings; one wave round the circle is what few of them can tell.
       if (variable == Variable::heading) add_harmonics(curve, 1, 1, curves);
     }
-    if (variable == Variable::time) add_periods(high - low, curves);
+    if (variable == Variable::time) {
+      add_periods(high - low, curves);
+      add_moments(high, curves);
+      add_fading(high, curves);
+    }
     if (variable == Variable::position) add_patches(low, high, curves);
   }
   add_laws_of_pace(models, curves);
@@ -156,6 +195,8 @@ std::vector<Curve> other_shapes(const Curve& curve, std::span<const DriveModel* 
     shapes.back().knots = kMostKnots;
     shapes.back().roughness.assign(kMostKnots - 1, roughness);
   }
+  if (happens_at_once(curve)) add_moments_about(curve, shapes);
+  if (curve.fading > 0.0) add_time_constants_about(curve, shapes);
   for (int degree = kPlainest; has_polynomials(curve) && degree <= kDegrees; ++degree) {
     if (degree == curve.degree) continue;
     shapes.push_back(curve);

@@ -4,7 +4,20 @@
 
 namespace odomcalib::calib {
 
-bool concerns_sensor(const Curve& curve) { return curve.law.carrier == Carrier::sensor_yaw; }
+bool is_sway(const Curve& curve) { return curve.law.carrier == Carrier::sensor_yaw; }
+
+bool is_bump(const Curve& curve) {
+  return happens_at_once(curve) && curve.law.carrier == Carrier::way_turned;
+}
+
+bool concerns_sensor(const Curve& curve) { return is_sway(curve) || is_bump(curve); }
+
+bool is_the_lidars(const Curve& curve) {
+  const auto [variable, carrier] = curve.law;
+  const bool crabs = carrier == Carrier::sideways || carrier == Carrier::sideways_path;
+  const bool gives_way = variable == Variable::time || variable == Variable::previous_turn;
+  return concerns_sensor(curve) || carrier == Carrier::scale || (crabs && gives_way);
+}
 
 bool is_of_one_drive(const Curve& curve) {
   return belongs_to_the_place(curve.law.variable) || curve.period > 0.0;
@@ -13,6 +26,8 @@ bool is_of_one_drive(const Curve& curve) {
 bool takes_an_event(const Curve& curve) {
   return curve.law.variable == Variable::since_stop || is_relay(curve.law.variable, curve.memory);
 }
+
+bool happens_at_once(const Curve& curve) { return curve.moment > 0.0; }
 
 bool has_polynomials(const Curve& curve) {
   Curve plain = curve, bent = curve;

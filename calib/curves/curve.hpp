@@ -15,6 +15,8 @@ inline constexpr int kDegrees = 4, kPlainest = 1;
 /// How rough a law may be that is described: deviation of the second differences of neighbouring splines, in
 /// typical sizes.
 inline constexpr std::array<double, 4> kRoughness = {0.04, 0.16, 0.64, 2.56};
+/// That a drive is parted into to find when something happened.
+inline constexpr int kMoments = 20;
 /// Of an angle, together; higher ones are tried one by one.
 inline constexpr int kHarmonics = 3;
 /// Of a distance since an event, each at twice the distance of the one before.
@@ -26,6 +28,10 @@ inline constexpr int kPatches = 4;
 /// - angles: harmonics 1 to 3, or one alone;
 /// - distances since an event: piecewise linear in its logarithm, zero far away;
 /// - time, a distance or a wheel's angle with a period: one cosine and one sine;
+/// - time that fades: exp(-t / time constant), so that the base is what it comes to, as of a lidar once it is
+///   warm;
+/// - time with a moment: 0 before it and 1 from then on, as when a load is taken up; on both wheels, for each
+///   its own; of a sensor that was moved 1 before it and 0 from then on, for its x, y and yaw on the base;
 /// - position: polynomials of degree 1 and 2 in x and y, [low, high] being the range of both; or patches,
 ///   bilinear between kPatches knots each way; or, of a floor that repeats itself, one wave: its cosine and
 ///   sine, and both times the cosine of the angle between the heading and the way across the crests;
@@ -56,20 +62,32 @@ struct Curve {
   bool with_motion = false;  ///< of accelerations only: growth of the pace, so that braking is negative
   bool strong = false;       ///< a tenth and more, which few robots do and only plain data should be believed
   int degree = kDegrees;     ///< of Legendre polynomials only
+  double moment = 0.0;       ///< of time only, s: when it changes, all at once; 0: bit by bit
+  double fading = 0.0;       ///< of time only, s: time constant of what fades away; 0: it does not
   /// Of splines only: of each second difference, see kRoughness; none: each spline by itself.
   std::vector<double> roughness = {};
   bool operator==(const Curve&) const = default;
   [[nodiscard]] bool is_wave() const { return wave[0] != 0.0 || wave[1] != 0.0; }
 };
 
-/// A dependence of the sensor's place on the base: none of odometry's.
+/// A mast that sways: the sensor turns on the base.
+bool is_sway(const Curve& curve);
+/// A sensor that was moved on the base at some moment.
+bool is_bump(const Curve& curve);
+/// A change of the sensor's place on the base.
 bool concerns_sensor(const Curve& curve);
+/// That, a metre that changes as a lidar warms up, or a sideways motion that goes with time or with the last
+/// turn: no base begins to crab, but a mount gives way. None of odometry's.
+bool is_the_lidars(const Curve& curve);
 
 /// Has a phase or an origin that the next drive does not share.
 bool is_of_one_drive(const Curve& curve);
 
 /// Begins with a stop or a push, of which it is not known how long or how hard it has to be.
 bool takes_an_event(const Curve& curve);
+
+/// All of it at one moment: no law that bends, but an event.
+bool happens_at_once(const Curve& curve);
 
 /// Described by Legendre polynomials.
 bool has_polynomials(const Curve& curve);

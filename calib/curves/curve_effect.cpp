@@ -48,7 +48,7 @@ class CurveEffect final : public StepEffect<CurveEffect> {
     return differences;
   }
   [[nodiscard]] Storage storage() const override {
-    if (concerns_sensor(curve_)) return Storage::driver;
+    if (is_the_lidars(curve_)) return Storage::driver;
     return is_of_one_drive(curve_) ? Storage::nowhere : Storage::host;
   }
 

@@ -39,14 +39,14 @@ template <typename Visit>
 void for_each_part(const Curve& curve, const StepContext& c, const Visit& visit) {
   const std::span<const Carrier> carriers = acts_on(curve);
   for (std::size_t part = 0; part < carriers.size(); ++part)
-    visit(basis(curve, c, part), amount(carriers[part], c));
+    visit(part, basis(curve, c, part), amount(carriers[part], c));
 }
 
 /// Each of the curve's values in an interval, with how much motion it acts on.
 template <typename Visit>
 void for_each_value(const Curve& curve, std::span<const double> coefficients, const StepContext& c,
                     const Visit& visit) {
-  for_each_part(curve, c, [&](const BasisValues& functions, double weight) {
+  for_each_part(curve, c, [&](std::size_t /*part*/, const BasisValues& functions, double weight) {
     visit(std::inner_product(functions.begin(), functions.end(), coefficients.begin(), 0.0), weight);
   });
 }
@@ -82,19 +82,28 @@ bool goes_both_ways(std::span<const DriveModel* const> models) {
   return std::min(ahead, back) > kLeast * (ahead + back);
 }
 
-bool may_be_centred(const Curve& curve) { return signed_counterpart(curve.law.carrier) == curve.law.carrier; }
+bool may_be_centred(const Curve& curve) {
+  return !is_bump(curve) && signed_counterpart(curve.law.carrier) == curve.law.carrier;
+}
+
+Curve as_of_the_drive(Curve curve, std::span<const DriveModel* const> models) {
+  const bool ends_as_it_is = is_bump(curve) || curve.fading > 0.0;
+  const bool has_mean = belongs_to_the_place(curve.law.variable) && !curve.constant && !ends_as_it_is;
+  return has_mean ? centred(std::move(curve), models) : curve;
+}
 
 Curve centred(Curve curve, std::span<const DriveModel* const> models) {
-  std::vector<double> sum(basis_size(curve), 0.0);
+  std::vector<double> sum(basis_size(curve), 0.0), total(sum.size(), 1e-12);
   curve.mean.clear();
-  double total = 0.0;
   for (const DriveModel* model : models)
     for (const StepContext& c : model->context())
-      for_each_part(curve, c, [&](const BasisValues& functions, double weight) {
-        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * functions[k];
-        total += weight;
+      for_each_part(curve, c, [&](std::size_t part, const BasisValues& functions, double weight) {
+        for (std::size_t k = 0; k < sum.size(); ++k) {
+          sum[k] += weight * functions[k];
+          if (belongs_to(curve, k, part)) total[k] += weight;
+        }
       });
-  for (double& value : sum) value /= std::max(total, 1e-12);
+  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] /= total[k];
   curve.mean = std::move(sum);
   return curve;
 }

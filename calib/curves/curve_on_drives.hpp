@@ -22,6 +22,10 @@ bool may_be_centred(const Curve& curve);
 /// The same curve about its mean over these drives.
 Curve centred(Curve curve, std::span<const DriveModel* const> models);
 
+/// Odometry does without what belongs to the place or the day: then the base must be that of the whole drive.
+/// A sensor that was moved is where it is, a lidar that warmed up is warm.
+Curve as_of_the_drive(Curve curve, std::span<const DriveModel* const> models);
+
 /// Root mean square of the curve over the motion of its carrier in these drives.
 double spread_of(const Curve& curve, std::span<const double> coefficients,
                  std::span<const DriveModel* const> models);

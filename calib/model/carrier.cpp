@@ -31,9 +31,10 @@ std::string to_string(Variable variable) {
 }
 
 std::string to_string(Carrier carrier) {
-  static constexpr const char* kNames[] = {
-      "left_travel", "right_travel",  "both_travel", "track",     "sideways",  "left_path", "right_path",
-      "both_path",   "sideways_path", "yaw_path",    "turn_path", "turn_side", "scale",     "sensor_yaw"};
+  static constexpr const char* kNames[] = {"left_travel",   "right_travel", "both_travel", "track",
+                                           "sideways",      "left_path",    "right_path",  "both_path",
+                                           "sideways_path", "yaw_path",     "turn_path",   "turn_side",
+                                           "turn_ahead",    "way_turned",   "scale",       "sensor_yaw"};
   return kNames[static_cast<std::size_t>(carrier)];
 }
 

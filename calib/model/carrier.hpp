@@ -65,8 +65,10 @@ double value_of(Variable variable, const StepContext& context, std::size_t memor
 /// travel of those wheels. Track: relative. Sideways: m per m of the base. Yaw path: rad per m of the base.
 /// Turn path: m ahead per rad of turning either way. Turn side: m to the left per rad of turning to the left,
 /// as if the centre of turning lay ahead by f. Scale: relative, of all lengths, which leaves turns as they
-/// are: the lidar's own metre. Sensor yaw: rad by which the sensor has turned on the
-/// base; f is its growth over the interval, so that it comes and goes with the variable.
+/// are: the lidar's own metre. Turn ahead: m ahead per rad of turning to the left, as a sensor sees it that
+/// sits so far to the right of where it is thought to be. Way turned: rad by which a sensor sees the way
+/// turned to the left, as one does that was itself turned to the right. Sensor yaw: rad by which the sensor
+/// has turned on the base; f is its growth over the interval, so that it comes and goes with the variable.
 enum class Carrier {
   left_travel,
   right_travel,
@@ -80,6 +82,8 @@ enum class Carrier {
   yaw_path,
   turn_path,
   turn_side,
+  turn_ahead,
+  way_turned,
   scale,
   sensor_yaw,
 };
@@ -88,6 +92,18 @@ std::string to_string(Carrier carrier);
 /// Of an unsigned way the signed one: whatever depends on a speed may change either, and only the direction
 /// tells which. Any other carrier is its own.
 Carrier signed_counterpart(Carrier carrier);
+
+/// To the left by f, rad.
+template <typename T>
+void turn_way(const T& f, WheelStep<T>& step) {
+  using std::cos;
+  using std::sin;
+  const T ahead = 0.5 * (step.left + step.right), cosine = cos(f), sine = sin(f);
+  const T change = ahead * cosine - step.side * sine - ahead;
+  step.side = step.side * cosine + ahead * sine;
+  step.left += change;
+  step.right += change;
+}
 
 /// Lets a defect of size f act on the step.
 template <typename T>
@@ -134,6 +150,13 @@ void carry(Carrier carrier, const StepContext& c, const T& f, WheelStep<T>& step
       break;
     case Carrier::turn_side:
       step.side -= f * (c.turn_rate * c.dt);
+      break;
+    case Carrier::turn_ahead:
+      step.left += f * (c.turn_rate * c.dt);
+      step.right += f * (c.turn_rate * c.dt);
+      break;
+    case Carrier::way_turned:
+      turn_way(f, step);
       break;
     case Carrier::scale:
       step.left *= 1.0 + f;

@@ -23,7 +23,8 @@ std::string key_of(const Effect& effect) { return effect.name() + "/" + effect.p
 std::string key_of(const Effect& effect, const Curve& curve) {
   return effect.name() + "/" + std::to_string(curve.period) + "/" + std::to_string(curve.harmonic) + "/" +
          std::to_string(curve.wave[0]) + "/" + std::to_string(curve.wave[1]) +
-         (curve.patches ? "/patches" : "") + (curve.with_motion ? "/pace" : "");
+         (curve.patches ? "/patches" : "") + (curve.with_motion ? "/pace" : "") +
+         (happens_at_once(curve) ? "/moment" : "") + (curve.fading > 0.0 ? "/fading" : "");
 }
 
 bool belongs_to_one_recording(const Effect& effect) {
@@ -32,13 +33,9 @@ bool belongs_to_one_recording(const Effect& effect) {
                      [](const Law& law) { return begins_with_the_recording(law.variable); });
 }
 
-/// Odometry does without what belongs to the place or the day: then the base must be that of the whole drive.
 void add_curves(std::span<const DriveModel* const> models, std::vector<Candidate>& candidates) {
-  for (const Curve& free : candidate_curves(models)) {
-    const Curve curve =
-        belongs_to_the_place(free.law.variable) && !free.constant ? centred(free, models) : free;
-    candidates.push_back(candidate_of(curve));
-  }
+  for (const Curve& curve : candidate_curves(models))
+    candidates.push_back(candidate_of(as_of_the_drive(curve, models)));
 }
 
 }  // namespace

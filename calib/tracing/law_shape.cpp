@@ -191,7 +191,9 @@ Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, con
   // What changes as the day goes is often right at one end of it.
   const bool goes_with_time = curve.law.variable == Variable::time;
   const double spread = (goes_with_time ? half_span_of : spread_of)(curve, as_span(own), task.models());
-  for (const auto k : lengths_of(curve.law.carrier)) doubt(k) = spread * model.fit.parameters(k);
+  Eigen::Index wheel_of_event = 0;
+  for (const auto k : lengths_of(curve.law.carrier))
+    doubt(k) = (happens_at_once(curve) ? 0.5 * own(wheel_of_event++) : spread) * model.fit.parameters(k);
   if (leaves_mean) {
     const double wheel = 0.5 * model.fit.parameters(kTrackWidth) * spread;  // m for each metre of way
     doubt(kLeftRadius) = -wheel * model.fit.parameters(kLeftRadius);

@@ -69,14 +69,15 @@ std::optional<Gain> best_gain(const FitTask& task, const FittedModel& before, co
 DriveChange change_of_drives(const FitTask& task, const FittedModel& before, const FittedModel& after) {
   constexpr double kTolerated = 1.05;
   const auto trusted = trusted_pairs(before.fit, after.fit);
-  const auto improvement_of = [&](StretchKind kind) {
+  DriveChange change;
+  for (const auto kind : {StretchKind::open_loop, StretchKind::turn, StretchKind::straight}) {
     const auto errors = compared(kind, task, before, after, trusted);
-    return errors ? compare(errors->without, errors->with) : Improvement{};
-  };
-  const auto is_spoilt = [&](StretchKind kind) { return improvement_of(kind).lower > kTolerated; };
-  const Improvement drives = improvement_of(StretchKind::open_loop);
-  return {drives.ratio,
-          drives.lower > kTolerated || is_spoilt(StretchKind::turn) || is_spoilt(StretchKind::straight)};
+    if (!errors) continue;
+    const Improvement improvement = compare(errors->without, errors->with);
+    if (kind == StretchKind::open_loop) change.ratio = improvement.ratio;
+    change.is_spoilt = change.is_spoilt || improvement.lower > kTolerated;
+  }
+  return change;
 }
 
 std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,

@@ -1,6 +1,7 @@
 // Held-out proof that an addition to the model is worth its place.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "calib/tracing/fitted_model.hpp"
@@ -21,9 +22,9 @@ inline constexpr std::size_t kFewestStretches = 10;
 
 /// What another model makes of held-out drives.
 struct DriveChange {
-  double ratio = 1.0;      ///< of the error over ten seconds; 1 where there are too few stretches
-  bool is_spoilt = false;  ///< full turns, straight metres or ten seconds grow worse by more than a
-                           ///< twentieth, beyond the 95 % interval
+  std::optional<double> ratio;  ///< of the error over ten seconds; none where there are too few stretches
+  bool is_spoilt = false;       ///< full turns, straight metres or ten seconds grow worse by more than a
+                                ///< twentieth, beyond the 95 % interval
 };
 
 /// From one model to the other; each may have its own noise model.

@@ -10,11 +10,21 @@
 namespace odomcalib::calib {
 namespace {
 
-/// What was added last was just proved; a name whose law was completed shares its ground with the curve.
+/// A name whose law was completed bit by bit shares its ground with the curve; what happens at one moment may
+/// leave it nothing.
+bool shares_its_ground(const SearchResult& result, const std::shared_ptr<const Effect>& name) {
+  return std::any_of(result.curves.begin(), result.curves.end(), [&](const AddedCurve& added) {
+    return added.law_of == name && !happens_at_once(added.curve);
+  });
+}
+
+/// What was added last was just proved.
 bool may_retire(const SearchResult& result, const std::shared_ptr<const Effect>& effect) {
   if (effect == result.model.effects.back()) return false;
   const auto is_it = [&](const auto& added) { return added.effect == effect; };
-  if (std::any_of(result.findings.begin(), result.findings.end(), is_it)) return !result.is_completed(effect);
+  if (std::any_of(result.findings.begin(), result.findings.end(), is_it))
+    return !shares_its_ground(result, effect);
+  if (std::count(result.quiet.begin(), result.quiet.end(), effect) > 0) return true;
   return std::any_of(result.curves.begin(), result.curves.end(), is_it);
 }
 

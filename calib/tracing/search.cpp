@@ -12,6 +12,7 @@
 #include "calib/tracing/detectable.hpp"
 #include "calib/tracing/law_shape.hpp"
 #include "calib/tracing/likeness.hpp"
+#include "calib/tracing/moment.hpp"
 #include "calib/tracing/next_addition.hpp"
 #include "calib/tracing/outlier_trace.hpp"
 #include "calib/tracing/plausibility.hpp"
@@ -19,6 +20,7 @@
 #include "calib/tracing/rolling_waves.hpp"
 #include "calib/tracing/search_round.hpp"
 #include "calib/tracing/settled_shape.hpp"
+#include "calib/tracing/vain_curves.hpp"
 #include "calib/tracing/wrong_name.hpp"
 
 namespace odomcalib::calib {
@@ -31,6 +33,8 @@ constexpr int kMaxSteps = 12;  ///< additions and failed proofs together
 /// Family-wise level at which the data outside a fold must point to a candidate that all data together have
 /// chosen.
 constexpr double kFoldLevel = 0.05;
+constexpr const char* kAdded = "added";
+constexpr const char* kInVain = "leaving out what it explains does as well";
 
 class Search {
  public:
@@ -45,6 +49,7 @@ class Search {
     ask_the_outliers();
     ask_for_waves();
     go_on(0.5, 1.0);
+    leave_out_vain_curves();
     for (std::size_t e = 0; e < result_.model.effects.size(); ++e) {
       result_.doubts.push_back(doubt_of_extrapolation(task_, result_.model, law_with(e)));
       add_doubts(doubts_of_shape(task_, result_.model, e));
@@ -89,10 +94,23 @@ class Search {
     if (has_changed_) look_again();
     const auto curve = best_curve(*round_, result_);
     const auto name = may_name() ? best_name_beside(curve, *round_, result_) : std::nullopt;
+    if (const auto late = name ? unnoticed_clock(*name) : std::nullopt) return accept_name(*late);
     if (name && accept_name(*name)) return true;
     const auto clock = curve && depends_on_history(candidates_[*curve]) ? best_clock(*round_) : std::nullopt;
     if (clock) return accept_name(*clock);
     return curve && accept_curve(*curve);
+  }
+
+  /// A millisecond between the clocks is nothing to tell, but passes for play or for slip.
+  [[nodiscard]] std::optional<Trial> unnoticed_clock(const Trial& name) const {
+    constexpr double kMuch = 0.5;  // of what the name explains
+    if (is_clock(candidates_[name.candidate])) return std::nullopt;
+    const auto clocks = round_->by_score([&](std::size_t k) { return is_clock(candidates_[k]); });
+    auto clock = clocks.empty() ? std::nullopt : round_->refit(clocks.front());
+    if (!clock || !is_plain_but_small(candidates_[clocks.front()], clock->model.fit)) return std::nullopt;
+    const double by_clock = basis().fit.cost - clock->model.fit.cost;
+    const bool is_much = by_clock > kMuch * (basis().fit.cost - name.model.fit.cost);
+    return is_much || passes(clocks.front(), *round_, result_) ? std::move(clock) : std::nullopt;
   }
 
   /// What happens so seldom that the fit leaves its pairs out no score sees, until they count as noise.
@@ -153,7 +171,7 @@ class Search {
 
   [[nodiscard]] std::string implausibility(const Candidate& candidate, const FitResult& fit) const {
     const Effect& effect = *candidate.effect;
-    if (candidate.curve && concerns_sensor(*candidate.curve) &&
+    if (candidate.curve && is_sway(*candidate.curve) &&
         is_hidden_by_ticks(*candidate.curve, fit, task_.models()))
       return "ticks so far apart hide as much";
     if (auto reason = impossibility(effect, fit); !reason.empty()) return reason;
@@ -188,7 +206,7 @@ class Search {
         if (candidate.curve) unproved_.push_back(doubt_of_zero(task_, trial.model, *candidate.curve));
       }
     }
-    consider(trial, reason.empty() ? "added" : reason);
+    consider(trial, reason.empty() ? kAdded : reason);
     strike(candidate.key);
     if (!reason.empty()) return std::nullopt;
     adopt(std::move(settled->model));
@@ -250,9 +268,19 @@ class Search {
     }
     settled = round_->refit(trial.candidate, {});
     if (!settled) return "the fit does not settle";
-    const DriveChange drives = change_of_drives(task_, basis(), settled->model);
     const bool is_followed = odometry_uses(candidates_[trial.candidate]);
-    return drives.is_spoilt || (is_followed && drives.ratio > 1.0) ? "drives get worse" : "";
+    const DriveChange drives = change_of_drives(task_, basis(), settled->model);
+    if (drives.is_spoilt || (is_followed && drives.ratio.value_or(0.0) > 1.0)) return "drives get worse";
+    return is_followed && is_worse_than(result_.model, settled->model, candidates_[trial.candidate]) ? kInVain
+                                                                                                     : "";
+  }
+
+  /// With noise wide enough for what is systematic the plain model has moved as well. A curve that stands for
+  /// a few motions which a robust fit would have left out must not cost the others what that fit gives them.
+  [[nodiscard]] bool is_worse_than(const FittedModel& before, const FittedModel& after,
+                                   const Candidate& candidate) const {
+    const DriveChange drives = change_of_drives(task_, before, after);
+    return drives.is_spoilt || drives.ratio.value_or(0.0) > std::min(1.0, largest_ratio(candidate));
   }
 
   /// Whether the proof is one of drives of ten seconds, not of single pairs.
@@ -278,6 +306,30 @@ class Search {
     start_again();
   }
 
+  /// All that odometry would follow and that has no name, or none.
+  void leave_out_vain_curves() {
+    FittedModel without = result_.model;
+    std::vector<AddedCurve> followed;
+    for (const AddedCurve& added : result_.curves) {
+      if (added.law_of || !odometry_uses(candidate_of(added.curve))) continue;
+      const auto place = std::find(without.effects.begin(), without.effects.end(), added.effect);
+      auto fewer =
+          without_effect(task_, without, static_cast<std::size_t>(place - without.effects.begin()), {});
+      if (!fewer) return;
+      without = std::move(*fewer);
+      followed.push_back(added);
+    }
+    if (followed.empty() || !explain_too_little(task_, result_.model, without)) return;
+    result_.model = std::move(without);
+    for (const AddedCurve& added : followed) withdraw(added);
+  }
+
+  void withdraw(const AddedCurve& curve) {
+    result_.forget(curve.effect);
+    for (Considered& one : result_.considered)
+      if (one.name == curve.effect->name() && one.outcome == kAdded) one.outcome = kInVain;
+  }
+
   /// From the model as it is now.
   void start_again() {
     has_changed_ = true;
@@ -291,7 +343,8 @@ class Search {
     if (has_textbook_shape(effect)) return std::nullopt;
     const std::vector<Law> laws = effect->laws();
     const auto curves = round_->by_score([&](std::size_t k) {
-      return candidates_[k].curve && passes(k, *round_, result_) && contains(laws, candidates_[k].curve->law);
+      const auto& curve = candidates_[k].curve;
+      return curve && passes(k, *round_, result_) && contains(laws, curve->law);
     });
     if (curves.empty()) return std::nullopt;
     const std::size_t last = name.model.effects.size() - 1;
@@ -299,8 +352,17 @@ class Search {
     return free ? std::optional(curves.front()) : std::nullopt;
   }
 
+  /// What seems to have changed bit by bit may have changed at once.
+  [[nodiscard]] std::optional<std::size_t> better_event(const Trial& name) const {
+    const std::vector<Law> laws = candidates_[name.candidate].effect->laws();
+    const bool goes_with_time =
+        std::any_of(laws.begin(), laws.end(), [](const Law& law) { return law.variable == Variable::time; });
+    return goes_with_time ? event_instead_of(task_, *round_, name) : std::nullopt;
+  }
+
   bool accept_name(const Trial& best) {
     if (const auto curve = better_curve(best)) return accept_curve(*curve);
+    if (const auto event = better_event(best)) return accept_curve(*event);
     const Candidate candidate = candidates_[best.candidate];
     const std::vector<std::size_t> rivals = round_->rivals_of(best);
     const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, rivals);
@@ -315,7 +377,9 @@ class Search {
 
   bool accept_curve(std::size_t index) {
     if (no_more_curves_ || result_.curves.size() >= kMaxCurves) return false;
-    auto trial = round_->refit(index);
+    auto trial = happens_at_once(*candidates_[index].curve)
+                     ? refit_as(index, at_likeliest_moment(task_, basis(), *candidates_[index].curve))
+                     : round_->refit(index);
     if (trial && is_held_back(*candidates_[index].effect, trial->model.fit))
       trial = refit_as(index, strong(*candidates_[index].curve));
     if (trial && may_be_centred(*candidates_[index].curve) &&
@@ -327,16 +391,31 @@ class Search {
       strike(candidates_[index].key);
       return true;
     }
+    const SearchResult before = result_;
     auto proof = accept(*trial);
-    if (!proof && law_of && !result_.is_completed(law_of)) replace(law_of, index, alike);
+    const bool may_replace =
+        law_of && !result_.is_completed(law_of) && !happens_at_once(*candidates_[index].curve);
+    if (!proof && may_replace) replace(law_of, index, alike);
     if (!proof && !law_of) proof = accept_reshaped(index);
     if (!proof) return true;
     const Candidate& candidate = candidates_[index];
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
     settle_shape_of_newest_curve(task_, result_);
+    if (odometry_uses(candidate) && is_worse_than(before.model, result_.model, candidate)) {
+      go_back_to(before);
+      return true;
+    }
     strike_what_a_mast_does();
     drop_superfluous();
     return true;
+  }
+
+  /// What was added proved itself, but not as it settled.
+  void go_back_to(SearchResult before) {
+    before.considered = std::move(result_.considered);
+    before.considered.back().outcome = kInVain;
+    result_ = std::move(before);
+    start_again();
   }
 
   /// Scans whose beams were sent at other times than stated are bent by turning, and matches of them find

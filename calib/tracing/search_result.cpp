@@ -21,8 +21,16 @@ bool SearchResult::is_completed(const std::shared_ptr<const Effect>& name) const
 }
 
 void SearchResult::forget(const std::shared_ptr<const Effect>& effect) {
-  std::erase_if(findings, [&](const Finding& f) { return f.effect == effect; });
+  const auto completes = [&](const AddedCurve& c) { return c.law_of == effect; };
+  const auto finding =
+      std::find_if(findings.begin(), findings.end(), [&](const Finding& f) { return f.effect == effect; });
+  const auto heir = std::find_if(curves.begin(), curves.end(), completes);
+  if (finding != findings.end() && heir != curves.end()) heir->proof.before = finding->proof.before;
+  for (AddedCurve& curve : curves)
+    if (completes(curve)) curve.law_of = nullptr;
+  if (finding != findings.end()) findings.erase(finding);
   std::erase_if(curves, [&](const AddedCurve& c) { return c.effect == effect; });
+  std::erase(quiet, effect);
 }
 
 }  // namespace odomcalib::calib

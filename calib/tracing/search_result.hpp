@@ -56,7 +56,8 @@ struct SearchResult {
   [[nodiscard]] std::shared_ptr<const Effect> owner_of(const Law& law) const;
   /// A law that was completed shares its ground with the curve, and keeps its name.
   [[nodiscard]] bool is_completed(const std::shared_ptr<const Effect>& name) const;
-  /// No longer told, as a name or as a curve.
+  /// No longer told, as a name or as a curve; curves that completed its law stand for
+  /// all of it then.
   void forget(const std::shared_ptr<const Effect>& effect);
 };
 

@@ -26,7 +26,9 @@ double SearchRound::penalty(std::size_t degrees) const {
 }
 
 double SearchRound::penalised(std::size_t candidate) const {
-  return score(candidate).statistic - penalty(score(candidate).degrees);
+  const auto& curve = candidates_[candidate].curve;
+  const std::size_t chosen = curve && happens_at_once(*curve) ? 1 : 0;  // its moment
+  return score(candidate).statistic - penalty(score(candidate).degrees + chosen);
 }
 
 std::optional<Trial> SearchRound::refit(std::size_t candidate) const {

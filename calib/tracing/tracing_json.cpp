@@ -15,6 +15,15 @@ std::optional<Enum> enum_from(const std::string& name, Enum last) {
   return std::nullopt;
 }
 
+/// A file may say anything.
+bool is_sound(const Curve& curve) {
+  const bool has_shape_of_time = curve.moment != 0.0 || curve.fading != 0.0;
+  return curve.high > curve.low && curve.memory < memories_of(curve.law.variable) && curve.knots >= kKnots &&
+         curve.knots <= kMostKnots && curve.degree >= kPlainest && curve.degree <= kDegrees &&
+         curve.moment >= 0.0 && curve.fading >= 0.0 &&
+         (!has_shape_of_time || curve.law.variable == Variable::time);
+}
+
 std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
   if (!entry.is_object()) return std::nullopt;
   const auto variable = enum_from(entry.value("variable", ""), kLastVariable);
@@ -25,15 +34,14 @@ std::optional<FittedCurve> curve_from(const nlohmann::json& entry) {
               entry.value("knots", kKnots)};
   const auto coefficients = entry.value("coefficients", std::vector<double>{});
   curve.degree = entry.value("degree", kDegrees);
+  curve.moment = entry.value("moment", 0.0);
+  curve.fading = entry.value("fading", 0.0);
   curve.memory = entry.value("memory", kUsualMemory);
   curve.wave = entry.value("wave", curve.wave);
   curve.constant = entry.value("constant", false);
   curve.patches = entry.value("patches", false);
   curve.with_motion = entry.value("with_motion", false);
-  if (!(curve.high > curve.low) || curve.memory >= memories_of(*variable) || curve.knots < kKnots ||
-      curve.knots > kMostKnots || curve.degree < kPlainest || curve.degree > kDegrees ||
-      coefficients.size() != basis_size(curve))
-    return std::nullopt;
+  if (!is_sound(curve) || coefficients.size() != basis_size(curve)) return std::nullopt;
   curve.mean = entry.value("mean", std::vector<double>{});
   if (!curve.mean.empty() && curve.mean.size() != coefficients.size()) return std::nullopt;
   return FittedCurve{curve, coefficients, entry.value("law_of", "")};
@@ -63,6 +71,8 @@ std::string curves_to_json(const std::vector<FittedCurve>& curves) {
                     {"harmonic", curve.harmonic},
                     {"knots", curve.knots},
                     {"degree", curve.degree},
+                    {"moment", curve.moment},
+                    {"fading", curve.fading},
                     {"memory", curve.memory},
                     {"wave", curve.wave},
                     {"constant", curve.constant},

@@ -3,6 +3,14 @@
 #include <utility>
 
 namespace odomcalib::calib {
+namespace {
+
+/// A moment is sought among all of the drive: with fewer sizes than a name it is no plainer.
+bool is_plainly_an_event(const FittedModel& named, const Reshaped& law) {
+  return named.fit.cost - law.model.fit.cost > schwarz(named.fit);
+}
+
+}  // namespace
 
 std::optional<FreeLaw> free_law_instead_of(const FitTask& task, const FittedModel& model, std::size_t index,
                                            const Candidate& candidate) {
@@ -12,6 +20,7 @@ std::optional<FreeLaw> free_law_instead_of(const FitTask& task, const FittedMode
   if (!law || explains_nearly_all(task, model, index, law->model) ||
       !is_better(task, model, law->model, schwarz(model.fit)))
     return std::nullopt;
+  if (happens_at_once(law->curve) && !is_plainly_an_event(model, *law)) return std::nullopt;
   Proof proof;
   const auto missing = objection(task, *without, law->model, all_folds(), largest_ratio(candidate), proof);
   return missing.empty() ? std::optional(FreeLaw{std::move(*law), proof}) : std::nullopt;

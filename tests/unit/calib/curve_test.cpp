@@ -235,7 +235,8 @@ TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
     const auto forth = change(ahead), reverse = change(back);
     const bool signed_by_motion = carrier == Carrier::left_travel || carrier == Carrier::right_travel ||
                                   carrier == Carrier::both_travel || carrier == Carrier::sideways ||
-                                  carrier == Carrier::turn_side || carrier == Carrier::scale;
+                                  carrier == Carrier::turn_side || carrier == Carrier::turn_ahead ||
+                                  carrier == Carrier::way_turned || carrier == Carrier::scale;
     constexpr std::size_t kTrack = 4;
     double largest = 0.0;
     for (std::size_t k = 0; k < forth.size(); ++k) {

@@ -138,6 +138,22 @@ TEST(Odometry, a_curve_of_time_acts_where_the_time_is_known) {
   expect_as_larger(bent, 0.01, "what is left of a drift, as at the end");
 }
 
+// A base does not begin to crab, nor do wheels grow with a lidar's metre.
+TEST(Odometry, what_a_lidar_did_in_time_is_not_followed) {
+  Calibration lidars = nominal_calibration(kRobot);
+  lidars.data.resize(1);
+  lidars.data[0].duration = 200.0;
+  lidars.data[0].begin = 0.0;
+  for (const auto carrier : {Carrier::sideways, Carrier::scale, Carrier::way_turned}) {
+    Curve curve{{Variable::time, carrier}, 0.0, 200.0};
+    curve.moment = 100.0;
+    const std::vector<double> coefficients(basis_size(curve), 0.01);
+    lidars.extensions[kCurvesMember] = curves_to_json({{curve, coefficients, ""}});
+    expect_as_larger(lidars, 0.0, to_string(carrier).c_str());
+    EXPECT_EQ(effect_placements(lidars).front().place, Place::reference) << to_string(carrier);
+  }
+}
+
 // The daemon sees speeds from the past only; apart from that it does what predict does.
 TEST(Odometry, sample_by_sample_applies_every_effect_as_predict_does) {
   const Recording recording = drive();
