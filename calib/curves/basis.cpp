@@ -236,8 +236,9 @@ BasisValues basis(const Curve& curve, const StepContext& c, std::size_t part) {
   const bool of_right_speed = part > 0 && curve.law == kOfEachWheel;
   BasisValues functions = of_right_speed ? speed_functions(curve, c.right_speed) : raw_basis(curve, c);
   for (std::size_t k = 0; k < curve.mean.size(); ++k) functions[k] -= curve.mean[k];
-  for (std::size_t k = 0; k < functions.size(); ++k)
-    if (!belongs_to(curve, k, part)) functions[k] = 0.0;
+  if (happens_at_once(curve))
+    for (std::size_t k = 0; k < functions.size(); ++k)
+      if (!belongs_to(curve, k, part)) functions[k] = 0.0;
   return functions;
 }
 

@@ -82,9 +82,10 @@ void add_periods(double duration, std::vector<Curve>& curves) {
 }
 
 /// A load that is taken up or slips, a tyre that lets its air out, a lidar that is knocked: from one moment
-/// on all is different.
+/// on all is different. Where it leaves little of the drive, that would hang on a few scans.
 void add_moments(double duration, std::vector<Curve>& curves) {
-  for (int k = 1; k < kMoments; ++k)
+  constexpr int kLeast = 2;  // parts of the drive
+  for (int k = kLeast; k <= kMoments - kLeast; ++k)
     for (const auto carrier : {Carrier::both_travel, Carrier::track, Carrier::way_turned}) {
       curves.push_back({{Variable::time, carrier}, 0.0, duration});
       curves.back().moment = duration * k / kMoments;

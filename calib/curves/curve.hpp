@@ -16,7 +16,7 @@ inline constexpr int kDegrees = 4, kPlainest = 1;
 /// typical sizes.
 inline constexpr std::array<double, 4> kRoughness = {0.04, 0.16, 0.64, 2.56};
 /// That a drive is parted into to find when something happened.
-inline constexpr int kMoments = 20;
+inline constexpr int kMoments = 14;
 /// Of an angle, together; higher ones are tried one by one.
 inline constexpr int kHarmonics = 3;
 /// Of a distance since an event, each at twice the distance of the one before.

@@ -85,7 +85,7 @@ bool depends_on_history(const Candidate& candidate) {
 }
 
 bool must_be_worthwhile(const Candidate& candidate) {
-  if (depends_on_history(candidate)) return true;
+  if (depends_on_history(candidate) || (candidate.curve && happens_at_once(*candidate.curve))) return true;
   const auto laws = laws_of(candidate);
   return std::any_of(laws.begin(), laws.end(), [](const Law& law) {
     return law.variable == Variable::heading || law.variable == Variable::position ||

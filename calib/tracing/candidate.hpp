@@ -40,7 +40,8 @@ std::vector<Law> laws_of(const Candidate& candidate);
 bool depends_on_history(const Candidate& candidate);
 
 /// Scan matching has a bias of its own in a room, and in a scripted drive what happened before stands for
-/// the place in the script: what goes with such variables must be more than that.
+/// the place in the script: what goes with such variables must be more than that. So must an event, which is
+/// sought all over the drive.
 bool must_be_worthwhile(const Candidate& candidate);
 
 /// Largest share of the open-loop error that the candidate may leave. A curve that odometry will use must be

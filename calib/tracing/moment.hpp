@@ -8,7 +8,7 @@
 
 namespace odomcalib::calib {
 
-/// The event on top of the model at its most likely moment within a twentieth of the drive.
+/// The event on top of the model at its most likely moment within a fourteenth of the drive.
 Curve at_likeliest_moment(const FitTask& task, const FittedModel& model, const Curve& event);
 
 /// A wheel that changes bit by bit explains three quarters of one that changes at once, and bends of its law

@@ -16,9 +16,8 @@ constexpr double kUnnamedLevel = 0.0025;
 
 double level(const Candidate& candidate, const SearchResult& found) {
   if (candidate.curve)
-    return found.owner_of(candidate.curve->law) || must_be_worthwhile(candidate) || is_bump(*candidate.curve)
-               ? kNamedLevel
-               : kUnnamedLevel;
+    return found.owner_of(candidate.curve->law) || must_be_worthwhile(candidate) ? kNamedLevel
+                                                                                 : kUnnamedLevel;
   return is_clock(candidate) ? kClockLevel : kNamedLevel;
 }
 
