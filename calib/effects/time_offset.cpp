@@ -12,7 +12,7 @@ class TimeOffset final : public StepEffect<TimeOffset> {
   [[nodiscard]] std::string name() const override { return "time_offset"; }
   [[nodiscard]] std::vector<EffectParameter> parameters() const override {
     return {{"offset", "s", 0.02, -1.0, 1.0},
-            {"smoothing", "s^2", kTypicalSmoothing, -1e-6, 0.02, 0.0, kTypicalSmoothing, false, true}};
+            {"smoothing", "s^2", kTypicalSmoothing, -0.02, 0.02, 0.0, kTypicalSmoothing}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"encoder_lag", "acceleration_slip"};

@@ -294,32 +294,14 @@ void conclude(std::span<const FitData> data, const EffectList& effects, const st
   set_covariance(data, stack, fixed, fit);
 }
 
-/// Adds a prior that leaves no room to sizes that have gone below zero and must not.
-/// @return whether there are any
-bool hold_at_zero(const EffectList& effects, const Eigen::VectorXd& parameters,
-                  Eigen::MatrixXd& information) {
-  constexpr double kRoom = 1e-4;  // of the typical size
-  bool any = false;
-  Eigen::Index k = kBaseCount;
-  for (const auto& effect : effects)
-    for (const EffectParameter& parameter : effect->parameters()) {
-      if (parameter.one_sided && parameters(k) < 0.0) {
-        information(k, k) = std::pow(kRoom * parameter.scale, -2);
-        any = true;
-      }
-      ++k;
-    }
-  return any;
-}
+}  // namespace
 
-/// @param information of priors about zero
-Result<FitResult> fit_within(std::span<const FitData> data, const EffectList& effects,
-                             const Eigen::VectorXd& start, const FitOptions& options,
-                             const Eigen::MatrixXd& information) {
+Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects,
+                            const Eigen::VectorXd& start, const FitOptions& options) {
   FitResult fit;
   std::vector<bool> fixed = options.fixed;
   fixed.resize(static_cast<std::size_t>(start.size()), false);
-  fit.prior_information = information;
+  fit.prior_information = prior_information(start.size(), effects);
   fit.noise = options.noise.empty() ? std::vector<NoiseModel>(data.size()) : options.noise;
   Descent descent(data, effects, fixed, fit.prior_information, start);
   if (descent.stack().states.empty())
@@ -337,16 +319,6 @@ Result<FitResult> fit_within(std::span<const FitData> data, const EffectList& ef
     return Error{ErrorCode::refused, "the fit diverged", "joint estimate", "check the nominal values"};
   conclude(data, effects, fixed, fit);
   return fit;
-}
-
-}  // namespace
-
-Result<FitResult> fit_joint(std::span<const FitData> data, const EffectList& effects,
-                            const Eigen::VectorXd& start, const FitOptions& options) {
-  Eigen::MatrixXd information = prior_information(start.size(), effects);
-  auto fit = fit_within(data, effects, start, options, information);
-  if (!fit || !hold_at_zero(effects, fit.value().parameters, information)) return fit;
-  return fit_within(data, effects, fit.value().parameters, options, information);
 }
 
 FitResult with_weights(std::span<const FitData> data, const EffectList& effects, FitResult fit,

@@ -26,8 +26,7 @@ struct EffectParameter {
   double start = 0.0;  ///< where a fit begins; not zero for what gives the law its shape, such as a threshold
   double prior =
       0.0;  ///< deviation of a normal prior about zero; 0: none. What the data do not show stays small
-  bool fixed = false;      ///< a shape that is tried at several values instead of being fitted
-  bool one_sided = false;  ///< never below zero: what noise would make negative stays at zero
+  bool fixed = false;  ///< a shape that is tried at several values instead of being fitted
   /// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
   [[nodiscard]] bool is_size() const { return start == 0.0 && !fixed; }
 };

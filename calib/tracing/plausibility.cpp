@@ -38,6 +38,12 @@ std::string impossibility(const Effect& effect, const FitResult& fit) {
   return "";
 }
 
+bool is_mere_sharpening(const Effect& effect, const FitResult& fit) {
+  if (effect.name() != "time_offset") return false;
+  const Eigen::VectorXd values = last_parameters(effect, fit);
+  return std::abs(values(0)) < kNegligibleShare * effect.parameters().front().scale && values(1) < 0.0;
+}
+
 bool is_held_back(const Effect& effect, const FitResult& fit) {
   constexpr double kNear = 0.6;  // of the bound
   const Eigen::VectorXd values = last_parameters(effect, fit);

@@ -103,14 +103,14 @@ class Search {
 
   /// A millisecond between the clocks is nothing to tell, but passes for play or for slip.
   [[nodiscard]] std::optional<Trial> unnoticed_clock(const Trial& name) const {
-    constexpr double kMuch = 0.5;  // of what the name explains
+    constexpr double kMuch = 0.9;  // of what the name explains
     if (is_clock(candidates_[name.candidate])) return std::nullopt;
     const auto clocks = round_->by_score([&](std::size_t k) { return is_clock(candidates_[k]); });
     auto clock = clocks.empty() ? std::nullopt : round_->refit(clocks.front());
     if (!clock || !is_plain_but_small(candidates_[clocks.front()], clock->model.fit)) return std::nullopt;
     const double by_clock = basis().fit.cost - clock->model.fit.cost;
     const bool is_much = by_clock > kMuch * (basis().fit.cost - name.model.fit.cost);
-    return is_much || passes(clocks.front(), *round_, result_) ? std::move(clock) : std::nullopt;
+    return is_much ? std::move(clock) : std::nullopt;
   }
 
   /// What happens so seldom that the fit leaves its pairs out no score sees, until they count as noise.
@@ -176,6 +176,7 @@ class Search {
       return "ticks so far apart hide as much";
     if (auto reason = impossibility(effect, fit); !reason.empty()) return reason;
     if (is_negligible(effect, fit)) return "too small to matter";
+    if (is_mere_sharpening(effect, fit)) return "a filter does not sharpen";
     const bool spoils =
         candidate.curve ? curve_spoils_base(effect, basis().fit, fit) : spoils_base(effect, basis().fit, fit);
     return spoils ? "this drive cannot tell it from the wheels" : "";
@@ -271,16 +272,14 @@ class Search {
     const bool is_followed = odometry_uses(candidates_[trial.candidate]);
     const DriveChange drives = change_of_drives(task_, basis(), settled->model);
     if (drives.is_spoilt || (is_followed && drives.ratio.value_or(0.0) > 1.0)) return "drives get worse";
-    return is_followed && is_worse_than(result_.model, settled->model, candidates_[trial.candidate]) ? kInVain
-                                                                                                     : "";
+    return is_followed && is_worse_than(result_.model, settled->model) ? kInVain : "";
   }
 
   /// With noise wide enough for what is systematic the plain model has moved as well. A curve that stands for
   /// a few motions which a robust fit would have left out must not cost the others what that fit gives them.
-  [[nodiscard]] bool is_worse_than(const FittedModel& before, const FittedModel& after,
-                                   const Candidate& candidate) const {
+  [[nodiscard]] bool is_worse_than(const FittedModel& before, const FittedModel& after) const {
     const DriveChange drives = change_of_drives(task_, before, after);
-    return drives.is_spoilt || drives.ratio.value_or(0.0) > std::min(1.0, largest_ratio(candidate));
+    return drives.is_spoilt || drives.ratio.value_or(0.0) > 1.0;
   }
 
   /// Whether the proof is one of drives of ten seconds, not of single pairs.
@@ -401,7 +400,7 @@ class Search {
     const Candidate& candidate = candidates_[index];
     result_.curves.push_back({candidate.effect, *candidate.curve, *proof, law_of, alike});
     settle_shape_of_newest_curve(task_, result_);
-    if (odometry_uses(candidate) && is_worse_than(before.model, result_.model, candidate)) {
+    if (odometry_uses(candidate) && is_worse_than(before.model, result_.model)) {
       go_back_to(before);
       return true;
     }

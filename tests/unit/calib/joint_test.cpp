@@ -1,5 +1,4 @@
 #include "calib/estimators/joint.hpp"
-#include "calib/estimators/stack.hpp"
 
 #include <gtest/gtest.h>
 
@@ -73,24 +72,6 @@ TEST(Joint, ten_percent_gross_errors_move_the_answer_by_less_than_two_sigma) {
   for (Eigen::Index k = 0; k < 6; ++k)
     EXPECT_LT(std::abs(error(k)), 3.5 * std::sqrt(fit.value().covariance(k, k))) << "parameter " << k;
   EXPECT_GT(fit.value().discarded, f.pairs.size() / 20);
-}
-
-/// Noise of coarse counts asks for a filter that sharpens, and there is none.
-TEST(Joint, what_cannot_be_negative_stays_at_zero) {
-  const EffectList late = {find_effect("time_offset")};
-  constexpr Eigen::Index kSmoothing = kBaseCount + 1;
-  for (const double smoothing : {-2e-3, 2e-3}) {
-    Fixture f(0.0);
-    Eigen::VectorXd truth = to_vector(kTruth, count_parameters(late));
-    truth(kSmoothing) = smoothing;
-    const auto motions = f.model.predict(as_span(truth), late, intervals_of(f.pairs));
-    for (std::size_t k = 0; k < motions.size(); ++k) f.pairs[k].motion = motions[k];
-    const std::vector<FitData> data = {{&f.model, f.pairs}};
-    const auto fit = fit_joint(data, late, to_vector(kNominal, count_parameters(late)));
-    ASSERT_TRUE(fit.ok());
-    EXPECT_NEAR(fit.value().parameters(kSmoothing), std::max(smoothing, 0.0), 2e-4);
-    EXPECT_NEAR(fit.value().parameters(kLeftRadius), kTruth.left_radius, 1e-4);
-  }
 }
 
 TEST(Joint, finds_a_delay_of_fifty_milliseconds_within_two) {

@@ -57,6 +57,14 @@ TEST(Plausibility, bounds_size_and_need_are_judged_both_ways) {
       spoils_base(*find_effect("drift_with_time"), fit_with({0.0, 0.0}, 1e-3), fit_with({0.0, 0.0}, 9e-3)));
 }
 
+TEST(Plausibility, no_filter_sharpens_but_beside_a_delay_it_may_seem_to) {
+  const auto late = find_effect("time_offset");
+  EXPECT_TRUE(is_mere_sharpening(*late, fit_with({1e-3, -1e-3}, 1e-4)));
+  EXPECT_FALSE(is_mere_sharpening(*late, fit_with({1e-3, 1e-3}, 1e-4)));
+  EXPECT_FALSE(is_mere_sharpening(*late, fit_with({0.02, -1e-3}, 1e-4)));
+  EXPECT_FALSE(is_mere_sharpening(*find_effect("backlash"), fit_with({1e-3, -1e-3, 0.0}, 1e-4)));
+}
+
 TEST(Plausibility, the_shape_of_an_effect_is_no_size) {
   EXPECT_TRUE(is_negligible(*find_effect("tick_loss"), fit_with({1e-4, 0.0, 0.4, 0.02}, 1e-3)));
   EXPECT_FALSE(is_negligible(*find_effect("tick_loss"), fit_with({0.01, 0.0, 0.4, 0.02}, 1e-3)));
