@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iomanip>
 
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 #include "tests/sim/effects/blind_case.hpp"
 #include "tests/sim/effects/effect.hpp"
 #include "tests/sim/world/rooms.hpp"

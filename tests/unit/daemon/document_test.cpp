@@ -11,7 +11,7 @@
 #include "daemon/cli/export_formats.hpp"
 #include "daemon/cli/figure_svg.hpp"
 #include "daemon/cli/parameter_tables.hpp"
-#include "proto/report_data.hpp"
+#include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
 namespace {

@@ -81,7 +81,7 @@ TEST(GraphRun, S2_05_what_is_written_is_read_back_and_is_at_its_optimum) {
   const GraphRun run = square();
   auto again = read_pose_graph_text(to_g2o(run.after), "again");
   ASSERT_TRUE(again.ok());
-  EXPECT_DOUBLE_EQ(calib::graph_chi2(again.value()), run.summary.chi2_after);
+  EXPECT_DOUBLE_EQ(calib::slam::graph_chi2(again.value()), run.summary.chi2_after);
   EXPECT_NEAR(run_graph(std::move(again).value(), {}).summary.chi2_after, run.summary.chi2_after,
               1e-9 * run.summary.chi2_after);
 }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "daemon/service/telemetry.hpp"
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib {
 namespace {

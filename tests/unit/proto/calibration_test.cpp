@@ -1,4 +1,4 @@
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

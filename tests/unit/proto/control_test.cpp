@@ -1,4 +1,4 @@
-#include "proto/control.hpp"
+#include "proto/control/control.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "proto/event_log.hpp"
+#include "proto/wire/event_log.hpp"
 
 #include <gtest/gtest.h>
 #include <lcm/eventlog.h>
 
 #include <random>
 
-#include "proto/messages.hpp"
-#include "proto/recording_log.hpp"
+#include "proto/recording/recording_log.hpp"
+#include "proto/wire/messages.hpp"
 #include "tests/unit/proto/support.hpp"
 
 namespace odomcalib {

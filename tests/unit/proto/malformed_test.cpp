@@ -8,11 +8,11 @@
 #include <functional>
 #include <random>
 
-#include "proto/calibration.hpp"
-#include "proto/control.hpp"
-#include "proto/event_log.hpp"
-#include "proto/messages.hpp"
-#include "proto/pose_graph.hpp"
+#include "proto/calibration/calibration.hpp"
+#include "proto/control/control.hpp"
+#include "proto/recording/pose_graph.hpp"
+#include "proto/wire/event_log.hpp"
+#include "proto/wire/messages.hpp"
 #include "tests/unit/proto/support.hpp"
 
 namespace odomcalib {

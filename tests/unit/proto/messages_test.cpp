@@ -1,4 +1,4 @@
-#include "proto/messages.hpp"
+#include "proto/wire/messages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // g2o and TORO text.
-#include "proto/pose_graph.hpp"
+#include "proto/recording/pose_graph.hpp"
 
 #include <random>
 

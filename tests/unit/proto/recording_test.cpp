@@ -1,4 +1,4 @@
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 
 #include <gtest/gtest.h>
 

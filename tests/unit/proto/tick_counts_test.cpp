@@ -1,4 +1,4 @@
-#include "proto/tick_counts.hpp"
+#include "proto/recording/tick_counts.hpp"
 
 #include <gtest/gtest.h>
 
