@@ -1,5 +1,5 @@
-// Two CANopen drives with one axis each (docs/profiles.md, style "pair"): the left and the right wheel. Each
-// is a DualAxis with one axis; together they are one controller.
+// Two CANopen drives with one axis each (docs/user/profiles.md, style "pair"): the left and the right wheel.
+// Each is a DualAxis with one axis; together they are one controller.
 #pragma once
 
 #include <array>

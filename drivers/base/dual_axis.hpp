@@ -1,5 +1,5 @@
-// Two axes in one CANopen node (docs/profiles.md, style "dual-axis"), or one axis as a side of an AxisPair:
-// the controller of drivers/base/controller.hpp.
+// Two axes in one CANopen node (docs/user/profiles.md, style "dual-axis"), or one axis as a side of an
+// AxisPair: the controller of drivers/base/controller.hpp.
 #pragma once
 
 #include <array>

@@ -156,7 +156,8 @@ Result<Profile> parse_profile(const std::string& text, const std::string& where)
   } catch (const toml::parse_error& error) {
     std::ostringstream place;
     place << where << ":" << error.source().begin.line << ":" << error.source().begin.column;
-    return Error{ErrorCode::format, std::string(error.description()), place.str(), "see docs/profiles.md"};
+    return Error{ErrorCode::format, std::string(error.description()), place.str(),
+                 "see docs/user/profiles.md"};
   }
 }
 

@@ -1,5 +1,5 @@
 // A controller profile: everything that differs between controllers of one protocol, read from TOML
-// (docs/profiles.md).
+// (docs/user/profiles.md).
 #pragma once
 
 #include <cstdint>

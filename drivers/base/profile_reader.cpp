@@ -155,7 +155,7 @@ void ProfileTable::finish() {
   if (table_ == nullptr) return;
   for (const auto& [key, value] : *table_) {
     const std::string_view name = key.str();
-    if (!asked_.contains(name)) complain(name, "unknown key", "the keys of docs/profiles.md");
+    if (!asked_.contains(name)) complain(name, "unknown key", "the keys of docs/user/profiles.md");
   }
 }
 

@@ -1,4 +1,4 @@
-// A recording is the only input of calibration (formats: docs/formats.md).
+// A recording is the only input of calibration (formats: docs/user/formats.md).
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints what demo.sh found beside the truth, and the errors before and after.
+"""Prints the estimates of demo.sh beside the truth, and the errors before and after.
 
 usage: demo_table.py FOLDER                             with the files that demo.sh leaves in build/demo
        demo_table.py --without-effects IN.json OUT.json  a calibration file stripped of its effects
@@ -18,46 +18,46 @@ def load(folder, name):
 
 
 def spread(value):
-    """Two deviations; nothing of a shape that was tried at a few values instead of being fitted."""
+    """Two standard deviations; empty for a shape parameter that was selected from a few values instead of fitted."""
     return f" +- {2 * value['std']:.2g}" if value["std"] else ""
 
 
 def print_parameters(calibration, truth, kept):
-    print(f"{'':<22}{'papers':>10}{'found':>10}{'+-2 sigma':>11}{'true':>10}{'in the drive':>14}")
+    print(f"{'':<22}{'nominal':>10}{'estimate':>10}{'+-2 sigma':>11}{'true':>10}{'in drive':>12}")
     for name, label in (("left_wheel_diameter", "left wheel diameter"),
                         ("right_wheel_diameter", "right wheel diameter"), ("track_width", "track width")):
         found = calibration["parameters"][name]
         print(f"{label:<22}{1e3 * truth['nominal'][name]:10.3f}{1e3 * found['value']:10.3f}{2e3 * found['std']:11.3f}"
-              f"{1e3 * truth['true'][name]:10.3f}{1e3 * kept[name]:14.3f}  mm")
+              f"{1e3 * truth['true'][name]:10.3f}{1e3 * kept[name]:12.3f}  mm")
     for name, label, factor, unit in (("lidar_x", "lidar x", 1e3, "mm"), ("lidar_y", "lidar y", 1e3, "mm"),
                                       ("lidar_yaw", "lidar yaw", DEGREES, "deg")):
         found = calibration["parameters"][name]
         print(f"{label:<22}{factor * truth['nominal'][name]:10.3f}{factor * found['value']:10.3f}"
-              f"{2 * factor * found['std']:11.3f}{factor * truth['true'][name]:10.3f}{'':14}  {unit}")
+              f"{2 * factor * found['std']:11.3f}{factor * truth['true'][name]:10.3f}{'':12}  {unit}")
 
 
 def print_defect(calibration, truth):
     true = truth.get("effect")
-    print("\nwhat the robot does beyond two round wheels")
+    print("\neffects beyond two round wheels")
     if true:
         name = f"in the catalogue: {true['catalogue_name']}" if true["catalogue_name"] else "in no catalogue"
-        print(f"  true   {true['name']} ({name}), {true['size']:.4g} {true['unit']}, "
+        print(f"  true       {true['name']} ({name}), {true['size']:.4g} {true['unit']}, "
               f"depends on {', '.join(true['depends_on'])}")
     else:
-        print("  true   nothing")
+        print("  true       none")
     found = 0
     for effect in calibration["effects"]:
         values = ", ".join(f"{name} {value['value']:.4g}{spread(value)} {value['unit']}"
                            for name, value in effect["parameters"].items() if value["value"] or value["std"])
         others = f"; cannot be told from {', '.join(effect['aliases'])}" if effect["aliases"] else ""
-        print(f"  found  {effect['name']}: {values}{others}")
+        print(f"  estimated  {effect['name']}: {values}{others}")
         found += 1
     rest = calibration["unexplained"]
     if rest:
-        print(f"  found  a defect without a name: the residual depends on {', '.join(rest['depends_on'])}")
+        print(f"  estimated  a defect without a name: the residual depends on {', '.join(rest['depends_on'])}")
         found += 1
     if not found:
-        print("  found  nothing")
+        print("  estimated  none")
 
 
 def relative(a, b):
@@ -101,7 +101,7 @@ def print_errors(folder):
         after = factor * worst(folder, f"fresh-{drive}.json", key)
         before_all, after_all = before_all + before, after_all + after
         print(f"{label:<34}{before:10.2f}{after:10.2f}  {unit}")
-    print(f"\n{'end of a fresh drive, truth':<34}{'papers':>10}{'no effects':>12}{'corrected':>11}")
+    print(f"\n{'end of a fresh drive, truth':<34}{'nominal':>10}{'no effects':>12}{'corrected':>11}")
     for drive, label in (("straight", "a metre out and back"), ("turns", "two turns left")):
         errors = fresh_errors(folder, drive)
         for index, factor, unit, what in ((0, 1e3, "mm", "position"), (1, DEGREES, "deg", "heading")):
