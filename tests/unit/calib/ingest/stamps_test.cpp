@@ -67,7 +67,7 @@ TEST(EvenStamps, keep_lost_samples_and_pauses) {
   const auto given = late(truth, 2e-3);
   const auto even = even_stamps(given);
   ASSERT_TRUE(even);
-  EXPECT_LT(spread(even->t, truth), 0.6 * spread(given, truth)) << "seed " << kSeed;
+  EXPECT_LT(spread(even->t, truth), 0.6 * spread(given, truth)) << "seed " << selection::kSeed;
 }
 
 TEST(EvenStamps, count_what_was_held_up_once) {
@@ -100,7 +100,7 @@ TEST(StampContest, goes_to_the_stamps_whose_errors_are_noise) {
     for_given.add(own, own - difference);
     undecided.add(own + 0.5 * difference, own - 0.5 * difference);
   }
-  EXPECT_TRUE(for_even.is_for_even()) << "seed " << kSeed;
+  EXPECT_TRUE(for_even.is_for_even()) << "seed " << selection::kSeed;
   EXPECT_FALSE(for_given.is_for_even());
   EXPECT_FALSE(undecided.is_for_even());
   EXPECT_FALSE(StampContest().is_for_even());
@@ -174,7 +174,8 @@ TEST(EvenScans, are_even_where_motion_says_so) {
   ASSERT_TRUE(even) << "seed " << selection::kSeed;
   EXPECT_LT(spread(even->t, truth), 0.4 * spread(jittered, truth));
   const measurement::FitData right = scanned(model, jittered, jittered, recording);
-  EXPECT_FALSE(even_scans(recording, right, {}, vehicle::to_vector(kBase))) << "taken when they are stamped";
+  EXPECT_FALSE(even_scans(recording, right, {}, vehicle::to_vector(selection::kBase)))
+      << "taken when they are stamped";
 }
 
 TEST(StampReport, remarks_on_what_a_driver_could_mend) {
