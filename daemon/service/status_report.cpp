@@ -1,8 +1,8 @@
-// What the service tells about itself.
-#include <array>
-#include <cmath>
+#include "daemon/service/status_report.hpp"
 
-#include "daemon/service/service_impl.hpp"
+#include <algorithm>
+#include <array>
+
 #include "odomcalib_version.hpp"
 
 namespace odomcalib {
@@ -55,81 +55,97 @@ void add_host_values(const std::vector<HostValue>& values, ordered_json& list) {
                     {"applied_in", value.applied_in}});
 }
 
+ordered_json controller_report(const Bench& bench) {
+  const Drive& drive = bench.drive;
+  const drivers::Controller& controller = drive.controller();
+  ordered_json body = {{"device", drive.link.device()},
+                       {"connected", drive.link.connected()},
+                       {"state", name_of(controller.state())},
+                       {"problem", text_of(drive.link.problem())},
+                       {"watchdog_armed", controller.watchdog_armed()},
+                       {"ticks", drive.tick_count},
+                       {"stale", drive.encoders.stale(bench.now).value_or("")},
+                       {"counters", drive.link.counters()}};
+  for (const auto& one : controller.capabilities())
+    body["holds"][one.quantity] = {{"readable", one.readable},
+                                   {"writable", one.writable},
+                                   {"stored", one.stored},
+                                   {"object", one.object},
+                                   {"step", one.step}};
+  if (const auto id = controller.identity())
+    body["identity"] = {{"vendor", id->vendor},
+                        {"product", id->product},
+                        {"revision", id->revision},
+                        {"serial", id->serial},
+                        {"name", id->name}};
+  return body;
+}
+
+ordered_json lidar_report(const Bench& bench) {
+  const LidarLink& lidar = bench.surroundings.link;
+  return {{"device", lidar.device()},
+          {"identity", lidar.identity()},
+          {"connected", lidar.connected()},
+          {"problem", text_of(lidar.problem())},
+          {"scans", bench.surroundings.scan_count},
+          {"stale", bench.surroundings.scans.stale(bench.now).value_or("")},
+          {"counters", lidar.counters()}};
+}
+
+ordered_json robot_report(const Drive& drive) {
+  const RobotDescription all = drive.robot();
+  return {{"left_wheel_diameter", all.left_wheel_diameter},
+          {"right_wheel_diameter", all.right_wheel_diameter},
+          {"track_width", all.track_width},
+          {"ticks_per_rev", all.ticks_per_rev},
+          {"in_controller", !drive.in_force.empty()}};
+}
+
+ordered_json client_report(const ControlServer& server) {
+  return {{"connected", server.clients()},
+          {"not_permitted", server.counters().not_permitted},
+          {"malformed", server.counters().malformed},
+          {"too_many", server.counters().too_many}};
+}
+
+ordered_json loop_report(const Bench& bench) {
+  return {{"turns", bench.loop.turns()},
+          {"late_steps", bench.late_steps},
+          {"longest_turn", json_of(bench.loop.since_start())},
+          {"longest_turn_in_motion", json_of(bench.loop.in_motion())}};
+}
+
 }  // namespace
 
-std::string name_of(drivers::ControllerState state) {
-  constexpr std::array kNames = {"absent", "configuring", "disabled", "enabling", "enabled", "fault"};
-  return kNames.at(static_cast<std::size_t>(state));
+std::string activity(const Bench& bench, const Task* task) {
+  if (bench.ending) return bench.write_back.busy() ? "ending: reading or writing parameters" : "ending";
+  if (task != nullptr) return task->activity(bench);
+  return bench.write_back.busy() ? "reading or writing parameters" : "idle";
 }
 
-std::string Service::Impl::activity() const {
-  if (ending) return transaction.busy() ? "ending: reading or writing parameters" : "ending";
-  if (run) return "moving: " + run->activity();
-  if (solver) return "solving";
-  if (transaction.busy()) return "reading or writing parameters";
-  if (pending && telemetry.recorder.finishing()) return "writing the recording";
-  if (pending && pending->method == "Record") return "recording";
-  return "idle";
-}
-
-ordered_json Service::Impl::status() const {
-  const RobotDescription all = robot();
+ordered_json status_report(const Bench& bench, const Task* task) {
+  const Telemetry& telemetry = bench.outbox.telemetry;
+  const auto& pose = bench.odometry.pose();
   ordered_json body;
   body["schema"] = 1;
-  body["state"] = activity();
+  body["state"] = activity(bench, task);
   body["version"] = kVersion;
-  body["controller"] = {{"device", base.device()},
-                        {"connected", base.connected()},
-                        {"state", name_of(base.controller().state())},
-                        {"problem", text_of(base.problem())},
-                        {"watchdog_armed", base.controller().watchdog_armed()},
-                        {"ticks", tick_count},
-                        {"stale", encoders.stale(now).value_or("")},
-                        {"counters", base.counters()}};
-  for (const auto& one : base.controller().capabilities())
-    body["controller"]["holds"][one.quantity] = {{"readable", one.readable},
-                                                 {"writable", one.writable},
-                                                 {"stored", one.stored},
-                                                 {"object", one.object},
-                                                 {"step", one.step}};
-  if (const auto id = base.controller().identity())
-    body["controller"]["identity"] = {{"vendor", id->vendor},
-                                      {"product", id->product},
-                                      {"revision", id->revision},
-                                      {"serial", id->serial},
-                                      {"name", id->name}};
-  body["lidar"] = {{"device", lidar.device()},
-                   {"identity", lidar.identity()},
-                   {"connected", lidar.connected()},
-                   {"problem", text_of(lidar.problem())},
-                   {"scans", scan_count},
-                   {"stale", scans.stale(now).value_or("")},
-                   {"counters", lidar.counters()}};
-  body["robot"] = {{"left_wheel_diameter", all.left_wheel_diameter},
-                   {"right_wheel_diameter", all.right_wheel_diameter},
-                   {"track_width", all.track_width},
-                   {"ticks_per_rev", all.ticks_per_rev},
-                   {"in_controller", !in_force.empty()}};
-  const auto& pose = odometry.pose();
+  body["controller"] = controller_report(bench);
+  body["lidar"] = lidar_report(bench);
+  body["robot"] = robot_report(bench.drive);
   body["odometry"] = {pose.x, pose.y, routines::wrapped(pose.yaw)};
-  body["calibrated"] = active.has_value();
-  body["operator_needed"] = operator_needed;
-  body["last_stop"] = last_stop;
+  body["calibrated"] = bench.applied.get().has_value();
+  body["operator_needed"] = bench.write_back.operator_needed;
+  body["last_stop"] = bench.last_stop;
   body["lcm"] = {{"sent", telemetry.publisher.sent()}, {"failed", telemetry.publisher.failed()}};
-  body["clients"] = {{"connected", server.clients()},
-                     {"not_permitted", server.counters().not_permitted},
-                     {"malformed", server.counters().malformed},
-                     {"too_many", server.counters().too_many}};
-  body["loop"] = {{"turns", loop.turns()},
-                  {"late_steps", late_steps},
-                  {"longest_turn", json_of(loop.since_start())},
-                  {"longest_turn_in_motion", json_of(loop.in_motion())}};
+  body["clients"] = client_report(bench.outbox.server);
+  body["loop"] = loop_report(bench);
   body["recording_bytes"] = telemetry.recorder.bytes();
   body["recording_bytes_waiting"] = telemetry.recorder.bytes_waiting();
   return body;
 }
 
-ordered_json Service::Impl::describe() const {
+ordered_json description(const Config& config) {
   return {
       {"version", kVersion},
       {"controller", {{"device", config.controller_device}, {"profile", config.controller_profile}}},
@@ -144,44 +160,50 @@ ordered_json Service::Impl::describe() const {
       {"state_dir", config.state_dir.string()}};
 }
 
-ordered_json Service::Impl::checks() const {
+ordered_json check_report(const Bench& bench) {
   using drivers::ControllerState;
-  const auto state = base.controller().state();
-  const RobotDescription all = robot();
+  const Drive& drive = bench.drive;
+  const Surroundings& around = bench.surroundings;
+  const WriteBack& write_back = bench.write_back;
+  const auto state = drive.controller().state();
+  const RobotDescription all = drive.robot();
   ordered_json list = ordered_json::array();
-  list.push_back(check("bus", base.connected(), found_at(base.connected(), base.problem()),
+  list.push_back(check("bus", drive.link.connected(), found_at(drive.link.connected(), drive.link.problem()),
                        "connect the adapter; check controller.device"));
   list.push_back(check("controller", state == ControllerState::disabled || state == ControllerState::enabled,
                        name_of(state),
                        "switch the controller on; check the profile's node id and the bit rate"));
-  const bool armed = base.controller().watchdog_armed();
+  const bool armed = drive.controller().watchdog_armed();
   list.push_back(check("watchdog", armed,
                        armed ? "controller stops by itself" : "controller would not stop by itself",
                        "use a profile with a watchdog"));
-  list.push_back(check("encoders", !encoders.stale(now), encoders.stale(now).value_or("counts arrive"),
-                       "check the bus"));
-  list.push_back(check("lidar port", lidar.connected(), found_at(lidar.connected(), lidar.problem()),
+  list.push_back(check("encoders", !drive.encoders.stale(bench.now),
+                       drive.encoders.stale(bench.now).value_or("counts arrive"), "check the bus"));
+  list.push_back(check("lidar port", around.link.connected(),
+                       found_at(around.link.connected(), around.link.problem()),
                        "connect it; check lidar.device"));
-  list.push_back(check("scans", !scans.stale(now), scans.stale(now).value_or("scans arrive"),
-                       "check lidar and baud rate"));
-  list.push_back(view_check(cover.blind(now).sectors()));
-  const auto wrong = geometry_forbidden();
+  list.push_back(check("scans", !around.scans.stale(bench.now),
+                       around.scans.stale(bench.now).value_or("scans arrive"), "check lidar and baud rate"));
+  list.push_back(view_check(around.cover.blind(bench.now).sectors()));
+  const auto wrong = drive.geometry_forbidden();
   const bool ticks_known = all.ticks_per_rev > 0.0;
   list.push_back(wrong ? check("geometry", false, wrong->what, wrong->remedy)
                        : check("geometry", ticks_known,
-                               !ticks_known       ? "not known: ticks per turn"
-                               : in_force.empty() ? "from the configuration"
-                                                  : "from the controller",
+                               !ticks_known             ? "not known: ticks per turn"
+                               : drive.in_force.empty() ? "from the configuration"
+                                                        : "from the controller",
                                "state the ticks per turn in the profile"));
   list.push_back(
-      check("write-back", !operator_needed, operator_needed ? write_problem : "nothing unfinished",
+      check("write-back", !write_back.operator_needed,
+            write_back.operator_needed ? write_back.problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
-  list.push_back(check_disk(config.state_dir));
+  list.push_back(check_disk(bench.config.state_dir));
   return list;
 }
 
-ordered_json Service::Impl::parameters(const std::optional<Calibration>& calibration) const {
-  const RobotDescription all = robot();
+ordered_json parameter_report(const Bench& bench, const std::optional<Calibration>& calibration) {
+  const auto& in_force = bench.drive.in_force;
+  const RobotDescription all = bench.drive.robot();
   const std::array<std::pair<const char*, double>, 3> values = {
       {{"left_wheel_diameter", all.left_wheel_diameter},
        {"right_wheel_diameter", all.right_wheel_diameter},
@@ -201,7 +223,8 @@ ordered_json Service::Impl::parameters(const std::optional<Calibration>& calibra
         stored ? "controller, rounding remainder in corrected odometry" : "corrected odometry on the host";
     list.push_back(entry);
   }
-  if (calibration && calibrator.host_values) add_host_values(calibrator.host_values(*calibration), list);
+  if (calibration && bench.calibrator.host_values)
+    add_host_values(bench.calibrator.host_values(*calibration), list);
   return list;
 }
 

@@ -1,11 +1,12 @@
-// Check: what is there, and with a nudge, whether every wire goes where it should.
+#include "daemon/service/nudge_report.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "daemon/routines/wiring.hpp"
-#include "daemon/service/service_impl.hpp"
+#include "daemon/service/status_report.hpp"
 
 namespace odomcalib {
 namespace {
@@ -106,14 +107,10 @@ void add_rows(const routines::Wiring& wiring, ordered_json& checks) {
 
 }  // namespace
 
-void Service::Impl::call_check(const IncomingCall& incoming, const ordered_json& parameters) {
-  start_motion(incoming, routines::nudge_plan(config.limits), parameters, pending_of(incoming, parameters));
-}
-
-ordered_json Service::Impl::nudge_report(const std::vector<Leg>& legs) const {
-  ordered_json list = checks();
+ordered_json nudge_report(const Bench& bench, const std::vector<Leg>& legs) {
+  ordered_json list = check_report(bench);
   if (legs.size() != 4) return {{"checks", list}, {"wiring", nullptr}};
-  const auto nudge = nudge_of(calibrator, robot(), legs);
+  const auto nudge = nudge_of(bench.calibrator, bench.drive.robot(), legs);
   const auto wiring = routines::judge_wiring(nudge);
   add_rows(wiring, list);
   return {{"checks", list}, {"wiring", json_of(nudge, wiring)}};
