@@ -12,6 +12,7 @@
 #include "daemon/service/lidar_link.hpp"
 #include "daemon/service/quick_stop.hpp"
 #include "daemon/service/service.hpp"
+#include "odomcalib_paths.hpp"
 #include "odomcalib_version.hpp"
 
 namespace {
@@ -126,7 +127,7 @@ int stop_only(const std::string& path) {
 int run(int argc, char** argv) {
   CLI::App app{"Calibrates the odometry of a differential-drive robot: the service on the robot.",
                "odomcalibd"};
-  std::string config = "/etc/odomcalib/odomcalib.toml";
+  std::string config = odomcalib::kConfigFile;
   app.add_option("--config", config, "configuration file")->capture_default_str();
   bool only_stop = false;
   app.add_flag("--quick-stop", only_stop,
