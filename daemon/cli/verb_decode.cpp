@@ -5,13 +5,14 @@
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "drivers/decode.hpp"
+#include "odomcalib_paths.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
 struct Options {
-  std::string driver, file, profiles = "/usr/share/odomcalib/profiles";
+  std::string driver, file, profiles = kProfileFolder;
 };
 
 int decode_file(const Options& options, const Session& session) {
