@@ -36,7 +36,7 @@ SIM = "tests/sim/"
 SIM_MAY_INCLUDE = {"proto/measurements.hpp", "proto/recording/recording.hpp", "proto/result.hpp", "proto/file_bytes.hpp"}
 
 # Made by CMake in the build folder.
-GENERATED = {"odomcalib_version.hpp"}
+GENERATED = {"odomcalib_paths.hpp", "odomcalib_version.hpp"}
 
 # calib is numbers only: no sockets, no LCM, no logging, no clocks. Bytes and numbers never log.
 SYSTEM_BANNED = {
