@@ -179,9 +179,10 @@ Result<void> DualAxis::command(double left_rad_s, double right_rad_s, double now
   }
   if (motion_ != Motion::on || phase_ != Phase::ready)
     return Error{ErrorCode::refused, "axes are not enabled", where, "enable first"};
-  if (std::max(std::abs(rpm(left_rad_s)), std::abs(rpm(right_rad_s))) > profile_.max_rpm) ++limited_commands_;
-  command_left_ = left_rad_s;
-  command_right_ = right_rad_s;
+  const double most = profile_.max_rpm * std::numbers::pi / 30.0;
+  if (std::max(std::abs(left_rad_s), std::abs(right_rad_s)) > most) ++limited_commands_;
+  command_left_ = std::clamp(left_rad_s, -most, most);
+  command_right_ = std::clamp(right_rad_s, -most, most);
   command_at_ = now_;
   return {};
 }
