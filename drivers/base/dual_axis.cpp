@@ -14,7 +14,7 @@ namespace {
 // A tenth of the drive's watchdog (M1): what is left of it tolerates a pause of ours.
 constexpr double kOwnHeartbeat_s = 0.02;
 constexpr int kMissedHeartbeats = 3;
-constexpr std::size_t kMostQueued = 1024;  // events or ticks that nobody takes
+constexpr double kRest_s = 0.1;
 constexpr std::uint8_t kOperational = 0x05;
 constexpr std::uint8_t kNmtResetNode = 0x81;
 constexpr double kBoot_s = 3.0;           // a node that sends no boot-up message is asked after this
@@ -30,18 +30,13 @@ DualAxis::DualAxis(Profile profile)
     : profile_(std::move(profile)),
       sdo_(profile_.node),
       job_(profile_),
-      left_(ticks_per_s(profile_), profile_.ticks_per_rev),
-      right_(ticks_per_s(profile_), profile_.ticks_per_rev) {}
+      motion_(*this,
+              {profile_.name, profile_.max_rpm * std::numbers::pi / 30.0, profile_.ticks_per_rev, kRest_s}),
+      left_(ticks_per_s(profile_)),
+      right_(ticks_per_s(profile_)) {}
 
-/// A stop event also stops the axes right here: the daemon's protective stop is the second line, not the
-/// first.
 void DualAxis::event(const std::string& code, const std::string& text, bool stop) {
-  if (stop && (motion_ == Motion::on || motion_ == Motion::enabling)) quick_stop(now_);
-  if (events_.size() >= kMostQueued) {
-    ++dropped_;
-    return;
-  }
-  events_.push_back({now_, code, text, stop});
+  motion_.event(code, text, stop, now_);
 }
 
 void DualAxis::on_frame(const CanFrame& frame) {
@@ -140,7 +135,7 @@ void DualAxis::lose(const std::string& code, const std::string& text) {
 }
 
 void DualAxis::forget_node() {
-  motion_ = Motion::off;
+  motion_.forget();
   setup_.cancel();
   sdo_.cancel();
   phase_ = Phase::absent;
@@ -149,8 +144,8 @@ void DualAxis::forget_node() {
   positions_at_.reset();
   timer_.reset();
   status_at_.reset();
-  left_.unwrap.forget();
-  right_.unwrap.forget();
+  left_.forget();
+  right_.forget();
   ++segment_;
 }
 
@@ -213,7 +208,6 @@ std::vector<CanFrame> DualAxis::take_frames() {
 }
 
 std::vector<TickSample> DualAxis::take_ticks() { return std::exchange(ticks_, {}); }
-std::vector<ControllerEvent> DualAxis::take_events() { return std::exchange(events_, {}); }
 
 ControllerState DualAxis::state() const {
   switch (phase_) {
@@ -230,7 +224,7 @@ ControllerState DualAxis::state() const {
       break;
   }
   using enum canopen::DriveState;
-  if (motion_ == Motion::enabling) return ControllerState::enabling;
+  if (motion_.motion() == Motion::enabling) return ControllerState::enabling;
   if (any_axis(fault) || any_axis(fault_reaction)) return ControllerState::fault;
   // While the axes are brought to rest they still have torque: not disabled before the drive says so.
   return any_axis(enabled) ? ControllerState::enabled : ControllerState::disabled;
@@ -247,10 +241,9 @@ Counters DualAxis::counters() const {
               {"short_pdos", short_pdos_},
               {"other_master", other_master_},
               {"tick_jumps", jumps_},
-              {"stale_commands", stale_commands_},
-              {"limited_commands", limited_commands_},
               {"error_frames", error_frames_},
-              {"events_dropped", dropped_}});
+              {"events_dropped", dropped_ticks_}});
+  motion_.count_into(all);
   return all;
 }
 
@@ -258,7 +251,7 @@ Result<void> DualAxis::job_allowed() const {
   const std::string where = "controller " + profile_.name;
   if (phase_ != Phase::ready)
     return Error{ErrorCode::refused, "controller is not configured", where, "wait until it is"};
-  if (motion_ != Motion::off || any_axis(canopen::DriveState::enabled))
+  if (motion_.motion() != Motion::off || any_axis(canopen::DriveState::enabled))
     return Error{ErrorCode::refused, "axes are not disabled", where, "stop and disable first"};
   if (job_.running())
     return Error{ErrorCode::refused, "another parameter job is in progress", where, "wait for it"};

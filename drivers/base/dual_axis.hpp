@@ -10,15 +10,15 @@
 #include "drivers/base/canopen/cia402.hpp"
 #include "drivers/base/canopen/sdo_sequence.hpp"
 #include "drivers/base/controller.hpp"
+#include "drivers/base/motion/motion_cycle.hpp"
 #include "drivers/base/parameter_job.hpp"
 #include "drivers/base/profile.hpp"
-#include "drivers/base/stuck_watch.hpp"
 #include "drivers/base/tick_unwrap.hpp"
 #include "drivers/base/timer_dates.hpp"
 
 namespace odomcalib::drivers {
 
-class DualAxis final : public Controller {
+class DualAxis final : public Controller, private MotionDevice {
  public:
   explicit DualAxis(Profile profile);
   DualAxis(const DualAxis&) = delete;
@@ -29,7 +29,7 @@ class DualAxis final : public Controller {
   void on_time(double now) override;
   std::vector<CanFrame> take_frames() override;
   std::vector<TickSample> take_ticks() override;
-  std::vector<ControllerEvent> take_events() override;
+  std::vector<ControllerEvent> take_events() override { return motion_.take_events(); }
 
   [[nodiscard]] ControllerState state() const override;
   void enable(double now) override;
@@ -37,7 +37,7 @@ class DualAxis final : public Controller {
   Result<void> command(double left_rad_s, double right_rad_s, double now) override;
   void quick_stop(double now) override;
   [[nodiscard]] bool watchdog_armed() const override { return watchdog_armed_; }
-  [[nodiscard]] bool at_rest() const override;
+  [[nodiscard]] bool at_rest() const override { return motion_.at_rest(now_); }
 
   Result<void> start_read_parameters(double now) override;
   Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) override;
@@ -56,7 +56,6 @@ class DualAxis final : public Controller {
 
  private:
   enum class Phase { absent, identifying, configuring, starting, ready, foreign };
-  enum class Motion { off, enabling, on, disabling, stopping };
 
   // dual_axis.cpp: events and life signs
   void event(const std::string& code, const std::string& text, bool stop);
@@ -89,24 +88,24 @@ class DualAxis final : public Controller {
   void on_positions(std::int32_t left, std::int32_t right, double t);
   void on_status(std::uint32_t status);
   void cycle_motion();
-  void step_enabling();
-  void step_ending();
   void check_motion();
-  void check_encoders();
+  [[nodiscard]] std::string enable_refusal() const override;
+  [[nodiscard]] bool follows() const override;
+  [[nodiscard]] std::string enable_failure() const override;
+  [[nodiscard]] bool shows_torque() const override;
+  [[nodiscard]] bool shows_no_torque() const override;
+  void begin_enabling() override { cycles_ = 0; }
+  void engage() override;
+  void drive(double left_rad_s, double right_rad_s) override;
+  void stop() override;
+  void release() override;
+  double idle() override;
   void send_command(std::uint16_t control_word, double left_rad_s, double right_rad_s);
   [[nodiscard]] std::int64_t speed_counts(double rad_s, int sign) const;
-  void end_motion(Motion how);
   [[nodiscard]] bool both_axes(canopen::DriveState state) const;
   [[nodiscard]] bool any_axis(canopen::DriveState state) const;
   [[nodiscard]] Result<void> job_allowed() const;
   Result<void> change_allowed(double now);
-
-  struct Wheel {
-    Wheel(double ticks_per_s, double ticks_per_rev) : unwrap(ticks_per_s), watch(ticks_per_rev) {}
-    TickUnwrap unwrap;
-    StuckWatch watch;
-    std::optional<std::int64_t> total;
-  };
 
   const Profile profile_;
   double now_ = 0.0;
@@ -128,28 +127,23 @@ class DualAxis final : public Controller {
   double restarted_at_ = 0.0;      // when we reset the node to see what it stored
   double last_other_master_ = -1e9;
 
-  Motion motion_ = Motion::off;
-  double motion_since_ = 0.0;
-  double cycle_due_ = 0.0;
+  MotionCycle motion_;
   std::optional<double> positions_at_;  // s, last position frame
   std::optional<TimerDates> timer_;     // of the position frames, where the drive's timer sends them
   std::optional<double> status_at_;
   std::uint32_t status_ = 0;
   std::array<canopen::DriveState, 2> axes_{canopen::DriveState::not_ready, canopen::DriveState::not_ready};
   std::uint32_t fault_code_ = 0;
-  Wheel left_, right_;
+  TickUnwrap left_, right_;
   std::int32_t segment_ = 0;
-  double moved_at_ = 0.0;  // s, last change of either count
-  double command_left_ = 0.0, command_right_ = 0.0, command_at_ = -1e9;
-  unsigned cycles_ = 0;
+  unsigned cycles_ = 0;  // since torque is wanted
 
   std::vector<CanFrame> out_;
   std::vector<TickSample> ticks_;
-  std::vector<ControllerEvent> events_;
   std::uint64_t frames_in_ = 0, frames_used_ = 0, emergencies_ = 0, boot_ups_ = 0, heartbeats_ = 0,
                 bad_frames_ = 0;
-  std::uint64_t short_pdos_ = 0, other_master_ = 0, jumps_ = 0, stale_commands_ = 0, limited_commands_ = 0;
-  std::uint64_t error_frames_ = 0, dropped_ = 0;
+  std::uint64_t short_pdos_ = 0, other_master_ = 0, jumps_ = 0;
+  std::uint64_t error_frames_ = 0, dropped_ticks_ = 0;
 };
 
 }  // namespace odomcalib::drivers

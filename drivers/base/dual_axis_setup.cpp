@@ -175,7 +175,7 @@ void DualAxis::check_started() {
   if (running) {
     phase_ = Phase::ready;
     phase_since_ = now_;
-    motion_ = Motion::off;
+    motion_.forget();
     heard_at_ = now_;
     return job_.on_set_up_again();
   }
