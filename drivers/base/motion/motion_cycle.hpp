@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "drivers/base/controller.hpp"
-#include "drivers/base/speed/tick_pairing.hpp"
-#include "drivers/base/stuck_watch.hpp"
+#include "drivers/base/motion/stuck_watch.hpp"
+#include "drivers/base/motion/tick_pairing.hpp"
 
 namespace odomcalib::drivers {
 

@@ -10,9 +10,9 @@
 
 #include "drivers/base/controller.hpp"
 #include "drivers/base/motion/motion_cycle.hpp"
-#include "drivers/base/profile.hpp"
+#include "drivers/base/motion/tick_unwrap.hpp"
+#include "drivers/base/profile/profile.hpp"
 #include "drivers/base/speed/speed_protocol.hpp"
-#include "drivers/base/tick_unwrap.hpp"
 
 namespace odomcalib::drivers {
 

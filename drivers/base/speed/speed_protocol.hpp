@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "drivers/base/controller.hpp"
-#include "drivers/base/profile.hpp"
-#include "drivers/base/speed/tick_pairing.hpp"
+#include "drivers/base/motion/tick_pairing.hpp"
+#include "drivers/base/profile/profile.hpp"
 #include "drivers/wire_table.hpp"
 
 namespace odomcalib::drivers {

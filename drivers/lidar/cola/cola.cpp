@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "drivers/lidar/hex_text.hpp"
-#include "drivers/lidar/units.hpp"
+#include "drivers/lidar/common/hex_text.hpp"
+#include "drivers/lidar/common/units.hpp"
 
 namespace odomcalib::drivers {
 namespace {

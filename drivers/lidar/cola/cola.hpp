@@ -7,8 +7,8 @@
 
 #include "drivers/device_clock.hpp"
 #include "drivers/lidar/cola/startup.hpp"
+#include "drivers/lidar/common/stamp_line.hpp"
 #include "drivers/lidar/lidar.hpp"
-#include "drivers/lidar/stamp_line.hpp"
 
 namespace odomcalib::drivers {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "drivers/lidar/units.hpp"
+#include "drivers/lidar/common/units.hpp"
 
 namespace odomcalib::drivers {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/lidar/common/units.hpp"
 #include "drivers/lidar/rplidar/answer_text.hpp"
-#include "drivers/lidar/units.hpp"
 
 namespace odomcalib::drivers {
 namespace {

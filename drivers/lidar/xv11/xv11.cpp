@@ -1,6 +1,6 @@
 #include "drivers/lidar/xv11/xv11.hpp"
 
-#include "drivers/lidar/units.hpp"
+#include "drivers/lidar/common/units.hpp"
 
 namespace odomcalib::drivers {
 namespace {

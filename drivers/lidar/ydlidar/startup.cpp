@@ -1,6 +1,6 @@
 #include "drivers/lidar/ydlidar/startup.hpp"
 
-#include "drivers/lidar/hex_text.hpp"
+#include "drivers/lidar/common/hex_text.hpp"
 
 namespace odomcalib::drivers::ydlidar {
 namespace {

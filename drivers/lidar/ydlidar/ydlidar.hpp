@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "drivers/lidar/common/sweep.hpp"
 #include "drivers/lidar/lidar.hpp"
-#include "drivers/lidar/sweep.hpp"
 #include "drivers/lidar/ydlidar/packet.hpp"
 #include "drivers/lidar/ydlidar/startup.hpp"
 #include "drivers/sample_clock.hpp"
