@@ -6,12 +6,15 @@
 #include <cstdio>
 #include <limits>
 
+#include "drivers/can/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
+using namespace can;
+
 constexpr std::uint32_t kErrorFlag = 0x20000000;
 constexpr std::uint32_t kMaxExtended = 0x1FFFFFFF;
-constexpr double kLatest_s = 1e11;  // no clock says more since 1970
 
 /// The text up to the separator, which is consumed too; nullopt when there is none.
 std::optional<std::string_view> cut(std::string_view& text, char separator) {

@@ -3,11 +3,12 @@
 #include "drivers/can/slcan.hpp"
 #include "drivers/can/socketcan.hpp"
 #include "drivers/serial/port.hpp"
+#include "drivers/can/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-constexpr unsigned kAnyBaud = 115'200;  // USB-CDC devices ignore it
+using namespace can;
 
 Result<unsigned> number(const DeviceString& device, const std::string& key, unsigned otherwise) {
   const std::string text = device.option(key, std::to_string(otherwise));

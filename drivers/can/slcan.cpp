@@ -8,12 +8,12 @@
 
 #include "drivers/can/slcan_parser.hpp"
 #include "drivers/device_clock.hpp"
+#include "drivers/can/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-constexpr int kDrain_ms = 100;   // answers to what a previous user sent
-constexpr int kAnswer_ms = 250;  // for one set-up command
+using namespace can;
 
 std::span<const std::uint8_t> as_bytes(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "drivers/can/transport.hpp"
+#include "drivers/can/settings.hpp"
 
 namespace odomcalib::drivers {
 
@@ -42,7 +43,7 @@ class SlcanParser {
   void reject(std::uint64_t& counter);
   void overflow();
 
-  static constexpr std::size_t kLongestLine = 150;  // of all firmwares: FD frames of 64 bytes have 142
+  static constexpr std::size_t kLongestLine = can::kLongestLine;
   std::array<char, kLongestLine> line_{};
   std::size_t used_ = 0;
   bool overlong_ = false;  // the rest of an overlong line is skipped up to its CR

@@ -8,12 +8,10 @@
 
 #include "drivers/base/canopen/object.hpp"
 #include "drivers/can/transport.hpp"
+#include "drivers/base/canopen/settings.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib::drivers::canopen {
-
-inline constexpr double kSdoTimeout_s = 0.5;
-inline constexpr std::size_t kSdoMostBytes = 1024;  ///< bound of a segmented transfer
 
 struct SdoRequest {
   ObjectAddress object;

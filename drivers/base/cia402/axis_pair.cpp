@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "drivers/base/motion/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
 constexpr std::array kSides = {"left", "right"};
-constexpr std::size_t kMostQueued = 4096;
 
 /// Smaller is further from moving.
 int readiness(ControllerState state) {
@@ -74,7 +75,7 @@ void AxisPair::collect_events(std::size_t side) {
   for (ControllerEvent& event : drives_[side].take_events()) {
     if (event.stop) stop_the_other(side);
     event.text = std::string(kSides[side]) + " drive: " + event.text;
-    if (events_.size() < kMostQueued) events_.push_back(std::move(event));
+    if (events_.size() < motion::kMostQueued) events_.push_back(std::move(event));
   }
 }
 
@@ -89,7 +90,7 @@ void AxisPair::collect_ticks(std::size_t side) {
     if (sample.segment != segments_[side]) pairing_.forget();
     segments_[side] = sample.segment;
     const auto pair = pairing_.add(side == 0 ? Side::left : Side::right, sample.t, sample.left);
-    if (pair && ticks_.size() < kMostQueued)
+    if (pair && ticks_.size() < motion::kMostQueued)
       ticks_.push_back({pair->t, pair->left, pair->right, segments_[0] + segments_[1]});
   }
 }

@@ -7,18 +7,15 @@
 
 #include "drivers/base/canopen/words.hpp"
 #include "drivers/bytes.hpp"
+#include "drivers/base/cia402/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-// A tenth of the drive's watchdog (M1): what is left of it tolerates a pause of ours.
-constexpr double kOwnHeartbeat_s = 0.02;
-constexpr int kMissedHeartbeats = 3;
-constexpr double kRest_s = 0.1;
+using namespace cia402;
+
 constexpr std::uint8_t kOperational = 0x05;
 constexpr std::uint8_t kNmtResetNode = 0x81;
-constexpr double kBoot_s = 3.0;           // a node that sends no boot-up message is asked after this
-constexpr double kRestart_s = 10.0;       // from a reset to configured
 constexpr std::uint32_t kBusOff = 0x040;  // SocketCAN error classes
 constexpr std::uint32_t kController = 0x004;
 
@@ -109,7 +106,7 @@ void DualAxis::on_boot_up() {
 
 void DualAxis::on_other_master(const CanFrame& frame) {
   ++other_master_;
-  const bool first = now_ - last_other_master_ > 10.0;
+  const bool first = now_ - last_other_master_ > kOtherMasterAgain_s;
   last_other_master_ = now_;
   if (first)
     event("other_master",
@@ -131,7 +128,7 @@ void DualAxis::lose(const std::string& code, const std::string& text) {
   event(code, text, true);
   job_.abandon();
   forget_node();
-  look_after_ = now_ + 0.1;
+  look_after_ = now_ + kLostAgain_s;
 }
 
 void DualAxis::forget_node() {

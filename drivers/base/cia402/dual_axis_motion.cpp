@@ -6,19 +6,17 @@
 #include "drivers/base/canopen/words.hpp"
 #include "drivers/base/cia402/dual_axis.hpp"
 #include "drivers/bytes.hpp"
+#include "drivers/base/cia402/settings.hpp"
+#include "drivers/base/motion/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-using canopen::DriveState;
+using namespace cia402;
 
-constexpr double kIdleCycle_s = 0.05;  // zero commands that keep a vendor's time-out from firing
-constexpr double kPositionsLive_s = 0.1;
-constexpr unsigned kResetCycles = 4;  // half a period of the fault reset's edge
-constexpr std::size_t kMostQueued = 4096;
+using canopen::DriveState;
 constexpr std::uint8_t kMostSyncs = 240;  // transmission types 1..240: every n-th SYNC
 constexpr std::uint8_t kOnEvent = 254;    // 254, 255: on change or timer
-constexpr double kSyncLives_s = 0.05;     // a frame later than that belongs to no SYNC we know of
 
 /// Bits of a standard frame without stuffing, with its inter-frame space.
 double frame_time(const CanFrame& frame, unsigned bitrate) { return (47.0 + 8.0 * frame.length) / bitrate; }
@@ -77,7 +75,7 @@ void DualAxis::on_positions(std::int32_t left, std::int32_t right, double t) {
   const TickSample sample{t, profile_.left_sign * l.total, profile_.right_sign * r.total, segment_};
   motion_.counted(Side::left, sample.left, t, now_);
   motion_.counted(Side::right, sample.right, t, now_);
-  if (ticks_.size() >= kMostQueued) {
+  if (ticks_.size() >= motion::kMostQueued) {
     ++dropped_ticks_;
     return;
   }

@@ -6,17 +6,15 @@
 #include "drivers/base/canopen/words.hpp"
 #include "drivers/base/cia402/dual_axis.hpp"
 #include "drivers/clean_text.hpp"
+#include "drivers/base/cia402/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
+using namespace cia402;
+
 using canopen::NumberType;
 using canopen::SdoStep;
-
-constexpr double kListen_s = 0.2;  // for other masters, before the first word
-constexpr double kAskAgain_s = 0.3;
-constexpr double kOtherMaster_s = 2.0;  // silence of another master before we dare to configure
-constexpr double kStart_s = 2.0;        // from NMT start to the first process data
 constexpr std::uint8_t kNmtStart = 0x01;
 constexpr std::uint8_t kNmtPreOperational = 0x80;
 constexpr std::uint8_t kOperational = 0x05;
@@ -143,7 +141,7 @@ void DualAxis::end_configuration() {
   if (setup_.error()) {
     event("configuration_failed", setup_.error()->text(), true);
     phase_ = Phase::absent;
-    look_after_ = now_ + 10.0 * kAskAgain_s;
+    look_after_ = now_ + kFailedAgain_s;
     return;
   }
   note_safety_objects();
@@ -185,7 +183,7 @@ void DualAxis::check_started() {
             (positions_at_ ? "no status" : "no positions") + " after the NMT start",
         true);
   phase_ = Phase::absent;
-  look_after_ = now_ + 10.0 * kAskAgain_s;
+  look_after_ = now_ + kFailedAgain_s;
 }
 
 }  // namespace odomcalib::drivers

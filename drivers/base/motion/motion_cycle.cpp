@@ -4,17 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "drivers/base/motion/settings.hpp"
+
 namespace odomcalib::drivers {
-namespace {
 
-constexpr double kCycle_s = 0.02;
-constexpr double kCommandLives_s = 0.1;
-constexpr double kStep_s = 1.0;    // longest wait for the next state of the axes on their way to torque
-constexpr double kEnding_s = 3.0;  // longest ramp to standstill before torque is taken away anyway
-constexpr std::size_t kMostQueued = 4096;
-
-}  // namespace
-
+using namespace motion;
 MotionCycle::MotionCycle(MotionDevice& device, Options options)
     : device_(device),
       options_(std::move(options)),

@@ -4,21 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/base/motion/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
-// A wheel that breaks away: more than any play in a gear, and no shorter than a slow drive's ramp.
-constexpr double kStart_rad = 0.15;
-constexpr double kStart_s = 0.3;
-constexpr double kStart_ticks = 3.0;
-// A wheel that was turning: found within 100 ms (readings come every 10 ms), unless it is told to go so
-// slowly, or counts so coarsely, that it may stand as long.
-constexpr double kFrozen_s = 0.075;
-constexpr double kFrozenRate = 0.5;  // rad/s
-constexpr double kFrozen_ticks = 5.0;
-constexpr unsigned kFrozen_readings = 3;
-// Drives that refresh their counts slowly, wheels that go by fits and starts: twice the longest pause seen.
-constexpr double kPauses = 2.0;
+using namespace motion;
 
 }  // namespace
 
@@ -53,7 +44,7 @@ void StuckWatch::counted(std::int64_t forward, double t, double now) {
     ++same_;
     return;
   }
-  if (turning_ && lowest_ >= kFrozenRate) longest_pause_ = std::max(longest_pause_, t - changed_t_);
+  if (turning_ && lowest_ >= kFrozenRate_rad_s) longest_pause_ = std::max(longest_pause_, t - changed_t_);
   count_ = forward;
   changed_t_ = t;
   changed_at_ = now;
@@ -71,7 +62,7 @@ bool StuckWatch::never_left(double now) const {
 
 bool StuckWatch::froze() const {
   const double stood = sample_t_ - changed_t_;
-  return turning_ && same_ >= kFrozen_readings && lowest_ >= kFrozenRate &&
+  return turning_ && same_ >= kFrozenReadings && lowest_ >= kFrozenRate_rad_s &&
          stood > std::max(kFrozen_s, kPauses * longest_pause_) && lowest_ * stood > kFrozen_ticks * tick_rad_;
 }
 

@@ -2,11 +2,12 @@
 
 #include <cmath>
 
+#include "drivers/base/motion/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
-constexpr double kSameInstant_s = 1e-6;
-constexpr double kLongestGap_s = 0.5;  // between right counts; further apart the speed may have changed
+using namespace motion;
 
 }  // namespace
 

@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "drivers/bytes.hpp"
+#include "drivers/base/motion/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-constexpr double kMargin = 1.5;
-constexpr double kShortest_s = 0.005;  // frames that were queued arrive together
-constexpr double kNoise_ticks = 8;     // an encoder on an edge
+using namespace motion;
 
 }  // namespace
 
@@ -22,7 +21,7 @@ TickUnwrap::Reading TickUnwrap::on_count(std::int64_t count, double t) {
   } else {
     const std::int64_t difference =
         sign_extend(static_cast<std::uint64_t>(raw) - static_cast<std::uint64_t>(*last_), bits_);
-    const double most = kMargin * ticks_per_s_ * std::max(t - last_t_, kShortest_s) + kNoise_ticks;
+    const double most = kSpeedMargin * ticks_per_s_ * std::max(t - last_t_, kShortest_s) + kNoise_ticks;
     reading.jumped = std::abs(static_cast<double>(difference)) > most;
     if (!reading.jumped) total_ += difference;
   }

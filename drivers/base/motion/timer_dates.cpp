@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
+#include "drivers/base/motion/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
-constexpr double kPrompt_s = 0.0015;  // a drive's own jitter and an idle host's
-constexpr double kGain = 0.05;
+using namespace motion;
 
 }  // namespace
 

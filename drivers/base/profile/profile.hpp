@@ -9,6 +9,7 @@
 
 #include "drivers/base/canopen/object.hpp"
 #include "drivers/base/canopen/pdo.hpp"
+#include "drivers/base/profile/settings.hpp"
 #include "proto/measurements.hpp"
 #include "proto/result.hpp"
 
@@ -97,9 +98,6 @@ struct Profile {
   double interval_s = 0.0;  ///< of the device's control loop, where speeds are counts in it
   RobotDescription robot;   ///< nominal geometry, zeros where the profile states none
 };
-
-/// Longest command time-out of a device that is still taken for a watchdog.
-inline constexpr double kLongestWatchdog_s = 2.0;
 
 /// Errors: io, format (which key, what was found, what is allowed).
 Result<Profile> read_profile(const std::string& path);

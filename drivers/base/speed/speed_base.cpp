@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/base/speed/settings.hpp"
+#include "drivers/base/motion/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
-constexpr double kGreet_s = 0.3;
-constexpr double kRest_s = 0.15;
-constexpr double kIdle_s = 0.02;  // between two looks at a motion that is not wanted
-constexpr std::size_t kMostQueued = 4096;
+using namespace speed;
 
 std::size_t index(Side side) { return static_cast<std::size_t>(side); }
 TickUnwrap unwrap_of(const Profile& profile) {
@@ -59,7 +59,7 @@ void SpeedBase::on_count(const SideCount& count) {
   motion_.counted(count.side, sign * reading.total, count.t, now_);
   const auto pair = pairing_.add(count.side, count.t, reading.total);
   if (!pair) return;
-  if (ticks_.size() >= kMostQueued) {
+  if (ticks_.size() >= motion::kMostQueued) {
     ++dropped_ticks_;
     return;
   }

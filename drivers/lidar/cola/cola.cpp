@@ -4,21 +4,15 @@
 
 #include "drivers/lidar/common/hex_text.hpp"
 #include "drivers/lidar/common/units.hpp"
+#include "drivers/lidar/cola/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-using cola::Channel;
-using cola::ScanData;
+using namespace cola;
 
 constexpr std::uint64_t kClockModulus_us = std::uint64_t{1} << 32U;
-constexpr unsigned kFirstDistance = 16;  // raw values below are codes: no echo, dazzled, implausible, ...
-constexpr double kRangeMin_m = 0.01;  // below what any model measures; the codes mark what is not a reading
-constexpr double kRangeMax_m = 80.0;  // LMS5xx
 constexpr unsigned kError = 1, kPollution = 4;  // bits of the status
-// "Time since start" of a model that sends before a sweep's length has passed since cannot be the beginning
-// of that sweep: it is its end, and 0 to 3 ms of processing lie between (measured on LMS111 and TiM).
-constexpr double kUntilEnd_s = 1.5e-3;
 
 }  // namespace
 

@@ -2,14 +2,12 @@
 
 #include <cmath>
 
+#include "drivers/lidar/common/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
-constexpr std::size_t kTurns = 100;     // some seconds
-constexpr std::int64_t kMostLost = 20;  // beyond, the count of turns is a guess
-constexpr double kMostMisfit = 0.4;     // of a period
-constexpr double kMostDeviation = 0.2;  // of the nominal period
-constexpr std::size_t kTrusted = 5;     // stamps from which on the measured period counts
+using namespace lidar;
 
 }  // namespace
 

@@ -5,11 +5,12 @@
 #include <numbers>
 #include <utility>
 
+#include "drivers/lidar/common/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
-constexpr double kUsualShare = 0.9;          // of a turn; less is a short scan
-constexpr std::size_t kMostBeams = 100'000;  // a turn of the fastest sampler at its slowest speed, and more
+using namespace lidar;
 
 }  // namespace
 

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/lidar/ydlidar/settings.hpp"
+
 namespace odomcalib::drivers::ydlidar {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 10;
 constexpr std::size_t kDescriptorBytes = 7;
-constexpr std::size_t kMostAnswerBytes = 64;
-constexpr unsigned kMostSamples = 128;  // manuals: 40, newer models 80
 constexpr std::uint8_t kScanType = 0x81;
 constexpr double kFullTurn = 360.0 * 64.0;
 

@@ -4,23 +4,15 @@
 
 #include "drivers/lidar/common/hex_text.hpp"
 #include "drivers/lidar/common/units.hpp"
+#include "drivers/lidar/ydlidar/settings.hpp"
 
 namespace odomcalib::drivers {
-namespace {
-
-constexpr double kRangeMin_m = 0.05;  // the least of the family; not checked on devices
-constexpr double kRangeMax_m = 64.0;  // the longest of the family (TG50 and T30 stay below)
-// So many wrong checksums and not one right packet: the model is not the one configured.
-constexpr std::uint64_t kAllWrong = 50;
-
-}  // namespace
-
 Ydlidar::Ydlidar(const LidarOptions& options, const ydlidar::Model& model)
     : options_(options),
       model_(model),
       finder_(model),
       clock_(options.device_time),
-      sweep_({kRangeMin_m, kRangeMax_m, model.intensity_bits != 0}) {}
+      sweep_({ydlidar::kRangeMin_m, ydlidar::kRangeMax_m, model.intensity_bits != 0}) {}
 
 void Ydlidar::reset() {
   finder_.reset();
@@ -109,7 +101,7 @@ Counters Ydlidar::counters() const {
 
 std::optional<Error> Ydlidar::problem() const {
   const FrameBuffer& frames = finder_.frames();
-  if (frames.frames() == 0 && frames.rejected().at("bad_checksum") > kAllWrong)
+  if (frames.frames() == 0 && frames.rejected().at("bad_checksum") > ydlidar::kAllWrong)
     return Error{ErrorCode::format, "every checksum is wrong", "ydlidar",
                  std::string("lidar.type says model ") + model_.name +
                      "; a model with another sample format does this: correct lidar.type"};
