@@ -1,5 +1,5 @@
-// Lawicel ASCII lines from bytes, without a port: lines ended by CR, BEL for a refused command, frames at any
-// time.
+// Lawicel ASCII lines from bytes, without a port: lines ended by CR (some adapters: CR LF), BEL for a refused
+// command, frames at any time.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/transport.hpp"
 #include "drivers/can/settings.hpp"
+#include "drivers/can/transport.hpp"
 
 namespace odomcalib::drivers {
 

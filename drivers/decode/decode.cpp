@@ -7,6 +7,7 @@
 
 #include "drivers/decode/capture_file.hpp"
 #include "drivers/decode/decode_parts.hpp"
+#include "drivers/decode/network_capture.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -34,22 +35,35 @@ std::string profile_path(const std::string& name, const std::string& folder) {
   return is_path ? name : folder + "/" + name + ".toml";
 }
 
-}  // namespace
+Error no_network(const std::string& driver, const std::string& where) {
+  return {ErrorCode::usage, "this is a network capture, and \"" + driver + "\" does not come over TCP", where,
+          "give the bytes of its serial line, or a log of `candump -L`"};
+}
 
-Result<std::string> decode(const std::string& driver, std::string_view bytes,
-                           const std::string& profile_folder, const std::string& where) {
-  const auto choice = controller_choice(driver);
-  if (!choice) {
-    LidarOptions options;
-    options.device_time = true;
-    const auto lidar = make_lidar(driver, options);
-    if (lidar) return decode_lidar(*lidar.value(), device_bytes(bytes));
+Result<std::string> decode_lidar_file(const std::string& driver, std::string_view bytes,
+                                      const std::string& where) {
+  LidarOptions options;
+  options.device_time = true;
+  const auto type = find_lidar_type(driver);
+  const auto lidar = make_lidar(driver, options);
+  if (!type || !lidar)
     return Error{
         ErrorCode::usage, "unknown driver \"" + driver + "\"", where,
         "known: " + lidar_type_names() +
             ", and with a profile after a colon: canopen (e.g. canopen:zlac8015d), agilex, arcos, odrive, "
             "ros_arduino, segway, vesc"};
-  }
+  if (!is_network_capture(bytes)) return decode_lidar(*lidar.value(), device_bytes(bytes));
+  if (type.value().port == 0) return no_network(driver, where);
+  return decode_lidar_capture(*lidar.value(), type.value().port, bytes, where);
+}
+
+}  // namespace
+
+Result<std::string> decode(const std::string& driver, std::string_view bytes,
+                           const std::string& profile_folder, const std::string& where) {
+  const auto choice = controller_choice(driver);
+  if (!choice) return decode_lidar_file(driver, bytes, where);
+  if (is_network_capture(bytes)) return no_network(driver, where);
   const auto profile = read_profile(profile_path(choice->profile, profile_folder));
   if (!profile) return profile.error();
   if (profile.value().protocol != choice->protocol)
@@ -57,11 +71,12 @@ Result<std::string> decode(const std::string& driver, std::string_view bytes,
                  "profile \"" + choice->profile + "\" is for \"" + profile.value().protocol +
                      "\", not for \"" + choice->protocol + "\"",
                  where, ""};
-  if (choice->protocol == "canopen") return decode_canopen(profile.value(), bytes);
+  if (choice->protocol == "canopen") return decode_canopen(profile.value(), bytes, where);
   // Lines of text may be nothing but digits: they are no hexadecimal notation.
   const bool is_text = choice->protocol == "ros_arduino";
   return decode_speed(profile.value(), bytes,
-                      is_text ? std::vector<std::uint8_t>(bytes.begin(), bytes.end()) : device_bytes(bytes));
+                      is_text ? std::vector<std::uint8_t>(bytes.begin(), bytes.end()) : device_bytes(bytes),
+                      where);
 }
 
 }  // namespace odomcalib::drivers

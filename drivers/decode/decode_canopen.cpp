@@ -2,11 +2,11 @@
 #include <array>
 #include <cstdio>
 #include <map>
+#include <utility>
 
 #include "drivers/base/canopen/words.hpp"
 #include "drivers/base/cia402/drive_state.hpp"
-#include "drivers/base/motion/tick_pairing.hpp"
-#include "drivers/base/motion/tick_unwrap.hpp"
+#include "drivers/base/cia402/pdo_dates.hpp"
 #include "drivers/bytes.hpp"
 #include "drivers/can/candump.hpp"
 #include "drivers/decode/decode_parts.hpp"
@@ -39,36 +39,63 @@ bool is_signed(const ObjectAddress& object) {
 
 class CanopenLog {
  public:
-  explicit CanopenLog(const Profile& profile) : profile_(profile) {
-    const double most = profile.max_rpm / 60.0 * profile.ticks_per_rev;
-    left_ = TickUnwrap(most);
-    right_ = TickUnwrap(most);
-    for (const canopen::Pdo& pdo : profile.pdos) pdos_.push_back({profile.node, pdo, false});
+  explicit CanopenLog(const Profile& profile) : profile_(profile), counts_(profile) {
+    assume(profile, false);
+    for (const Profile& side : profile.sides) {
+      assume(side, true);
+      dates_.emplace_back(side);
+    }
+    if (profile.sides.empty()) dates_.emplace_back(profile);
   }
 
-  ordered_json on_frame(const CanFrame& frame) {
+  /// Lines about a frame, each one with its end. A frame that completes a tick reading is that reading.
+  std::string on_frame(const CanFrame& frame) {
+    const ordered_json line = line_of(frame);
+    const std::vector<TickSample> samples = counts_.take();
+    std::string out = line.is_null() || !samples.empty() ? "" : line.dump() + "\n";
+    for (const ordered_json& note : std::exchange(notes_, {})) out += note.dump() + "\n";
+    for (const TickSample& sample : samples) out += tick_line(sample).dump() + "\n";
+    return out;
+  }
+
+  [[nodiscard]] Counters counters() const {
+    Counters out{{"short_pdo", short_pdos_}, {"short_frame", short_frames_}};
+    counts_.count_into(out);
+    return out;
+  }
+
+ private:
+  /// The profile's mapping, but for the timer of each PDO: a log need not be of a drive that was set up so.
+  void assume(const Profile& profile, bool guessed) {
+    for (canopen::Pdo pdo : profile.pdos) {
+      pdo.event_timer.reset();
+      pdos_.push_back({profile.node, std::move(pdo), guessed});
+    }
+  }
+
+  struct NodePdo {
+    std::uint32_t node = 0;
+    canopen::Pdo pdo;
+    bool guessed = false;  ///< from the profile or by CiA 402, not seen in the log
+  };
+
+  /// null when nothing but counts is in it.
+  ordered_json line_of(const CanFrame& frame) {
     ordered_json line = {{"type", "message"}, {"t", frame.t}};
     if (frame.error || frame.extended || frame.remote)
       return other(line, frame, frame.error ? "error_frame" : "other");
     if (frame.id == 0x000) return nmt(line, frame);
-    if (frame.id == 0x080) return other(line, frame, "sync");
+    if (frame.id == 0x080) {
+      for (PdoDates& dates : dates_) dates.on_sync(frame.t);
+      return other(line, frame, "sync");
+    }
     if (frame.id > 0x080 && frame.id < 0x100) return emergency(line, frame);
     if (frame.id > 0x700 && frame.id < 0x780) return heartbeat(line, frame);
     if (frame.id > 0x580 && frame.id < 0x600) return sdo(line, frame, true);
     if (frame.id > 0x600 && frame.id < 0x680) return sdo(line, frame, false);
-    if (const NodePdo* mapped = mapping_of(frame.id)) return process_data(line, frame, *mapped);
+    if (const NodePdo* mapped = mapping_of(frame)) return process_data(line, frame, *mapped);
     return other(line, frame, "other");
   }
-
-  [[nodiscard]] std::uint64_t short_pdos() const { return short_pdos_; }
-  [[nodiscard]] std::uint64_t short_frames() const { return short_frames_; }
-
- private:
-  struct NodePdo {
-    std::uint32_t node = 0;
-    canopen::Pdo pdo;
-    bool guessed = false;  ///< predefined by CiA 402, not seen in the log
-  };
 
   static ordered_json other(ordered_json line, const CanFrame& frame, const char* name) {
     line["name"] = name;
@@ -143,16 +170,18 @@ class CanopenLog {
     return line;
   }
 
-  /// What the identifier was last said to carry. A pair's log begins with the mapping that CiA 402
-  /// predefines.
-  const NodePdo* mapping_of(std::uint32_t id) {
+  /// What the identifier was last said to carry. Where the log does not say it, a pair's drive is mapped as
+  /// the profile would set it, if the frame is as long; otherwise as CiA 402 predefines it.
+  const NodePdo* mapping_of(const CanFrame& frame) {
     for (const NodePdo& known : pdos_)
-      if (known.pdo.cob_id == id) return &known;
+      if (known.pdo.cob_id == frame.id &&
+          (!known.guessed || canopen::mapped_bytes(known.pdo) == frame.length))
+        return &known;
     if (profile_.sides.empty()) return nullptr;
-    const auto predefined = canopen::predefined_pdo(id);
+    const auto predefined = canopen::predefined_pdo(frame.id);
     if (!predefined) return nullptr;
-    pdos_.push_back({id & 0x7F, *predefined, true});
-    return &pdos_.back();
+    predefined_ = {frame.id & 0x7F, *predefined, true};
+    return &predefined_;
   }
 
   /// The mapping in force is what the log says, not what the profile would set: both writes and reads tell.
@@ -175,8 +204,10 @@ class CanopenLog {
 
   canopen::Pdo& find_or_add(std::uint32_t node, bool transmit, std::uint16_t number) {
     for (NodePdo& known : pdos_)
-      if (known.node == node && known.pdo.transmit == transmit && known.pdo.number == number)
+      if (known.node == node && known.pdo.transmit == transmit && known.pdo.number == number) {
+        known.guessed = false;
         return known.pdo;
+      }
     NodePdo added{node, {}, false};
     added.pdo.transmit = transmit;
     added.pdo.number = number;
@@ -193,10 +224,8 @@ class CanopenLog {
       if (!mapped.guessed) ++short_pdos_;
       return with_data(line, frame);
     }
-    if (pdo.transmit) {
-      const auto ticks = profile_.sides.empty() ? dual_ticks(frame, pdo) : pair_ticks(frame, mapped);
-      if (ticks) return *ticks;
-    }
+    if (pdo.transmit && profile_.sides.empty() && dual_counts(frame, pdo)) return nullptr;
+    if (pdo.transmit) pair_counts(frame, mapped);
     for (const canopen::PdoEntry& entry : pdo.entries)
       if (const auto value = canopen::unpack(pdo, frame, entry.object); value && entry.bits > 0) {
         line["values"][canopen::to_text(entry.object)] =
@@ -214,54 +243,53 @@ class CanopenLog {
     return states;
   }
 
-  std::optional<ordered_json> dual_ticks(const CanFrame& frame, const canopen::Pdo& pdo) {
+  void on_count(Side side, std::uint64_t raw, double t) {
+    const std::int64_t count = sign_extend(raw, 32);
+    const ordered_json note = count_note(side, count, t, counts_.on_count(side, count, t));
+    if (!note.is_null()) notes_.push_back(note);
+  }
+
+  bool dual_counts(const CanFrame& frame, const canopen::Pdo& pdo) {
     const auto left = canopen::unpack(pdo, frame, profile_.position_left);
     const auto right = canopen::unpack(pdo, frame, profile_.position_right);
-    if (!left || !right) return std::nullopt;
-    const auto l = left_.on_count(sign_extend(*left, 32), frame.t);
-    const auto r = right_.on_count(sign_extend(*right, 32), frame.t);
-    return tick_line({frame.t, l.total, r.total});
+    if (!left || !right) return false;
+    const double t = dates_[0].date(pdo, frame);
+    on_count(Side::left, *left, t);
+    on_count(Side::right, *right, t);
+    return true;
   }
 
   /// Two drives: a tick reading comes with the second of the two positions.
-  std::optional<ordered_json> pair_ticks(const CanFrame& frame, const NodePdo& mapped) {
+  void pair_counts(const CanFrame& frame, const NodePdo& mapped) {
     for (std::size_t i = 0; i < profile_.sides.size(); ++i) {
       const Profile& side = profile_.sides[i];
       const auto raw = canopen::unpack(mapped.pdo, frame, side.position_left);
       if (side.node != mapped.node || !raw) continue;
-      TickUnwrap& unwrap = i == 0 ? left_ : right_;
-      const auto total = unwrap.on_count(sign_extend(*raw, 32), frame.t).total;
-      const auto pair = pairing_.add(i == 0 ? Side::left : Side::right, frame.t, total);
-      if (pair) return tick_line(*pair);
+      on_count(i == 0 ? Side::left : Side::right, *raw, dates_[i].date(mapped.pdo, frame));
     }
-    return std::nullopt;
-  }
-
-  ordered_json tick_line(const TickPairing::Pair& pair) const {
-    return {{"type", "ticks"},
-            {"t", pair.t},
-            {"left", profile_.left_sign * pair.left},
-            {"right", profile_.right_sign * pair.right}};
   }
 
   const Profile& profile_;
   std::vector<NodePdo> pdos_;
-  TickPairing pairing_;
-  TickUnwrap left_{0.0}, right_{0.0};
+  NodePdo predefined_;
+  std::vector<PdoDates> dates_;  // of the drive, or of the left and the right one
+  WheelCounts counts_;
+  std::vector<ordered_json> notes_;
   std::uint64_t short_pdos_ = 0, short_frames_ = 0;
 };
 
 }  // namespace
 
-std::string decode_canopen(const Profile& profile, std::string_view text) {
+Result<std::string> decode_canopen(const Profile& profile, std::string_view text, const std::string& where) {
   CanopenLog log(profile);
   CandumpReader reader(text);
   std::string out;
-  while (const auto frame = reader.next()) out += log.on_frame(*frame).dump() + "\n";
+  while (const auto frame = reader.next()) out += log.on_frame(*frame);
+  if (const auto problem = reader.problem(where)) return *problem;
   Counters counters = reader.counters();
-  counters["short_pdo"] = log.short_pdos();
-  counters["short_frame"] = log.short_frames();
-  return out + summary_line(counters, {"bad_line", "fd_frame", "short_pdo", "short_frame"});
+  counters.merge(log.counters());
+  return out + summary_line(counters, {"bad_line", "fd_frame", "short_pdo", "short_frame", "tick_jumps",
+                                       "unpaired_counts"});
 }
 
 }  // namespace odomcalib::drivers

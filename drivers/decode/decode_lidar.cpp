@@ -3,15 +3,14 @@
 #include <vector>
 
 #include "drivers/decode/decode_parts.hpp"
+#include "drivers/decode/network_capture.hpp"
+#include "drivers/decode/settings.hpp"
 #include "drivers/lidar/lidar.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::size_t kPiece =
-    256;  // bytes fed at once, so that messages and scans come in the order of the file
 
 ordered_json scan_json(const LidarScan& given) {
   const Scan& scan = given.scan;
@@ -84,22 +83,109 @@ class Lines {
   bool any_scan_ = false;
 };
 
+/// A file has no arrival times: all times are the device's own, or counted samples.
+class Feeder {
+ public:
+  explicit Feeder(Lidar& lidar) : lidar_(lidar) {
+    lidar_.set_listener([this](const LidarMessage& message) { lines_.add(message); });
+  }
+  ~Feeder() { lidar_.set_listener(nullptr); }
+  Feeder(const Feeder&) = delete;
+  Feeder& operator=(const Feeder&) = delete;
+
+  void feed(Bytes bytes) {
+    while (!bytes.empty()) {
+      const auto piece = bytes.first(std::min(decoding::kPiece, bytes.size()));
+      lidar_.on_bytes(piece, 0.0);
+      bytes = bytes.subspan(piece.size());
+      take_scans();
+    }
+  }
+  /// What was begun will never be completed.
+  void interrupt() {
+    lidar_.finish();
+    take_scans();
+    lidar_.reset();
+  }
+  void tell(const LidarMessage& message) { lines_.add(message); }
+
+  std::string finish(const Counters& also_rejected) {
+    lidar_.finish();
+    take_scans();
+    if (const auto problem = lidar_.problem())
+      lines_.add(LidarMessage{"problem", {{"text", problem->text()}}});
+    Counters rejected = lidar_.rejected();
+    rejected.insert(also_rejected.begin(), also_rejected.end());
+    return lines_.text() + summary_line(lidar_.counters(), rejected);
+  }
+
+ private:
+  void take_scans() {
+    for (const LidarScan& scan : lidar_.take_scans()) lines_.add(scan);
+  }
+
+  Lidar& lidar_;
+  Lines lines_;
+};
+
+/// Those of the device: from its usual port, or, where nothing came from there, the one with the most data.
+std::vector<CapturedStream*> streams_of_device(std::vector<CapturedStream>& all, unsigned port) {
+  std::vector<CapturedStream*> out;
+  for (CapturedStream& one : all)
+    if (one.from_port == port) out.push_back(&one);
+  if (!out.empty() || all.empty()) return out;
+  return {&*std::max_element(all.begin(), all.end(), [](const CapturedStream& a, const CapturedStream& b) {
+    return a.stream.bytes() < b.stream.bytes();
+  })};
+}
+
+LidarMessage stream_message(const CapturedStream& one, bool used) {
+  const auto number = [](std::uint64_t value) { return static_cast<std::int64_t>(value); };
+  return {"tcp_stream",
+          {{"from", one.from},
+           {"to", one.to},
+           {"used", std::int64_t{used}},
+           {"bytes", number(one.stream.bytes())},
+           {"repeated_bytes", number(one.stream.repeated())},
+           {"lost_bytes", number(one.stream.lost())}}};
+}
+
 }  // namespace
 
-/// A file has no arrival times: all times are the device's own, or counted samples.
-std::string decode_lidar(Lidar& lidar, std::span<const std::uint8_t> bytes) {
-  Lines lines;
-  lidar.set_listener([&lines](const LidarMessage& message) { lines.add(message); });
-  while (!bytes.empty()) {
-    const auto piece = bytes.first(std::min(kPiece, bytes.size()));
-    lidar.on_bytes(piece, 0.0);
-    bytes = bytes.subspan(piece.size());
-    for (const LidarScan& scan : lidar.take_scans()) lines.add(scan);
+std::string decode_lidar(Lidar& lidar, Bytes bytes) {
+  Feeder feeder(lidar);
+  feeder.feed(bytes);
+  return feeder.finish({});
+}
+
+Result<std::string> decode_lidar_capture(Lidar& lidar, unsigned port, std::string_view file,
+                                         const std::string& where) {
+  auto read = read_network_capture(file, where);
+  if (!read) return read.error();
+  NetworkCapture& capture = read.value();
+  const std::vector<CapturedStream*> chosen = streams_of_device(capture.streams, port);
+  if (chosen.empty())
+    return Error{ErrorCode::format, "the network capture holds no data over TCP", where,
+                 "capture at the host that is connected to the lidar, while it measures"};
+  for (const CapturedStream* one : chosen)
+    if (one->from != chosen.front()->from)
+      return Error{ErrorCode::usage,
+                   "the network capture holds several devices: " + chosen.front()->from + ", " + one->from,
+                   where, "keep one: `tcpdump -r FILE -w ONE.pcap host ADDRESS`"};
+  Feeder feeder(lidar);
+  Counters rejected{{"capture_gaps", 0}, {"capture_cut_off", capture.cut_off.empty() ? 0U : 1U}};
+  for (const CapturedStream& one : capture.streams)
+    feeder.tell(stream_message(one, std::find(chosen.begin(), chosen.end(), &one) != chosen.end()));
+  if (!capture.cut_off.empty()) feeder.tell({"capture_cut_off", {{"text", capture.cut_off}}});
+  for (CapturedStream* one : chosen) {
+    if (one != chosen.front()) feeder.interrupt();
+    for (const TcpStreamBytes::Run& run : one->stream.take()) {
+      if (run.after_gap) feeder.interrupt();
+      feeder.feed(run.bytes);
+    }
+    rejected["capture_gaps"] += one->stream.gaps();
   }
-  lidar.finish();
-  for (const LidarScan& scan : lidar.take_scans()) lines.add(scan);
-  lidar.set_listener(nullptr);
-  return lines.text() + summary_line(lidar.counters(), lidar.rejected());
+  return feeder.finish(rejected);
 }
 
 }  // namespace odomcalib::drivers

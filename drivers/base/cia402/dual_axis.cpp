@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "drivers/base/canopen/words.hpp"
-#include "drivers/bytes.hpp"
 #include "drivers/base/cia402/settings.hpp"
+#include "drivers/bytes.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -19,8 +19,6 @@ constexpr std::uint8_t kNmtResetNode = 0x81;
 constexpr std::uint32_t kBusOff = 0x040;  // SocketCAN error classes
 constexpr std::uint32_t kController = 0x004;
 
-double ticks_per_s(const Profile& profile) { return profile.max_rpm / 60.0 * profile.ticks_per_rev; }
-
 }  // namespace
 
 DualAxis::DualAxis(Profile profile)
@@ -29,8 +27,8 @@ DualAxis::DualAxis(Profile profile)
       job_(profile_),
       motion_(*this,
               {profile_.name, profile_.max_rpm * std::numbers::pi / 30.0, profile_.ticks_per_rev, kRest_s}),
-      left_(ticks_per_s(profile_)),
-      right_(ticks_per_s(profile_)) {}
+      dates_(profile_),
+      counts_(profile_) {}
 
 void DualAxis::event(const std::string& code, const std::string& text, bool stop) {
   motion_.event(code, text, stop, now_);
@@ -139,11 +137,9 @@ void DualAxis::forget_node() {
   phase_since_ = now_;
   watchdog_armed_ = false;
   positions_at_.reset();
-  timer_.reset();
+  dates_.forget();
   status_at_.reset();
-  left_.forget();
-  right_.forget();
-  ++segment_;
+  counts_.begin_segment();
 }
 
 /// What a store is worth is seen after a reset only. Everything in RAM is set up again afterwards.
@@ -204,8 +200,6 @@ std::vector<CanFrame> DualAxis::take_frames() {
   return std::exchange(out_, {});
 }
 
-std::vector<TickSample> DualAxis::take_ticks() { return std::exchange(ticks_, {}); }
-
 ControllerState DualAxis::state() const {
   switch (phase_) {
     case Phase::absent:
@@ -237,9 +231,8 @@ Counters DualAxis::counters() const {
               {"bad_frames", bad_frames_},
               {"short_pdos", short_pdos_},
               {"other_master", other_master_},
-              {"tick_jumps", jumps_},
-              {"error_frames", error_frames_},
-              {"events_dropped", dropped_ticks_}});
+              {"error_frames", error_frames_}});
+  counts_.count_into(all);
   motion_.count_into(all);
   return all;
 }

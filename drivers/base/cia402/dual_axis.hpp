@@ -10,10 +10,10 @@
 #include "drivers/base/canopen/sdo_sequence.hpp"
 #include "drivers/base/cia402/drive_state.hpp"
 #include "drivers/base/cia402/parameter_job.hpp"
+#include "drivers/base/cia402/pdo_dates.hpp"
 #include "drivers/base/controller.hpp"
 #include "drivers/base/motion/motion_cycle.hpp"
-#include "drivers/base/motion/tick_unwrap.hpp"
-#include "drivers/base/motion/timer_dates.hpp"
+#include "drivers/base/motion/wheel_counts.hpp"
 #include "drivers/base/profile/profile.hpp"
 
 namespace odomcalib::drivers {
@@ -28,7 +28,7 @@ class DualAxis final : public Controller, private MotionDevice {
   void on_frame(const CanFrame& frame) override;
   void on_time(double now) override;
   std::vector<CanFrame> take_frames() override;
-  std::vector<TickSample> take_ticks() override;
+  std::vector<TickSample> take_ticks() override { return counts_.take(); }
   std::vector<ControllerEvent> take_events() override { return motion_.take_events(); }
 
   [[nodiscard]] ControllerState state() const override;
@@ -50,7 +50,7 @@ class DualAxis final : public Controller, private MotionDevice {
   [[nodiscard]] Counters counters() const override;
 
   /// A SYNC was sent or seen: what is mapped to it was sampled then.
-  void on_sync(double t) { sync_at_ = t; }
+  void on_sync(double t) { dates_.on_sync(t); }
   /// Configured, or about to be told to start: process data are expected.
   [[nodiscard]] bool wants_sync() const { return phase_ == Phase::starting || phase_ == Phase::ready; }
 
@@ -84,8 +84,8 @@ class DualAxis final : public Controller, private MotionDevice {
 
   // dual_axis_motion.cpp: process data
   void on_process_data(const canopen::Pdo& pdo, const CanFrame& frame);
-  [[nodiscard]] double sampled_at(const canopen::Pdo& pdo, const CanFrame& frame);
   void on_positions(std::int32_t left, std::int32_t right, double t);
+  bool on_count(Side side, std::int32_t count, double t);
   void on_status(std::uint32_t status);
   void cycle_motion();
   void check_motion();
@@ -123,27 +123,23 @@ class DualAxis final : public Controller, private MotionDevice {
   std::uint8_t node_state_ = 0;
   double own_heartbeat_due_ = 0.0;
   double sync_due_ = 0.0;
-  std::optional<double> sync_at_;  // s, end of the last SYNC
-  double restarted_at_ = 0.0;      // when we reset the node to see what it stored
+  double restarted_at_ = 0.0;  // when we reset the node to see what it stored
   double last_other_master_ = -1e9;
 
   MotionCycle motion_;
   std::optional<double> positions_at_;  // s, last position frame
-  std::optional<TimerDates> timer_;     // of the position frames, where the drive's timer sends them
   std::optional<double> status_at_;
   std::uint32_t status_ = 0;
   std::array<canopen::DriveState, 2> axes_{canopen::DriveState::not_ready, canopen::DriveState::not_ready};
   std::uint32_t fault_code_ = 0;
-  TickUnwrap left_, right_;
-  std::int32_t segment_ = 0;
+  PdoDates dates_;
+  WheelCounts counts_;
   unsigned cycles_ = 0;  // since torque is wanted
 
   std::vector<CanFrame> out_;
-  std::vector<TickSample> ticks_;
   std::uint64_t frames_in_ = 0, frames_used_ = 0, emergencies_ = 0, boot_ups_ = 0, heartbeats_ = 0,
                 bad_frames_ = 0;
-  std::uint64_t short_pdos_ = 0, other_master_ = 0, jumps_ = 0;
-  std::uint64_t error_frames_ = 0, dropped_ticks_ = 0;
+  std::uint64_t short_pdos_ = 0, other_master_ = 0, error_frames_ = 0;
 };
 
 }  // namespace odomcalib::drivers

@@ -5,21 +5,14 @@
 
 #include "drivers/base/canopen/words.hpp"
 #include "drivers/base/cia402/dual_axis.hpp"
-#include "drivers/bytes.hpp"
 #include "drivers/base/cia402/settings.hpp"
-#include "drivers/base/motion/settings.hpp"
+#include "drivers/bytes.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
 using namespace cia402;
-
 using canopen::DriveState;
-constexpr std::uint8_t kMostSyncs = 240;  // transmission types 1..240: every n-th SYNC
-constexpr std::uint8_t kOnEvent = 254;    // 254, 255: on change or timer
-
-/// Bits of a standard frame without stuffing, with its inter-frame space.
-double frame_time(const CanFrame& frame, unsigned bitrate) { return (47.0 + 8.0 * frame.length) / bitrate; }
 
 double rpm(double rad_s) { return rad_s * 30.0 / std::numbers::pi; }
 
@@ -39,7 +32,7 @@ void DualAxis::on_process_data(const canopen::Pdo& pdo, const CanFrame& frame) {
                                         : canopen::unpack(pdo, frame, profile_.position_right);
   if (left && right)
     on_positions(static_cast<std::int32_t>(sign_extend(*left, 32)),
-                 static_cast<std::int32_t>(sign_extend(*right, 32)), sampled_at(pdo, frame));
+                 static_cast<std::int32_t>(sign_extend(*right, 32)), dates_.date(pdo, frame));
   if (profile_.fault) {
     if (const auto fault = canopen::unpack(pdo, frame, *profile_.fault))
       fault_code_ = static_cast<std::uint32_t>(*fault);
@@ -48,38 +41,27 @@ void DualAxis::on_process_data(const canopen::Pdo& pdo, const CanFrame& frame) {
     on_status(static_cast<std::uint32_t>(*status));
 }
 
-/// Data on SYNC were sampled at its end, others when the frame began; those on the drive's timer keep its
-/// beat.
-double DualAxis::sampled_at(const canopen::Pdo& pdo, const CanFrame& frame) {
-  const bool on_sync = pdo.type >= 1 && pdo.type <= kMostSyncs;
-  if (on_sync && sync_at_ && frame.t - *sync_at_ < kSyncLives_s) return *sync_at_;
-  const double began = frame.t - frame_time(frame, profile_.bitrate);
-  const unsigned timer = pdo.type >= kOnEvent ? pdo.event_timer.value_or(0) : 0;
-  if (timer == 0) return began;
-  if (!timer_) timer_.emplace(1e-3 * profile_.heartbeat_unit_ms * timer);
-  return timer_->date(began);
-}
-
 void DualAxis::on_positions(std::int32_t left, std::int32_t right, double t) {
   if (phase_ != Phase::ready && phase_ != Phase::starting) return;  // before that the mapping is not ours
-  const TickUnwrap::Reading l = left_.on_count(left, t);
-  const TickUnwrap::Reading r = right_.on_count(right, t);
   positions_at_ = now_;
-  if (l.jumped || r.jumped) {
-    ++jumps_;
-    ++segment_;
-    event("tick_jump",
-          std::string(l.jumped ? "left" : "right") + " count jumped: reset, or a broken encoder line",
-          motion_.motion() != Motion::off);
+  const bool left_ok = on_count(Side::left, left, t);
+  const bool right_ok = on_count(Side::right, right, t);
+  if (left_ok && right_ok) return;
+  event("tick_jump",
+        std::string(to_text(left_ok ? Side::right : Side::left)) +
+            " count jumped: reset, or a broken encoder line",
+        motion_.motion() != Motion::off);
+}
+
+/// False when no wheel turns so fast.
+bool DualAxis::on_count(Side side, std::int32_t count, double t) {
+  const WheelCounts::Reading reading = counts_.on_count(side, count, t);
+  if (reading.kind == TickUnwrap::Reading::Kind::wild) {
+    motion_.moved(now_);
+    return false;
   }
-  const TickSample sample{t, profile_.left_sign * l.total, profile_.right_sign * r.total, segment_};
-  motion_.counted(Side::left, sample.left, t, now_);
-  motion_.counted(Side::right, sample.right, t, now_);
-  if (ticks_.size() >= motion::kMostQueued) {
-    ++dropped_ticks_;
-    return;
-  }
-  ticks_.push_back(sample);
+  motion_.counted(side, reading.forward, t, now_);
+  return true;
 }
 
 void DualAxis::on_status(std::uint32_t status) {

@@ -82,6 +82,8 @@ class MotionCycle {
   /// @param forward counts since the start, positive in the direction of positive commands
   /// @param t s, when the device took it
   void counted(Side side, std::int64_t forward, double t, double now);
+  /// A count came that says nothing but that the wheel may have moved.
+  void moved(double now) { moved_at_ = now; }
   /// Raises encoder_stuck when a count stands still although its wheel is commanded; to be called while on.
   void check_encoders(double now);
   /// The axes got a step further: what is waited for may take its whole time again.

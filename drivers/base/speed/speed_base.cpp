@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "drivers/base/speed/settings.hpp"
-#include "drivers/base/motion/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -13,10 +12,6 @@ namespace {
 using namespace speed;
 
 std::size_t index(Side side) { return static_cast<std::size_t>(side); }
-TickUnwrap unwrap_of(const Profile& profile) {
-  return TickUnwrap(profile.max_rpm / 60.0 * profile.ticks_per_rev, profile.count_bits);
-}
-const char* name_of(Side side) { return side == Side::left ? "left" : "right"; }
 
 }  // namespace
 
@@ -25,7 +20,7 @@ SpeedBase::SpeedBase(Profile profile, std::unique_ptr<SpeedProtocol> protocol)
       protocol_(std::move(protocol)),
       motion_(*this,
               {profile_.name, profile_.max_rpm * std::numbers::pi / 30.0, profile_.ticks_per_rev, kRest_s}),
-      counts_{unwrap_of(profile_), unwrap_of(profile_)} {}
+      counts_(profile_) {}
 
 void SpeedBase::event(const std::string& code, const std::string& text, bool stop) {
   motion_.event(code, text, stop, now_);
@@ -52,25 +47,12 @@ void SpeedBase::take_news() {
 }
 
 void SpeedBase::on_count(const SideCount& count) {
-  const TickUnwrap::Reading reading = counts_[index(count.side)].on_count(count.raw, count.t);
   counted_at_[index(count.side)] = now_;
-  if (reading.jumped) on_jump(count.side);
-  const int sign = count.side == Side::left ? profile_.left_sign : profile_.right_sign;
-  motion_.counted(count.side, sign * reading.total, count.t, now_);
-  const auto pair = pairing_.add(count.side, count.t, reading.total);
-  if (!pair) return;
-  if (ticks_.size() >= motion::kMostQueued) {
-    ++dropped_ticks_;
-    return;
-  }
-  ticks_.push_back({pair->t, profile_.left_sign * pair->left, profile_.right_sign * pair->right, segment_});
-}
-
-void SpeedBase::on_jump(Side side) {
-  ++jumps_;
-  ++segment_;
-  pairing_.forget();
-  event("tick_jump", std::string(name_of(side)) + " count jumped: reset, or a broken encoder line",
+  const WheelCounts::Reading reading = counts_.on_count(count.side, count.raw, count.t);
+  if (reading.kind != TickUnwrap::Reading::Kind::wild)
+    return motion_.counted(count.side, reading.forward, count.t, now_);
+  motion_.moved(now_);
+  event("tick_jump", std::string(to_text(count.side)) + " count jumped: reset, or a broken encoder line",
         motion_.motion() != Motion::off);
 }
 
@@ -100,9 +82,7 @@ void SpeedBase::check_presence() {
         true);
   present_ = false;
   motion_.forget();
-  pairing_.forget();
-  for (TickUnwrap& count : counts_) count.forget();
-  ++segment_;
+  counts_.begin_segment();
 }
 
 void SpeedBase::check_device() {
@@ -197,8 +177,7 @@ std::vector<Capability> SpeedBase::capabilities() const { return host_capabiliti
 
 Counters SpeedBase::counters() const {
   Counters all = protocol_->counters();
-  all.insert(
-      {{"tick_jumps", jumps_}, {"unpaired_counts", pairing_.unpaired()}, {"events_dropped", dropped_ticks_}});
+  counts_.count_into(all);
   motion_.count_into(all);
   return all;
 }

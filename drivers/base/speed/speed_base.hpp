@@ -10,7 +10,7 @@
 
 #include "drivers/base/controller.hpp"
 #include "drivers/base/motion/motion_cycle.hpp"
-#include "drivers/base/motion/tick_unwrap.hpp"
+#include "drivers/base/motion/wheel_counts.hpp"
 #include "drivers/base/profile/profile.hpp"
 #include "drivers/base/speed/speed_protocol.hpp"
 
@@ -27,7 +27,7 @@ class SpeedBase final : public Controller, private MotionDevice {
   void on_time(double now) override;
   std::vector<CanFrame> take_frames() override { return protocol_->take_frames(); }
   std::vector<std::uint8_t> take_bytes() override { return protocol_->take_bytes(); }
-  std::vector<TickSample> take_ticks() override { return std::exchange(ticks_, {}); }
+  std::vector<TickSample> take_ticks() override { return counts_.take(); }
   std::vector<ControllerEvent> take_events() override { return motion_.take_events(); }
 
   [[nodiscard]] ControllerState state() const override;
@@ -53,7 +53,6 @@ class SpeedBase final : public Controller, private MotionDevice {
   void event(const std::string& code, const std::string& text, bool stop);
   void take_news();
   void on_count(const SideCount& count);
-  void on_jump(Side side);
   void check_presence();
   void check_device();
   [[nodiscard]] std::string enable_refusal() const override;
@@ -70,17 +69,13 @@ class SpeedBase final : public Controller, private MotionDevice {
   const Profile profile_;
   std::unique_ptr<SpeedProtocol> protocol_;
   MotionCycle motion_;
-  std::array<TickUnwrap, 2> counts_;
-  TickPairing pairing_;
+  WheelCounts counts_;
   double now_ = 0.0, greet_due_ = 0.0;
   std::array<double, 2> counted_at_{-1e9, -1e9};  ///< s
   bool present_ = false;
   bool asked_ = false;  // for torque
-  std::int32_t segment_ = 0;
   std::string last_fault_;
-  std::vector<TickSample> ticks_;
   std::optional<ParameterJobResult> job_result_;
-  std::uint64_t jumps_ = 0, dropped_ticks_ = 0;
 };
 
 }  // namespace odomcalib::drivers

@@ -24,6 +24,8 @@ inline constexpr double kFirstScan_s = 2.0, kNoScan_s = 1.0;
 inline constexpr std::size_t kMostBytes = std::size_t{64} * 1024;
 /// Published (SICK, telegram listing): three encoders, five echoes with their strengths and two of angles.
 inline constexpr unsigned kMostEncoders = 3, kMostChannels = 12;
+/// Layers of a sensor that are told apart. Chosen: MRS6000 has 24; a bound on memory.
+inline constexpr unsigned kMostLayers = 32;
 /// Values of a channel. Chosen: more than any supported model has.
 inline constexpr unsigned kMostValues = 8192;
 /// Degrees. Derived: a turn and some overlap.

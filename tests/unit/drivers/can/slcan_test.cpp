@@ -133,6 +133,19 @@ TEST(Slcan, one_changed_character_never_breaks_the_accounting) {
     }
 }
 
+TEST(Slcan, lines_may_end_with_cr_lf) {
+  SlcanParser parser;
+  const auto items = parser.on_bytes(bytes_of("\r\nt1232AABB\r\nt1240\r\n\a\nV1013\r\n"));
+  ASSERT_EQ(items.size(), 5U);
+  EXPECT_EQ(frames_in(items), 2U);
+  EXPECT_EQ(parser.counters()["bad_line"], 0U);
+  EXPECT_EQ(parser.counters()["good"], parser.counters()["bytes_in"]);
+  // Inside a line it is damage.
+  EXPECT_EQ(frames_in(parser.on_bytes(bytes_of("t1\n232AABB\r"))), 0U);
+  EXPECT_EQ(parser.counters()["bad_line"], 1U);
+  expect_accounted(parser.counters());
+}
+
 TEST(Slcan, never_sends_an_error_frame) {
   CanFrame frame;
   frame.error = true;

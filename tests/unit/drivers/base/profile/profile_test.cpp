@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/base/motion/tick_unwrap.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
 namespace odomcalib::drivers {
@@ -76,31 +75,6 @@ TEST(Profile, parameters_convert_there_and_back_within_half_a_step) {
       EXPECT_NEAR(parameter.to_si(*raw), value, 0.5001 * parameter.step());
     }
   EXPECT_FALSE(length.to_raw(100.0));
-}
-
-TEST(TickUnwrap, any_motion_is_followed_across_the_wrap) {
-  auto random = test::seeded(9);
-  TickUnwrap unwrap(100'000.0);
-  std::int64_t truth = 0x7FFFFF00;
-  double t = 0.0;
-  const auto first = unwrap.on_count(static_cast<std::int32_t>(truth), t).total;
-  for (int i = 0; i < 10'000; ++i) {
-    const int step = static_cast<int>(random() % 4001) - 1900;
-    truth += step;
-    t += 0.02;
-    const auto reading = unwrap.on_count(static_cast<std::int32_t>(static_cast<std::uint32_t>(truth)), t);
-    ASSERT_FALSE(reading.jumped);
-    ASSERT_EQ(reading.total - first, truth - 0x7FFFFF00);
-  }
-}
-
-TEST(TickUnwrap, a_jump_is_told_and_not_added) {
-  TickUnwrap unwrap(10'000.0);
-  const auto before = unwrap.on_count(5'000'000, 0.0);
-  const auto reset = unwrap.on_count(0, 0.02);
-  EXPECT_TRUE(reset.jumped);
-  EXPECT_EQ(reset.total, before.total);
-  EXPECT_FALSE(unwrap.on_count(250, 0.04).jumped);
 }
 
 }  // namespace
