@@ -28,6 +28,7 @@ LAYERS = {
     "proto": [".", "wire", "recording", "calibration", "control"],
     "calib": ["math", "wheels", "vehicle", "terms", "matching", "ingest", "measurement", "classical", "estimation",
               "selection", "odometry", ("report", "slam"), "."],
+    "drivers": [".", ("serial", "tcp"), "can", ("base", "lidar"), "decode"],
     "daemon": ["routines", "safety", "writeback", "config", ("service", "cli")],
 }
 
@@ -109,7 +110,7 @@ def violations(root):
 def self_test():
     good = [
         ("proto/a.hpp", "proto/b.hpp"), ("calib/a.cpp", "proto/b.hpp"), ("calib/a.cpp", "calib/terms/b.hpp"),
-        ("drivers/a.cpp", "drivers/can/b.hpp"), ("daemon/cli/a.cpp", "calib/b.hpp"), ("daemon/cli/a.cpp", "drivers/b.hpp"),
+        ("drivers/base/vesc/a.cpp", "drivers/can/b.hpp"), ("daemon/cli/a.cpp", "calib/b.hpp"), ("daemon/cli/a.cpp", "drivers/b.hpp"),
         ("tests/unit/a.cpp", "daemon/b.hpp"), ("tests/sim/a.cpp", "tests/sim/b.hpp"),
         ("tests/sim/a.cpp", "proto/measurements.hpp"),
         ("calib/terms/effects/a.cpp", "calib/terms/b.hpp"), ("calib/selection/a.cpp", "calib/math/b.hpp"),
@@ -125,6 +126,7 @@ def self_test():
         ("calib/nowhere/a.cpp", "calib/math/b.hpp"), ("proto/wire/a.hpp", "proto/recording/b.hpp"),
         ("proto/a.hpp", "proto/wire/b.hpp"), ("daemon/service/a.cpp", "daemon/cli/b.hpp"),
         ("daemon/routines/a.cpp", "daemon/safety/b.hpp"),
+        ("drivers/can/a.cpp", "drivers/base/vesc/b.hpp"), ("drivers/lidar/scip/a.cpp", "drivers/base/b.hpp"),
     ]
     for case, expected in [(c, 0) for c in good] + [(c, 1) for c in bad]:
         with tempfile.TemporaryDirectory() as folder:

@@ -4,7 +4,7 @@
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/verbs.hpp"
-#include "drivers/decode.hpp"
+#include "drivers/decode/decode.hpp"
 #include "odomcalib_paths.hpp"
 #include "proto/file_bytes.hpp"
 
