@@ -1,4 +1,4 @@
-#include "tests/unit/daemon/fake_controller.hpp"
+#include "tests/unit/daemon/writeback/fake_controller.hpp"
 
 namespace odomcalib {
 namespace {

@@ -10,7 +10,7 @@
 #include "daemon/writeback/calibration_in_force.hpp"
 #include "daemon/writeback/history.hpp"
 #include "proto/file_bytes.hpp"
-#include "tests/unit/daemon/fake_controller.hpp"
+#include "tests/unit/daemon/writeback/fake_controller.hpp"
 
 namespace odomcalib {
 namespace {

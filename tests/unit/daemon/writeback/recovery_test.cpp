@@ -1,5 +1,5 @@
 // What becomes of a write-back that was interrupted, and of the next one after it.
-#include "tests/unit/daemon/fake_controller.hpp"
+#include "tests/unit/daemon/writeback/fake_controller.hpp"
 
 namespace odomcalib {
 namespace {
