@@ -17,6 +17,7 @@
 #include "calib/selection/retirement.hpp"
 #include "calib/selection/rolling_waves.hpp"
 #include "calib/selection/search_round.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/selection/settled_shape.hpp"
 #include "calib/selection/vain_curves.hpp"
 #include "calib/selection/wrong_name.hpp"
@@ -30,9 +31,6 @@ constexpr double kNoiseShare = 0.95;  ///< of pairs that a usual effect does not
 constexpr std::size_t kMaxFindings = 3;
 constexpr std::size_t kMaxCurves = 4;
 constexpr int kMaxSteps = 12;  ///< additions and failed proofs together
-/// Family-wise level at which the data outside a fold must point to a candidate that all data together have
-/// chosen.
-constexpr double kFoldLevel = 0.05;
 constexpr const char* kAdded = "added";
 constexpr const char* kInVain = "leaving out what it explains does as well";
 
@@ -203,7 +201,7 @@ class Search {
     if (is_small) result_.doubts.push_back(change);
     if (reason.empty()) {
       reason = failure(trial, proof, settled);
-      const bool is_plain = !candidate.curve || score.family_p_value <= kNamedLevel;
+      const bool is_plain = !candidate.curve || score.family_p_value <= settings::kNamedLevel;
       if (!reason.empty() && is_plain) {
         unproved_.push_back(change);
         if (candidate.curve) unproved_.push_back(doubt_of_zero(task_, trial.model, *candidate.curve));
@@ -251,7 +249,7 @@ class Search {
     FoldFlags selected{};
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
       if (candidates_[k].key != candidates_[candidate].key) continue;
-      const FoldFlags of_shape = round_->table().selected_without(k, kFoldLevel);
+      const FoldFlags of_shape = round_->table().selected_without(k, settings::kFoldLevel);
       for (std::size_t fold = 0; fold < selected.size(); ++fold) selected[fold] |= of_shape[fold];
     }
     return selected;
@@ -299,7 +297,7 @@ class Search {
   /// round room, asks for one curve after the other: where the best is none, no other is.
   [[nodiscard]] bool may_be_chance(const Candidate& candidate, const Proof& proof) const {
     if (!odometry_uses(candidate) || result_.owner_of(candidate.curve->law)) return false;
-    return has_drives(proof) ? !proof.improvement.is_plain() : proof.family_p_value > kNamedLevel;
+    return has_drives(proof) ? !proof.improvement.is_plain() : proof.family_p_value > settings::kNamedLevel;
   }
 
   void adopt(FittedModel model) {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "calib/selection/drive_error.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -20,12 +21,11 @@ std::optional<DriveError> open_loop_error(const FitTask& task, const FittedModel
 }  // namespace
 
 bool explain_too_little(const FitTask& task, const FittedModel& with, const FittedModel& without) {
-  constexpr double kLeast = 0.5;  // of the square
   const auto after = open_loop_error(task, with), before = open_loop_error(task, without);
   if (!after || !before) return false;
   const auto square = [](double x) { return x * x; };
   const double all = square(before->after->value) - square(*after->noise_floor);
-  return square(before->after->value) - square(after->after->value) < kLeast * all;
+  return square(before->after->value) - square(after->after->value) < settings::kLeastExplained * all;
 }
 
 }  // namespace odomcalib::calib::selection
