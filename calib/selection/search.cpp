@@ -176,7 +176,7 @@ class Search {
       return "ticks so far apart hide as much";
     if (auto reason = impossibility(effect, fit); !reason.empty()) return reason;
     if (is_negligible(effect, fit)) return "too small to matter";
-    if (is_mere_sharpening(effect, fit)) return "a filter does not sharpen";
+    if (auto reason = contradiction(effect, fit); !reason.empty()) return reason;
     const bool spoils =
         candidate.curve ? curve_spoils_base(effect, basis().fit, fit) : spoils_base(effect, basis().fit, fit);
     return spoils ? "this drive cannot tell it from the wheels" : "";
@@ -369,7 +369,7 @@ class Search {
     const auto proof = accept(best);
     if (!proof) return true;
     result_.findings.push_back({candidate.effect, aliases, *proof});
-    strike_what_late_beams_do(*candidate.effect);
+    strike_what_is_excluded_by(*candidate.effect);
     add_doubts(round_->doubts_of(rivals, best));
     drop_superfluous();
     return true;
@@ -405,7 +405,7 @@ class Search {
       go_back_to(before);
       return true;
     }
-    strike_what_a_mast_does();
+    strike_what_is_excluded_by(*result_.curves.back().effect);
     drop_superfluous();
     return true;
   }
@@ -418,28 +418,9 @@ class Search {
     start_again();
   }
 
-  /// Scans whose beams were sent at other times than stated are bent by turning, and matches of them find
-  /// other ways the faster the robot drives and turns: what looks like a law of turning is no more the
-  /// wheels'.
-  void strike_what_late_beams_do(const vehicle::Effect& found) {
-    if (found.name() != "scan_skew") return;
-    strike_curves([](const vehicle::Law& law) {
-      return law.variable == vehicle::Variable::lateral_acceleration ||
-             law.variable == vehicle::Variable::turn_rate;
-    });
-  }
-
-  /// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
-  void strike_what_a_mast_does() {
-    if (!concerns_sensor(result_.curves.back().curve)) return;
-    strike_curves([](const vehicle::Law& law) {
-      return law.carrier == vehicle::Carrier::turn_side || law.carrier == vehicle::Carrier::sideways;
-    });
-  }
-
-  void strike_curves(const std::function<bool(const vehicle::Law&)>& is_vain) {
+  void strike_what_is_excluded_by(const vehicle::Effect& found) {
     for (Candidate& candidate : candidates_)
-      if (candidate.curve && is_vain(candidate.curve->law)) candidate.struck = true;
+      if (candidate.curve && found.excludes(candidate.curve->law)) candidate.struck = true;
   }
 
   /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.

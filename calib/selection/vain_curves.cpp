@@ -1,6 +1,5 @@
 #include "calib/selection/vain_curves.hpp"
 
-#include <algorithm>
 #include <optional>
 
 #include "calib/selection/drive_error.hpp"
@@ -13,9 +12,8 @@ namespace {
 std::optional<DriveError> open_loop_error(const FitTask& task, const FittedModel& model) {
   const JudgedModel judged{&model.fit, task.fixed(model.effects), model.effects};
   const auto errors = drive_errors(task.data, {}, nullptr, judged);
-  const auto found = std::find_if(errors.begin(), errors.end(),
-                                  [](const DriveError& e) { return e.name == "open_loop_10s_position"; });
-  return found == errors.end() || !found->after || !found->noise_floor ? std::nullopt : std::optional(*found);
+  const DriveError* found = open_loop_position(errors);
+  return found == nullptr || !found->after || !found->noise_floor ? std::nullopt : std::optional(*found);
 }
 
 }  // namespace
