@@ -59,4 +59,27 @@ inline constexpr std::size_t kFewestWindows = 10;
 /// Derived: what explains less leaves more unexplained than it explains.
 inline constexpr double kLeastExplained = 0.5;
 
+// --- Comparisons of measurements and models (criterion.hpp) -----------------------------------------------
+
+/// Product of the three ratios of bounded held-out RMS, after to before, of what is clearly better. Chosen: 5
+/// % in all.
+inline constexpr double kClearlyBetter = 0.95;
+/// Ratio of held-out RMS, after to before, in any one component. Chosen: 5 % is left to chance.
+inline constexpr double kToleratedRms = 1.05;
+/// Standard deviations from zero of an estimate that is present. Chosen: of normal errors 6 in 100 000 are
+/// larger.
+inline constexpr double kSignificance = 4.0;
+/// Standard deviations of the difference within which two estimates agree. Chosen as kSignificance.
+inline constexpr double kAgreement = 4.0;
+/// Standard deviations that chained matches drift from the places in the map. Measured: rooms with walls
+/// enough mostly stay below 1.5 (docs/developer/the-mathematics.md).
+inline constexpr double kSliding = 2.0;
+/// s, of a time offset that is negligible. Chosen: what a careful driver leaves.
+inline constexpr double kNegligibleOffset_s = 3e-3;
+/// m and rad, of the place of a reference's marker. Chosen: more than anybody measures with a tape.
+inline constexpr double kNegligibleSeat_m = 5e-4, kNegligibleSeat_rad = 2e-3;
+/// m and rad, largest standard deviations of a place that the motion determines. Chosen: ten times what is
+/// negligible.
+inline constexpr double kKnownSeat_m = 5e-3, kKnownSeat_rad = 2e-2;
+
 }  // namespace odomcalib::calib::selection::settings
