@@ -29,7 +29,7 @@
 namespace odomcalib::calib {
 namespace {
 
-const std::string kOffset = "time_offset", kDrift = "clock_drift";
+using vehicle::ClockPart;
 
 selection::Estimate estimate_of(const estimation::FitResult& fit, Eigen::Index parameter) {
   return {fit.parameters(parameter), fit.covariance(parameter, parameter)};
@@ -157,7 +157,7 @@ class Solver {
     const State before = state(fit.value(), lidar_.size());
     auto session = std::move(session_);
     auto better = begin_anew(sweeping);
-    if (better && has(kOffset)) {
+    if (better && has(ClockPart::offset)) {
       ingest::take_stamps_for_middles(sweeping);
       better = measure_anew(sweeping);
     }
@@ -211,18 +211,20 @@ class Solver {
   }
 
   /// Among the effects; as many as there are when it is none of them.
-  [[nodiscard]] std::size_t place_of(const std::string& name) const {
-    const auto place =
-        std::find_if(effects_.begin(), effects_.end(), [&](const auto& e) { return e->name() == name; });
+  [[nodiscard]] std::size_t place_of(ClockPart part) const {
+    const auto place = std::find_if(effects_.begin(), effects_.end(),
+                                    [&](const auto& e) { return e->clock_part() == part; });
     return static_cast<std::size_t>(place - effects_.begin());
   }
 
-  [[nodiscard]] bool has(const std::string& name) const { return place_of(name) < effects_.size(); }
+  [[nodiscard]] bool has(ClockPart part) const { return place_of(part) < effects_.size(); }
 
-  [[nodiscard]] double delay() const { return has(kOffset) ? parameters_(first_of(kOffset)) : 0.0; }
+  [[nodiscard]] double delay() const {
+    return has(ClockPart::offset) ? parameters_(first_of(ClockPart::offset)) : 0.0;
+  }
 
-  [[nodiscard]] Eigen::Index first_of(const std::string& name) const {
-    return selection::first_parameter(effects_, place_of(name));
+  [[nodiscard]] Eigen::Index first_of(ClockPart part) const {
+    return selection::first_parameter(effects_, place_of(part));
   }
 
   /// First matches with nominal values; then the clocks' delay, and what the recording does not state. Signs
@@ -232,20 +234,20 @@ class Solver {
     parameters_ = vehicle::to_vector(session_->nominal());
     session_->measure(parameters_, {}, measurement::PairOptions{.rough = true});
     if (automatic_ && recordings_.front().increments.empty())
-      effects_.push_back(terms::find_effect("time_offset"));
+      effects_.push_back(terms::clock_effect(ClockPart::offset));
     const estimation::ClockStart clock =
-        has(kOffset) ? estimation::search_clock(session_->data()) : estimation::ClockStart{};
+        has(ClockPart::offset) ? estimation::search_clock(session_->data()) : estimation::ClockStart{};
     if (auto error = classical::check_signs(wheel_motions(session_->data(), clock.delay), calibration_.robot,
                                             session_->reference_is_base()))
       return error;
-    if (automatic_ && clock.rate != 0.0) effects_.push_back(terms::find_effect(kDrift));
+    if (automatic_ && clock.rate != 0.0) effects_.push_back(terms::clock_effect(ClockPart::rate));
     parameters_ = vehicle::to_vector(estimation::start_values(*session_, clock.delay),
                                      vehicle::count_parameters(effects_));
     const std::vector<double> own = vehicle::start_of(effects_);
     parameters_.tail(static_cast<Eigen::Index>(own.size())) =
         Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
-    if (has(kOffset)) parameters_(first_of(kOffset)) = clock.delay;
-    if (has(kDrift)) parameters_(first_of(kDrift)) = clock.rate;
+    if (has(ClockPart::offset)) parameters_(first_of(ClockPart::offset)) = clock.delay;
+    if (has(ClockPart::rate)) parameters_(first_of(ClockPart::rate)) = clock.rate;
     return std::nullopt;
   }
 
@@ -302,24 +304,24 @@ class Solver {
   }
 
   /// Any parameter of the effect is many standard deviations from zero.
-  [[nodiscard]] bool is_plain(const std::string& name, const estimation::FitResult& fit) const {
-    const std::size_t count = effects_[place_of(name)]->parameters().size();
-    const Eigen::Index first = first_of(name);
+  [[nodiscard]] bool is_plain(ClockPart part, const estimation::FitResult& fit) const {
+    const std::size_t count = effects_[place_of(part)]->parameters().size();
+    const Eigen::Index first = first_of(part);
     for (Eigen::Index k = first; k < first + static_cast<Eigen::Index>(count); ++k)
       if (selection::is_plain(estimate_of(fit, k))) return true;
     return false;
   }
 
-  [[nodiscard]] bool is_idle(const std::string& name, const estimation::FitResult& fit) const {
-    const double negligible = name == kOffset ? selection::settings::kNegligibleOffset_s : 0.0;
-    return selection::is_idle(estimate_of(fit, first_of(name)), negligible);
+  [[nodiscard]] bool is_idle(ClockPart part, const estimation::FitResult& fit) const {
+    const double negligible = part == ClockPart::offset ? selection::settings::kNegligibleOffset_s : 0.0;
+    return selection::is_idle(estimate_of(fit, first_of(part)), negligible);
   }
 
   /// Clocks that run apart need a delay to run apart from.
   void drop_idle_clocks(const estimation::FitResult& fit) {
     if (!automatic_) return;
-    if (has(kDrift) && is_idle(kDrift, fit)) drop_last();
-    if (!has(kDrift) && has(kOffset) && is_idle(kOffset, fit)) drop_last();
+    if (has(ClockPart::rate) && is_idle(ClockPart::rate, fit)) drop_last();
+    if (!has(ClockPart::rate) && has(ClockPart::offset) && is_idle(ClockPart::offset, fit)) drop_last();
   }
 
   void drop_last() {
@@ -477,13 +479,13 @@ class Solver {
   /// that is plain but short stays without being told.
   void retire_idle_offset() {
     if (outcome_.findings.empty() && outcome_.curves.empty()) return;
-    if (!has(kOffset) || !is_idle(kOffset, outcome_.model.fit)) return;
-    if (is_plain(kOffset, outcome_.model.fit)) {
-      outcome_.quiet.push_back(effects_[place_of(kOffset)]);
+    if (!has(ClockPart::offset) || !is_idle(ClockPart::offset, outcome_.model.fit)) return;
+    if (is_plain(ClockPart::offset, outcome_.model.fit)) {
+      outcome_.quiet.push_back(effects_[place_of(ClockPart::offset)]);
       return;
     }
     const selection::FitTask task{session_->data(), session_->fixed(0)};
-    if (auto fewer = without_effect(task, outcome_.model, place_of(kOffset), {}))
+    if (auto fewer = without_effect(task, outcome_.model, place_of(ClockPart::offset), {}))
       outcome_.model = std::move(*fewer);
     effects_ = outcome_.model.effects;
     parameters_ = outcome_.model.fit.parameters;
