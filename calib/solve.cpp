@@ -224,7 +224,7 @@ class Solver {
   }
 
   [[nodiscard]] Eigen::Index first_of(ClockPart part) const {
-    return selection::first_parameter(effects_, place_of(part));
+    return vehicle::first_parameter(effects_, place_of(part));
   }
 
   /// First matches with nominal values; then the clocks' delay, and what the recording does not state. Signs
