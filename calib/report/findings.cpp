@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
+#include <utility>
 
 #include "calib/report/gate.hpp"
 #include "calib/report/report.hpp"
@@ -64,10 +67,10 @@ class Filler {
     fill_effects();
     fill_unnamed();
     fill_outliers();
-    if (found_.stamps.any()) calibration_.extensions["stamps"] = to_json(found_.stamps);
+    if (stamps().any()) calibration_.extensions["stamps"] = to_json(stamps());
     if (!found_.outcome.considered.empty())
       calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
-    const ReportData report = make_report_data(found_.session, found_.outcome, plain_);
+    const ReportData report = make_report_data(found_.fit.dataset, found_.outcome, plain_);
     store_report_data(report, calibration_);
     if (odometry_is_off(report.drive_errors)) tell_what_failed_its_proof();
     const GateResult gate = judge(calibration_, footing(report.drive_errors));
@@ -76,17 +79,19 @@ class Filler {
   }
 
  private:
+  [[nodiscard]] const ingest::StampReport& stamps() const { return found_.fit.dataset.recordings.stamps(); }
   [[nodiscard]] const vehicle::EffectList& effects() const { return found_.outcome.model.effects; }
   [[nodiscard]] std::vector<bool> fixed() const {
-    return vehicle::fixed_with(found_.session.fixed(0), effects());
+    return vehicle::fixed_with(found_.fit.dataset.fixed(), effects());
   }
 
   /// Matches of keyframes are not free of bias; neither is a model with a law that was found to fit, whose
   /// true shape nobody knows (a delay may be a filter). Places in a map are, as far as simulated drives tell.
   [[nodiscard]] double scale_deviation() const {
-    if (!found_.session.reference_is_scans()) return 0.0;
+    if (!found_.fit.dataset.reference_is_scans()) return 0.0;
     if (found_.every_scan_placed && effects().empty() && found_.lidar.empty()) return 0.0;
-    return std::hypot(kMatcherScale, selection::metre_in_doubt(found_.lidar, found_.session.recordings()));
+    return std::hypot(kMatcherScale,
+                      selection::metre_in_doubt(found_.lidar, found_.fit.dataset.recordings.view()));
   }
 
   [[nodiscard]] Footing footing(const std::vector<DriveError>& drive_errors) const {
@@ -95,12 +100,12 @@ class Filler {
     footing.converged = found_.outcome.model.fit.converged;
     footing.measured = measured_;
     if (outliers_) footing.remarks.push_back(to_text(*outliers_));
-    for (const std::string& remark : remarks_on(found_.stamps)) footing.remarks.push_back(remark);
+    for (const std::string& remark : remarks_on(stamps())) footing.remarks.push_back(remark);
     const math::Pose mount = vehicle::to_base(vehicle::as_span(found_.outcome.model.fit.parameters)).mount;
     for (const selection::FittedCurve& curve : fitted_curves_)
       if (happens_at_once(curve.curve)) footing.remarks.push_back(event_to_text(curve, mount));
-    if (!found_.session.reference_is_scans() || found_.every_scan_placed) return footing;
-    for (const measurement::PairSet& set : found_.session.pair_sets()) {
+    if (!found_.fit.dataset.reference_is_scans() || found_.every_scan_placed) return footing;
+    for (const measurement::PairSet& set : found_.fit.dataset.pair_sets) {
       footing.matched += set.pairs.size();
       footing.unmatched += set.unmatched;
     }
@@ -114,18 +119,18 @@ class Filler {
       return;
     }
     estimation::FitOptions options;
-    options.fixed = found_.session.fixed(0);
-    auto plain = fit_joint(found_.session.data(), {},
+    options.fixed = found_.fit.dataset.fixed();
+    auto plain = fit_joint(found_.fit.dataset.data, {},
                            found_.outcome.model.fit.parameters.head(vehicle::kBaseCount), options);
     if (plain) plain_ = std::move(plain).value();
   }
 
   void fill_residual() {
-    const auto& data = found_.session.data();
+    const auto& data = found_.fit.dataset.data;
     const auto of_all = selection::held_out_errors(data, effects(), found_.outcome.model.fit, fixed());
     const auto of_plain = effects().empty() || !plain_
                               ? of_all
-                              : selection::held_out_errors(data, {}, *plain_, found_.session.fixed(0));
+                              : selection::held_out_errors(data, {}, *plain_, found_.fit.dataset.fixed());
     const auto after = selection::held_out_residual(of_all, of_plain);
     const auto before = selection::held_out_residual(of_plain, of_all);
     calibration_.residual.held_out = after && before;
@@ -147,13 +152,13 @@ class Filler {
     Evidence evidence;
     evidence.p_value = std::erfc(z / std::sqrt(2.0));
     if (!plain_) return evidence;
-    const auto& data = found_.session.data();
+    const auto& data = found_.fit.dataset.data;
     const estimation::FitResult& fit = found_.outcome.model.fit;
     const auto windows = find_stretches(selection::StretchKind::open_loop, data, selection::folds_of(data),
                                         fit, selection::trusted_pairs(*plain_, fit));
     if (windows.size() < selection::settings::kFewestWindows) return evidence;
     evidence.held_out_before =
-        stretch_errors(data, windows, {}, *plain_, found_.session.fixed(0)).rms_position();
+        stretch_errors(data, windows, {}, *plain_, found_.fit.dataset.fixed()).rms_position();
     evidence.held_out_after = stretch_errors(data, windows, effects(), fit, fixed()).rms_position();
     return evidence;
   }
@@ -161,8 +166,7 @@ class Filler {
   void fill_effects() {
     calibration_.effects = selection::effect_results(found_.lidar);
     if (found_.was_searched)
-      for (EffectResult& effect : effects_of(found_.stamps))
-        calibration_.effects.push_back(std::move(effect));
+      for (EffectResult& effect : effects_of(stamps())) calibration_.effects.push_back(std::move(effect));
     Eigen::Index index = vehicle::kBaseCount;
     for (const auto& effect : effects()) {
       const auto curve = std::find_if(found_.outcome.curves.begin(), found_.outcome.curves.end(),
@@ -234,10 +238,10 @@ class Filler {
   /// What happened in so few pairs that a robust fit leaves them out is no part of the model, but something
   /// that a user should know.
   void fill_outliers() {
-    outliers_ = selection::trace_outliers(found_.session.data(), found_.outcome.model.fit);
+    outliers_ = selection::trace_outliers(found_.fit.dataset.data, found_.outcome.model.fit);
     if (!outliers_) return;
     outliers_->cause =
-        selection::cause_of_outliers(found_.session.data(), effects(), found_.outcome.model.fit);
+        selection::cause_of_outliers(found_.fit.dataset.data, effects(), found_.outcome.model.fit);
     calibration_.extensions["outliers"] = to_json(*outliers_);
     if (!found_.was_searched || calibration_.unexplained || outliers_->depends_on.empty()) return;
     flag(outliers_->depends_on, outliers_->p_value);
@@ -270,8 +274,57 @@ class Filler {
   std::vector<selection::FittedCurve> fitted_curves_;
 };
 
+/// Where no scan matched, the fit has nothing to say but that.
+Error cause_of(const Error& error, std::span<const measurement::PairSet> sets) {
+  std::size_t unmatched = 0;
+  for (const measurement::PairSet& set : sets) unmatched += set.unmatched;
+  if (error.code != ErrorCode::empty || unmatched == 0) return error;
+  return {ErrorCode::refused, "none of " + std::to_string(unmatched) + " pairs of scans could be matched",
+          "scan matching", "drive where the lidar sees walls on all sides, not along a corridor"};
+}
+
+Calibration begun(const ingest::Recordings& recordings, std::span<const measurement::PairSet> sets) {
+  Calibration calibration;
+  if (recordings.size() > 0) calibration.robot = recordings.front().robot;
+  calibration.data = data_use(recordings.view(), sets);
+  return calibration;
+}
+
+Calibration with_classical_methods(const estimation::Fit& fit) {
+  Calibration calibration = begun(fit.dataset.recordings, fit.dataset.pair_sets);
+  calibration.methods = classical_methods(fit.dataset, delay_of(fit.model), calibration);
+  return calibration;
+}
+
+Calibration refused(Calibration calibration, const Error& error) {
+  calibration.verdict = Verdict::refused;
+  calibration.reasons = {error.text()};
+  return calibration;
+}
+
 }  // namespace
 
-void fill_calibration(const Findings& found, Calibration& calibration) { Filler(found, calibration).run(); }
+Calibration refused(const ingest::Recordings& recordings, const Error& error) {
+  return refused(begun(recordings, {}), error);
+}
+
+Calibration refused(const measurement::Dataset& dataset, const Error& error) {
+  return refused(begun(dataset.recordings, dataset.pair_sets), error);
+}
+
+Calibration refused(const estimation::Fit& failed) {
+  Calibration calibration = with_classical_methods(failed);
+  MethodResult joint;
+  joint.name = "joint";
+  joint.refused = failed.failure->what;
+  calibration.methods.push_back(joint);
+  return refused(std::move(calibration), cause_of(*failed.failure, failed.dataset.pair_sets));
+}
+
+Calibration calibrated(const Findings& found) {
+  Calibration calibration = with_classical_methods(found.fit);
+  Filler(found, calibration).run();
+  return calibration;
+}
 
 }  // namespace odomcalib::calib::report
