@@ -20,8 +20,8 @@ Recording steady_drive(double jitter) {
   std::mt19937 engine(kSeed);
   std::uniform_real_distribution<double> late(0.0, 1.0);
   Recording recording;
-  for (int k = 0; k < 2000; ++k)
-    recording.ticks.push_back({0.02 * k + jitter * late(engine), 100 * k, 101 * k, 0});
+  for (std::int64_t k = 0; k < 2000; ++k)
+    recording.ticks.push_back({0.02 * static_cast<double>(k) + jitter * late(engine), 100 * k, 101 * k, 0});
   return recording;
 }
 
@@ -42,8 +42,8 @@ std::vector<Recording> scanned(std::optional<double> time_increment) {
 TEST(Recordings, a_copy_is_of_the_same_recordings_and_a_repaired_one_is_not) {
   const std::vector<Recording> given(2);
   const Recordings one(given), repaired({given.begin(), given.end()}, {});
-  const Recordings copy = one;
-  EXPECT_TRUE(copy.are_those_of(one));
+  const std::vector<Recordings> copies(2, one);
+  EXPECT_TRUE(copies.back().are_those_of(one));
   EXPECT_TRUE(Recordings(repaired).are_those_of(repaired));
   EXPECT_FALSE(repaired.are_those_of(one));
   EXPECT_FALSE(Recordings{}.are_those_of(one));
