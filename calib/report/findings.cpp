@@ -14,7 +14,7 @@
 #include "calib/selection/search_round.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/selection/tracing_json.hpp"
-#include "calib/terms/basis.hpp"
+#include "calib/terms/curve.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -184,7 +184,7 @@ class Filler {
 
   [[nodiscard]] selection::FittedCurve fitted(const selection::AddedCurve& added, Eigen::Index index) const {
     selection::FittedCurve curve{added.curve, {}, added.law_of ? added.law_of->name() : ""};
-    for (std::size_t k = 0; k < basis_size(added.curve); ++k)
+    for (std::size_t k = 0; k < function_count(added.curve); ++k)
       curve.coefficients.push_back(found_.outcome.model.fit.parameters(index++));
     return curve;
   }

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "calib/estimation/stack.hpp"
-#include "calib/terms/basis.hpp"
+#include "calib/terms/curve.hpp"
 #include "calib/terms/effects/step_effect.hpp"
 #include "calib/vehicle/sensitivity.hpp"
 
@@ -57,7 +57,7 @@ class Tried {
   [[nodiscard]] Eigen::MatrixXd by_part(const terms::Curve& curve, vehicle::Carrier carrier,
                                         std::size_t part) const {
     const auto steps = static_cast<Eigen::Index>(model_.context().size());
-    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(basis_size(curve)));
+    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(function_count(curve)));
     for (Eigen::Index k = 0; k < steps; ++k) {
       const terms::BasisValues values =
           functions_in(curve, model_.context()[static_cast<std::size_t>(k)], part);
