@@ -141,16 +141,27 @@ void fill_names(const AllTried& recordings, const std::vector<Candidate>& candid
 
 }  // namespace
 
+void for_each_candidate(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
+                        const estimation::FitResult& fit, const std::vector<Candidate>& candidates,
+                        const std::function<void(Eigen::MatrixXd)>& visit) {
+  const AllTried recordings = try_along(data, effects, fit);
+  std::vector<Eigen::MatrixXd> names(candidates.size());  // empty where the candidate is a curve
+  fill_names(recordings, candidates, names);
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const auto& curve = candidates[k].curve;
+    visit(curve ? stacked(recordings, [&](const Tried& t) { return t.by_curve(*curve); })
+                : std::move(names[k]));
+  }
+}
+
 std::vector<Eigen::MatrixXd> candidate_columns(std::span<const measurement::FitData> data,
                                                const vehicle::EffectList& effects,
                                                const estimation::FitResult& fit,
                                                const std::vector<Candidate>& candidates) {
-  const AllTried recordings = try_along(data, effects, fit);
-  std::vector<Eigen::MatrixXd> columns(candidates.size());
-  fill_names(recordings, candidates, columns);
-  for (std::size_t k = 0; k < candidates.size(); ++k)
-    if (candidates[k].curve)
-      columns[k] = stacked(recordings, [&](const Tried& t) { return t.by_curve(*candidates[k].curve); });
+  std::vector<Eigen::MatrixXd> columns;
+  columns.reserve(candidates.size());
+  for_each_candidate(data, effects, fit, candidates,
+                     [&](Eigen::MatrixXd one) { columns.push_back(std::move(one)); });
   return columns;
 }
 
