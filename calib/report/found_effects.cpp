@@ -7,7 +7,7 @@
 #include "calib/selection/lidar_report.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/selection/stretch_errors.hpp"
-#include "calib/terms/basis.hpp"
+#include "calib/terms/curve.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -96,7 +96,7 @@ EffectResult found_effect(const EffectPtr& effect, Eigen::Index first, const Fin
 selection::FittedCurve fitted(const selection::AddedCurve& added, Eigen::Index first,
                               const estimation::FitResult& fit) {
   selection::FittedCurve curve{added.curve, {}, added.law_of ? added.law_of->name() : ""};
-  for (std::size_t k = 0; k < basis_size(added.curve); ++k)
+  for (std::size_t k = 0; k < function_count(added.curve); ++k)
     curve.coefficients.push_back(fit.parameters(first++));
   return curve;
 }
