@@ -163,6 +163,7 @@ Section data_of(const Calibration& calibration) {
       if (data.duration > 0.0) line += fmt::format(" ({:.1f}/s)", static_cast<double>(count) / data.duration);
     }
     section.lines.push_back(line);
+    for (const auto& choice : data.choices) section.lines.push_back("  " + choice);
     for (const auto& [why, count] : data.discarded)
       section.lines.push_back(fmt::format("  not used: {} {}", count, why));
     section.lines.push_back("  SHA-256 " + data.sha256);
