@@ -182,7 +182,7 @@ fresh_drive() { # NAME VERB...
   true_pose > "build/demo/fresh-$name.end"
   recording=$(ls -t "$dir"/state/recordings/*.lcmlog | head -n 1)
   cp "$recording" "build/demo/fresh-$name.lcmlog"
-  python3 docs/demo_table.py --without-effects build/demo/calibration.json build/demo/geometry.json
+  python3 docs/scripts/demo_table.py --without-effects build/demo/calibration.json build/demo/geometry.json
   for kind in nominal geometry calibration; do
     local values=build/demo/$kind.json
     [ "$kind" = nominal ] && values=nominal
@@ -244,4 +244,4 @@ echo "report: build/demo/report.html"
 
 step "result"
 cp "$dir/truth.json" build/demo/
-python3 docs/demo_table.py build/demo
+python3 docs/scripts/demo_table.py build/demo

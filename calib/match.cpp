@@ -9,31 +9,33 @@ namespace {
 constexpr double kConvincing = 0.8;         ///< overlap above which no better pose is looked for
 constexpr std::size_t kSearchPoints = 150;  ///< of the scan; more tell little on cells of 10 cm
 
-MatchResult match_after_search(const MatchReference& reference, const MatchReference& scan, const Pose& guess,
-                               const MatchOptions& options) {
-  LikelihoodField field(positions(reference.surface()), FieldOptions{});
-  const auto points = thinned(positions(scan.surface()), kSearchPoints);
-  const SearchResult start = search_branch_and_bound(field, points, {.centre = guess});
+matching::MatchResult match_after_search(const matching::MatchReference& reference,
+                                         const matching::MatchReference& scan, const math::Pose& guess,
+                                         const matching::MatchOptions& options) {
+  matching::LikelihoodField field(positions(reference.surface()), matching::FieldOptions{});
+  const auto points = matching::thinned(positions(scan.surface()), kSearchPoints);
+  const matching::SearchResult start = search_branch_and_bound(field, points, {.centre = guess});
   return match_both_ways(reference, scan, start.pose, options);
 }
 
 /// The match from the guess, or from a search around it when the guess did not
 /// lead to a convincing one.
-MatchResult match_best(const MatchReference& reference, const MatchReference& scan, const Pose& guess,
-                       const MatchOptions& options) {
-  MatchResult first = match_both_ways(reference, scan, guess, options);
-  if (first.status == MatchStatus::too_few_points) return first;
+matching::MatchResult match_best(const matching::MatchReference& reference,
+                                 const matching::MatchReference& scan, const math::Pose& guess,
+                                 const matching::MatchOptions& options) {
+  matching::MatchResult first = match_both_ways(reference, scan, guess, options);
+  if (first.status == matching::MatchStatus::too_few_points) return first;
   if (first.is_usable() && first.overlap >= kConvincing) return first;
-  MatchResult second = match_after_search(reference, scan, guess, options);
+  matching::MatchResult second = match_after_search(reference, scan, guess, options);
   // Refused or not, the pose with more agreement tells more about the pair.
   return second.inliers > first.inliers ? second : first;
 }
 
-ScanMatch describe(const MatchResult& result) {
+ScanMatch describe(const matching::MatchResult& result) {
   ScanMatch match;
   match.status = to_string(result.status);
   match.inliers = result.inliers;
-  if (result.status == MatchStatus::degenerate)
+  if (result.status == matching::MatchStatus::degenerate)
     match.weak_direction = {result.weak_direction.x(), result.weak_direction.y()};
   if (!match.ok()) return match;
   match.pose = {result.motion.x, result.motion.y, result.motion.yaw};
@@ -48,11 +50,13 @@ ScanMatch describe(const MatchResult& result) {
 ScanMatch match_scans(const Scan& reference, const Scan& scan, const std::array<double, 3>& guess,
                       std::optional<double> range_noise) {
   const Scan both[] = {reference, scan};
-  MatchOptions options;
-  options.range_noise = range_noise.value_or(estimate_range_noise(both));
-  const BeamMotion at_rest = [](double) { return Pose{}; };
-  const MatchReference prepared(make_surface(reference, at_rest, options.range_noise), options.range_noise);
-  const MatchReference other(make_surface(scan, at_rest, options.range_noise), options.range_noise);
+  matching::MatchOptions options;
+  options.range_noise = range_noise.value_or(matching::estimate_range_noise(both));
+  const matching::BeamMotion at_rest = [](double) { return math::Pose{}; };
+  const matching::MatchReference prepared(matching::make_surface(reference, at_rest, options.range_noise),
+                                          options.range_noise);
+  const matching::MatchReference other(matching::make_surface(scan, at_rest, options.range_noise),
+                                       options.range_noise);
   return describe(match_best(prepared, other, {guess[0], guess[1], guess[2]}, options));
 }
 

@@ -7,21 +7,23 @@
 #include <tuple>
 #include <utility>
 
-#include "calib/effect_names.hpp"
-#include "calib/effects/catalogue.hpp"
-#include "calib/estimators/path_fit.hpp"
-#include "calib/findings.hpp"
-#include "calib/reference/placed_poses.hpp"
-#include "calib/report.hpp"
-#include "calib/session/lidar_evidence.hpp"
-#include "calib/session/location.hpp"
-#include "calib/session/placed_pairs.hpp"
-#include "calib/session/sign_check.hpp"
-#include "calib/session/start_values.hpp"
-#include "calib/stamps/sweeps.hpp"
-#include "calib/stamps/uneven_stamps.hpp"
-#include "calib/tracing/search.hpp"
-#include "calib/validation/held_out.hpp"
+#include "calib/classical/sign_check.hpp"
+#include "calib/estimation/path_fit.hpp"
+#include "calib/estimation/start_values.hpp"
+#include "calib/ingest/sweeps.hpp"
+#include "calib/ingest/tick_stamps.hpp"
+#include "calib/measurement/location.hpp"
+#include "calib/measurement/placed_pairs.hpp"
+#include "calib/measurement/placed_poses.hpp"
+#include "calib/measurement/scan_stamps.hpp"
+#include "calib/report/findings.hpp"
+#include "calib/report/report.hpp"
+#include "calib/selection/held_out.hpp"
+#include "calib/selection/lidar_evidence.hpp"
+#include "calib/selection/range_trace.hpp"
+#include "calib/selection/search.hpp"
+#include "calib/terms/catalogue.hpp"
+#include "calib/terms/effect_names.hpp"
 
 namespace odomcalib::calib {
 namespace {
@@ -52,7 +54,7 @@ class Solver {
     if (fit) fit = correct_lidar(std::move(fit));
     if (fit) fit = locate(std::move(fit));
     calibration_.data = data_in_use();
-    calibration_.methods = classical_methods(*session_, delay(), calibration_);
+    calibration_.methods = report::classical_methods(*session_, delay(), calibration_);
     if (!fit) {
       MethodResult joint;
       joint.name = "joint";
@@ -77,7 +79,7 @@ class Solver {
   /// Where no scan matched, the fit has nothing to say but that.
   [[nodiscard]] Error cause_of(const Error& error) const {
     std::size_t unmatched = 0;
-    for (const PairSet& set : session_->pair_sets()) unmatched += set.unmatched;
+    for (const measurement::PairSet& set : session_->pair_sets()) unmatched += set.unmatched;
     if (error.code != ErrorCode::empty || unmatched == 0) return error;
     return {ErrorCode::refused, "none of " + std::to_string(unmatched) + " pairs of scans could be matched",
             "scan matching", "drive where the lidar sees walls on all sides, not along a corridor"};
@@ -92,15 +94,15 @@ class Solver {
 
   /// A recording that cannot be used is told apart by its name and what it holds.
   [[nodiscard]] std::vector<DataUse> data_in_use() const {
-    if (!session_) return data_use(recordings_, {});
-    return data_use(recordings_, session_->pair_sets());
+    if (!session_) return report::data_use(recordings_, {});
+    return report::data_use(recordings_, session_->pair_sets());
   }
 
   std::optional<Error> open(std::span<const Recording> recordings) {
-    auto session = Session::open(recordings);
+    auto session = measurement::Session::open(recordings);
     if (!session) return session.error();
     const bool sits_anywhere = session_ && session_->reference_sits_anywhere();
-    session_ = std::make_unique<Session>(std::move(session).value());
+    session_ = std::make_unique<measurement::Session>(std::move(session).value());
     session_->let_reference_sit_anywhere(sits_anywhere);
     return std::nullopt;
   }
@@ -114,21 +116,21 @@ class Solver {
   void even_out_ticks() {
     const auto given = recordings_;
     for (std::size_t i = 0; i < given.size(); ++i)
-      if (const auto even = even_ticks(given[i])) {
-        set_stamps(own(i).ticks, even->t);
+      if (const auto even = ingest::even_ticks(given[i])) {
+        ingest::set_stamps(own(i).ticks, even->t);
         stamps_.ticks = std::max(stamps_.ticks, even->jitter);
       }
     if (!evened_.empty()) recordings_ = evened_;
   }
 
   /// Scans that were taken evenly and stamped unevenly are measured anew, at even times.
-  Result<FitResult> even_out_scans(Result<FitResult> fit) {
+  Result<estimation::FitResult> even_out_scans(Result<estimation::FitResult> fit) {
     if (!session_->reference_is_scans()) return fit;
     const auto given = recordings_;
     for (std::size_t i = 0; i < given.size(); ++i) {
       const auto even = even_scans(given[i], session_->data()[i], effects_, parameters_);
       if (!even) continue;
-      set_stamps(own(i).scans, even->t);
+      ingest::set_stamps(own(i).scans, even->t);
       stamps_.scans = std::max(stamps_.scans, even->jitter);
     }
     if (stamps_.scans == 0.0) return fit;
@@ -138,14 +140,14 @@ class Solver {
 
   /// Scans that do not say when each beam was sent are taken for sweeps of a turning head if that explains
   /// the motion clearly better.
-  Result<FitResult> let_scans_sweep(Result<FitResult> fit) {
-    auto sweeping = with_sweeps(recordings_);
+  Result<estimation::FitResult> let_scans_sweep(Result<estimation::FitResult> fit) {
+    auto sweeping = ingest::with_sweeps(recordings_);
     if (sweeping.empty() || !session_->reference_is_scans()) return fit;
     const State before = state(fit.value(), lidar_.size());
     auto session = std::move(session_);
     auto better = begin_anew(sweeping);
     if (better && has(kOffset)) {
-      take_stamps_for_middles(sweeping);
+      ingest::take_stamps_for_middles(sweeping);
       better = measure_anew(sweeping);
     }
     const auto after = better ? held_out_now(better.value()) : std::nullopt;
@@ -153,7 +155,7 @@ class Solver {
       evened_ = std::move(sweeping);
       recordings_ = evened_;
       stamps_.sweep = *evened_.front().scans.front().time_increment;
-      stamps_.turn = turn_of_head(evened_.front());
+      stamps_.turn = ingest::turn_of_head(evened_.front());
       stamps_.sweep_p_value = p_value_of(*before.held_out, *after);
       return better;
     }
@@ -163,7 +165,7 @@ class Solver {
   }
 
   /// From nominal values: what was fitted to scans taken otherwise is no start.
-  Result<FitResult> begin_anew(std::span<const Recording> recordings) {
+  Result<estimation::FitResult> begin_anew(std::span<const Recording> recordings) {
     if (auto error = open(recordings)) return *error;
     effects_ = given_;
     if (auto error = start()) return *error;
@@ -176,13 +178,14 @@ class Solver {
     return error;
   }
 
-  Result<FitResult> measure_anew(std::span<const Recording> recordings) {
+  Result<estimation::FitResult> measure_anew(std::span<const Recording> recordings) {
     if (auto error = open_and_measure(recordings)) return *error;
     return settle();
   }
 
   /// Of all three components together.
-  static bool is_clearly_better(const std::optional<HeldOut>& before, const std::optional<HeldOut>& after) {
+  static bool is_clearly_better(const std::optional<selection::HeldOut>& before,
+                                const std::optional<selection::HeldOut>& after) {
     constexpr double kClearly = 0.95;  // product of the ratios
     if (!before || !after) return false;
     double ratio = 1.0;
@@ -191,7 +194,7 @@ class Solver {
   }
 
   /// By the likelihood ratio of what is left on data that were not fitted.
-  static double p_value_of(const HeldOut& before, const HeldOut& after) {
+  static double p_value_of(const selection::HeldOut& before, const selection::HeldOut& after) {
     double ratio = 0.0;
     for (std::size_t k = 0; k < before.bounded.size(); ++k)
       ratio += 2.0 * static_cast<double>(after.pairs) * std::log(before.bounded[k] / after.bounded[k]);
@@ -199,15 +202,15 @@ class Solver {
   }
 
   std::optional<Error> choose_effects() {
-    if (auto wrong = wrong_effects(options_.effects)) return wrong;
+    if (auto wrong = terms::wrong_effects(options_.effects)) return wrong;
     automatic_ = options_.effects == std::vector<std::string>{"auto"};
     if (automatic_ || options_.effects == std::vector<std::string>{"none"}) return std::nullopt;
     for (const std::string& name : options_.effects) {
-      if (const auto of_lidar = find_lidar_effect(name)) {
+      if (const auto of_lidar = terms::find_lidar_effect(name)) {
         asked_of_lidar_.push_back(of_lidar);
         continue;
       }
-      const EffectList found = find_effects(name);
+      const vehicle::EffectList found = terms::find_effects(name);
       effects_.insert(effects_.end(), found.begin(), found.end());
     }
     given_ = effects_;
@@ -226,23 +229,26 @@ class Solver {
   [[nodiscard]] double delay() const { return has(kOffset) ? parameters_(first_of(kOffset)) : 0.0; }
 
   [[nodiscard]] Eigen::Index first_of(const std::string& name) const {
-    return first_parameter(effects_, place_of(name));
+    return selection::first_parameter(effects_, place_of(name));
   }
 
   /// First matches with nominal values; then the clocks' delay, and what the recording does not state. Signs
   /// are asked before anything is fitted.
   std::optional<Error> start() {
     report("matching", 0.0);
-    parameters_ = to_vector(session_->nominal());
-    session_->measure(parameters_, {}, PairOptions{.rough = true});
-    if (automatic_ && recordings_.front().increments.empty()) effects_.push_back(find_effect("time_offset"));
-    const ClockStart clock = has(kOffset) ? search_clock(session_->data()) : ClockStart{};
-    if (auto error = check_signs(wheel_motions(session_->data(), clock.delay), calibration_.robot,
-                                 session_->reference_is_base()))
+    parameters_ = vehicle::to_vector(session_->nominal());
+    session_->measure(parameters_, {}, measurement::PairOptions{.rough = true});
+    if (automatic_ && recordings_.front().increments.empty())
+      effects_.push_back(terms::find_effect("time_offset"));
+    const estimation::ClockStart clock =
+        has(kOffset) ? estimation::search_clock(session_->data()) : estimation::ClockStart{};
+    if (auto error = classical::check_signs(wheel_motions(session_->data(), clock.delay), calibration_.robot,
+                                            session_->reference_is_base()))
       return error;
-    if (automatic_ && clock.rate != 0.0) effects_.push_back(find_effect(kDrift));
-    parameters_ = to_vector(start_values(*session_, clock.delay), count_parameters(effects_));
-    const std::vector<double> own = start_of(effects_);
+    if (automatic_ && clock.rate != 0.0) effects_.push_back(terms::find_effect(kDrift));
+    parameters_ = vehicle::to_vector(estimation::start_values(*session_, clock.delay),
+                                     vehicle::count_parameters(effects_));
+    const std::vector<double> own = vehicle::start_of(effects_);
     parameters_.tail(static_cast<Eigen::Index>(own.size())) =
         Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
     if (has(kOffset)) parameters_(first_of(kOffset)) = clock.delay;
@@ -252,7 +258,7 @@ class Solver {
 
   /// Fits, matches again with the fitted parameters (guess and de-skew), and fits again. Noise of a match
   /// made with wrong parameters must not reach the result; a clock far off takes a few more passes.
-  Result<FitResult> settle() {
+  Result<estimation::FitResult> settle() {
     constexpr int kPasses = 2, kMostPasses = 5;
     report("fitting", 0.0);
     auto fit = fit_now();
@@ -273,7 +279,7 @@ class Solver {
 
   /// Poses of the base may be those of a marker beside the middle of the axle, which in turns looks like a
   /// base that moves sideways.
-  Result<FitResult> seat_reference(Result<FitResult> fit) {
+  Result<estimation::FitResult> seat_reference(Result<estimation::FitResult> fit) {
     if (!session_->reference_is_base()) return fit;
     const State before = state(fit.value(), lidar_.size());
     session_->let_reference_sit_anywhere(true);
@@ -285,13 +291,13 @@ class Solver {
   }
 
   /// Plainly, by more than anybody measures with a tape, and where the motion determines it.
-  static bool sits_elsewhere(const FitResult& fit) {
+  static bool sits_elsewhere(const estimation::FitResult& fit) {
     struct Limits {
-      BaseIndex index;
+      vehicle::BaseIndex index;
       double negligible, known;  // m or rad; largest deviation
     };
     constexpr std::array<Limits, 3> kLimits = {
-        {{kMountX, 5e-4, 5e-3}, {kMountY, 5e-4, 5e-3}, {kMountYaw, 2e-3, 2e-2}}};
+        {{vehicle::kMountX, 5e-4, 5e-3}, {vehicle::kMountY, 5e-4, 5e-3}, {vehicle::kMountYaw, 2e-3, 2e-2}}};
     const auto deviation = [&](const Limits& of) { return std::sqrt(fit.covariance(of.index, of.index)); };
     const auto is_known = [&](const Limits& of) { return deviation(of) < of.known; };
     const auto is_plain = [&](const Limits& of) {
@@ -303,7 +309,7 @@ class Solver {
   }
 
   void measure() {
-    session_->measure(parameters_, effects_, PairOptions{});
+    session_->measure(parameters_, effects_, measurement::PairOptions{});
     measured_with_ = parameters_;
   }
 
@@ -314,14 +320,14 @@ class Solver {
            (parameters_ - measured_with_).cwiseAbs().maxCoeff() < kNear;
   }
 
-  Result<FitResult> fit_now() {
-    FitOptions options;
-    options.fixed = fixed_with(session_->fixed(0), effects_);
+  Result<estimation::FitResult> fit_now() {
+    estimation::FitOptions options;
+    options.fixed = vehicle::fixed_with(session_->fixed(0), effects_);
     return fit_joint(session_->data(), effects_, parameters_, options);
   }
 
   /// Any parameter of the effect is many standard deviations from zero.
-  [[nodiscard]] bool is_plain(const std::string& name, const FitResult& fit) const {
+  [[nodiscard]] bool is_plain(const std::string& name, const estimation::FitResult& fit) const {
     const std::size_t count = effects_[place_of(name)]->parameters().size();
     const Eigen::Index first = first_of(name);
     for (Eigen::Index k = first; k < first + static_cast<Eigen::Index>(count); ++k)
@@ -329,7 +335,7 @@ class Solver {
     return false;
   }
 
-  [[nodiscard]] bool is_idle(const std::string& name, const FitResult& fit) const {
+  [[nodiscard]] bool is_idle(const std::string& name, const estimation::FitResult& fit) const {
     const Eigen::Index k = first_of(name);
     const double negligible = name == kOffset ? kNegligibleOffset : 0.0;
     const double deviation = std::sqrt(fit.covariance(k, k));
@@ -337,7 +343,7 @@ class Solver {
   }
 
   /// Clocks that run apart need a delay to run apart from.
-  void drop_idle_clocks(const FitResult& fit) {
+  void drop_idle_clocks(const estimation::FitResult& fit) {
     if (!automatic_) return;
     if (has(kDrift) && is_idle(kDrift, fit)) drop_last();
     if (!has(kDrift) && has(kOffset) && is_idle(kOffset, fit)) drop_last();
@@ -345,66 +351,72 @@ class Solver {
 
   void drop_last() {
     effects_.pop_back();
-    parameters_ = parameters_.head(static_cast<Eigen::Index>(kBaseCount + count_parameters(effects_))).eval();
+    parameters_ =
+        parameters_.head(static_cast<Eigen::Index>(vehicle::kBaseCount + vehicle::count_parameters(effects_)))
+            .eval();
   }
 
   [[nodiscard]] bool may_trace_lidar() const {
     return (automatic_ || !asked_of_lidar_.empty()) && session_->reference_is_scans();
   }
 
-  [[nodiscard]] std::vector<HeadingPair> lidar_pairs() const {
-    return heading_pairs(*session_, parameters_, effects_);
+  [[nodiscard]] std::vector<measurement::HeadingPair> lidar_pairs() const {
+    return selection::heading_pairs(*session_, parameters_, effects_);
   }
 
   /// Errors of the lidar show between scans, before any wheel is asked: those of the ranges in a map of
   /// walls, the others, and these too where there is no map, in pairs of scans. They are taken out of the
   /// scans.
-  Result<FitResult> correct_lidar(Result<FitResult> fit) {
+  Result<estimation::FitResult> correct_lidar(Result<estimation::FitResult> fit) {
     if (!may_trace_lidar()) return fit;
     fit = take_out(wrong_angles(), std::move(fit), true);
     if (!fit) return fit;
     place_every_scan(asked_of_lidar_.empty());
-    fit = take_out(common_findings(paths_), std::move(fit), false);
+    fit = take_out(selection::common_findings(paths_), std::move(fit), false);
     if (!fit) return fit;
     report("tracing the lidar", 0.0);
-    const auto found = asked_of_lidar_.empty()
-                           ? trace_lidar(lidar_pairs(), sees_all_round(*session_), !paths_.empty())
-                           : fit_lidar(lidar_pairs(), asked_of_lidar_);
+    const auto found =
+        asked_of_lidar_.empty()
+            ? selection::trace_lidar(lidar_pairs(), selection::sees_all_round(*session_), !paths_.empty())
+            : selection::fit_lidar(lidar_pairs(), asked_of_lidar_);
     return take_out(found, std::move(fit), true);
   }
 
   /// Asked before the map: beams spread too wide bend its walls, as ranges that are too short would.
-  [[nodiscard]] std::vector<LidarFinding> wrong_angles() const {
+  [[nodiscard]] std::vector<terms::LidarFinding> wrong_angles() const {
     if (!asked_of_lidar_.empty()) return {};
-    std::vector<LidarFinding> found = trace_lidar(lidar_pairs(), sees_all_round(*session_), true);
-    if (found.empty() || found.front().effect->name() != make_angle_scale()->name()) return {};
+    std::vector<terms::LidarFinding> found =
+        selection::trace_lidar(lidar_pairs(), selection::sees_all_round(*session_), true);
+    if (found.empty() || found.front().effect->name() != terms::make_angle_scale()->name()) return {};
     found.resize(1);
     return found;
   }
 
   /// Without the errors found everything is measured and fitted anew, and scans have to be placed again.
   /// @param refined by a second look, at pairs of the corrected scans
-  Result<FitResult> take_out(const std::vector<LidarFinding>& found, Result<FitResult> fit, bool refined) {
+  Result<estimation::FitResult> take_out(const std::vector<terms::LidarFinding>& found,
+                                         Result<estimation::FitResult> fit, bool refined) {
     const std::size_t first = lidar_.size();
     lidar_.insert(lidar_.end(), found.begin(), found.end());
     if (std::none_of(found.begin(), found.end(), [](const auto& f) { return f.effect->is_correctable(); }))
       return fit;
     const State before = state(fit.value(), first);
     placed_with_.resize(0);
-    if (refined && look_through_correction()) refine(std::span(lidar_).subspan(first), lidar_pairs());
+    if (refined && look_through_correction())
+      selection::refine(std::span(lidar_).subspan(first), lidar_pairs());
     return unless_worse(fit_corrected(), before);
   }
 
   /// What is gone back to when a correction turns out to be none.
   struct State {
     Eigen::VectorXd parameters;
-    EffectList effects;
-    std::vector<LidarFinding> lidar;
-    std::optional<HeldOut> held_out;
+    vehicle::EffectList effects;
+    std::vector<terms::LidarFinding> lidar;
+    std::optional<selection::HeldOut> held_out;
   };
 
   /// @param known of the lidar's findings, those that stay
-  [[nodiscard]] State state(const FitResult& fit, std::size_t known) const {
+  [[nodiscard]] State state(const estimation::FitResult& fit, std::size_t known) const {
     return {parameters_,
             effects_,
             {lidar_.begin(), lidar_.begin() + static_cast<std::ptrdiff_t>(known)},
@@ -412,7 +424,7 @@ class Solver {
   }
 
   /// A correction that was not asked for and that the wheels contradict is taken back.
-  Result<FitResult> unless_worse(Result<FitResult> better, const State& before) {
+  Result<estimation::FitResult> unless_worse(Result<estimation::FitResult> better, const State& before) {
     const bool asked = !asked_of_lidar_.empty();
     if (better && (asked || !is_worse(before.held_out, held_out_now(better.value())))) return better;
     go_back_to(before);
@@ -425,11 +437,13 @@ class Solver {
     lidar_ = before.lidar;
   }
 
-  [[nodiscard]] std::optional<HeldOut> held_out_now(const FitResult& fit) const {
-    return held_out_residual(session_->data(), effects_, fit, fixed_with(session_->fixed(0), effects_));
+  [[nodiscard]] std::optional<selection::HeldOut> held_out_now(const estimation::FitResult& fit) const {
+    return selection::held_out_residual(session_->data(), effects_, fit,
+                                        vehicle::fixed_with(session_->fixed(0), effects_));
   }
 
-  static bool is_worse(const std::optional<HeldOut>& before, const std::optional<HeldOut>& after) {
+  static bool is_worse(const std::optional<selection::HeldOut>& before,
+                       const std::optional<selection::HeldOut>& after) {
     constexpr double kTolerated = 1.05;
     if (!before || !after) return !after && before;
     for (std::size_t k = 0; k < before->rms.size(); ++k)
@@ -439,25 +453,26 @@ class Solver {
 
   /// Measures corrected scans, well enough for a second look at what is left of their errors.
   bool look_through_correction() {
-    corrected_ = corrected(recordings_, lidar_);
+    corrected_ = selection::corrected(recordings_, lidar_);
     if (open_and_measure(corrected_)) return false;
     const auto fit = fit_now();
     if (fit) parameters_ = fit.value().parameters;
     return static_cast<bool>(fit);
   }
 
-  Result<FitResult> fit_corrected() {
-    corrected_ = corrected(recordings_, lidar_);
+  Result<estimation::FitResult> fit_corrected() {
+    corrected_ = selection::corrected(recordings_, lidar_);
     return measure_anew(corrected_);
   }
 
   /// From here on effects of the floor know the place, and matches that slide are replaced. What depends on
   /// either is fitted once more.
-  Result<FitResult> locate(Result<FitResult> fit) {
+  Result<estimation::FitResult> locate(Result<estimation::FitResult> fit) {
     if (placed_with_.size() == 0) place_every_scan(false);
-    std::vector<std::vector<Fix>> fixes;
+    std::vector<std::vector<vehicle::Fix>> fixes;
     for (std::size_t i = 0; i < recordings_.size(); ++i)
-      fixes.push_back(paths_.empty() ? fixes_of(recordings_[i]) : fixes_of(paths_[i], mount()));
+      fixes.push_back(paths_.empty() ? measurement::fixes_of(recordings_[i])
+                                     : measurement::fixes_of(paths_[i], mount()));
     session_->locate(fixes, parameters_, effects_);
     const bool in_places =
         std::any_of(effects_.begin(), effects_.end(), [](const auto& e) { return acts_in_places(*e); });
@@ -473,8 +488,8 @@ class Solver {
     bool any = false;
     for (std::size_t i = 0; i < paths_.size(); ++i) {
       const auto& [model, pairs, places] = session_->data()[i];
-      const Trajectory trajectory = model->trajectory(as_span(parameters_), effects_);
-      const PathOfWheels wheels = path_of_wheels(trajectory);
+      const vehicle::Trajectory trajectory = model->trajectory(vehicle::as_span(parameters_), effects_);
+      const measurement::PathOfWheels wheels = measurement::path_of_wheels(trajectory);
       const bool slides = drift_of_matches(pairs, paths_[i], wheels) >= kSliding;
       if (slides) session_->set_pairs(i, pairs_of_places(pairs, paths_[i], wheels));
       session_->set_places(i, paths_[i].scans);
@@ -483,19 +498,19 @@ class Solver {
     return any;
   }
 
-  [[nodiscard]] Pose mount() const { return to_base(as_span(parameters_)).mount; }
+  [[nodiscard]] math::Pose mount() const { return vehicle::to_base(vehicle::as_span(parameters_)).mount; }
 
-  static bool acts_in_places(const Effect& effect) {
+  static bool acts_in_places(const vehicle::Effect& effect) {
     const auto laws = effect.laws();
-    return std::any_of(laws.begin(), laws.end(), [](const Law& law) {
-      return law.variable == Variable::heading || law.variable == Variable::position;
+    return std::any_of(laws.begin(), laws.end(), [](const vehicle::Law& law) {
+      return law.variable == vehicle::Variable::heading || law.variable == vehicle::Variable::position;
     });
   }
 
   /// What is missing beyond the delay: stepwise, each step proved on held-out data.
-  void search(const FitResult& fit) {
-    outcome_ = search_effects(session_->data(), effects_, fit, session_->fixed(0),
-                              [&](double fraction) { report("tracing the residual", fraction); });
+  void search(const estimation::FitResult& fit) {
+    outcome_ = selection::search_effects(session_->data(), effects_, fit, session_->fixed(0),
+                                         [&](double fraction) { report("tracing the residual", fraction); });
     effects_ = outcome_.model.effects;
     parameters_ = outcome_.model.fit.parameters;
     retire_idle_offset();
@@ -510,7 +525,7 @@ class Solver {
       outcome_.quiet.push_back(effects_[place_of(kOffset)]);
       return;
     }
-    const FitTask task{session_->data(), session_->fixed(0)};
+    const selection::FitTask task{session_->data(), session_->fixed(0)};
     if (auto fewer = without_effect(task, outcome_.model, place_of(kOffset), {}))
       outcome_.model = std::move(*fewer);
     effects_ = outcome_.model.effects;
@@ -534,17 +549,19 @@ class Solver {
     }
   }
 
-  [[nodiscard]] ScanPath path_of(std::size_t recording, bool trace_ranges) const {
+  [[nodiscard]] measurement::ScanPath path_of(std::size_t recording, bool trace_ranges) const {
     const Recording& given = session_->recordings()[recording];
-    const DriveModel& model = *session_->data()[recording].model;
+    const vehicle::DriveModel& model = *session_->data()[recording].model;
     if (session_->reference_is_base()) {
-      const Trajectory trajectory = model.trajectory(as_span(parameters_), effects_);
-      ScanPath path;
-      path.scans = placed_poses(given.poses, path_of_wheels(trajectory));
+      const vehicle::Trajectory trajectory = model.trajectory(vehicle::as_span(parameters_), effects_);
+      measurement::ScanPath path;
+      path.scans = measurement::placed_poses(given.poses, measurement::path_of_wheels(trajectory));
       return path;
     }
-    const PathOptions options{session_->pair_sets()[recording].range_noise, trace_ranges};
-    return place_scans(given, model, as_span(parameters_), effects_, options, paths_[recording]);
+    const measurement::PathOptions options{
+        session_->pair_sets()[recording].range_noise,
+        trace_ranges ? measurement::RangeTracer(odomcalib::calib::selection::trace_ranges) : nullptr};
+    return place_scans(given, model, vehicle::as_span(parameters_), effects_, options, paths_[recording]);
   }
 
   /// The same parameters from every scan instead of keyframes.
@@ -552,12 +569,12 @@ class Solver {
     const bool is_new = parameters_.size() != placed_with_.size() || parameters_ != placed_with_;
     if (is_new) place_again(0.5);
     if (paths_.empty()) return;
-    std::vector<PathData> data;
+    std::vector<estimation::PathData> data;
     for (std::size_t i = 0; i < paths_.size(); ++i)
       data.push_back({session_->data()[i].model, paths_[i].scans});
     const auto fit =
         fit_path(data, effects_, parameters_,
-                 {fixed_with(session_->fixed(0), effects_), outcome_.model.fit.prior_information});
+                 {vehicle::fixed_with(session_->fixed(0), effects_), outcome_.model.fit.prior_information});
     if (!fit || !improves(fit.value())) return;
     parameters_ = outcome_.model.fit.parameters = fit.value().parameters;
     outcome_.model.fit.covariance = fit.value().covariance;
@@ -566,7 +583,7 @@ class Solver {
 
   /// Places are believed where they confirm the matches and know better: a map may be wrong as a whole. What
   /// is too small to be told, as a millisecond's delay, is too small to speak against it.
-  [[nodiscard]] bool improves(const PathFit& path) const {
+  [[nodiscard]] bool improves(const estimation::PathFit& path) const {
     const std::vector<bool> quiet = quiet_parameters();
     double gain = 0.0;  // logarithm of the ratio of variances, summed
     for (Eigen::Index k = 0; k < parameters_.size(); ++k) {
@@ -574,13 +591,13 @@ class Solver {
       if (!(before > 0.0) || !(after > 0.0) || quiet[static_cast<std::size_t>(k)]) continue;
       const double apart = path.parameters(k) - parameters_(k);
       if (apart * apart > kAgreement * kAgreement * (before + after)) return false;
-      if (k < kBaseCount) gain += std::log(before / after);
+      if (k < vehicle::kBaseCount) gain += std::log(before / after);
     }
     return gain > 0.0;
   }
 
   [[nodiscard]] std::vector<bool> quiet_parameters() const {
-    std::vector<bool> quiet(kBaseCount, false);
+    std::vector<bool> quiet(vehicle::kBaseCount, false);
     for (const auto& effect : effects_) {
       const bool is_quiet =
           std::find(outcome_.quiet.begin(), outcome_.quiet.end(), effect) != outcome_.quiet.end();
@@ -591,7 +608,8 @@ class Solver {
 
   void fill() {
     report("validating", 0.0);
-    fill_calibration({*session_, outcome_, lidar_, stamps_, automatic_, every_scan_placed_}, calibration_);
+    report::fill_calibration({*session_, outcome_, lidar_, stamps_, automatic_, every_scan_placed_},
+                             calibration_);
     report("validating", 1.0);
   }
 
@@ -599,21 +617,21 @@ class Solver {
   const SolveOptions& options_;
   Progress progress_;
   Calibration calibration_;
-  std::unique_ptr<Session> session_;
+  std::unique_ptr<measurement::Session> session_;
   bool automatic_ = false;
   bool every_scan_placed_ =
-      false;          ///< the parameters come from the whole path, not from matches of keyframes
-  EffectList given_;  ///< asked for by name
-  EffectList effects_;
-  SearchResult outcome_;
+      false;                   ///< the parameters come from the whole path, not from matches of keyframes
+  vehicle::EffectList given_;  ///< asked for by name
+  vehicle::EffectList effects_;
+  selection::SearchResult outcome_;
   Eigen::VectorXd parameters_;
-  std::vector<ScanPath> paths_;    ///< one per recording, or none
-  Eigen::VectorXd measured_with_;  ///< parameters of the pairs
-  Eigen::VectorXd placed_with_;    ///< parameters that the paths were made with; empty: they are to be made
-  std::vector<LidarEffectPtr> asked_of_lidar_;
-  std::vector<LidarFinding> lidar_;
+  std::vector<measurement::ScanPath> paths_;  ///< one per recording, or none
+  Eigen::VectorXd measured_with_;             ///< parameters of the pairs
+  Eigen::VectorXd placed_with_;  ///< parameters that the paths were made with; empty: they are to be made
+  std::vector<terms::LidarEffectPtr> asked_of_lidar_;
+  std::vector<terms::LidarFinding> lidar_;
   std::vector<Recording> evened_;  ///< with other times; empty where those given are right
-  StampReport stamps_;
+  ingest::StampReport stamps_;
   std::vector<Recording> corrected_;  ///< without the lidar's errors; what the session measures then
 };
 

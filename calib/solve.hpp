@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "proto/calibration.hpp"
-#include "proto/recording.hpp"
+#include "proto/calibration/calibration.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib {
 

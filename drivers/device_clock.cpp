@@ -3,18 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/settings.hpp"
+
 namespace odomcalib::drivers {
-namespace {
-
-// The envelope may rise by this rate, so that a device clock that runs slow is followed: 200 ppm is more than
-// crystals differ (lidars: up to 100 ppm and a little more when warm).
-constexpr double kDrift = 200e-6;
-// A device that was restarted has a new zero: arrivals then leave the envelope by more than any transport's
-// delay.
-constexpr double kRestart_s = 0.5;
-
-}  // namespace
-
 void DeviceClock::reset() { last_count_.reset(); }
 
 void DeviceClock::unwrap(std::uint64_t count, double arrival) {
@@ -34,7 +25,7 @@ double DeviceClock::to_host(std::uint64_t count, double arrival) {
   last_arrival_ = arrival;
   if (device_time_) return device_s_;
   const double delay = arrival - device_s_;
-  if (first || std::abs(delay - offset_) > kRestart_s) {
+  if (first || std::abs(delay - offset_) > kRestarted_s) {
     offset_ = delay;
   } else {
     offset_ = std::min(delay, offset_ + kDrift * std::max(0.0, device_s_ - last_device_s_));

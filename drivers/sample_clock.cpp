@@ -3,16 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/settings.hpp"
+
 namespace odomcalib::drivers {
-namespace {
-
-constexpr double kHole_s = 0.1;     // longer than a USB adapter's bursts (16 ms) and a busy host's delays
-constexpr double kWindow_s = 0.25;  // some bursts of a USB adapter, so that each window has a prompt packet
-constexpr double kRateGain = 0.3;   // of what a window is off
-constexpr double kMostRate = 2.0;   // factor between the nominal and a believable sample rate
-
-}  // namespace
-
 void SampleClock::reset() {
   running_ = false;
   rate_ = 1.0;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that includes point one way: proto <- calib, proto <- drivers, {calib, drivers} <- daemon, all <- tests.
+"""Checks that includes point one way: proto <- calib, proto <- drivers, {calib, drivers} <- daemon, all <- tests, and
+inside these folders from a layer only to those above it in LAYERS. With that no two folders can include each other.
 
 Usage: check_includes.py [PROJECT_ROOT]      lists violations, exit status 1 if there are any
        check_includes.py --self-test         shows that each rule accepts what is right and rejects what is wrong
@@ -21,12 +22,22 @@ MAY_INCLUDE = {
     "tests": {"proto", "calib", "drivers", "daemon", "tests"},
 }
 
+# Folder -> its layers, the lowest first: a layer includes only itself and those before it. Layers in one tuple are
+# beside each other: neither includes the other. "." is what lies in the folder itself.
+LAYERS = {
+    "proto": [".", "wire", "recording", "calibration", "control"],
+    "calib": ["math", "wheels", "vehicle", "terms", "matching", "ingest", "measurement", "classical", "estimation",
+              "selection", "odometry", ("report", "slam"), "."],
+    "drivers": [".", ("serial", "tcp"), "can", ("base", "lidar"), "decode"],
+    "daemon": ["routines", "safety", "writeback", "config", ("service", "cli")],
+}
+
 # The simulator shares no code with what it tests; the programs that write recordings use the file format alone.
 SIM = "tests/sim/"
-SIM_MAY_INCLUDE = {"proto/measurements.hpp", "proto/recording.hpp", "proto/result.hpp", "proto/file_bytes.hpp"}
+SIM_MAY_INCLUDE = {"proto/measurements.hpp", "proto/recording/recording.hpp", "proto/result.hpp", "proto/file_bytes.hpp"}
 
 # Made by CMake in the build folder.
-GENERATED = {"odomcalib_version.hpp"}
+GENERATED = {"odomcalib_paths.hpp", "odomcalib_version.hpp"}
 
 # calib is numbers only: no sockets, no LCM, no logging, no clocks. Bytes and numbers never log.
 SYSTEM_BANNED = {
@@ -41,6 +52,29 @@ def includes(path):
         found = INCLUDE.match(line)
         if found:
             yield number, found.group(1) == '"', found.group(2)
+
+
+def layer_of(path, layers):
+    """(height, folder) of a file in its folder's layers; None where they do not list it."""
+    parts = path.split("/")
+    folder = parts[1] if len(parts) > 2 else "."
+    for height, beside in enumerate(layers):
+        if folder == beside or (isinstance(beside, tuple) and folder in beside):
+            return height, folder
+    return None
+
+
+def layer_problem(name, header):
+    """Why the layer of `name` may not include `header` of the same top folder, or None."""
+    folder = name.split("/")[0]
+    if folder not in LAYERS or header.split("/")[0] != folder:
+        return None
+    own, other = layer_of(name, LAYERS[folder]), layer_of(header, LAYERS[folder])
+    if own is None or other is None:
+        return f"{name if own is None else header} lies in no layer of {folder} (LAYERS in tests/check_includes.py)"
+    if own[1] == other[1] or other[0] < own[0]:
+        return None
+    return f'layer {folder}/{own[1]} must not include "{header}"'
 
 
 def problem(name, quoted, header):
@@ -58,7 +92,7 @@ def problem(name, quoted, header):
         return f'{folder} must not include "{header}"'
     if name.startswith(SIM) and not header.startswith(SIM) and header not in SIM_MAY_INCLUDE:
         return f'the simulator must not share code: "{header}"'
-    return None
+    return layer_problem(name, header)
 
 
 def violations(root):
@@ -75,15 +109,24 @@ def violations(root):
 
 def self_test():
     good = [
-        ("proto/a.hpp", "proto/b.hpp"), ("calib/a.cpp", "proto/b.hpp"), ("calib/a.cpp", "calib/effects/b.hpp"),
-        ("drivers/a.cpp", "drivers/can/b.hpp"), ("daemon/a.cpp", "calib/b.hpp"), ("daemon/a.cpp", "drivers/b.hpp"),
+        ("proto/a.hpp", "proto/b.hpp"), ("calib/a.cpp", "proto/b.hpp"), ("calib/a.cpp", "calib/terms/b.hpp"),
+        ("drivers/base/vesc/a.cpp", "drivers/can/b.hpp"), ("daemon/cli/a.cpp", "calib/b.hpp"), ("daemon/cli/a.cpp", "drivers/b.hpp"),
         ("tests/unit/a.cpp", "daemon/b.hpp"), ("tests/sim/a.cpp", "tests/sim/b.hpp"),
         ("tests/sim/a.cpp", "proto/measurements.hpp"),
+        ("calib/terms/effects/a.cpp", "calib/terms/b.hpp"), ("calib/selection/a.cpp", "calib/math/b.hpp"),
+        ("calib/slam/a.cpp", "calib/matching/b.hpp"), ("calib/solve.cpp", "calib/report/b.hpp"),
+        ("proto/recording/a.cpp", "proto/wire/b.hpp"), ("daemon/service/a.cpp", "daemon/writeback/b.hpp"),
     ]
     bad = [
         ("proto/a.hpp", "calib/b.hpp"), ("proto/a.hpp", "drivers/b.hpp"), ("calib/a.cpp", "drivers/b.hpp"),
         ("drivers/a.cpp", "calib/b.hpp"), ("calib/a.cpp", "daemon/b.hpp"), ("daemon/a.cpp", "tests/b.hpp"),
         ("tests/sim/a.cpp", "calib/b.hpp"), ("tests/sim/a.cpp", "proto/messages.hpp"), ("proto/a.hpp", "b.hpp"),
+        ("calib/math/a.hpp", "calib/terms/b.hpp"), ("calib/measurement/a.cpp", "calib/selection/b.hpp"),
+        ("calib/report/a.cpp", "calib/solve.hpp"), ("calib/report/a.cpp", "calib/slam/b.hpp"),
+        ("calib/nowhere/a.cpp", "calib/math/b.hpp"), ("proto/wire/a.hpp", "proto/recording/b.hpp"),
+        ("proto/a.hpp", "proto/wire/b.hpp"), ("daemon/service/a.cpp", "daemon/cli/b.hpp"),
+        ("daemon/routines/a.cpp", "daemon/safety/b.hpp"),
+        ("drivers/can/a.cpp", "drivers/base/vesc/b.hpp"), ("drivers/lidar/scip/a.cpp", "drivers/base/b.hpp"),
     ]
     for case, expected in [(c, 0) for c in good] + [(c, 1) for c in bad]:
         with tempfile.TemporaryDirectory() as folder:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 constexpr double kTurn = 4.0;
@@ -83,4 +83,4 @@ std::optional<Neighbour> BearingOrder::nearest(const Eigen::Vector2d& position, 
   return Neighbour{entries_[*best.entry].index, best.squared};
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

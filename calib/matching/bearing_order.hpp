@@ -11,7 +11,7 @@
 
 #include "calib/matching/nearest.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 class BearingOrder {
  public:
@@ -35,4 +35,4 @@ class BearingOrder {
   std::vector<std::uint32_t> places_;  ///< of the first entry of each of equal shares of a turn, and the end
 };
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

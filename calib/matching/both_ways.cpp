@@ -4,22 +4,22 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 /// Of a motion's inverse, by the derivative of its x, y, yaw by those of the motion.
-Eigen::Matrix3d information_of_inverse(const Pose& motion, const Eigen::Matrix3d& information) {
+Eigen::Matrix3d information_of_inverse(const math::Pose& motion, const Eigen::Matrix3d& information) {
   const double c = std::cos(motion.yaw), s = std::sin(motion.yaw);
-  const Pose back = inverse(motion);
+  const math::Pose back = inverse(motion);
   Eigen::Matrix3d derivative;
   derivative << -c, -s, back.y, s, -c, -back.x, 0.0, 0.0, -1.0;
   const Eigen::Matrix3d inverted = derivative.inverse();
   return inverted.transpose() * information * inverted;
 }
 
-Pose mean(const Pose& a, const Pose& b) {
-  const Pose apart = between(a, b);
-  return compose(a, Pose{0.5 * apart.x, 0.5 * apart.y, 0.5 * wrap_angle(apart.yaw)});
+math::Pose mean(const math::Pose& a, const math::Pose& b) {
+  const math::Pose apart = between(a, b);
+  return compose(a, math::Pose{0.5 * apart.x, 0.5 * apart.y, 0.5 * math::wrap_angle(apart.yaw)});
 }
 
 /// Correlation of the errors of both ways in simulated rooms: the readings are the same, the walls' ends and
@@ -28,7 +28,7 @@ constexpr double kCorrelation = 0.93;
 
 /// The motion is the mean of both ways, the information that of a mean of two alike.
 void take_mean(MatchResult& result, const MatchResult& back) {
-  const Pose there = inverse(back.motion);
+  const math::Pose there = inverse(back.motion);
   const Eigen::Matrix3d sum = result.information + information_of_inverse(back.motion, back.information);
   result.motion = mean(result.motion, there);
   result.information = sum / (1.0 + kCorrelation);
@@ -37,19 +37,19 @@ void take_mean(MatchResult& result, const MatchResult& back) {
 
 }  // namespace
 
-MatchResult match_both_ways(const MatchReference& first, const MatchReference& second, const Pose& guess,
-                            const MatchOptions& options) {
+MatchResult match_both_ways(const MatchReference& first, const MatchReference& second,
+                            const math::Pose& guess, const MatchOptions& options) {
   MatchResult result = match_point_to_line(first, second.surface(), guess, options);
   if (!result.is_usable()) return result;
   MatchOptions back_options = options;
   back_options.guess_information = information_of_inverse(guess, options.guess_information);
   // With a prior about the guess the way back has to begin there, too.
   const bool has_prior = !options.guess_information.isZero();
-  const Pose start = inverse(has_prior ? guess : result.motion);
+  const math::Pose start = inverse(has_prior ? guess : result.motion);
   back_options.guess_is_near = !has_prior;
   const MatchResult back = match_point_to_line(second, first.surface(), start, back_options);
   if (back.is_usable()) take_mean(result, back);
   return result;
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

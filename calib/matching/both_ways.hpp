@@ -3,7 +3,7 @@
 
 #include "calib/matching/point_to_line.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 /// Mean of the match of `second` with the lines of `first` and of `first` with those of `second`. Lines
 /// fitted to a curved wall or across a corner lie on its inner side and readings do not, so that a single
@@ -13,7 +13,7 @@ namespace odomcalib::calib {
 /// 2019). The information is that of both together; everything else, and all where the way back fails, is
 /// that of the first match.
 /// @param guess, result motion from `first` to `second`
-MatchResult match_both_ways(const MatchReference& first, const MatchReference& second, const Pose& guess,
-                            const MatchOptions& options);
+MatchResult match_both_ways(const MatchReference& first, const MatchReference& second,
+                            const math::Pose& guess, const MatchOptions& options);
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

@@ -3,11 +3,11 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "calib/geometry/vector2.hpp"
-#include "calib/statistics/median.hpp"
-#include "calib/statistics/tukey.hpp"
+#include "calib/math/median.hpp"
+#include "calib/math/tukey.hpp"
+#include "calib/math/vector2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 constexpr int kMaxIterations = 10;
@@ -22,7 +22,7 @@ struct Reduced {
 
 class Refinement {
  public:
-  Refinement(const Walls& reference, const std::vector<WallPoint>& points, const Pose& start,
+  Refinement(const Walls& reference, const std::vector<WallPoint>& points, const math::Pose& start,
              const GuessPrior& prior)
       : reference_(reference), points_(points), prior_(prior), weights_(points.size(), 1.0), frame_(start) {
     estimate_.motion = start;
@@ -44,7 +44,7 @@ class Refinement {
       estimate_.motion.x -= step(0);
       estimate_.motion.y -= step(1);
       estimate_.motion.yaw -= step(2);
-      frame_ = Frame(estimate_.motion);
+      frame_ = math::Frame(estimate_.motion);
       estimate_.information = system.information - system.spurious;
       estimate_.converged = step.dot(information * step) < kSettled * kSettled;
     }
@@ -61,10 +61,11 @@ class Refinement {
       moved_[i] = frame_.transform(points_[i].position);
       normalised.push_back(std::abs(line.normal.dot(moved_[i] - line.centre)) * root_weights_[i]);
     }
-    estimate_.scale = std::max(1.0, kMadToSigma * median_of(normalised));
+    estimate_.scale = std::max(1.0, math::kMadToSigma * math::median_of(normalised));
     estimate_.inliers = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const double weight = tukey_weight(normalised[i] / (estimate_.scale * kTukeyCut)) / kTukeyMeanWeight;
+      const double weight =
+          math::tukey_weight(normalised[i] / (estimate_.scale * math::kTukeyCut)) / math::kTukeyMeanWeight;
       weights_[i] = weight * root_weights_[i] * root_weights_[i];
       if (weight > 0.0) ++estimate_.inliers;
     }
@@ -151,15 +152,15 @@ class Refinement {
   std::vector<Eigen::Vector2d> moved_;  ///< the points at the estimate, m
   std::vector<FittedLine> lines_;
   JointEstimate estimate_;
-  Frame frame_;  ///< at the estimate
+  math::Frame frame_;  ///< at the estimate
 };
 
 }  // namespace
 
-JointEstimate refine_on_walls(const Walls& reference, const std::vector<WallPoint>& points, const Pose& start,
-                              const GuessPrior& prior) {
+JointEstimate refine_on_walls(const Walls& reference, const std::vector<WallPoint>& points,
+                              const math::Pose& start, const GuessPrior& prior) {
   if (points.empty()) return {start};
   return Refinement(reference, points, start, prior).run();
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

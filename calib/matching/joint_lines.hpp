@@ -11,10 +11,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "calib/geometry/vector2.hpp"
 #include "calib/matching/walls.hpp"
+#include "calib/math/vector2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 /// A point of the second scan that lies on a wall of the first.
 struct WallPoint {
@@ -26,15 +26,15 @@ struct WallPoint {
 
 /// What is known of the motion beforehand.
 struct GuessPrior {
-  Pose guess;
+  math::Pose guess;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  [[nodiscard]] Eigen::Vector3d gradient(const Pose& motion) const {
-    return information * difference(motion, guess);
+  [[nodiscard]] Eigen::Vector3d gradient(const math::Pose& motion) const {
+    return information * math::difference(motion, guess);
   }
 };
 
 struct JointEstimate {
-  Pose motion;
+  math::Pose motion;
   Eigen::Matrix3d information =
       Eigen::Matrix3d::Zero();  ///< of `motion`: x, y, yaw, without what is spurious
   std::size_t inliers = 0;
@@ -43,7 +43,7 @@ struct JointEstimate {
 };
 
 /// @return the prior is part of the motion and no part of the information
-JointEstimate refine_on_walls(const Walls& reference, const std::vector<WallPoint>& points, const Pose& start,
-                              const GuessPrior& prior = {});
+JointEstimate refine_on_walls(const Walls& reference, const std::vector<WallPoint>& points,
+                              const math::Pose& start, const GuessPrior& prior = {});
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "calib/geometry/vector2.hpp"
+#include "calib/math/vector2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 constexpr double kMaxExtent = 200.0;  ///< m; what lies farther out is left out of the map
@@ -99,9 +99,9 @@ Eigen::Vector2i LikelihoodField::cell_of(const Eigen::Vector2d& position) const 
           static_cast<int>(std::floor(std::clamp(cells.y(), -kFar, kFar)))};
 }
 
-double LikelihoodField::fit(std::span<const Eigen::Vector2d> points, const Pose& pose) const {
+double LikelihoodField::fit(std::span<const Eigen::Vector2d> points, const math::Pose& pose) const {
   if (points.empty()) return 0.0;
-  const Frame frame(pose);
+  const math::Frame frame(pose);
   int sum = 0;
   for (const Eigen::Vector2d& p : points) {
     const Eigen::Vector2i at = cell_of(frame.transform(p));
@@ -110,4 +110,4 @@ double LikelihoodField::fit(std::span<const Eigen::Vector2d> points, const Pose&
   return sum / (static_cast<double>(kBest) * static_cast<double>(points.size()));
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

@@ -9,9 +9,9 @@
 #include <memory>
 #include <span>
 
-#include "calib/geometry/se2.hpp"
+#include "calib/math/se2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 struct FieldOptions {
   double cell = 0.1;  ///< m
@@ -70,7 +70,7 @@ class LikelihoodField {
   [[nodiscard]] Eigen::Vector2i cell_of(const Eigen::Vector2d& position) const;
   [[nodiscard]] double cell() const { return options_.cell; }
   /// Mean score of the points moved by `pose`, 0 to 1.
-  [[nodiscard]] double fit(std::span<const Eigen::Vector2d> points, const Pose& pose) const;
+  [[nodiscard]] double fit(std::span<const Eigen::Vector2d> points, const math::Pose& pose) const;
 
  private:
   [[nodiscard]] std::size_t cells() const {
@@ -89,4 +89,4 @@ class LikelihoodField {
   int levels_ = 1;  ///< made so far
 };
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

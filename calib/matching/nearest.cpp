@@ -2,7 +2,7 @@
 
 #include <nanoflann.hpp>
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 Neighbour nearest_of_all(std::span<const Eigen::Vector2d> points, const Eigen::Vector2d& position) {
   Neighbour best{0, (points.front() - position).squaredNorm()};
@@ -45,4 +45,4 @@ Neighbour NearestTree::nearest(const Eigen::Vector2d& position) const {
 
 std::span<const Eigen::Vector2d> NearestTree::points() const { return tree_->points; }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

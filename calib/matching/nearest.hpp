@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 struct Neighbour {
   std::size_t index = 0;
@@ -34,4 +34,4 @@ class NearestTree {
   std::unique_ptr<Tree> tree_;
 };
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

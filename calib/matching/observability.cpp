@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 Observability observability(const Eigen::Matrix3d& information) {
   if (!(information(2, 2) > 0.0)) return {};
@@ -15,4 +15,4 @@ Observability observability(const Eigen::Matrix3d& information) {
           eigen.eigenvectors().col(0)};
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 struct Observability {
   double ratio = 0.0;  ///< smallest to largest eigenvalue of the information about translation
@@ -14,4 +14,4 @@ struct Observability {
 /// @param information of x, y, yaw
 Observability observability(const Eigen::Matrix3d& information);
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

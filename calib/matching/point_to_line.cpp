@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/geometry/vector2.hpp"
 #include "calib/matching/joint_lines.hpp"
 #include "calib/matching/observability.hpp"
-#include "calib/statistics/median.hpp"
-#include "calib/statistics/tukey.hpp"
+#include "calib/math/median.hpp"
+#include "calib/math/tukey.hpp"
+#include "calib/math/vector2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 constexpr std::size_t kMinPoints = 20;
@@ -43,9 +43,10 @@ double pair_variance(double cosine_of_incidence, double range_noise) {
   return 2.0 * distance_variance(cosine_of_incidence, range_noise);
 }
 
-std::vector<Correspondence> correspond(const MatchReference& reference, const Surface& scan, const Pose& pose,
-                                       double gate, double range_noise, std::size_t stride) {
-  const Frame frame(pose);
+std::vector<Correspondence> correspond(const MatchReference& reference, const Surface& scan,
+                                       const math::Pose& pose, double gate, double range_noise,
+                                       std::size_t stride) {
+  const math::Frame frame(pose);
   std::vector<Correspondence> pairs;
   pairs.reserve(scan.points.size());
   for (std::size_t k = 0; k < scan.points.size(); k += stride) {
@@ -63,24 +64,25 @@ std::vector<Correspondence> correspond(const MatchReference& reference, const Su
   return pairs;
 }
 
-double distance(const Correspondence& pair, const Frame& frame) {
+double distance(const Correspondence& pair, const math::Frame& frame) {
   return pair.normal.dot(frame.transform(pair.position) - pair.anchor);
 }
 
 /// Robust sigma of the distances in units of their expectation, at least 1 so that good matches stay good.
-double residual_scale(const std::vector<Correspondence>& pairs, const Frame& frame) {
+double residual_scale(const std::vector<Correspondence>& pairs, const math::Frame& frame) {
   std::vector<double> magnitudes;
   magnitudes.reserve(pairs.size());
   for (const Correspondence& pair : pairs)
     magnitudes.push_back(std::abs(distance(pair, frame)) / std::sqrt(pair.variance));
-  return kMadToSigma * median_of(std::move(magnitudes));
+  return math::kMadToSigma * math::median_of(std::move(magnitudes));
 }
 
-Linearised linearise(const std::vector<Correspondence>& pairs, const Frame& frame, double scale) {
+Linearised linearise(const std::vector<Correspondence>& pairs, const math::Frame& frame, double scale) {
   Linearised system;
   for (const Correspondence& pair : pairs) {
     const double r = distance(pair, frame);
-    const double weight = tukey_weight(r / (std::sqrt(pair.variance) * scale * kTukeyCut)) / pair.variance;
+    const double weight =
+        math::tukey_weight(r / (std::sqrt(pair.variance) * scale * math::kTukeyCut)) / pair.variance;
     if (!(weight > 0.0)) continue;
     const Eigen::Vector2d turned = frame.rotate(pair.position);
     const Eigen::Vector3d jacobian(pair.normal.x(), pair.normal.y(),
@@ -100,15 +102,15 @@ bool lies_on(const Wall& wall, const Eigen::Vector2d& moved, const Eigen::Vector
 }
 
 /// Both beams come from the same side of the wall, neither too flat, and the scan sees a line that is alike.
-bool faces(const Wall& wall, const SurfacePoint& partner, const SurfacePoint& point, const Frame& frame,
+bool faces(const Wall& wall, const SurfacePoint& partner, const SurfacePoint& point, const math::Frame& frame,
            double cosine) {
   if (std::abs(cosine) < kMinWallIncidence || cosine * partner.beam.dot(wall.line.normal) < 0.0) return false;
   return !point.has_line || std::abs(frame.rotate(point.normal).dot(wall.line.normal)) >= kMinNormalAgreement;
 }
 
-std::vector<WallPoint> points_on_walls(const MatchReference& reference, const Surface& scan, const Pose& pose,
-                                       double gate, double range_noise) {
-  const Frame frame(pose);
+std::vector<WallPoint> points_on_walls(const MatchReference& reference, const Surface& scan,
+                                       const math::Pose& pose, double gate, double range_noise) {
+  const math::Frame frame(pose);
   std::vector<WallPoint> found;
   const Walls& walls = reference.walls();
   for (const SurfacePoint& point : scan.points) {
@@ -203,7 +205,7 @@ namespace {
 
 /// State of the iteration on local lines.
 struct LocalMatch {
-  Pose motion;
+  math::Pose motion;
   GuessPrior prior;
   Linearised system;
   double scale = 1.0;
@@ -223,7 +225,7 @@ bool iterate(const MatchReference& reference, const Surface& scan, const MatchOp
   const auto pairs = correspond(reference, scan, match.motion, gate_at(i, options), options.range_noise,
                                 stride_at(i, scan.points.size()));
   if (pairs.size() < kMinPoints) return false;
-  const Frame frame(match.motion);
+  const math::Frame frame(match.motion);
   match.scale = std::max(1.0, residual_scale(pairs, frame));
   match.system = linearise(pairs, frame, match.scale);
   const double variance = match.scale * match.scale;
@@ -269,7 +271,7 @@ bool refine(const MatchReference& reference, const Surface& scan, const MatchOpt
 
 }  // namespace
 
-MatchResult match_point_to_line(const MatchReference& reference, const Surface& scan, const Pose& guess,
+MatchResult match_point_to_line(const MatchReference& reference, const Surface& scan, const math::Pose& guess,
                                 const MatchOptions& options) {
   MatchResult result;
   result.motion = guess;
@@ -292,4 +294,4 @@ MatchResult match_point_to_line(const MatchReference& reference, const Surface& 
   return result;
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

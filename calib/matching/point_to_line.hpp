@@ -10,7 +10,7 @@
 #include "calib/matching/surface.hpp"
 #include "calib/matching/walls.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 enum class MatchStatus {
   ok,
@@ -35,7 +35,7 @@ struct MatchOptions {
 
 struct MatchResult {
   MatchStatus status = MatchStatus::not_converged;
-  Pose motion;  ///< of the sensor, in the frame of the reference scan
+  math::Pose motion;  ///< of the sensor, in the frame of the reference scan
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, yaw of `motion`; m^2, m rad, rad^2
   /// Of the scans alone, free of the guess; not positive definite where a direction is not observable.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -68,7 +68,7 @@ class MatchReference {
 
 /// Motion from `reference` to `scan`, starting at `guess`. Without `guess_information` the result does not
 /// depend on the guess within the basin of convergence.
-MatchResult match_point_to_line(const MatchReference& reference, const Surface& scan, const Pose& guess,
+MatchResult match_point_to_line(const MatchReference& reference, const Surface& scan, const math::Pose& guess,
                                 const MatchOptions& options);
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

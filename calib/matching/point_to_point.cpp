@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "calib/geometry/vector2.hpp"
+#include "calib/math/vector2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 constexpr double kStill = 1e-9;  ///< m and rad, a step that only rounding makes
@@ -16,9 +16,9 @@ struct Pairs {
   double squares = 0.0;  ///< m^2
 };
 
-Pairs correspond(const NearestTree& reference, std::span<const Eigen::Vector2d> scan, const Pose& pose,
+Pairs correspond(const NearestTree& reference, std::span<const Eigen::Vector2d> scan, const math::Pose& pose,
                  double max_distance) {
-  const Frame frame(pose);
+  const math::Frame frame(pose);
   Pairs pairs;
   for (const Eigen::Vector2d& p : scan) {
     const Eigen::Vector2d moved = frame.transform(p);
@@ -31,11 +31,13 @@ Pairs correspond(const NearestTree& reference, std::span<const Eigen::Vector2d> 
   return pairs;
 }
 
-bool is_still(const Pose& step) { return std::hypot(step.x, step.y) < kStill && std::abs(step.yaw) < kStill; }
+bool is_still(const math::Pose& step) {
+  return std::hypot(step.x, step.y) < kStill && std::abs(step.yaw) < kStill;
+}
 
 }  // namespace
 
-Pose align_points(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> onto) {
+math::Pose align_points(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> onto) {
   Eigen::Vector2d from_centre = Eigen::Vector2d::Zero();
   Eigen::Vector2d onto_centre = Eigen::Vector2d::Zero();
   const double n = static_cast<double>(from.size());
@@ -57,7 +59,7 @@ Pose align_points(std::span<const Eigen::Vector2d> from, std::span<const Eigen::
 }
 
 IcpResult match_point_to_point(const NearestTree& reference, std::span<const Eigen::Vector2d> scan,
-                               const Pose& guess, const IcpOptions& options) {
+                               const math::Pose& guess, const IcpOptions& options) {
   IcpResult result{guess};
   if (reference.points().size() < kMinPoints || scan.size() < kMinPoints) return result;
   bool still = false;
@@ -66,13 +68,13 @@ IcpResult match_point_to_point(const NearestTree& reference, std::span<const Eig
     result.overlap = static_cast<double>(pairs.from.size()) / static_cast<double>(scan.size());
     if (pairs.from.size() < kMinPoints) return result;
     result.rms = std::sqrt(pairs.squares / static_cast<double>(pairs.from.size()));
-    const Pose next = align_points(pairs.from, pairs.onto);
-    const Pose step = between(result.motion, next);
-    still = is_still({step.x, step.y, wrap_angle(step.yaw)});
+    const math::Pose next = align_points(pairs.from, pairs.onto);
+    const math::Pose step = between(result.motion, next);
+    still = is_still({step.x, step.y, math::wrap_angle(step.yaw)});
     result.motion = next;
   }
   result.converged = still && result.overlap >= options.min_overlap;
   return result;
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

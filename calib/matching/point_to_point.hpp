@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "calib/geometry/se2.hpp"
 #include "calib/matching/nearest.hpp"
+#include "calib/math/se2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 struct IcpOptions {
   double max_distance = 0.5;  ///< m, correspondences farther apart are left out
@@ -18,7 +18,7 @@ struct IcpOptions {
 };
 
 struct IcpResult {
-  Pose motion;
+  math::Pose motion;
   double rms = 0.0;      ///< m, of the correspondences
   double overlap = 0.0;  ///< share of the points with a partner
   bool converged = false;
@@ -26,10 +26,10 @@ struct IcpResult {
 
 /// The motion that moves `from` onto `onto` best in the sense of least squares, point i onto point i (Arun,
 /// Huang and Blostein, PAMI 1987, in closed form for the plane). Both must hold the same number of points.
-Pose align_points(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> onto);
+math::Pose align_points(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> onto);
 
 /// `converged` only with enough overlap: nothing that merely stands still passes for a match.
 IcpResult match_point_to_point(const NearestTree& reference, std::span<const Eigen::Vector2d> scan,
-                               const Pose& guess, const IcpOptions& options);
+                               const math::Pose& guess, const IcpOptions& options);
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

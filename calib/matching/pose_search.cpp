@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 /// Lattice steps on each side of the centre.
@@ -56,7 +56,7 @@ class Lattice {
     turn_points(turn);
     choose_cells(turn, shifts_ + beyond);
   }
-  [[nodiscard]] Pose pose(int turn, int x, int y) const {
+  [[nodiscard]] math::Pose pose(int turn, int x, int y) const {
     return {window_.centre.x + x * field_.cell(), window_.centre.y + y * field_.cell(),
             window_.centre.yaw + turn * window_.angle_step};
   }
@@ -335,20 +335,20 @@ SearchResult search_branch_and_bound(LikelihoodField& field, std::span<const Eig
 }
 
 SearchResult search_hill_climb(const LikelihoodField& field, std::span<const Eigen::Vector2d> points,
-                               const Pose& start, const ClimbOptions& options) {
+                               const math::Pose& start, const ClimbOptions& options) {
   SearchResult best{start, field.fit(points, start), 1};
   double step = options.step;
   double turn = options.angle_step;
   for (int halving = 0; halving <= options.halvings;) {
-    const Pose at = best.pose;
-    const std::array<Pose, 6> neighbours{{{at.x + step, at.y, at.yaw},
-                                          {at.x - step, at.y, at.yaw},
-                                          {at.x, at.y + step, at.yaw},
-                                          {at.x, at.y - step, at.yaw},
-                                          {at.x, at.y, at.yaw + turn},
-                                          {at.x, at.y, at.yaw - turn}}};
+    const math::Pose at = best.pose;
+    const std::array<math::Pose, 6> neighbours{{{at.x + step, at.y, at.yaw},
+                                                {at.x - step, at.y, at.yaw},
+                                                {at.x, at.y + step, at.yaw},
+                                                {at.x, at.y - step, at.yaw},
+                                                {at.x, at.y, at.yaw + turn},
+                                                {at.x, at.y, at.yaw - turn}}};
     bool better = false;
-    for (const Pose& pose : neighbours) {
+    for (const math::Pose& pose : neighbours) {
       const double score = field.fit(points, pose);
       ++best.evaluated;
       if (score <= best.score) continue;
@@ -364,4 +364,4 @@ SearchResult search_hill_climb(const LikelihoodField& field, std::span<const Eig
   return best;
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

@@ -12,21 +12,21 @@
 #include <span>
 #include <vector>
 
-#include "calib/geometry/se2.hpp"
 #include "calib/matching/likelihood_field.hpp"
+#include "calib/math/se2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 /// Poses about `centre`, both ends of each range included.
 struct SearchWindow {
-  Pose centre{};
-  double half_width = 1.0;          ///< m, in x and in y
-  double half_angle = kPi / 4.0;    ///< rad
-  double angle_step = kPi / 120.0;  ///< rad; the step in x and y is the field's cell
+  math::Pose centre{};
+  double half_width = 1.0;                ///< m, in x and in y
+  double half_angle = math::kPi / 4.0;    ///< rad
+  double angle_step = math::kPi / 120.0;  ///< rad; the step in x and y is the field's cell
 };
 
 struct SearchResult {
-  Pose pose;
+  math::Pose pose;
   double score = 0.0;         ///< mean over the points, 0 to 1
   std::size_t evaluated = 0;  ///< poses and sets of poses that were scored
 };
@@ -43,13 +43,13 @@ SearchResult search_branch_and_bound(LikelihoodField& field, std::span<const Eig
                                      const SearchWindow& window);
 
 struct ClimbOptions {
-  double step = 0.05;               ///< m, first step in x and y
-  double angle_step = kPi / 360.0;  ///< rad, first step in yaw
-  int halvings = 4;                 ///< finer steps after no neighbour is better
+  double step = 0.05;                     ///< m, first step in x and y
+  double angle_step = math::kPi / 360.0;  ///< rad, first step in yaw
+  int halvings = 4;                       ///< finer steps after no neighbour is better
 };
 
 /// To the better neighbour of six, again and again; never below the score of the start.
 SearchResult search_hill_climb(const LikelihoodField& field, std::span<const Eigen::Vector2d> points,
-                               const Pose& start, const ClimbOptions& options);
+                               const math::Pose& start, const ClimbOptions& options);
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "calib/geometry/vector2.hpp"
+#include "calib/math/vector2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
@@ -21,8 +21,8 @@ ProbabilityGrid::ProbabilityGrid(const GridOptions& options)
       size_(2 * static_cast<int>(std::ceil(options.half_size / options.cell))),
       log_odds_(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_), 0.0F) {}
 
-void ProbabilityGrid::insert(const Pose& sensor, std::span<const Eigen::Vector2d> beam_ends) {
-  const Frame frame(sensor);
+void ProbabilityGrid::insert(const math::Pose& sensor, std::span<const Eigen::Vector2d> beam_ends) {
+  const math::Frame frame(sensor);
   const Eigen::Vector2i from = cell_of(frame.origin());
   for (const Eigen::Vector2d& p : beam_ends) {
     const Eigen::Vector2i to = cell_of(frame.transform(p));
@@ -77,4 +77,4 @@ Eigen::Vector2i ProbabilityGrid::cell_of(const Eigen::Vector2d& position) const 
   return {static_cast<int>(std::floor(x)) + size_ / 2, static_cast<int>(std::floor(y)) + size_ / 2};
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

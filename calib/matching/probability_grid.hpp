@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "calib/geometry/se2.hpp"
+#include "calib/math/se2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 struct GridOptions {
   double cell = 0.05;       ///< m
@@ -24,7 +24,7 @@ class ProbabilityGrid {
 
   /// Cells between the sensor and the beam's end become freer, the one at its end more occupied. Beams that
   /// leave the map count as far as its border.
-  void insert(const Pose& sensor, std::span<const Eigen::Vector2d> beam_ends);
+  void insert(const math::Pose& sensor, std::span<const Eigen::Vector2d> beam_ends);
 
   /// Probability that the cell at a position is occupied; 0.5 where nothing is known, and outside of the map.
   [[nodiscard]] double probability(const Eigen::Vector2d& position) const;
@@ -41,4 +41,4 @@ class ProbabilityGrid {
   std::vector<float> log_odds_;
 };
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

@@ -5,10 +5,10 @@
 #include <optional>
 #include <span>
 
-#include "calib/geometry/vector2.hpp"
-#include "calib/statistics/median.hpp"
+#include "calib/math/median.hpp"
+#include "calib/math/vector2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 constexpr int kMaxNeighbours = 12;  ///< on each side
@@ -55,7 +55,7 @@ class RunSums {
     const double xy = s(3) - s(0) * s(1);
     const double yy = s(4) - s(1) * s(1);
     line.centre = s.head<2>();
-    line.normal = quarter_turn(direction_of_spread(xx, xy, yy));
+    line.normal = math::quarter_turn(math::direction_of_spread(xx, xy, yy));
     const double smallest = 0.5 * (xx + yy - std::hypot(xx - yy, 2.0 * xy));
     line.rms = std::sqrt(std::max(smallest, 0.0) * n / std::max(n - 2.0, 1.0));
     return line;
@@ -140,7 +140,7 @@ void attach_lines(std::vector<SurfacePoint>& points, double angular_step, double
 SurfacePoint beam_end(const Scan& scan, std::size_t beam, const BeamMotion& motion) {
   SurfacePoint point;
   point.range = static_cast<double>(scan.ranges[beam]);
-  const Pose pose = motion(beam_time(scan, beam));
+  const math::Pose pose = motion(beam_time(scan, beam));
   point.bearing = scan.angle(beam);
   const double angle = pose.yaw + point.bearing;
   point.beam = {std::cos(angle), std::sin(angle)};
@@ -153,9 +153,9 @@ double angular_step(const Scan& scan) {
   if (scan.angles.size() < 2) return std::abs(scan.angle_increment);
   std::vector<double> steps;
   for (std::size_t i = 1; i < scan.angles.size(); ++i)
-    steps.push_back(
-        std::abs(wrap_angle(static_cast<double>(scan.angles[i]) - static_cast<double>(scan.angles[i - 1]))));
-  return median_of(steps);
+    steps.push_back(std::abs(
+        math::wrap_angle(static_cast<double>(scan.angles[i]) - static_cast<double>(scan.angles[i - 1]))));
+  return math::median_of(steps);
 }
 
 /// How far the reciprocal range of beam k lies off the line through beams k - lag and k + lag, in units of
@@ -168,8 +168,8 @@ std::optional<double> bend(const Scan& scan, std::size_t k, std::size_t lag) {
     if (!is_usable(scan, beams[j])) return std::nullopt;
     u[j] = 1.0 / static_cast<double>(scan.ranges[beams[j]]);
   }
-  const double before = wrap_angle(scan.angle(k) - scan.angle(k - lag));
-  const double after = wrap_angle(scan.angle(k + lag) - scan.angle(k));
+  const double before = math::wrap_angle(scan.angle(k) - scan.angle(k - lag));
+  const double after = math::wrap_angle(scan.angle(k + lag) - scan.angle(k));
   const double whole = std::sin(before + after);
   const double slope =
       (u[0] / u[2] - 1.0) * u[1] / u[0] / (before + after);  // of the range, tangent of the incidence
@@ -181,7 +181,7 @@ std::optional<double> bend(const Scan& scan, std::size_t k, std::size_t lag) {
 
 /// Corners and edges lie in a part of all bends; over two and a half degrees few.
 void collect_bends(const Scan& scan, std::vector<double>& out) {
-  constexpr double kHalf = 1.25 * kPi / 180.0;
+  constexpr double kHalf = 1.25 * math::kPi / 180.0;
   const double step = angular_step(scan);
   if (!(step > 0.0)) return;
   const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(kHalf / step)));
@@ -193,7 +193,7 @@ void collect_bends(const Scan& scan, std::vector<double>& out) {
 /// over that of a normal distribution cut there.
 double normal_part(const std::vector<double>& sizes) {
   constexpr double kCut = 2.5, kOfCutNormal = 0.9546;
-  double scale = kMadToSigma * median_of(sizes);
+  double scale = math::kMadToSigma * math::median_of(sizes);
   for (int pass = 0; pass < 20; ++pass) {
     double sum = 0.0, count = 0.0;
     for (const double size : sizes)
@@ -247,4 +247,4 @@ double estimate_range_noise(std::span<const Scan> scans) {
   return std::clamp(normal_part(bends), kMinRangeNoise, kMaxRangeNoise);
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

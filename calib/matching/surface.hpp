@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "calib/geometry/se2.hpp"
+#include "calib/math/se2.hpp"
 #include "proto/measurements.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 /// One beam end in the sensor frame at the scan's reference time, with a line fitted to its neighbourhood.
 struct SurfacePoint {
@@ -34,7 +34,7 @@ struct Surface {
 double far_limit(double range_max, double range_noise);
 
 /// Motion of the sensor from the scan's reference time to the time of a beam, s after Scan::t.
-using BeamMotion = std::function<Pose(double seconds_after_first_beam)>;
+using BeamMotion = std::function<math::Pose(double seconds_after_first_beam)>;
 
 /// Time of a beam after Scan::t in s; 0 when the recording does not tell.
 double beam_time(const Scan& scan, std::size_t beam);
@@ -57,4 +57,4 @@ Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_no
 /// normal part of what is seen counts, so that corners do not, however few and noisy the readings are.
 double estimate_range_noise(std::span<const Scan> scans);
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

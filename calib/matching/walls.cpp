@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/geometry/vector2.hpp"
-#include "calib/statistics/median.hpp"
+#include "calib/math/median.hpp"
+#include "calib/math/vector2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 namespace {
 
 constexpr std::size_t kMinWallPoints = 4;
@@ -39,7 +39,7 @@ double median_step(const Surface& surface) {
     const Eigen::Vector2d& b = surface.points[i].beam;
     steps.push_back(std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b))));
   }
-  return median_of(std::move(steps));
+  return math::median_of(std::move(steps));
 }
 
 std::vector<Piece> split_at_gaps(const Surface& surface, double range_noise) {
@@ -237,7 +237,8 @@ FittedLine fit_line(const LineSums& sums) {
   line.centre = sums.centre();
   const Eigen::Matrix2d scatter = sums.second - sums.weight * line.centre * line.centre.transpose();
   const Eigen::Matrix2d true_scatter = scatter - sums.noise;
-  line.normal = quarter_turn(direction_of_spread(true_scatter(0, 0), true_scatter(0, 1), true_scatter(1, 1)));
+  line.normal = math::quarter_turn(
+      math::direction_of_spread(true_scatter(0, 0), true_scatter(0, 1), true_scatter(1, 1)));
   const double half_spread = 0.5 * std::hypot(scatter(0, 0) - scatter(1, 1), 2.0 * scatter(0, 1));
   line.squares = std::max(line.normal.dot(scatter * line.normal), 0.0);
   line.angle_variance = 1.0 / std::max(0.5 * scatter.trace() + half_spread, 1e-30);
@@ -270,4 +271,4 @@ Walls find_walls(const Surface& surface, double range_noise) {
   return found;
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

@@ -8,7 +8,7 @@
 
 #include "calib/matching/surface.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::matching {
 
 /// Weighted moments of points; those of two sets of points add up.
 struct LineSums {
@@ -71,4 +71,4 @@ struct Walls {
 /// straight within the noise; neighbouring pieces of one line are joined again.
 Walls find_walls(const Surface& surface, double range_noise);
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::matching

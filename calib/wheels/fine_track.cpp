@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "calib/statistics/median.hpp"
+#include "calib/math/median.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::wheels {
 namespace {
 
 using Cubic = boost::math::interpolators::makima<std::vector<double>>;
@@ -21,8 +21,8 @@ std::vector<double> part_of(const std::vector<double>& all, std::size_t begin, s
 }
 
 double median_period(const WheelTrack& track) {
-  std::vector<double> periods = differences_of(track.t);
-  return periods.empty() ? 0.0 : median_of(std::move(periods));
+  std::vector<double> periods = math::differences_of(track.t);
+  return periods.empty() ? 0.0 : math::median_of(std::move(periods));
 }
 
 void append(WheelTrack& track, double t, double left, double right, int segment) {
@@ -79,4 +79,4 @@ WheelTrack finely_sampled(const WheelTrack& track) {
   return out;
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::wheels

@@ -3,7 +3,7 @@
 
 #include "calib/wheels/wheel_track.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::wheels {
 
 /// The track with samples at most 30 ms apart. Where a wheel speeds up, constant speed between samples 0.1 s
 /// apart runs ahead by a dt^2 / 12 on the average, and as that grows and fades with the acceleration it
@@ -12,4 +12,4 @@ namespace odomcalib::calib {
 /// a second stay as they are.
 WheelTrack finely_sampled(const WheelTrack& track);
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::wheels

@@ -1,10 +1,10 @@
 // What the robot's papers say about it.
 #pragma once
 
-#include "calib/estimators/wheel_motion.hpp"
-#include "proto/recording.hpp"
+#include "calib/wheels/wheel_motion.hpp"
+#include "proto/recording/recording.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::wheels {
 
 /// Values that are missing stay zero.
 inline BaseParameters nominal_base(const RobotDescription& robot) {
@@ -14,4 +14,4 @@ inline BaseParameters nominal_base(const RobotDescription& robot) {
   return base;
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::wheels

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "calib/geometry/se2.hpp"
+#include "calib/math/se2.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::wheels {
 namespace {
 
 /// Far below zero a count is taken for one of 32 bits that has gone past its largest: a turn of the wheel
@@ -42,7 +42,7 @@ bool WheelTrack::covers(double from, double to) const {
 WheelTrack wheel_track_from_ticks(const Recording& recording) {
   WheelTrack track;
   if (recording.ticks.empty()) return track;
-  const double rad_per_tick = 2.0 * kPi / recording.robot.ticks_per_rev;
+  const double rad_per_tick = 2.0 * math::kPi / recording.robot.ticks_per_rev;
   const TickSample& first = recording.ticks.front();
   // Angles begin within the first turn of the counter: a wheel's phase is the same in every recording until
   // the counter restarts.
@@ -74,4 +74,4 @@ WheelTrack wheel_track_from_increments(const Recording& recording) {
   return track;
 }
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::wheels

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::wheels {
 
 /// How the motion of the intervals before and after enters that within an interval: see WheelTrack::bend.
 struct Bend {
@@ -41,4 +41,4 @@ WheelTrack wheel_track_from_ticks(const Recording& recording);
 /// Tuples laid end to end on one time axis; sample k is the start of tuple k.
 WheelTrack wheel_track_from_increments(const Recording& recording);
 
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::wheels

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "calib/predict.hpp"
+#include "calib/odometry/predict.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/report_sections.hpp"
 
@@ -98,8 +98,8 @@ Section methods_of(const Calibration& calibration) {
 /// What belongs to the place or the day, or begins at another phase each time.
 std::set<std::string> not_in_odometry(const Calibration& calibration) {
   std::set<std::string> names;
-  for (const auto& placement : calib::effect_placements(calibration))
-    if (placement.place == calib::Place::nowhere) names.insert(readable(placement.effect));
+  for (const auto& placement : calib::odometry::effect_placements(calibration))
+    if (placement.place == calib::odometry::Place::nowhere) names.insert(readable(placement.effect));
   return names;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "daemon/cli/document.hpp"
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::cli {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "proto/control.hpp"
+#include "proto/control/control.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib::cli {

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "daemon/cli/usable_calibration.hpp"
-#include "proto/report_data.hpp"
+#include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::cli {
 

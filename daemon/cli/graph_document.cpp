@@ -10,11 +10,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::int64_t degrees_of_freedom(const calib::GraphSummary& summary) {
+std::int64_t degrees_of_freedom(const calib::slam::GraphSummary& summary) {
   return static_cast<std::int64_t>(summary.measured) - static_cast<std::int64_t>(summary.unknowns);
 }
 
-std::string start_name(calib::GraphStart start) {
+std::string start_name(calib::slam::GraphStart start) {
   for (const auto& [name, named] : graph_starts())
     if (named == start) return name;
   return "";
@@ -32,9 +32,9 @@ Section iteration_log(const std::vector<TimedIteration>& iterations) {
   return log;
 }
 
-ordered_json worst_edges(const PoseGraph& graph, const calib::GraphInfo& info) {
+ordered_json worst_edges(const PoseGraph& graph, const calib::slam::GraphInfo& info) {
   ordered_json edges = ordered_json::array();
-  for (const calib::WorstEdge& worst : info.worst_edges) {
+  for (const calib::slam::WorstEdge& worst : info.worst_edges) {
     const GraphEdge& edge = graph.edges[worst.edge];
     edges.push_back(
         {{"from", graph.vertices[edge.from].id}, {"to", graph.vertices[edge.to].id}, {"chi2", worst.chi2}});
@@ -67,7 +67,7 @@ ordered_json to_json(const GraphRun& run) {
 }
 
 Document describe(const GraphRun& run) {
-  const calib::GraphSummary& summary = run.summary;
+  const calib::slam::GraphSummary& summary = run.summary;
   Section about{
       "",
       {fmt::format("{} vertices, {} edges; chi2 of about {} would agree with the stated information",
@@ -81,7 +81,7 @@ Document describe(const GraphRun& run) {
           {std::move(about), iteration_log(run.iterations)}};
 }
 
-ordered_json to_json(const PoseGraph& graph, const calib::GraphInfo& info) {
+ordered_json to_json(const PoseGraph& graph, const calib::slam::GraphInfo& info) {
   return {{"poses", info.poses},
           {"points", info.points},
           {"pose_edges", info.pose_edges},
@@ -96,7 +96,7 @@ ordered_json to_json(const PoseGraph& graph, const calib::GraphInfo& info) {
           {"notes", graph.notes}};
 }
 
-Document describe(const PoseGraph& graph, const calib::GraphInfo& info) {
+Document describe(const PoseGraph& graph, const calib::slam::GraphInfo& info) {
   Section about{"", graph.notes, {}};
   about.lines.push_back(fmt::format("{} poses, {} points, {} fixed, {} connected {}", info.poses, info.points,
                                     info.fixed, info.parts, info.parts == 1 ? "part" : "parts"));
@@ -106,7 +106,7 @@ Document describe(const PoseGraph& graph, const calib::GraphInfo& info) {
     about.lines.push_back(
         fmt::format("{} loops have a whole turn too much in them: optimise the graph", info.turned_loops));
   Section worst{"Edges with the largest share of chi2", {}, {{"from", "to", "chi2"}, {}}};
-  for (const calib::WorstEdge& edge : info.worst_edges)
+  for (const calib::slam::WorstEdge& edge : info.worst_edges)
     worst.table.rows.push_back({std::to_string(graph.vertices[graph.edges[edge.edge].from].id),
                                 std::to_string(graph.vertices[graph.edges[edge.edge].to].id),
                                 fmt::format("{:.6f}", edge.chi2)});

@@ -5,21 +5,21 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib/graph/info.hpp"
+#include "calib/slam/info.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
-using calib::EdgeSource;
+using calib::slam::EdgeSource;
 using nlohmann::ordered_json;
 
 /// Where the last keyframe lies after settling, compared with odometry, m.
-double correction_at_the_end(const calib::RecordingMap& map) {
+double correction_at_the_end(const calib::slam::RecordingMap& map) {
   const GraphVertex &by_odometry = map.by_odometry.vertices.back(), &settled = map.made.graph.vertices.back();
   return std::hypot(settled.x - by_odometry.x, settled.y - by_odometry.y);
 }
 
-Section refusals(const calib::ScanGraph& made) {
+Section refusals(const calib::slam::ScanGraph& made) {
   Section section{"Places compared and not tied", {}, {{"why", "count"}, {}}};
   for (const auto& [reason, count] : made.refused)
     section.table.rows.push_back({reason, std::to_string(count)});
@@ -28,8 +28,8 @@ Section refusals(const calib::ScanGraph& made) {
 
 }  // namespace
 
-ordered_json to_json(const calib::RecordingMap& map) {
-  const calib::GraphInfo info = calib::inspect_graph(map.made.graph);
+ordered_json to_json(const calib::slam::RecordingMap& map) {
+  const calib::slam::GraphInfo info = calib::slam::inspect_graph(map.made.graph);
   ordered_json refused = ordered_json::object();
   for (const auto& [reason, count] : map.made.refused) refused[reason] = count;
   return {{"keyframes", info.poses},
@@ -45,8 +45,8 @@ ordered_json to_json(const calib::RecordingMap& map) {
           {"occupied_cells", map.occupied.size()}};
 }
 
-Document describe(const calib::RecordingMap& map) {
-  const calib::GraphInfo info = calib::inspect_graph(map.made.graph);
+Document describe(const calib::slam::RecordingMap& map) {
+  const calib::slam::GraphInfo info = calib::slam::inspect_graph(map.made.graph);
   const Section about{"",
                       {fmt::format("{} steps between keyframes matched, {} by odometry alone",
                                    map.made.count(EdgeSource::match), map.made.count(EdgeSource::odometry)),

@@ -3,12 +3,12 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "calib/graph/recording_map.hpp"
+#include "calib/slam/recording_map.hpp"
 #include "daemon/cli/document.hpp"
 
 namespace odomcalib::cli {
 
-nlohmann::ordered_json to_json(const calib::RecordingMap& map);
-Document describe(const calib::RecordingMap& map);
+nlohmann::ordered_json to_json(const calib::slam::RecordingMap& map);
+Document describe(const calib::slam::RecordingMap& map);
 
 }  // namespace odomcalib::cli

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "calib/graph/info.hpp"
+#include "calib/slam/info.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -58,7 +58,7 @@ std::string trajectory(const PoseGraph& graph, const Frame& frame, const char* i
 }
 
 std::string loop_edges(const PoseGraph& graph, const Frame& frame) {
-  const auto odometry = calib::odometry_edges(graph);
+  const auto odometry = calib::slam::odometry_edges(graph);
   std::string out = "<path id=\"loops\" fill=\"none\" stroke=\"#e08214\" stroke-width=\"0.8\" d=\"";
   for (std::size_t k = 0; k < graph.edges.size(); ++k) {
     const GraphVertex& from = graph.vertices[graph.edges[k].from];

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/pose_graph.hpp"
+#include "proto/recording/pose_graph.hpp"
 
 namespace odomcalib::cli {
 

@@ -13,8 +13,8 @@ std::int64_t microseconds_since(Clock::time_point begin) {
 
 }  // namespace
 
-const std::map<std::string, calib::GraphStart>& graph_starts() {
-  using calib::GraphStart;
+const std::map<std::string, calib::slam::GraphStart>& graph_starts() {
+  using calib::slam::GraphStart;
   static const std::map<std::string, GraphStart> kStarts{{"auto", GraphStart::automatic},
                                                          {"file", GraphStart::file},
                                                          {"odometry", GraphStart::odometry},
@@ -23,8 +23,8 @@ const std::map<std::string, calib::GraphStart>& graph_starts() {
   return kStarts;
 }
 
-const std::map<std::string, calib::GraphMethod>& graph_methods() {
-  using calib::GraphMethod;
+const std::map<std::string, calib::slam::GraphMethod>& graph_methods() {
+  using calib::slam::GraphMethod;
   static const std::map<std::string, GraphMethod> kMethods{
       {"auto", GraphMethod::automatic},
       {"gauss-newton", GraphMethod::gauss_newton},
@@ -32,8 +32,8 @@ const std::map<std::string, calib::GraphMethod>& graph_methods() {
   return kMethods;
 }
 
-std::string state_name(calib::GraphState state) {
-  using calib::GraphState;
+std::string state_name(calib::slam::GraphState state) {
+  using calib::slam::GraphState;
   switch (state) {
     case GraphState::not_run:
       return "not_run";
@@ -55,25 +55,26 @@ std::string state_name(calib::GraphState state) {
   return "";
 }
 
-GraphRun run_graph(PoseGraph graph, const calib::GraphOptions& options) {
+GraphRun run_graph(PoseGraph graph, const calib::slam::GraphOptions& options) {
   GraphRun run;
   std::vector<std::string> notes = graph.notes;
-  const std::size_t anchor = calib::fix_first_pose(graph);
+  const std::size_t anchor = calib::slam::fix_first_pose(graph);
   const bool anchored = anchor < graph.vertices.size();
   if (anchored)
     notes.push_back("nothing is fixed in the file: pose " + std::to_string(graph.vertices[anchor].id) +
                     " is kept where it is");
   if (!graph.has_positions) {
-    calib::place_along_odometry(graph);
+    calib::slam::place_along_odometry(graph);
     notes.emplace_back("the file holds edges only: \"before\" is dead reckoning along them");
   }
   for (const GraphVertex& vertex : graph.vertices)
     if (vertex.fixed) run.fixed.push_back(vertex.id);
   run.before = graph;
   const auto begin = Clock::now();
-  run.summary = calib::optimize_graph(graph, options, [&run, begin](const calib::GraphIteration& iteration) {
-    run.iterations.push_back({iteration, microseconds_since(begin)});
-  });
+  run.summary = calib::slam::optimize_graph(
+      graph, options, [&run, begin](const calib::slam::GraphIteration& iteration) {
+        run.iterations.push_back({iteration, microseconds_since(begin)});
+      });
   run.time_us = microseconds_since(begin);
   run.summary.notes.insert(run.summary.notes.begin(), notes.begin(), notes.end());
   if (anchored) graph.vertices[anchor].fixed = false;

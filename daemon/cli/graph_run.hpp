@@ -7,27 +7,27 @@
 #include <string>
 #include <vector>
 
-#include "calib/graph/info.hpp"
-#include "calib/graph/optimize.hpp"
+#include "calib/slam/info.hpp"
+#include "calib/slam/optimize.hpp"
 #include "daemon/cli/document.hpp"
-#include "proto/pose_graph.hpp"
+#include "proto/recording/pose_graph.hpp"
 
 namespace odomcalib::cli {
 
-const std::map<std::string, calib::GraphStart>& graph_starts();
-const std::map<std::string, calib::GraphMethod>& graph_methods();
+const std::map<std::string, calib::slam::GraphStart>& graph_starts();
+const std::map<std::string, calib::slam::GraphMethod>& graph_methods();
 /// "converged", "not_connected" and so on, as in the enumeration.
-std::string state_name(calib::GraphState state);
+std::string state_name(calib::slam::GraphState state);
 
 struct TimedIteration {
-  calib::GraphIteration iteration;
+  calib::slam::GraphIteration iteration;
   std::int64_t time_us = 0;  ///< since the begin of the run
 };
 
 struct GraphRun {
   PoseGraph before;
   PoseGraph after;
-  calib::GraphSummary summary;
+  calib::slam::GraphSummary summary;
   std::vector<TimedIteration> iterations;  ///< of all first guesses that were tried
   std::vector<std::int64_t> fixed;         ///< ids
   std::int64_t time_us = 0;
@@ -35,12 +35,12 @@ struct GraphRun {
 
 /// Fixes the first pose for the time of the run if the graph fixes none, places the vertices along the
 /// odometry if the graph has none, and notes both.
-GraphRun run_graph(PoseGraph graph, const calib::GraphOptions& options);
+GraphRun run_graph(PoseGraph graph, const calib::slam::GraphOptions& options);
 
 nlohmann::ordered_json to_json(const GraphRun& run);
 Document describe(const GraphRun& run);
 
-nlohmann::ordered_json to_json(const PoseGraph& graph, const calib::GraphInfo& info);
-Document describe(const PoseGraph& graph, const calib::GraphInfo& info);
+nlohmann::ordered_json to_json(const PoseGraph& graph, const calib::slam::GraphInfo& info);
+Document describe(const PoseGraph& graph, const calib::slam::GraphInfo& info);
 
 }  // namespace odomcalib::cli

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace CLI {
 class App;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "daemon/cli/document.hpp"
-#include "proto/report_data.hpp"
+#include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "daemon/cli/document.hpp"
-#include "proto/calibration.hpp"
-#include "proto/report_data.hpp"
+#include "proto/calibration/calibration.hpp"
+#include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
 

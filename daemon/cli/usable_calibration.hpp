@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib::cli {

@@ -4,14 +4,15 @@
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/verbs.hpp"
-#include "drivers/decode.hpp"
+#include "drivers/decode/decode.hpp"
+#include "odomcalib_paths.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
 struct Options {
-  std::string driver, file, profiles = "/usr/share/odomcalib/profiles";
+  std::string driver, file, profiles = kProfileFolder;
 };
 
 int decode_file(const Options& options, const Session& session) {

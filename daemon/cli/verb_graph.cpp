@@ -21,7 +21,7 @@ namespace {
 struct Options {
   std::vector<std::string> files;
   std::string out, picture;
-  calib::GraphOptions solver;
+  calib::slam::GraphOptions solver;
 };
 
 Result<PoseGraph> read_files(const std::vector<std::string>& files) {
@@ -32,7 +32,7 @@ Result<PoseGraph> read_files(const std::vector<std::string>& files) {
 struct BuildOptions {
   std::string recording, out, picture;
   RecordingOptions reading;
-  calib::ScanGraphOptions graph;
+  calib::slam::ScanGraphOptions graph;
 };
 
 template <typename... Described>
@@ -73,17 +73,17 @@ int tell(const Options& options, const Session& session) {
   if (!graph) return report_error(graph.error(), session.json);
   if (!graph.value().has_positions) {
     PoseGraph anchored = graph.value();
-    calib::fix_first_pose(anchored);
-    calib::place_along_odometry(anchored);
+    calib::slam::fix_first_pose(anchored);
+    calib::slam::place_along_odometry(anchored);
     for (std::size_t v = 0; v < anchored.vertices.size(); ++v)
       anchored.vertices[v].fixed = graph.value().vertices[v].fixed;
     graph = std::move(anchored);
   }
-  print(session, graph.value(), calib::inspect_graph(graph.value()));
+  print(session, graph.value(), calib::slam::inspect_graph(graph.value()));
   return kDone;
 }
 
-Result<void> write_results(const BuildOptions& options, const calib::RecordingMap& map) {
+Result<void> write_results(const BuildOptions& options, const calib::slam::RecordingMap& map) {
   if (!options.out.empty())
     if (auto written = write_output(options.out, to_g2o(map.made.graph)); !written) return written;
   if (options.picture.empty()) return {};
@@ -98,7 +98,7 @@ int build(const BuildOptions& options, const Session& session) {
     return report_error(files.error(), session.json);
   const auto recordings = read_recordings({options.recording}, options.reading);
   if (!recordings) return report_error(recordings.error(), session.json);
-  const auto map = calib::map_recording(recordings.value().front(), options.graph);
+  const auto map = calib::slam::map_recording(recordings.value().front(), options.graph);
   if (!map) return report_error(map.error(), session.json);
   if (auto written = write_results(options, map.value()); !written)
     return report_error(written.error(), session.json);

@@ -12,7 +12,7 @@
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/file_bytes.hpp"
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib::cli {
 namespace {

@@ -20,7 +20,7 @@
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/verbs.hpp"
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {

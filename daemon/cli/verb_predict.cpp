@@ -7,13 +7,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "calib/predict.hpp"
+#include "calib/odometry/predict.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/usable_calibration.hpp"
 #include "daemon/cli/verbs.hpp"
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -25,7 +25,7 @@ struct Options {
 };
 
 Result<Calibration> chosen_calibration(const Options& options, const RobotDescription& robot) {
-  if (options.calibration == "nominal") return calib::nominal_calibration(robot);
+  if (options.calibration == "nominal") return calib::odometry::nominal_calibration(robot);
   auto calibration = read_finite_calibration(options.calibration);
   if (!calibration) return calibration;
   if (const auto needed = dimensions_of(calibration.value(), options.calibration); !needed)
@@ -37,7 +37,7 @@ Result<Calibration> chosen_calibration(const Options& options, const RobotDescri
 void warn_of(const Calibration& calibration, const std::string& where) {
   if (calibration.verdict == Verdict::refused && where != "nominal")
     warn(refusal_of(calibration, where).text() + "; its values are used all the same");
-  for (const std::string& name : calib::unknown_effects(calibration))
+  for (const std::string& name : calib::odometry::unknown_effects(calibration))
     warn(fmt::format(R"({}: this program does not know the effect "{}"; odometry goes on without it)", where,
                      name));
 }
@@ -71,7 +71,7 @@ Result<std::vector<PoseSample>> predicted(const Options& options) {
   const auto calibration = chosen_calibration(options, recording.robot);
   if (!calibration) return calibration.error();
   warn_of(calibration.value(), options.calibration);
-  return finite_poses(calib::predict(recording, calibration.value()), options.recording);
+  return finite_poses(calib::odometry::predict(recording, calibration.value()), options.recording);
 }
 
 int predict_trajectory(const Options& options, const Session& session) {

@@ -5,15 +5,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "calib/effect_names.hpp"
 #include "calib/solve.hpp"
+#include "calib/terms/effect_names.hpp"
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "odomcalib_version.hpp"
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -47,7 +47,8 @@ Result<void> check_files(const Options& options) {
 }
 
 int solve_recordings(const Options& options, const Session& session) {
-  if (const auto wrong = calib::wrong_effects(options.effects)) return report_error(*wrong, session.json);
+  if (const auto wrong = calib::terms::wrong_effects(options.effects))
+    return report_error(*wrong, session.json);
   if (const auto files = check_files(options); !files) return report_error(files.error(), session.json);
   const auto recordings = read_recordings(options.recordings, options.reading);
   if (!recordings) return report_error(recordings.error(), session.json);

@@ -6,6 +6,8 @@
 namespace odomcalib {
 namespace {
 
+constexpr const char* kManual = "odomcalib.toml(5)";
+
 void read_devices(TomlReader& toml, Config& config) {
   config.controller_device = toml.text("controller.device", config.controller_device);
   config.controller_profile = toml.text("controller.profile", config.controller_profile);
@@ -62,10 +64,12 @@ Result<Config> config_from(Result<TomlReader> document) {
 
 }  // namespace
 
-Result<Config> read_config(const std::filesystem::path& path) { return config_from(TomlReader::read(path)); }
+Result<Config> read_config(const std::filesystem::path& path) {
+  return config_from(TomlReader::read(path, kManual));
+}
 
 Result<Config> parse_config(const std::string& text, const std::string& where) {
-  return config_from(TomlReader::parse(text, where));
+  return config_from(TomlReader::parse(text, where, kManual));
 }
 
 }  // namespace odomcalib

@@ -3,17 +3,23 @@
 #include <fmt/format.h>
 
 #include <toml++/toml.h>
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <vector>
 
+#include "daemon/config/near_miss.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
 
 struct TomlReader::State {
   toml::table table;
-  std::string where;
+  std::string where, manual;
   std::set<std::string> asked;
+  std::vector<std::string> left;  ///< prefixes
+  std::map<std::string, std::string> translations;
   std::optional<Error> problem;
 
   toml::node_view<const toml::node> find(const std::string& key) {
@@ -23,7 +29,17 @@ struct TomlReader::State {
   void complain(const std::string& key, const std::string& allowed) {
     if (!problem)
       problem = Error{ErrorCode::format, fmt::format("key \"{}\" is not {}", key, allowed), where,
-                      "correct the file; odomcalib.toml(5) lists the keys"};
+                      "correct the file; " + manual + " lists the keys"};
+  }
+  [[nodiscard]] bool is_left(const std::string& key) const {
+    return std::any_of(left.begin(), left.end(), [&](const auto& prefix) { return key.starts_with(prefix); });
+  }
+  [[nodiscard]] std::string remedy(const std::string& key) const {
+    const auto known = translations.find(key);
+    if (known != translations.end()) return "write " + known->second;
+    const auto meant = near_miss(key, asked);
+    return (meant ? "did you mean \"" + *meant + "\"? " : "remove or correct it; ") + manual +
+           " lists the keys";
   }
 };
 
@@ -46,15 +62,17 @@ TomlReader::TomlReader(TomlReader&&) noexcept = default;
 TomlReader& TomlReader::operator=(TomlReader&&) noexcept = default;
 TomlReader::~TomlReader() = default;
 
-Result<TomlReader> TomlReader::read(const std::filesystem::path& path) {
+Result<TomlReader> TomlReader::read(const std::filesystem::path& path, const std::string& manual) {
   const auto bytes = read_file_bytes(path);
   if (!bytes) return bytes.error();
-  return parse(bytes.value(), path.string());
+  return parse(bytes.value(), path.string(), manual);
 }
 
-Result<TomlReader> TomlReader::parse(const std::string& text, const std::string& where) {
+Result<TomlReader> TomlReader::parse(const std::string& text, const std::string& where,
+                                     const std::string& manual) {
   auto state = std::make_unique<State>();
   state->where = where;
+  state->manual = manual;
   try {
     state->table = toml::parse(text);
   } catch (const toml::parse_error& error) {
@@ -106,14 +124,22 @@ std::optional<std::array<double, 3>> TomlReader::pose(const std::string& key) {
   return std::nullopt;
 }
 
+bool TomlReader::has_table(const std::string& key) const { return state_->table.at_path(key).is_table(); }
+
+void TomlReader::leave(const std::string& prefix) { state_->left.push_back(prefix); }
+
+void TomlReader::translate(const std::string& foreign, const std::string& instead) {
+  state_->translations[foreign] = instead;
+}
+
 std::optional<Error> TomlReader::problem() const {
   if (state_->problem) return state_->problem;
   std::set<std::string> keys;
   collect_leaves(state_->table, "", keys);
   for (const auto& key : keys)
-    if (!state_->asked.contains(key))
+    if (!state_->asked.contains(key) && !state_->is_left(key))
       return Error{ErrorCode::format, fmt::format("unknown key \"{}\"", key), state_->where,
-                   "remove or correct it; odomcalib.toml(5) lists the keys"};
+                   state_->remedy(key)};
   return std::nullopt;
 }
 

@@ -15,9 +15,11 @@ namespace odomcalib {
 /// of range yields the default too, and problem() says so.
 class TomlReader {
  public:
+  /// @param manual page that lists the keys, for messages: "odomcalib.toml(5)"
   /// Errors: io, format (line and column).
-  static Result<TomlReader> read(const std::filesystem::path& path);
-  static Result<TomlReader> parse(const std::string& text, const std::string& where);
+  static Result<TomlReader> read(const std::filesystem::path& path, const std::string& manual);
+  static Result<TomlReader> parse(const std::string& text, const std::string& where,
+                                  const std::string& manual);
 
   TomlReader(TomlReader&&) noexcept;
   TomlReader& operator=(TomlReader&&) noexcept;
@@ -29,7 +31,15 @@ class TomlReader {
   /// [x, y, yaw], all finite.
   std::optional<std::array<double, 3>> pose(const std::string& key);
 
-  /// The first wrong value, otherwise the first key that was never asked for (a misspelling).
+  /// Whether the file has this section.
+  [[nodiscard]] bool has_table(const std::string& key) const;
+  /// Keys that begin with `prefix` are somebody else's: problem() does not judge them.
+  void leave(const std::string& prefix);
+  /// A key of other programs, and what to write here instead: problem() says so.
+  void translate(const std::string& foreign, const std::string& instead);
+
+  /// The first wrong value, otherwise the first key that was never asked for (a misspelling), with the key
+  /// that was probably meant.
   [[nodiscard]] std::optional<Error> problem() const;
 
  private:

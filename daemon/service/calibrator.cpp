@@ -4,11 +4,11 @@
 #include <cmath>
 #include <memory>
 
-#include "calib/effect_names.hpp"
 #include "calib/match.hpp"
-#include "calib/next_test.hpp"
-#include "calib/predict.hpp"
+#include "calib/odometry/predict.hpp"
+#include "calib/report/next_test.hpp"
 #include "calib/solve.hpp"
+#include "calib/terms/effect_names.hpp"
 
 namespace odomcalib {
 namespace {
@@ -45,23 +45,23 @@ std::optional<Pose> match(const Scan& from, const Scan& to, const Pose& guess,
   return composed(composed(lidar, {best.pose[0], best.pose[1], best.pose[2]}), inverse(lidar));
 }
 
-std::string applied_in(calib::Place place) {
-  if (place == calib::Place::odometry) return "corrected odometry on the host";
-  if (place == calib::Place::reference)
+std::string applied_in(calib::odometry::Place place) {
+  if (place == calib::odometry::Place::odometry) return "corrected odometry on the host";
+  if (place == calib::odometry::Place::reference)
     return "comparison with the lidar on the host; odometry does not need it";
   return "nowhere: it belongs to the place or the day";
 }
 
 std::vector<HostValue> host_values(const Calibration& calibration) {
   std::vector<HostValue> values;
-  for (const auto& placement : calib::effect_placements(calibration))
+  for (const auto& placement : calib::odometry::effect_placements(calibration))
     values.push_back({placement.effect + (placement.parameter.empty() ? "" : "." + placement.parameter),
                       placement.quantity, applied_in(placement.place)});
   return values;
 }
 
 std::optional<NextManoeuvre> next_manoeuvre(const Calibration& calibration) {
-  const auto next = calib::next_test(calibration);
+  const auto next = calib::report::next_test(calibration);
   return next ? std::optional(NextManoeuvre{next->manoeuvre, next->why}) : std::nullopt;
 }
 
@@ -73,9 +73,9 @@ Calibrator make_calibrator() {
                         const Calibrator::Progress& progress) {
     return calib::solve(recordings, {.effects = effects}, progress);
   };
-  calibrator.wrong_effects = calib::wrong_effects;
+  calibrator.wrong_effects = calib::terms::wrong_effects;
   calibrator.odometry = [](const Calibration& calibration) {
-    auto state = std::make_shared<calib::Odometry>(calibration);
+    auto state = std::make_shared<calib::odometry::Odometry>(calibration);
     return [state](const TickSample& sample) { return state->update(sample); };
   };
   calibrator.host_values = host_values;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "daemon/routines/motion.hpp"
-#include "proto/calibration.hpp"
-#include "proto/recording.hpp"
+#include "proto/calibration/calibration.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib {
 

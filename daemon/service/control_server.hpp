@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/control.hpp"
+#include "proto/control/control.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {

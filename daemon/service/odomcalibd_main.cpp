@@ -10,7 +10,9 @@
 
 #include "daemon/service/base_link.hpp"
 #include "daemon/service/lidar_link.hpp"
+#include "daemon/service/quick_stop.hpp"
 #include "daemon/service/service.hpp"
+#include "odomcalib_paths.hpp"
 #include "odomcalib_version.hpp"
 
 namespace {
@@ -113,11 +115,23 @@ int serve(const std::string& path) {
   return 0;
 }
 
+int stop_only(const std::string& path) {
+  const auto config = odomcalib::read_config(path);
+  if (!config) return refuse(config.error(), path);
+  const auto stopped = odomcalib::quick_stop(config.value(), odomcalib::SystemClock());
+  if (stopped) return 0;
+  spdlog::warn("no quick stop was sent: {}", stopped.error().text());
+  return kFailure;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Calibrates the odometry of a differential-drive robot: the service on the robot.",
                "odomcalibd"};
-  std::string config = "/etc/odomcalib/odomcalib.toml";
+  std::string config = odomcalib::kConfigFile;
   app.add_option("--config", config, "configuration file")->capture_default_str();
+  bool only_stop = false;
+  app.add_flag("--quick-stop", only_stop,
+               "stop the wheels and end: for the time after a daemon that has ended");
   app.set_version_flag("--version", odomcalib::kVersion);
   try {
     app.parse(argc, argv);
@@ -126,7 +140,7 @@ int run(int argc, char** argv) {
   }
   spdlog::set_pattern("%l: %v");
   catch_signals();
-  return serve(config);
+  return only_stop ? stop_only(config) : serve(config);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <optional>
 
-#include "proto/recording_log.hpp"
+#include "proto/recording/recording_log.hpp"
 
 namespace odomcalib {
 namespace {

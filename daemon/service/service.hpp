@@ -11,6 +11,8 @@
 
 namespace odomcalib {
 
+class Loop;
+
 class Service {
  public:
   /// Opens the control socket and the journal; devices may be absent and are opened by the loop.
@@ -38,9 +40,8 @@ class Service {
   [[nodiscard]] std::string status_json() const;
 
  private:
-  struct Impl;
-  explicit Service(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  explicit Service(std::unique_ptr<Loop> loop);
+  std::unique_ptr<Loop> loop_;
 };
 
 }  // namespace odomcalib

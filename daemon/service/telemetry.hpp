@@ -12,7 +12,7 @@
 #include "daemon/service/recording_file.hpp"
 #include "daemon/service/recording_writer.hpp"
 #include "drivers/can/transport.hpp"
-#include "proto/messages.hpp"
+#include "proto/wire/messages.hpp"
 
 namespace odomcalib {
 

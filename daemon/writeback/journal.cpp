@@ -159,7 +159,7 @@ Result<void> Journal::append(JournalRecord record) {
   if (ftruncate(fd_, end) != 0) return failed(path_);
   if (!write_whole(line)) {
     const Error error = failed(path_);
-    (void)ftruncate(fd_, end);
+    (void)!ftruncate(fd_, end);
     return error;
   }
   size_ += line.size();

@@ -1,7 +1,7 @@
 #include "drivers/base/controller.hpp"
 
-#include "drivers/base/axis_pair.hpp"
-#include "drivers/base/dual_axis.hpp"
+#include "drivers/base/cia402/axis_pair.hpp"
+#include "drivers/base/cia402/dual_axis.hpp"
 #include "drivers/base/speed/speed_base.hpp"
 
 namespace odomcalib::drivers {

@@ -1,17 +1,22 @@
 #include "drivers/can/candump.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
+
+#include "drivers/can/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
+using namespace can;
+
 constexpr std::uint32_t kErrorFlag = 0x20000000;
 constexpr std::uint32_t kMaxExtended = 0x1FFFFFFF;
-constexpr double kLatest_s = 1e11;  // no clock says more since 1970
 
 /// The text up to the separator, which is consumed too; nullopt when there is none.
 std::optional<std::string_view> cut(std::string_view& text, char separator) {
@@ -76,6 +81,37 @@ std::string time_text(double t) {
   return {text.data(), end};
 }
 
+/// "can0  123   [2]  11 22", with or without a time in front: what candump prints without -l and -L.
+bool is_screen_line(std::string_view line) {
+  std::string_view before, word;
+  while (!line.empty()) {
+    const std::size_t begin = std::min(line.find_first_not_of(" \t\r"), line.size());
+    line.remove_prefix(begin);
+    before = word;
+    word = line.substr(0, line.find_first_of(" \t\r"));
+    line.remove_prefix(word.size());
+    const bool length = word.size() > 2 && word.front() == '[' && word.back() == ']' &&
+                        parse<unsigned>(word.substr(1, word.size() - 2), 10);
+    if (length) return (before.size() == 3 || before.size() == 8) && parse<std::uint32_t>(before, 16);
+  }
+  return false;
+}
+
+/// Other programs' logs, told by how they begin; empty when it is none of them.
+std::string_view foreign_log(std::string_view text) {
+  using Sign = std::pair<std::string_view, std::string_view>;
+  constexpr std::array<Sign, 7> kSigns = {{{"LOGG", "a Vector BLF log"},
+                                           {"date ", "a Vector ASC log"},
+                                           {"base hex", "a Vector ASC log"},
+                                           {";$FILEVERSION", "a PCAN trace"},
+                                           {"MDF ", "an MDF log"},
+                                           {"\x1F\x8B", "compressed by gzip"},
+                                           {"\xED\xA1\xDA\x01", "an LCM log"}}};
+  for (const auto& [begin, name] : kSigns)
+    if (text.starts_with(begin)) return name;
+  return {};
+}
+
 /// "(time) interface id##flags data"
 bool is_fd(std::string_view line) {
   const std::size_t id = line.find('#');
@@ -136,12 +172,25 @@ std::optional<CanFrame> CandumpReader::next() {
     if (whole) {
       skipped_ += size;
       if (is_fd(line)) ++fd_frame_;
+      if (is_screen_line(line)) ++screen_line_;
       if (!line.empty() && line != "\r" && !is_fd(line)) ++bad_line_;
     } else {
       buffered_ = size;  // cut off in the middle of a line
+      if (is_screen_line(line)) ++screen_line_;
     }
   }
   return std::nullopt;
+}
+
+std::optional<Error> CandumpReader::problem(const std::string& where) const {
+  if (good_ > 0) return std::nullopt;
+  const std::string remedy = "record with `candump -L can0 > FILE`, or `candump -l can0`";
+  if (screen_line_ > 0)
+    return Error{ErrorCode::format, "this is what candump prints on the screen, not its log", where, remedy};
+  const std::string_view foreign = foreign_log(all_);
+  if (foreign.empty()) return std::nullopt;
+  return Error{ErrorCode::format, "this is " + std::string(foreign) + ", not a log of candump", where,
+               remedy};
 }
 
 Counters CandumpReader::counters() const {

@@ -1,5 +1,6 @@
 #include <charconv>
 
+#include "drivers/can/settings.hpp"
 #include "drivers/can/slcan.hpp"
 #include "drivers/can/socketcan.hpp"
 #include "drivers/serial/port.hpp"
@@ -7,7 +8,7 @@
 namespace odomcalib::drivers {
 namespace {
 
-constexpr unsigned kAnyBaud = 115'200;  // USB-CDC devices ignore it
+using namespace can;
 
 Result<unsigned> number(const DeviceString& device, const std::string& key, unsigned otherwise) {
   const std::string text = device.option(key, std::to_string(otherwise));

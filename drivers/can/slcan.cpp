@@ -6,14 +6,14 @@
 #include <chrono>
 #include <deque>
 
+#include "drivers/can/settings.hpp"
 #include "drivers/can/slcan_parser.hpp"
 #include "drivers/device_clock.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-constexpr int kDrain_ms = 100;   // answers to what a previous user sent
-constexpr int kAnswer_ms = 250;  // for one set-up command
+using namespace can;
 
 std::span<const std::uint8_t> as_bytes(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -39,6 +39,14 @@ class SlcanTransport final : public CanTransport {
   Result<void> set_up();
 
   [[nodiscard]] int fd() const override { return port_->fd(); }
+
+  [[nodiscard]] std::string note() const override {
+    if (!silent_ || parser_.counters().at("good") > 0) return {};
+    return "the adapter at \"" + name_ +
+           "\" acknowledges nothing and has passed no frame yet; if it stays silent, check the port's name, "
+           "its "
+           "baud rate (&baud=...) and ?bitrate=...";
+  }
 
   Result<void> send(const CanFrame& frame) override {
     const std::string line = slcan_line(frame);
@@ -66,6 +74,7 @@ class SlcanTransport final : public CanTransport {
     all["frames_sent"] = sent_;
     all["send_failed"] = send_failed_;
     all["bus_state_lines"] = bus_states_;
+    all["unacknowledged"] = silent_ ? 1 : 0;
     return all;
   }
 
@@ -144,6 +153,7 @@ class SlcanTransport final : public CanTransport {
   SlcanOptions options_;
   SlcanParser parser_;
   DeviceClock clock_{60'000};
+  bool silent_ = false;  // acknowledged none of the set-up commands
   std::uint64_t sent_ = 0, send_failed_ = 0, bus_states_ = 0;
 };
 
@@ -156,9 +166,6 @@ Result<void> SlcanTransport::set_up() {
   if (auto drained = drain(); !drained) return drained.error();
   const auto rate_set = ask(rate, SlcanItem::Kind::done);
   if (!rate_set) return rate_set.error();
-  if (rate_set.value() == Answer::none)
-    return refuse("no answer from a Lawicel (slcan) adapter",
-                  "check the port's name and its baud rate (&baud=...)");
   if (rate_set.value() == Answer::refused)
     return refuse("adapter refuses the bit rate " + std::to_string(options_.bitrate), "check ?bitrate=...");
   if (options_.timestamps) {
@@ -167,8 +174,10 @@ Result<void> SlcanTransport::set_up() {
   }
   const auto opened = ask("O\r", SlcanItem::Kind::done);
   if (!opened) return opened.error();
-  if (opened.value() != Answer::done)
+  if (opened.value() == Answer::refused)
     return refuse("adapter does not open the channel", "unplug it, check the CAN wiring, plug it in again");
+  // Some adapters acknowledge nothing and work; python-can and the kernel's slcan ask for nothing either.
+  silent_ = rate_set.value() == Answer::none && opened.value() == Answer::none;
   return {};
 }
 

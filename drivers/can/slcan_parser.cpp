@@ -8,6 +8,7 @@ namespace odomcalib::drivers {
 namespace {
 
 constexpr std::uint8_t kCr = 0x0D;
+constexpr std::uint8_t kLf = 0x0A;
 constexpr std::uint8_t kBel = 0x07;
 constexpr std::uint32_t kMaxStandard = 0x7FF;
 constexpr std::uint32_t kMaxExtended = 0x1FFFFFFF;
@@ -137,6 +138,8 @@ std::vector<SlcanItem> SlcanParser::on_bytes(std::span<const std::uint8_t> bytes
     const std::size_t after = bytes.size() - 1 - i;
     if (byte == kCr) {
       finish_line(out, after);
+    } else if (byte == kLf && used_ == 0 && !overlong_) {
+      ++good_;  // of an adapter that ends its lines with CR LF
     } else if (byte == kBel) {
       // Answers come between lines: what stood before BEL was cut off.
       if (used_ > 0) {

@@ -1,5 +1,5 @@
-// Lawicel ASCII lines from bytes, without a port: lines ended by CR, BEL for a refused command, frames at any
-// time.
+// Lawicel ASCII lines from bytes, without a port: lines ended by CR (some adapters: CR LF), BEL for a refused
+// command, frames at any time.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/can/settings.hpp"
 #include "drivers/can/transport.hpp"
 
 namespace odomcalib::drivers {
@@ -42,7 +43,7 @@ class SlcanParser {
   void reject(std::uint64_t& counter);
   void overflow();
 
-  static constexpr std::size_t kLongestLine = 150;  // of all firmwares: FD frames of 64 bytes have 142
+  static constexpr std::size_t kLongestLine = can::kLongestLine;
   std::array<char, kLongestLine> line_{};
   std::size_t used_ = 0;
   bool overlong_ = false;  // the rest of an overlong line is skipped up to its CR

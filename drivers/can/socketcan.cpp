@@ -17,14 +17,13 @@
 #include <fstream>
 #include <utility>
 
+#include "drivers/can/settings.hpp"
 #include "drivers/can/socketcan_frame.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-constexpr int kFramesAtMost = 512;  // per call, so that a full bus cannot hold the event loop
-constexpr double kOldest_s = 1.0;   // an older stamp means that the wall clock was set meanwhile
-constexpr double kStep_s = 0.005;   // adjusting a clock is slower than this from one call to the next
+using namespace can;
 
 Error bus_error(const std::string& interface, const std::string& what, const std::string& remedy) {
   return {ErrorCode::device, what, interface, remedy};

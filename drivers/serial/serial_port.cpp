@@ -15,12 +15,10 @@
 
 #include "drivers/serial/custom_baud.hpp"
 #include "drivers/serial/port.hpp"
+#include "drivers/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
-
-constexpr std::size_t kReadAtMost =
-    std::size_t{64} * 1024;  // per call, so that a fast device cannot hold the event loop
 
 Error port_error(const std::string& path, const std::string& what, const std::string& remedy) {
   return {ErrorCode::device, what, path, remedy};

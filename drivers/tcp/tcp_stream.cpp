@@ -11,11 +11,10 @@
 #include <cerrno>
 #include <cstring>
 
+#include "drivers/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
-
-constexpr std::size_t kReadAtMost =
-    std::size_t{64} * 1024;  // per call, so that a fast device cannot hold the event loop
 
 Error net_error(const std::string& address, const std::string& what) {
   return {ErrorCode::device, what, address,

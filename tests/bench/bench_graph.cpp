@@ -8,8 +8,8 @@
 #include <iostream>
 #include <numbers>
 
-#include "calib/graph/optimize.hpp"
-#include "proto/pose_graph.hpp"
+#include "calib/slam/optimize.hpp"
+#include "proto/recording/pose_graph.hpp"
 
 namespace odomcalib {
 namespace {
@@ -21,7 +21,7 @@ PoseGraph read(const std::filesystem::path& path) {
     std::cerr << graph.error().text() << '\n';
     return {};
   }
-  calib::fix_first_pose(graph.value());
+  calib::slam::fix_first_pose(graph.value());
   return std::move(graph).value();
 }
 
@@ -77,10 +77,10 @@ void with_ceres(benchmark::State& state, const PoseGraph& graph) {
   }
 }
 
-void with_odomcalib(benchmark::State& state, const PoseGraph& graph, calib::GraphStart start) {
+void with_odomcalib(benchmark::State& state, const PoseGraph& graph, calib::slam::GraphStart start) {
   for (auto _ : state) {
     PoseGraph copy = graph;
-    const auto summary = calib::optimize_graph(copy, {.start = start});
+    const auto summary = calib::slam::optimize_graph(copy, {.start = start});
     state.counters["chi2"] = summary.chi2_after;
     state.counters["iterations"] = static_cast<double>(summary.iterations.size());
   }
@@ -94,12 +94,13 @@ void register_graph(const std::filesystem::path& path) {
     benchmark::RegisterBenchmark((name + "/" + solver).c_str(), body)->Unit(benchmark::kMillisecond);
   };
   add("ceres", [graph](benchmark::State& state) { with_ceres(state, *graph); });
-  add("odomcalib",
-      [graph](benchmark::State& state) { with_odomcalib(state, *graph, calib::GraphStart::automatic); });
+  add("odomcalib", [graph](benchmark::State& state) {
+    with_odomcalib(state, *graph, calib::slam::GraphStart::automatic);
+  });
   add("odomcalib_from_file",
-      [graph](benchmark::State& state) { with_odomcalib(state, *graph, calib::GraphStart::file); });
+      [graph](benchmark::State& state) { with_odomcalib(state, *graph, calib::slam::GraphStart::file); });
   add("odomcalib_from_tree",
-      [graph](benchmark::State& state) { with_odomcalib(state, *graph, calib::GraphStart::tree); });
+      [graph](benchmark::State& state) { with_odomcalib(state, *graph, calib::slam::GraphStart::tree); });
 }
 
 }  // namespace

@@ -13,10 +13,10 @@
 namespace {
 
 using namespace odomcalib;
-using calib::Pose;
+using calib::math::Pose;
 
 constexpr unsigned kCases = 1000;
-constexpr double kDegrees = 180.0 / calib::kPi;
+constexpr double kDegrees = 180.0 / calib::math::kPi;
 
 std::vector<Eigen::Vector2d> points_of(const Scan& scan, std::size_t stride) {
   std::vector<Eigen::Vector2d> points;
@@ -40,19 +40,19 @@ double timed(const Search& search) {
 /// A pair of scans in a room and the way between them, each coordinate of either sign.
 struct Case {
   Pose motion;
-  calib::LikelihoodField field;
+  calib::matching::LikelihoodField field;
   std::vector<Eigen::Vector2d> points;
 };
 
 Case random_case(std::mt19937& engine, unsigned seed, const Pose& farthest, double cell) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const Pose a{uniform(engine), uniform(engine), calib::kPi * uniform(engine)};
+  const Pose a{uniform(engine), uniform(engine), calib::math::kPi * uniform(engine)};
   const Pose motion{farthest.x * uniform(engine), farthest.y * uniform(engine),
                     farthest.yaw * uniform(engine)};
   const auto reference = points_of(testing::scan_from(testing::kRoom, a, 0.02, seed), 2);
   auto points =
-      points_of(testing::scan_from(testing::kRoom, calib::compose(a, motion), 0.02, seed + kCases), 10);
-  return {motion, calib::LikelihoodField(reference, {.cell = cell}), std::move(points)};
+      points_of(testing::scan_from(testing::kRoom, calib::math::compose(a, motion), 0.02, seed + kCases), 10);
+  return {motion, calib::matching::LikelihoodField(reference, {.cell = cell}), std::move(points)};
 }
 
 /// Whether all optima are equal.
@@ -64,10 +64,10 @@ bool compare(double cell) {
   unsigned equal = 0;
   for (unsigned seed = 1; seed <= kCases; ++seed) {
     Case c = random_case(engine, seed, {1.0, 1.0, 0.7}, cell);
-    calib::SearchResult brute, bound;
+    calib::matching::SearchResult brute, bound;
     // The coarser levels are made inside: they are part of the work of one search.
-    bound_time += timed([&] { bound = calib::search_branch_and_bound(c.field, c.points, {}); });
-    brute_time += timed([&] { brute = calib::search_brute_force(c.field, c.points, {}); });
+    bound_time += timed([&] { bound = calib::matching::search_branch_and_bound(c.field, c.points, {}); });
+    brute_time += timed([&] { brute = calib::matching::search_brute_force(c.field, c.points, {}); });
     if (bound.score == brute.score) ++equal;
     work += static_cast<double>(bound.evaluated) / static_cast<double>(brute.evaluated);
   }
@@ -81,18 +81,19 @@ bool compare(double cell) {
 }
 
 /// What a climb from the window's centre gives away, and takes, beside brute force over the whole window.
-void print_climb(double cell, const calib::SearchWindow& window, const calib::ClimbOptions& options) {
+void print_climb(double cell, const calib::matching::SearchWindow& window,
+                 const calib::matching::ClimbOptions& options) {
   std::mt19937 engine(2);
   double brute_time = 0.0, climb_time = 0.0, gap = 0.0;
   unsigned lost = 0;
   for (unsigned seed = 1; seed <= kCases; ++seed) {
     const Case c = random_case(engine, seed, {window.half_width, window.half_width, window.half_angle}, cell);
-    calib::SearchResult brute, climb;
-    brute_time += timed([&] { brute = calib::search_brute_force(c.field, c.points, window); });
-    climb_time += timed([&] { climb = calib::search_hill_climb(c.field, c.points, {}, options); });
+    calib::matching::SearchResult brute, climb;
+    brute_time += timed([&] { brute = calib::matching::search_brute_force(c.field, c.points, window); });
+    climb_time += timed([&] { climb = calib::matching::search_hill_climb(c.field, c.points, {}, options); });
     gap += brute.score - climb.score;
-    const Pose error = calib::between(c.motion, climb.pose);
-    if (std::hypot(error.x, error.y) > 0.1 || std::abs(calib::wrap_angle(error.yaw)) > 0.05) ++lost;
+    const Pose error = calib::math::between(c.motion, climb.pose);
+    if (std::hypot(error.x, error.y) > 0.1 || std::abs(calib::math::wrap_angle(error.yaw)) > 0.05) ++lost;
   }
   std::printf(
       "| %.0f cm | %.2f m, %.0f deg | %.0f cm, %.1f deg, %d | %+.3f | %.1f %% | %.2f | %.3f | %.0f |\n",
@@ -127,14 +128,14 @@ bool compare_nearest(int beams) {
     by_tree.reserve(others.size());
     by_order.reserve(others.size());
     tree_time += timed([&] {
-      const calib::NearestTree tree(points);
+      const calib::matching::NearestTree tree(points);
       for (const Eigen::Vector2d& p : others) {
         const double squared = tree.nearest(p).squared_distance;
         by_tree.push_back(squared <= kReach * kReach ? squared : -1.0);
       }
     });
     order_time += timed([&] {
-      const calib::BearingOrder order(points);
+      const calib::matching::BearingOrder order(points);
       for (const Eigen::Vector2d& p : others) {
         const auto nearest = order.nearest(p, kReach);
         by_order.push_back(nearest ? nearest->squared_distance : -1.0);

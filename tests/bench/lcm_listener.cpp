@@ -1,6 +1,6 @@
 #include "tests/bench/lcm_listener.hpp"
 
-#include "proto/messages.hpp"
+#include "proto/wire/messages.hpp"
 #include "tests/bench/wire_player.hpp"
 
 namespace odomcalib::bench {

@@ -6,9 +6,9 @@
 #include <map>
 #include <numbers>
 
-#include "calib/predict.hpp"
+#include "calib/math/bootstrap.hpp"
+#include "calib/odometry/predict.hpp"
 #include "calib/solve.hpp"
-#include "calib/statistics/bootstrap.hpp"
 
 namespace odomcalib::blind {
 namespace {
@@ -61,7 +61,7 @@ double stamp_correction(const Calibration& calibration, const sim::SimulatedRun&
 /// Sums over the windows that begin in the same span, by number of the span: neighbouring windows share a
 /// part of the drive.
 struct WindowErrors {
-  std::map<std::size_t, calib::RatioOfSums> position, heading;
+  std::map<std::size_t, calib::math::RatioOfSums> position, heading;
 
   void add(double t, const Relative& odometry, const Relative& truth) {
     const auto span = static_cast<std::size_t>(std::max(0.0, t) / (2.0 * kHorizon));
@@ -71,16 +71,16 @@ struct WindowErrors {
   }
 };
 
-BoundedError rms_of(const std::map<std::size_t, calib::RatioOfSums>& by_span) {
+BoundedError rms_of(const std::map<std::size_t, calib::math::RatioOfSums>& by_span) {
   constexpr unsigned kSeed = 1;
-  return {calib::total_of(by_span).root(),
-          by_span.empty() ? 0.0 : calib::bootstrap_root(by_span, kSeed).upper};
+  return {calib::math::total_of(by_span).root(),
+          by_span.empty() ? 0.0 : calib::math::bootstrap_root(by_span, kSeed).upper};
 }
 
 /// A single stamp that is later or earlier than all others is no error of odometry; that all are late is.
 /// @param correction to be added to the encoders' stamps, s
 DriveError error_on(const sim::SimulatedRun& run, const Calibration& calibration, double correction = 0.0) {
-  const std::vector<PoseSample> predicted = calib::predict(run.recording, calibration);
+  const std::vector<PoseSample> predicted = calib::odometry::predict(run.recording, calibration);
   const double late = mean_lateness(run.recording.ticks, run.tick_times) + correction;
   const auto truth_at = [&](std::size_t k) { return true_pose(run.path, run.tick_times[k] + late); };
   WindowErrors errors;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 #include "tests/sim/effects/blind_case.hpp"
 
 namespace odomcalib::blind {

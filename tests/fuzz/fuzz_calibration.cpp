@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto first = odomcalib::calibration_from_json({reinterpret_cast<const char*>(data), size}, "fuzz");

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "drivers/base/dual_axis.hpp"
+#include "drivers/base/cia402/dual_axis.hpp"
 
 namespace {
 

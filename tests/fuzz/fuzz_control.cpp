@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "proto/control.hpp"
+#include "proto/control/control.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "proto/messages.hpp"
+#include "proto/wire/messages.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace odomcalib::messages;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "proto/pose_graph.hpp"
+#include "proto/recording/pose_graph.hpp"
 
 namespace {
 

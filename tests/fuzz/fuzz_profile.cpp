@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "drivers/base/profile.hpp"
+#include "drivers/base/profile/profile.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto profile = odomcalib::drivers::parse_profile({reinterpret_cast<const char*>(data), size}, "fuzz");

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 #include "tests/fuzz/share.hpp"
 
 namespace odomcalib::fuzz {

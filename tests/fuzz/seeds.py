@@ -588,7 +588,58 @@ def profiles():
         seed("profile", name, text)
 
 
+# network captures -----------------------------------------------------------------------------------------------------
+
+
+def packet(data, sequence=1, acknowledged=0, flags=0x10, ports=(2112, 40000), v6=False, protocol=6, fragment=0):
+    tcp = struct.pack(">HHIIBBHHH", *ports, sequence, acknowledged, 0x50, flags, 4096, 0, 0) + data
+    if v6:
+        return struct.pack(">IHBB", 0x60000000, len(tcp), protocol, 64) + bytes(range(32)) + tcp
+    return struct.pack(">BBHHHBBH8s", 0x45, 0, 20 + len(tcp), 0, fragment, 64, protocol, 0, bytes(range(8))) + tcp
+
+
+def capture(link, *frames):
+    head = struct.pack("<IHHIIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, link)
+    return head + b"".join(struct.pack("<IIII", 0, 0, len(f), len(f)) + f for f in frames)
+
+
+def ethernet(data, kind=0x0800, tags=b""):
+    return bytes(12) + tags + struct.pack(">H", kind) + data
+
+
+def network_captures():
+    two = packet(b"abc"), packet(b"def", 4)
+    out_of_order = [ethernet(packet(b"", 0, flags=2)), ethernet(packet(b"def", 4)), ethernet(packet(b"abc")),
+                    ethernet(packet(b"bcd", 2)), ethernet(packet(b"x", 90)),
+                    ethernet(packet(b"", 1, 91, ports=(40000, 2112)))]
+    seed("network_capture", "ethernet", capture(1, *out_of_order))
+    seed("network_capture", "vlan", capture(1, *(ethernet(p, tags=bytes.fromhex("81000005")) for p in two)))
+    seed("network_capture", "v6", capture(1, ethernet(packet(b"abc", v6=True), 0x86DD)))
+    seed("network_capture", "raw", capture(101, *two))
+    seed("network_capture", "cooked", capture(113, *(bytes(14) + b"\x08\x00" + p for p in two)))
+    seed("network_capture", "cooked2", capture(276, *(b"\x08\x00" + bytes(18) + p for p in two)))
+    seed("network_capture", "null", capture(0, *(b"\x02\0\0\0" + p for p in two)))
+    seed("network_capture", "others", capture(1, ethernet(packet(b"a", protocol=17)), ethernet(packet(b"a", fragment=0x2000)),
+                                              ethernet(b"", 0x0806), ethernet(packet(b"abc")[:30])))
+    seed("network_capture", "no_ip", capture(201, b"abc"))
+    seed("network_capture", "cut", capture(1, *out_of_order)[:-3])
+    section = struct.pack("<IIIHHqI", 0x0A0D0D0A, 28, 0x1A2B3C4D, 1, 0, -1, 28)
+    interface = struct.pack("<IIHHII", 1, 20, 1, 0, 65535, 20)
+    frame = ethernet(packet(b"abc"))
+    padded = frame + bytes(-len(frame) % 4)
+    block = struct.pack("<IIIIIII", 6, 32 + len(padded), 0, 0, 0, len(frame), len(frame)) + padded
+    seed("network_capture", "pcapng", section + interface + block + struct.pack("<I", 32 + len(padded)))
+
+    def step(what, at, data=b""):
+        return bytes([what]) + struct.pack("<H", at) + bytes([len(data)]) + data
+
+    seed("tcp_stream", "order", step(1, 9) + step(4, 13, b"def") + step(4, 10, b"abc") + step(4, 11, b"bcdefg") + step(3, 0))
+    seed("tcp_stream", "gap", step(4, 10, b"abc") + step(4, 20, b"def") + step(2, 23) + step(4, 13, b"late"))
+    seed("tcp_stream", "far", step(4, 10, b"abc") + step(255, 10, b"x") * 4 + step(2, 60))
+    seed("tcp_stream", "anew", step(1, 9) + step(4, 10, b"abc") + step(4, 30, b"x") + step(1, 500) + step(4, 501, b"d"))
+
+
 if __name__ == "__main__":
     for make in (candump, slcan, sdo, speed_can, speed_serial, ld06, rplidar, cola, scip, xv11, ydlidar, control, lcm_log,
-                 pose_graph, recordings, rosbag, mcap, rosbag2, ros_messages, profiles):
+                 pose_graph, recordings, rosbag, mcap, rosbag2, ros_messages, profiles, network_captures):
         make()

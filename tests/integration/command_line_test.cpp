@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "daemon/service/control_server.hpp"
-#include "proto/calibration.hpp"
+#include "proto/calibration/calibration.hpp"
 #include "proto/file_bytes.hpp"
 #include "tests/integration/processes.hpp"
 

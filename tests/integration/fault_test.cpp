@@ -1,6 +1,6 @@
 // Faults in mid-motion, one by one: each ends in a named state within a stated time, and nothing restarts by
 // itself. Virtual time, the unmodified service, the simulated robot behind its wires. F-numbers:
-// docs/faults.md.
+// docs/evidence/faults.md.
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -331,7 +331,7 @@ class ShortSighted : public BearableFault {
 // Glass, black cloth, sunlight: few beams come back, none from ahead. What is driven is driven, nothing is
 // claimed.
 TEST_F(ShortSighted, F30_few_near_readings_claim_nothing_wrong) {
-  run(2.0);  // what so few readings give depends on the moment (docs/faults.md)
+  run(2.0);  // what so few readings give depends on the moment (docs/evidence/faults.md)
   const json result = drive([] {});
   for (const auto& move : result["moves"]) {
     if (move["lidar"].is_null()) continue;

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/service/service.hpp"
-#include "proto/control.hpp"
+#include "proto/control/control.hpp"
 #include "tests/sim/wires/sim_robot.hpp"
 
 namespace odomcalib {

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "calib/predict.hpp"
+#include "calib/odometry/predict.hpp"
 #include "calib/solve.hpp"
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 #include "tests/sim/world/rooms.hpp"
 #include "tests/sim/world/simulate.hpp"
 

@@ -6,7 +6,7 @@
 #include <iomanip>
 
 #include "proto/file_bytes.hpp"
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 #include "tests/sim/effects/blind_case.hpp"
 #include "tests/sim/effects/effect.hpp"
 #include "tests/sim/ros/containers.hpp"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/base/arcos/settings.hpp"
 #include "drivers/base/speed/twist.hpp"
 
 namespace odomcalib::drivers {
@@ -15,7 +16,6 @@ constexpr std::uint8_t kPulse = 0, kOpen = 1, kClose = 2, kEnable = 4, kSpeed = 
 constexpr std::uint8_t kConfigurationPacket = 0x20, kAtRest = 0x32, kMoving = 0x33, kEncoderPacket = 0x90;
 constexpr int kStream = 2;
 constexpr std::size_t kFraming = 5;  // bytes around a packet's data
-constexpr double kPulse_s = 0.5;
 constexpr unsigned kMotorsEnabled = 0x0001, kEmergencyFlag = 0x0020;
 
 /// A text ended by zero; foreign: only what prints is kept.
@@ -155,7 +155,7 @@ void Arcos::on_configuration(Bytes data, double t) {
 /// The base stops when nothing was heard for its watchdog time.
 void Arcos::ask(double now) {
   if (phase_ != Phase::open || now < pulse_due_) return;
-  pulse_due_ = now + kPulse_s;
+  pulse_due_ = now + arcos::kPulse_s;
   send_command(kPulse);
 }
 

@@ -7,13 +7,11 @@
 #include <vector>
 
 #include "drivers/base/canopen/object.hpp"
+#include "drivers/base/canopen/settings.hpp"
 #include "drivers/can/transport.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib::drivers::canopen {
-
-inline constexpr double kSdoTimeout_s = 0.5;
-inline constexpr std::size_t kSdoMostBytes = 1024;  ///< bound of a segmented transfer
 
 struct SdoRequest {
   ObjectAddress object;

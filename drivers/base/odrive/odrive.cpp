@@ -5,16 +5,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/base/odrive/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
+
+using namespace odrive;
 
 constexpr std::uint32_t kHeartbeat = 0x01, kSetState = 0x07, kEstimates = 0x09, kCount = 0x0A, kMode = 0x0B,
                         kSpeed = 0x0D;
 constexpr double kIdle = 1.0, kClosedLoop = 8.0;
-constexpr double kAsk_s = 0.01;
-// A 32-bit float of turns resolves 1/4096 turn only below this.
-constexpr double kFineTurns = 2048.0;
-constexpr double kMostTurns = 1e9;  // more is no position
 
 }  // namespace
 

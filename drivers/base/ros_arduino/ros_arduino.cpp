@@ -5,11 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/base/ros_arduino/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
-constexpr double kAsk_s = 0.02;
-constexpr double kAnswer_s = 0.25;  // the firmware answers within its 33 ms control interval
+using namespace ros_arduino;
 constexpr std::string_view kAccepted = "OK", kNotUnderstood = "Invalid Command";
 
 std::span<const std::uint8_t> bytes_of(const std::string& text) {

@@ -8,6 +8,7 @@
 #include <deque>
 #include <string_view>
 
+#include "drivers/base/ros_arduino/settings.hpp"
 #include "drivers/base/speed/speed_protocol.hpp"
 
 namespace odomcalib::drivers {
@@ -26,7 +27,7 @@ class RosArduino final : public SpeedProtocol {
   [[nodiscard]] Counters counters() const override;
 
  private:
-  static constexpr std::size_t kLongestLine = 64;
+  static constexpr std::size_t kLongestLine = ros_arduino::kLongestLine;
   struct Question {
     enum class Kind { counts, speed, stop } kind;
     double sent_at;

@@ -4,40 +4,26 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/base/speed/settings.hpp"
+
 namespace odomcalib::drivers {
 namespace {
 
-constexpr double kGreet_s = 0.3;
-constexpr double kCycle_s = 0.02;
-constexpr double kCommandLives_s = 0.1;
-constexpr double kStep_s = 1.0;  // longest wait until the device says it is enabled
-constexpr double kRest_s = 0.15;
-constexpr double kEnding_s = 3.0;  // longest ramp to standstill before torque is taken away anyway
-constexpr std::size_t kMostQueued = 4096;
+using namespace speed;
 
 std::size_t index(Side side) { return static_cast<std::size_t>(side); }
-double ticks_per_s(const Profile& profile) { return profile.max_rpm / 60.0 * profile.ticks_per_rev; }
-const char* name_of(Side side) { return side == Side::left ? "left" : "right"; }
 
 }  // namespace
-
-SpeedBase::Wheel SpeedBase::wheel_of(const Profile& profile) {
-  return {TickUnwrap(ticks_per_s(profile), profile.count_bits), StuckWatch(profile.ticks_per_rev), {}};
-}
 
 SpeedBase::SpeedBase(Profile profile, std::unique_ptr<SpeedProtocol> protocol)
     : profile_(std::move(profile)),
       protocol_(std::move(protocol)),
-      wheels_{wheel_of(profile_), wheel_of(profile_)} {}
+      motion_(*this,
+              {profile_.name, profile_.max_rpm * std::numbers::pi / 30.0, profile_.ticks_per_rev, kRest_s}),
+      counts_(profile_) {}
 
-/// A stop event also stops the wheels right here: the daemon's protective stop is the second line.
 void SpeedBase::event(const std::string& code, const std::string& text, bool stop) {
-  if (stop && (motion_ == Motion::on || motion_ == Motion::enabling)) quick_stop(now_);
-  if (events_.size() >= kMostQueued) {
-    ++dropped_;
-    return;
-  }
-  events_.push_back({now_, code, text, stop});
+  motion_.event(code, text, stop, now_);
 }
 
 void SpeedBase::on_frame(const CanFrame& frame) {
@@ -61,29 +47,13 @@ void SpeedBase::take_news() {
 }
 
 void SpeedBase::on_count(const SideCount& count) {
-  Wheel& wheel = wheels_[index(count.side)];
-  const TickUnwrap::Reading reading = wheel.unwrap.on_count(count.raw, count.t);
   counted_at_[index(count.side)] = now_;
-  if (reading.jumped) on_jump(count.side);
-  const int sign = count.side == Side::left ? profile_.left_sign : profile_.right_sign;
-  wheel.watch.counted(sign * reading.total, count.t, now_);
-  if (reading.total != wheel.total) moved_at_ = now_;
-  wheel.total = reading.total;
-  const auto pair = pairing_.add(count.side, count.t, reading.total);
-  if (!pair) return;
-  if (ticks_.size() >= kMostQueued) {
-    ++dropped_;
-    return;
-  }
-  ticks_.push_back({pair->t, profile_.left_sign * pair->left, profile_.right_sign * pair->right, segment_});
-}
-
-void SpeedBase::on_jump(Side side) {
-  ++jumps_;
-  ++segment_;
-  pairing_.forget();
-  event("tick_jump", std::string(name_of(side)) + " count jumped: reset, or a broken encoder line",
-        motion_ != Motion::off);
+  const WheelCounts::Reading reading = counts_.on_count(count.side, count.raw, count.t);
+  if (reading.kind != TickUnwrap::Reading::Kind::wild)
+    return motion_.counted(count.side, reading.forward, count.t, now_);
+  motion_.moved(now_);
+  event("tick_jump", std::string(to_text(count.side)) + " count jumped: reset, or a broken encoder line",
+        motion_.motion() != Motion::off);
 }
 
 void SpeedBase::on_time(double now) {
@@ -95,8 +65,8 @@ void SpeedBase::on_time(double now) {
     greet_due_ = now_ + kGreet_s;
   }
   check_device();
-  if (motion_ == Motion::on) check_encoders();
-  if (now_ >= cycle_due_) cycle();
+  if (motion_.motion() == Motion::on) motion_.check_encoders(now_);
+  motion_.cycle(now_);
 }
 
 void SpeedBase::check_presence() {
@@ -111,121 +81,62 @@ void SpeedBase::check_presence() {
             std::to_string(std::lround(1e3 * profile_.counts_live_s)) + " ms",
         true);
   present_ = false;
-  motion_ = Motion::off;
-  pairing_.forget();
-  for (Wheel& wheel : wheels_) wheel.unwrap.forget();
-  ++segment_;
+  motion_.forget();
+  counts_.begin_segment();
 }
 
 void SpeedBase::check_device() {
   const DeviceState said = protocol_->device_state();
   if (!said.fault.empty() && said.fault != last_fault_) event("drive_fault", said.fault, true);
   last_fault_ = said.fault;
-  if (motion_ == Motion::on && said.enabled && !*said.enabled)
+  if (motion_.motion() == Motion::on && said.enabled && !*said.enabled)
     event("axis_not_enabled", "the controller no longer follows commands", true);
-}
-
-void SpeedBase::check_encoders() {
-  for (const Side side : {Side::left, Side::right}) {
-    StuckWatch& watch = wheels_[index(side)].watch;
-    watch.commanded(command_[index(side)], now_);
-    if (!watch.stuck(now_)) continue;
-    return event("encoder_stuck",
-                 std::string(name_of(side)) + " count stands still although the wheel is commanded", true);
-  }
-}
-
-bool SpeedBase::at_rest() const { return now_ - moved_at_ >= kRest_s; }
-
-void SpeedBase::cycle() {
-  cycle_due_ = now_ + kCycle_s;
-  switch (motion_) {
-    case Motion::off:
-      return;
-    case Motion::enabling:
-      return step_enabling();
-    case Motion::disabling:
-    case Motion::stopping:
-      return step_ending();
-    case Motion::on:
-      break;
-  }
-  if (now_ - command_at_ > kCommandLives_s && (command_[0] != 0.0 || command_[1] != 0.0)) {
-    ++stale_commands_;
-    command_ = {};
-  }
-  protocol_->command(profile_.left_sign * command_[0], profile_.right_sign * command_[1]);
-}
-
-void SpeedBase::step_enabling() {
-  if (protocol_->device_state().enabled.value_or(true)) {
-    motion_ = Motion::on;
-    command_ = {};
-    command_at_ = now_;
-    for (Wheel& wheel : wheels_) wheel.watch.begin(now_);
-    return protocol_->command(0.0, 0.0);
-  }
-  if (now_ - motion_since_ <= kStep_s) return protocol_->engage();
-  motion_ = Motion::off;
-  protocol_->release();
-  event("enable_failed",
-        "the controller does not say that it follows commands: is a remote control or an "
-        "emergency stop active?",
-        false);
-}
-
-/// Speed zero until the wheels stand, then the torque goes.
-void SpeedBase::step_ending() {
-  if (!at_rest() && now_ - motion_since_ <= kEnding_s)
-    return motion_ == Motion::stopping ? protocol_->stop() : protocol_->command(0.0, 0.0);
-  motion_ = Motion::off;
-  protocol_->release();
-}
-
-void SpeedBase::end_motion(Motion how) {
-  motion_ = how;
-  motion_since_ = moved_at_ = now_;  // rest is to be seen from now on
-  command_ = {};
-  if (how == Motion::stopping) return protocol_->stop();
-  protocol_->command(0.0, 0.0);
 }
 
 void SpeedBase::enable(double now) {
   now_ = std::max(now_, now);
-  if (!present_) return event("enable_refused", "the controller is not configured", false);
-  if (!watchdog_armed())
-    return event("enable_refused", "the controller would not stop by itself if this program died", false);
-  if (!last_fault_.empty()) return event("enable_refused", last_fault_, false);
-  if (motion_ == Motion::on || motion_ == Motion::enabling) return;
-  motion_ = Motion::enabling;
-  motion_since_ = now_;
-  protocol_->engage();
+  motion_.enable(now_);
 }
 
 void SpeedBase::disable(double now) {
   now_ = std::max(now_, now);
-  if (motion_ == Motion::on || motion_ == Motion::enabling) end_motion(Motion::disabling);
+  motion_.disable(now_);
 }
 
 void SpeedBase::quick_stop(double now) {
   now_ = std::max(now_, now);
-  if (motion_ == Motion::stopping) return protocol_->stop();
-  end_motion(Motion::stopping);
+  motion_.quick_stop(now_);
 }
 
 Result<void> SpeedBase::command(double left_rad_s, double right_rad_s, double now) {
   now_ = std::max(now_, now);
-  if (!std::isfinite(left_rad_s) || !std::isfinite(right_rad_s)) {
-    event("bad_command", "a speed command was not a number", true);
-    return refused("speed is not a finite number", "");
-  }
-  if (motion_ != Motion::on) return refused("axes are not enabled", "enable first");
-  const double most = profile_.max_rpm * std::numbers::pi / 30.0;
-  if (std::max(std::abs(left_rad_s), std::abs(right_rad_s)) > most) ++limited_commands_;
-  command_ = {std::clamp(left_rad_s, -most, most), std::clamp(right_rad_s, -most, most)};
-  command_at_ = now_;
-  return {};
+  return motion_.command(left_rad_s, right_rad_s, now_);
 }
+
+std::string SpeedBase::enable_refusal() const {
+  if (!present_) return "the controller is not configured";
+  if (!watchdog_armed()) return "the controller would not stop by itself if this program died";
+  return last_fault_;
+}
+
+/// A device that says nothing follows as soon as it was asked to.
+bool SpeedBase::follows() const { return asked_ && protocol_->device_state().enabled.value_or(true); }
+
+std::string SpeedBase::enable_failure() const {
+  return "the controller does not say that it follows commands: is a remote control or an "
+         "emergency stop active?";
+}
+
+void SpeedBase::engage() {
+  asked_ = true;
+  protocol_->engage();
+}
+
+void SpeedBase::drive(double left_rad_s, double right_rad_s) {
+  protocol_->command(profile_.left_sign * left_rad_s, profile_.right_sign * right_rad_s);
+}
+
+double SpeedBase::idle() { return kIdle_s; }
 
 /// A time-out that the device itself told goes before the one that the profile promises.
 bool SpeedBase::watchdog_armed() const {
@@ -237,8 +148,8 @@ bool SpeedBase::watchdog_armed() const {
 
 ControllerState SpeedBase::state() const {
   if (!present_) return ControllerState::absent;
-  if (motion_ == Motion::enabling) return ControllerState::enabling;
-  if (motion_ != Motion::off) return ControllerState::enabled;
+  if (motion_.motion() == Motion::enabling) return ControllerState::enabling;
+  if (motion_.motion() != Motion::off) return ControllerState::enabled;
   return last_fault_.empty() ? ControllerState::disabled : ControllerState::fault;
 }
 
@@ -266,11 +177,8 @@ std::vector<Capability> SpeedBase::capabilities() const { return host_capabiliti
 
 Counters SpeedBase::counters() const {
   Counters all = protocol_->counters();
-  all.insert({{"tick_jumps", jumps_},
-              {"unpaired_counts", pairing_.unpaired()},
-              {"stale_commands", stale_commands_},
-              {"limited_commands", limited_commands_},
-              {"events_dropped", dropped_}});
+  counts_.count_into(all);
+  motion_.count_into(all);
   return all;
 }
 

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "drivers/base/controller.hpp"
-#include "drivers/base/profile.hpp"
+#include "drivers/base/motion/motion_cycle.hpp"
+#include "drivers/base/motion/wheel_counts.hpp"
+#include "drivers/base/profile/profile.hpp"
 #include "drivers/base/speed/speed_protocol.hpp"
-#include "drivers/base/stuck_watch.hpp"
-#include "drivers/base/tick_unwrap.hpp"
 
 namespace odomcalib::drivers {
 
-class SpeedBase final : public Controller {
+class SpeedBase final : public Controller, private MotionDevice {
  public:
   SpeedBase(Profile profile, std::unique_ptr<SpeedProtocol> protocol);
 
@@ -27,8 +27,8 @@ class SpeedBase final : public Controller {
   void on_time(double now) override;
   std::vector<CanFrame> take_frames() override { return protocol_->take_frames(); }
   std::vector<std::uint8_t> take_bytes() override { return protocol_->take_bytes(); }
-  std::vector<TickSample> take_ticks() override { return std::exchange(ticks_, {}); }
-  std::vector<ControllerEvent> take_events() override { return std::exchange(events_, {}); }
+  std::vector<TickSample> take_ticks() override { return counts_.take(); }
+  std::vector<ControllerEvent> take_events() override { return motion_.take_events(); }
 
   [[nodiscard]] ControllerState state() const override;
   void enable(double now) override;
@@ -36,7 +36,7 @@ class SpeedBase final : public Controller {
   Result<void> command(double left_rad_s, double right_rad_s, double now) override;
   void quick_stop(double now) override;
   [[nodiscard]] bool watchdog_armed() const override;
-  [[nodiscard]] bool at_rest() const override;
+  [[nodiscard]] bool at_rest() const override { return motion_.at_rest(now_); }
 
   /// These devices hold no geometry that this program could write: reading gives none, the rest is refused.
   Result<void> start_read_parameters(double now) override;
@@ -50,43 +50,32 @@ class SpeedBase final : public Controller {
   [[nodiscard]] Counters counters() const override;
 
  private:
-  enum class Motion { off, enabling, on, disabling, stopping };
-  struct Wheel {
-    TickUnwrap unwrap;
-    StuckWatch watch;
-    std::optional<std::int64_t> total;
-  };
-
-  static Wheel wheel_of(const Profile& profile);
   void event(const std::string& code, const std::string& text, bool stop);
   void take_news();
   void on_count(const SideCount& count);
-  void on_jump(Side side);
   void check_presence();
   void check_device();
-  void check_encoders();
-  void cycle();
-  void step_enabling();
-  void step_ending();
-  void end_motion(Motion how);
+  [[nodiscard]] std::string enable_refusal() const override;
+  [[nodiscard]] bool follows() const override;
+  [[nodiscard]] std::string enable_failure() const override;
+  void begin_enabling() override { asked_ = false; }
+  void engage() override;
+  void drive(double left_rad_s, double right_rad_s) override;
+  void stop() override { protocol_->stop(); }
+  void release() override { protocol_->release(); }
+  double idle() override;
   [[nodiscard]] Error refused(const std::string& what, const std::string& remedy) const;
 
   const Profile profile_;
   std::unique_ptr<SpeedProtocol> protocol_;
-  std::array<Wheel, 2> wheels_;
-  TickPairing pairing_;
-  double now_ = 0.0, greet_due_ = 0.0, cycle_due_ = 0.0, motion_since_ = 0.0, moved_at_ = 0.0;
+  MotionCycle motion_;
+  WheelCounts counts_;
+  double now_ = 0.0, greet_due_ = 0.0;
   std::array<double, 2> counted_at_{-1e9, -1e9};  ///< s
   bool present_ = false;
-  Motion motion_ = Motion::off;
-  std::array<double, 2> command_{};
-  double command_at_ = -1e9;
-  std::int32_t segment_ = 0;
+  bool asked_ = false;  // for torque
   std::string last_fault_;
-  std::vector<TickSample> ticks_;
-  std::vector<ControllerEvent> events_;
   std::optional<ParameterJobResult> job_result_;
-  std::uint64_t jumps_ = 0, stale_commands_ = 0, limited_commands_ = 0, dropped_ = 0;
 };
 
 }  // namespace odomcalib::drivers

@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "drivers/base/controller.hpp"
-#include "drivers/base/profile.hpp"
-#include "drivers/base/speed/tick_pairing.hpp"
+#include "drivers/base/motion/settings.hpp"
+#include "drivers/base/motion/tick_pairing.hpp"
+#include "drivers/base/profile/profile.hpp"
 #include "drivers/wire_table.hpp"
 
 namespace odomcalib::drivers {
@@ -62,7 +63,7 @@ class SpeedProtocol {
   std::vector<DeviceMessage> take_messages() { return std::exchange(messages_, {}); }
 
  protected:
-  static constexpr std::size_t kMostQueued = 4096;  // of each kind, when nobody takes them
+  static constexpr std::size_t kMostQueued = motion::kMostQueued;  // of each kind
 
   void send(const CanFrame& frame) {
     if (frames_.size() < kMostQueued) frames_.push_back(frame);

@@ -1,24 +1,19 @@
 #include "drivers/lidar/cola/cola.hpp"
 
+#include <algorithm>
 #include <cmath>
 
-#include "drivers/lidar/hex_text.hpp"
-#include "drivers/lidar/units.hpp"
+#include "drivers/lidar/cola/settings.hpp"
+#include "drivers/lidar/common/hex_text.hpp"
+#include "drivers/lidar/common/units.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-using cola::Channel;
-using cola::ScanData;
+using namespace cola;
 
 constexpr std::uint64_t kClockModulus_us = std::uint64_t{1} << 32U;
-constexpr unsigned kFirstDistance = 16;  // raw values below are codes: no echo, dazzled, implausible, ...
-constexpr double kRangeMin_m = 0.01;  // below what any model measures; the codes mark what is not a reading
-constexpr double kRangeMax_m = 80.0;  // LMS5xx
 constexpr unsigned kError = 1, kPollution = 4;  // bits of the status
-// "Time since start" of a model that sends before a sweep's length has passed since cannot be the beginning
-// of that sweep: it is its end, and 0 to 3 ms of processing lie between (measured on LMS111 and TiM).
-constexpr double kUntilEnd_s = 1.5e-3;
 
 }  // namespace
 
@@ -31,6 +26,8 @@ void Cola::reset() {
   clock_.reset();
   line_.reset();
   last_counters_.reset();
+  layers_.clear();
+  turns_per_scan_ = cola::kMostLayers;
 }
 
 void Cola::on_bytes(std::span<const std::uint8_t> bytes, double now) {
@@ -47,13 +44,14 @@ void Cola::on_telegram(const cola::Telegram& telegram, double arrival) {
   if (!telegram.scan) return tell_telegram(telegram);
   if (is_repeated(*telegram.scan)) return finder_.frames().reject("repeated_scans");
   // Of a sensor with several layers only the horizontal one can be matched in the plane.
+  if (layers_.size() < cola::kMostLayers) layers_.insert(telegram.scan->layer);
   if (telegram.scan->layer != 0) return finder_.frames().reject("other_layers");
   on_scan(*telegram.scan, arrival);
 }
 
 /// The same scan can arrive twice; a gap in the counter means lost ones.
 bool Cola::is_repeated(const ScanData& data) {
-  const std::pair counters(data.telegram_counter, data.scan_counter);
+  const std::tuple counters(data.telegram_counter, data.scan_counter, data.layer);
   if (last_counters_ == counters) return true;
   last_counters_ = counters;
   return false;
@@ -65,9 +63,17 @@ double Cola::date(const ScanData& data, double arrival, double sweep_turns) {
   const double nominal = 100.0 / data.turns_chz;
   const double since_start = 1e-6 * (data.sent_us - data.started_us);  // modulo 2^32 us
   const double started = clock_.to_host(data.sent_us, arrival) - since_start;
-  finder_.frames().reject("lost_scans", line_.add(started, nominal).lost);
+  finder_.frames().reject("lost_scans", lost_scans(line_.add(started, nominal).lost));
   const double sweep = sweep_turns * line_.period();
   return since_start < sweep ? started - sweep + kUntilEnd_s : started;
+}
+
+/// In a sensor with several layers the turns between two scans of one may belong to the others.
+/// @param between turns without a scan of this layer
+std::uint64_t Cola::lost_scans(unsigned between) {
+  const auto layers = static_cast<unsigned>(layers_.size());
+  turns_per_scan_ = std::min({turns_per_scan_, between + 1, layers});
+  return static_cast<std::uint64_t>(std::lround((between + 1.0) / turns_per_scan_)) - 1;
 }
 
 void Cola::on_scan(const ScanData& data, double arrival) {

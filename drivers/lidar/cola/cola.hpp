@@ -1,14 +1,18 @@
 // SICK LMS1xx, LMS5xx, TiM5xx, TiM7xx, MRS1000: CoLa over TCP, counter-clockwise, microsecond clock.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "drivers/device_clock.hpp"
+#include "drivers/lidar/cola/settings.hpp"
 #include "drivers/lidar/cola/startup.hpp"
+#include "drivers/lidar/common/stamp_line.hpp"
 #include "drivers/lidar/lidar.hpp"
-#include "drivers/lidar/stamp_line.hpp"
 
 namespace odomcalib::drivers {
 
@@ -31,6 +35,7 @@ class Cola final : public Lidar {
   void on_scan(const cola::ScanData& data, double arrival);
   bool is_repeated(const cola::ScanData& data);
   double date(const cola::ScanData& data, double arrival, double sweep_turns);
+  std::uint64_t lost_scans(unsigned between);
   void tell_telegram(const cola::Telegram& telegram) const;
 
   LidarOptions options_;
@@ -38,7 +43,9 @@ class Cola final : public Lidar {
   cola::Startup startup_;
   DeviceClock clock_;
   StampLine line_;
-  std::optional<std::pair<unsigned, unsigned>> last_counters_;  // telegram, scan
+  std::optional<std::tuple<unsigned, unsigned, int>> last_counters_;  // telegram, scan, layer
+  std::set<int> layers_;                                              // seen
+  unsigned turns_per_scan_ = cola::kMostLayers;                       // of one layer, the fewest seen
   unsigned status_ = 0;
   double began_ = 0.0;  // s, when the first byte of the telegram in progress came
   std::vector<LidarScan> scans_;

@@ -2,14 +2,10 @@
 
 #include <cmath>
 
+#include "drivers/lidar/cola/settings.hpp"
+
 namespace odomcalib::drivers::cola {
 namespace {
-
-constexpr unsigned kMostEncoders = 3;
-constexpr unsigned kMostChannels = 12;  // five echoes with their strengths, and two of angles
-constexpr unsigned kMostValues = 8192;
-constexpr double kMostSpan = 400.0;  // degrees, a turn and some overlap
-constexpr std::uint32_t kSlowest_chz = 10, kFastest_chz = 100'000;
 constexpr std::size_t kNameLength = 5;
 
 /// False when what was read cannot be true.
@@ -69,7 +65,7 @@ bool is_sensible(const ScanData& data) {
     return false;
   if (distances == nullptr || distances->values.size() < 2 || distances->step == 0) return false;
   const double span = true_step(distances->step) * static_cast<double>(distances->values.size() - 1);
-  return span <= kMostSpan && distances->factor > 0.0F && std::abs(distances->start) <= 3'600'000;
+  return span <= kMostSpan_deg && distances->factor > 0.0F && std::abs(distances->start) <= 3'600'000;
 }
 
 }  // namespace

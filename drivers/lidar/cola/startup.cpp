@@ -3,14 +3,10 @@
 #include <array>
 
 #include "drivers/clean_text.hpp"
+#include "drivers/lidar/cola/settings.hpp"
 
 namespace odomcalib::drivers::cola {
 namespace {
-
-constexpr double kDialect_s = 1.0;   // for an answer in one dialect, before the other is tried
-constexpr double kPatience_s = 0.5;  // for any other answer
-constexpr double kPause_s = 0.5;     // until the state is asked for again
-constexpr double kFirstScan_s = 2.0, kNoScan_s = 1.0;
 constexpr unsigned kReady = 1;
 
 Error trouble(const std::string& what, const std::string& remedy) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "drivers/lidar/cola/telegram.hpp"
-#include "drivers/lidar/dialogue.hpp"
+#include "drivers/lidar/common/dialogue.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib::drivers::cola {

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include "drivers/lidar/cola/settings.hpp"
+
 namespace odomcalib::drivers::cola {
 namespace {
 
 constexpr std::uint8_t kStx = 0x02, kEtx = 0x03;
 constexpr std::size_t kMarkBytes = 4;  // STX four times begins a binary telegram
 constexpr std::size_t kHeaderBytes = 8;
-constexpr std::size_t kMostBytes = std::size_t{64} * 1024;
 
 std::uint8_t xor_of(Bytes bytes) {
   std::uint8_t sum = 0;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "drivers/lidar/cola/scan_data.hpp"
-#include "drivers/lidar/frame_buffer.hpp"
+#include "drivers/lidar/common/frame_buffer.hpp"
 
 namespace odomcalib::drivers::cola {
 

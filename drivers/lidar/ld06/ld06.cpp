@@ -4,18 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "drivers/lidar/units.hpp"
+#include "drivers/lidar/common/units.hpp"
+#include "drivers/lidar/ld06/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-constexpr Sweep::Limits kLimits{0.02, 12.0, true};      // data sheet
-constexpr Sweep::Limits kLongLimits{0.02, 25.0, true};  // STL-27L
-// The stamp is cut off to whole milliseconds: half of one is lost on average.
-constexpr double kHalfStamp_s = 0.5e-3;
-constexpr double kPhaseGain = 0.05;  // of the filter that smooths the stamp's 1 ms steps
-constexpr double kPeriodGain = 0.0005;
-constexpr double kResync_s = 0.02;
+using namespace ld06;
 
 }  // namespace
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "drivers/device_clock.hpp"
+#include "drivers/lidar/common/sweep.hpp"
 #include "drivers/lidar/ld06/packet.hpp"
 #include "drivers/lidar/lidar.hpp"
-#include "drivers/lidar/sweep.hpp"
 
 namespace odomcalib::drivers {
 

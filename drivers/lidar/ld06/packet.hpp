@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "drivers/lidar/frame_buffer.hpp"
+#include "drivers/lidar/common/frame_buffer.hpp"
 
 namespace odomcalib::drivers::ld06 {
 

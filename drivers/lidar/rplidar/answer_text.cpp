@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "drivers/lidar/hex_text.hpp"
+#include "drivers/lidar/common/hex_text.hpp"
 #include "drivers/lidar/rplidar/commands.hpp"
 
 namespace odomcalib::drivers::rplidar {

@@ -4,17 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "drivers/lidar/rplidar/settings.hpp"
+
 namespace odomcalib::drivers::rplidar {
 namespace {
 
 using Kind = Guess::Kind;
-
-// Sync nibbles and checksum of a capsule fit one place in 65536, and one in 256 behind the sync of a longer
-// kind.
-constexpr std::size_t kCapsuleRun = 2;
-constexpr std::size_t kMostCapsules = 32;  // looked at before the layout counts as unknowable
-constexpr unsigned kFewestPairs = 20;
-constexpr double kSmooth = 0.5, kRough = 0.5;  // share of smooth pairs; of the other layout, relative to it
 
 std::size_t size_of(PacketType type) { return find_format(static_cast<unsigned>(type))->bytes; }
 
@@ -45,7 +40,6 @@ struct Pairs {
 };
 
 Pairs pairs_in(PacketType type, Bytes capsules) {
-  constexpr double kPart = 0.05, kLeast_mm = 20.0;
   Pairs pairs;
   for (; capsules.size() >= size_of(type); capsules = capsules.subspan(size_of(type))) {
     const Bytes capsule = capsules.first(size_of(type));
@@ -54,7 +48,7 @@ Pairs pairs_in(PacketType type, Bytes capsules) {
       const double a = points[i - 1].range_mm, b = points[i].range_mm;
       if (a <= 0.0 || b <= 0.0) continue;
       ++pairs.all;
-      if (std::abs(a - b) < kPart * std::min(a, b) + kLeast_mm) ++pairs.smooth;
+      if (std::abs(a - b) < kSmoothPart * std::min(a, b) + kSmooth_mm) ++pairs.smooth;
     }
   }
   return pairs;

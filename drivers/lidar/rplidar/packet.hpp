@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drivers/bytes.hpp"
+#include "drivers/lidar/rplidar/settings.hpp"
 
 namespace odomcalib::drivers::rplidar {
 
@@ -40,7 +41,6 @@ struct Point {
 };
 
 /// Check bits of a standard packet fit a random place with probability 1/4: this many in a row do not.
-constexpr std::size_t kStandardRun = 8;
 
 /// Whether the bytes can be such a packet, by its fixed bits alone. Never asks for more bytes than are there.
 bool may_begin(PacketType type, Bytes rest);

@@ -3,23 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/lidar/common/units.hpp"
 #include "drivers/lidar/rplidar/answer_text.hpp"
-#include "drivers/lidar/units.hpp"
+#include "drivers/lidar/rplidar/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
 
-using rplidar::Item;
-using rplidar::Point;
-
-// Data sheets: from 0.15 m (A1) or 0.05 m (S, C series) on. The far end is told by newer models.
-constexpr Sweep::Limits kLimits{0.05, 40.0, true};
-constexpr double kFastest_hz = 100.0;   // turns a second that no model reaches
-constexpr double kLostFactor = 1.5;     // of the usual span: a capsule is missing
-constexpr double kSpanGain = 0.1;       // of the filter for the usual span; the motor's speed drifts slowly
-constexpr double kMostBackwards = 2.0;  // degrees; standard points may swap by a little
-constexpr double kMostStep = 30.0;      // degrees between two standard points
-constexpr double kFilterDelay = 1.5;    // samples: half a sample, and one of filtering in the device
+using namespace rplidar;
 
 double forward(double from, double to) { return std::fmod(to - from + 720.0, 360.0); }
 
@@ -135,8 +126,9 @@ void Rplidar::emit(const std::vector<Point>& points, double t_end, double span) 
     double step = span / n;
     if (span == 0.0 && last_angle_) {
       step = forward(*last_angle_, point.clockwise);
-      if (step > kMostStep && step < 360.0 - kMostBackwards) stream_.frames().reject("angle_backwards");
-      if (step > kMostStep) step = 0.0;
+      if (step > kMostStep_deg && step < 360.0 - kMostBackwards_deg)
+        stream_.frames().reject("angle_backwards");
+      if (step > kMostStep_deg) step = 0.0;
     }
     last_angle_ = point.clockwise;
     if (point.start) sweep_.begin_turn();

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "drivers/lidar/common/sweep.hpp"
 #include "drivers/lidar/lidar.hpp"
 #include "drivers/lidar/rplidar/startup.hpp"
 #include "drivers/lidar/rplidar/stream.hpp"
-#include "drivers/lidar/sweep.hpp"
 #include "drivers/sample_clock.hpp"
 
 namespace odomcalib::drivers {

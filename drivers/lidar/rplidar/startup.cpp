@@ -3,23 +3,17 @@
 #include <array>
 #include <cstdio>
 
-#include "drivers/lidar/hex_text.hpp"
+#include "drivers/lidar/common/hex_text.hpp"
 #include "drivers/lidar/rplidar/commands.hpp"
 #include "drivers/lidar/rplidar/packet.hpp"
+#include "drivers/lidar/rplidar/settings.hpp"
 
 namespace odomcalib::drivers::rplidar {
 namespace {
 
 using ByteString = std::vector<std::uint8_t>;
-
-constexpr double kQuiet_s = 0.02;                   // after stop, until what was under way has arrived
-constexpr double kReboot_s = 2.0;                   // after reset
-constexpr double kPatience_s = 0.25;                // for an answer
-constexpr double kSpinUp_s = 2.0;                   // for the first measurement
-constexpr double kSilence_s = 1.0;                  // without measurements, then everything again
 constexpr unsigned kConfigurable = 1U << 8U | 24U;  // firmware 1.24 knows Command::configuration
 constexpr unsigned kExpress = 1U << 8U | 17U;       // firmware 1.17 knows Command::express_scan
-constexpr unsigned kPwm = 660, kRpm = 600;          // 10 turns a second
 
 Error trouble(const std::string& what, const std::string& remedy) {
   return {ErrorCode::device, what, "rplidar", remedy};

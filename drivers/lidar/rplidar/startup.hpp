@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "drivers/bytes.hpp"
-#include "drivers/lidar/dialogue.hpp"
+#include "drivers/lidar/common/dialogue.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib::drivers::rplidar {

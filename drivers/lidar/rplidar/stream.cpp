@@ -1,13 +1,13 @@
 #include "drivers/lidar/rplidar/stream.hpp"
 
 #include "drivers/lidar/rplidar/guess.hpp"
+#include "drivers/lidar/rplidar/settings.hpp"
 
 namespace odomcalib::drivers::rplidar {
 namespace {
 
 constexpr std::size_t kDescriptorBytes = 7;
 constexpr std::uint8_t kSync1 = 0xA5, kSync2 = 0x5A;
-constexpr std::size_t kMostAnswerBytes = 1024;
 
 struct Descriptor {
   std::uint32_t length = 0;

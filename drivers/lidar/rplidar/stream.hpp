@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "drivers/lidar/frame_buffer.hpp"
+#include "drivers/lidar/common/frame_buffer.hpp"
 #include "drivers/lidar/rplidar/packet.hpp"
 
 namespace odomcalib::drivers::rplidar {

@@ -2,10 +2,10 @@
 
 #include <charconv>
 
+#include "drivers/lidar/scip/settings.hpp"
+
 namespace odomcalib::drivers::scip {
 namespace {
-
-constexpr unsigned kMostSteps = 100'000;
 
 unsigned number(const std::map<std::string, std::string>& fields, const std::string& key) {
   const auto found = fields.find(key);

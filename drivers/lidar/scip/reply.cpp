@@ -4,11 +4,11 @@
 #include <charconv>
 #include <string_view>
 
+#include "drivers/lidar/scip/settings.hpp"
+
 namespace odomcalib::drivers::scip {
 namespace {
 
-constexpr std::size_t kMostReplyBytes =
-    std::size_t{64} * 1024;  // three echoes with intensity of 1440 steps stay below
 constexpr std::size_t kStampCharacters = 4;
 
 std::vector<std::string> split(std::string_view text) {

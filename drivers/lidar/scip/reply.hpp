@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lidar/frame_buffer.hpp"
+#include "drivers/lidar/common/frame_buffer.hpp"
 
 namespace odomcalib::drivers::scip {
 

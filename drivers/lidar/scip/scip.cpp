@@ -3,7 +3,7 @@
 #include <numbers>
 #include <utility>
 
-#include "drivers/lidar/units.hpp"
+#include "drivers/lidar/common/units.hpp"
 
 namespace odomcalib::drivers {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "drivers/device_clock.hpp"
+#include "drivers/lidar/common/stamp_line.hpp"
 #include "drivers/lidar/lidar.hpp"
 #include "drivers/lidar/scip/startup.hpp"
-#include "drivers/lidar/stamp_line.hpp"
 
 namespace odomcalib::drivers {
 

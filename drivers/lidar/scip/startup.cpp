@@ -4,16 +4,10 @@
 #include <cstdio>
 
 #include "drivers/clean_text.hpp"
+#include "drivers/lidar/scip/settings.hpp"
 
 namespace odomcalib::drivers::scip {
 namespace {
-
-constexpr double kSilence_s = 0.14;   // after QT: then nothing is under way any more
-constexpr double kMostQuiet_s = 1.5;  // a sensor that will not be silent is asked all the same
-constexpr double kPatience_s = 0.3;   // for an answer
-constexpr double kPause_s = 0.5;      // after a refusal: motors take seconds to spin up
-constexpr double kSpinUp_s = 2.0;     // for the first scan
-constexpr double kNoScan_s = 1.0;     // then everything again
 
 std::vector<std::uint8_t> line(const std::string& text) {
   std::vector<std::uint8_t> out(text.begin(), text.end());

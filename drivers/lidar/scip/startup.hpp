@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lidar/dialogue.hpp"
+#include "drivers/lidar/common/dialogue.hpp"
 #include "drivers/lidar/scip/parameters.hpp"
 #include "drivers/lidar/scip/reply.hpp"
 #include "proto/result.hpp"

@@ -1,11 +1,12 @@
 #include "drivers/lidar/xv11/packet.hpp"
 
+#include "drivers/lidar/xv11/settings.hpp"
+
 namespace odomcalib::drivers::xv11 {
 namespace {
 
 constexpr std::uint8_t kHeader = 0xFA, kFirstIndex = 0xA0;
-constexpr std::size_t kSummed = 20;     // bytes under the checksum
-constexpr double kFastest_rpm = 600.0;  // twice what the unit is built for
+constexpr std::size_t kSummed = 20;  // bytes under the checksum
 
 bool may_begin(Bytes rest) {
   return rest[0] == kHeader &&

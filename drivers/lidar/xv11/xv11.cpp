@@ -1,16 +1,16 @@
 #include "drivers/lidar/xv11/xv11.hpp"
 
-#include "drivers/lidar/units.hpp"
+#include "drivers/lidar/common/units.hpp"
+#include "drivers/lidar/xv11/settings.hpp"
 
 namespace odomcalib::drivers {
 namespace {
-
-constexpr Sweep::Limits kLimits{0.06, 6.0, true};  // measured by its users: nothing sensible outside
 constexpr double kDegreesPerPacket = 4.0;
 
 }  // namespace
 
-Xv11::Xv11(const LidarOptions& options) : options_(options), clock_(options.device_time), sweep_(kLimits) {}
+Xv11::Xv11(const LidarOptions& options)
+    : options_(options), clock_(options.device_time), sweep_(xv11::kLimits) {}
 
 void Xv11::reset() {
   finder_.reset();

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "drivers/lidar/common/sweep.hpp"
 #include "drivers/lidar/lidar.hpp"
-#include "drivers/lidar/sweep.hpp"
 #include "drivers/lidar/xv11/packet.hpp"
 #include "drivers/sample_clock.hpp"
 

@@ -1,5 +1,5 @@
 // The packet of YDLIDAR's triangle protocol: AA 55, then counts, angles, checksum and samples.
-// Source: YDLIDAR, development manuals of the X4, G4 and Tmini Pro.
+// Source: YDLIDAR, development manuals of the X4, G4 and Tmini Pro, and its SDK for what differs by model.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lidar/frame_buffer.hpp"
+#include "drivers/lidar/common/frame_buffer.hpp"
 
 namespace odomcalib::drivers::ydlidar {
 
@@ -18,8 +18,12 @@ struct Model {
   unsigned baud = 0;
   double samples_per_s = 0.0;
   unsigned intensity_bits = 0;  ///< 0: samples of two bytes; 8 or 10: of three
-  bool triangulates = true;     ///< quarter millimetres and a parallax; otherwise time of flight, millimetres
-  bool answers = true;          ///< takes commands; single-channel types only talk
+  double mm_per_count =
+      0.25;              ///< of the range's word in samples of two bytes; in three, of its 14 upper bits
+  bool parallax = true;  ///< near points are seen at another angle
+  bool answers = true;   ///< takes commands; single-channel types only talk
+
+  [[nodiscard]] std::size_t sample_bytes() const { return intensity_bits == 0 ? 2 : 3; }
 };
 
 /// nullptr when there is no such model.
@@ -41,7 +45,9 @@ struct Packet {
   std::size_t size = 0;         ///< bytes of the packet
 };
 
-/// An answer to a command.
+inline constexpr std::uint8_t kNameType = 0x01;
+
+/// An answer to a command, or the name that some models send by themselves.
 struct Answer {
   std::uint8_t type = 0;
   std::vector<std::uint8_t> payload;  ///< empty for the announcement of the scan
@@ -59,15 +65,18 @@ class PacketFinder {
   std::vector<Item> on_bytes(Bytes bytes);
   void reset() { frames_.reset(); }
   [[nodiscard]] const FrameBuffer& frames() const { return frames_; }
+  /// Wrong checksums that are right with the other size of samples: a model of another kind sends.
+  [[nodiscard]] std::uint64_t other_kind() const { return other_kind_; }
+  [[nodiscard]] std::uint64_t packets() const { return packets_; }  ///< right ones
 
  private:
-  Verdict look(Bytes rest, std::vector<Item>& out) const;
+  Verdict look(Bytes rest, std::vector<Item>& out);
   Verdict take_answer(Bytes rest, std::vector<Item>& out) const;
-  Verdict take_packet(Bytes rest, std::vector<Item>& out) const;
-  [[nodiscard]] std::size_t sample_bytes() const { return model_.intensity_bits == 0 ? 2 : 3; }
+  Verdict take_packet(Bytes rest, std::vector<Item>& out);
 
   const Model& model_;
   FrameBuffer frames_{"bad_checksum", "bad_count", "bad_check_bit", "bad_angle", "bad_answer"};
+  std::uint64_t other_kind_ = 0, packets_ = 0;
 };
 
 }  // namespace odomcalib::drivers::ydlidar

@@ -1,6 +1,7 @@
 #include "drivers/lidar/ydlidar/startup.hpp"
 
-#include "drivers/lidar/hex_text.hpp"
+#include "drivers/lidar/common/hex_text.hpp"
+#include "drivers/lidar/ydlidar/settings.hpp"
 
 namespace odomcalib::drivers::ydlidar {
 namespace {
@@ -8,10 +9,6 @@ namespace {
 constexpr std::uint8_t kStart = 0xA5;
 constexpr std::uint8_t kScan = 0x60, kStop = 0x65, kInfo = 0x90, kHealth = 0x92;  // commands
 constexpr std::uint8_t kInfoAnswer = 0x04, kHealthAnswer = 0x06;
-constexpr double kQuiet_s = 0.05;     // after stop, until what was under way has arrived
-constexpr double kPatience_s = 0.25;  // for an answer
-constexpr double kSpinUp_s = 2.0;     // for the first measurement
-constexpr double kSilence_s = 1.0;    // without measurements, then everything again
 
 Error trouble(const std::string& what, const std::string& remedy) {
   return {ErrorCode::device, what, "ydlidar", remedy};

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lidar/dialogue.hpp"
+#include "drivers/lidar/common/dialogue.hpp"
 #include "drivers/lidar/ydlidar/packet.hpp"
 #include "proto/result.hpp"
 

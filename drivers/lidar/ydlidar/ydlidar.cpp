@@ -2,25 +2,19 @@
 
 #include <cmath>
 
-#include "drivers/lidar/hex_text.hpp"
-#include "drivers/lidar/units.hpp"
+#include "drivers/clean_text.hpp"
+#include "drivers/lidar/common/hex_text.hpp"
+#include "drivers/lidar/common/units.hpp"
+#include "drivers/lidar/ydlidar/settings.hpp"
 
 namespace odomcalib::drivers {
-namespace {
-
-constexpr double kRangeMin_m = 0.05;  // the least of the family; not checked on devices
-constexpr double kRangeMax_m = 64.0;  // the longest of the family (TG50 and T30 stay below)
-// So many wrong checksums and not one right packet: the model is not the one configured.
-constexpr std::uint64_t kAllWrong = 50;
-
-}  // namespace
 
 Ydlidar::Ydlidar(const LidarOptions& options, const ydlidar::Model& model)
     : options_(options),
       model_(model),
       finder_(model),
       clock_(options.device_time),
-      sweep_({kRangeMin_m, kRangeMax_m, model.intensity_bits != 0}) {}
+      sweep_({ydlidar::kRangeMin_m, ydlidar::kRangeMax_m, model.intensity_bits != 0}) {}
 
 void Ydlidar::reset() {
   finder_.reset();
@@ -93,6 +87,8 @@ void Ydlidar::on_bytes(std::span<const std::uint8_t> bytes, double now) {
       if (talks) startup_.on_measurements(now);
       continue;
     }
+    if (item.answer.type == ydlidar::kNameType)
+      told_name_ = clean_text(std::string(item.answer.payload.begin(), item.answer.payload.end()));
     if (has_listener())
       tell({"ydlidar_answer",
             {{"answer_type", std::int64_t{item.answer.type}}, {"data", hex_text(item.answer.payload)}}});
@@ -107,9 +103,26 @@ Counters Ydlidar::counters() const {
   return all;
 }
 
+/// Samples of another size than the model's: told with the models that have it.
+std::optional<Error> Ydlidar::wrong_kind() const {
+  if (finder_.packets() > 0 || finder_.other_kind() < ydlidar::kOtherKind) return std::nullopt;
+  const bool three = model_.sample_bytes() == 2;
+  std::string fitting;
+  for (const ydlidar::Model& model : ydlidar::models())
+    if ((model.sample_bytes() == 3) == three)
+      fitting += std::string(fitting.empty() ? "" : ", ") + "ydlidar:" + model.name;
+  const std::string named = told_name_.empty() ? "" : "; the lidar calls itself " + told_name_;
+  return Error{ErrorCode::format,
+               std::string("every checksum is wrong: samples come in ") +
+                   (three ? "three bytes" : "two bytes") + ", and model " + model_.name + " has " +
+                   (three ? "two" : "three") + named,
+               "ydlidar", "set lidar.type to the model that it is, one of " + fitting};
+}
+
 std::optional<Error> Ydlidar::problem() const {
+  if (auto wrong = wrong_kind()) return wrong;
   const FrameBuffer& frames = finder_.frames();
-  if (frames.frames() == 0 && frames.rejected().at("bad_checksum") > kAllWrong)
+  if (finder_.packets() == 0 && frames.rejected().at("bad_checksum") > ydlidar::kAllWrong)
     return Error{ErrorCode::format, "every checksum is wrong", "ydlidar",
                  std::string("lidar.type says model ") + model_.name +
                      "; a model with another sample format does this: correct lidar.type"};

@@ -1,10 +1,12 @@
 // YDLIDAR, triangle protocol: serial or TCP, clockwise, no clock of its own.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "drivers/lidar/common/sweep.hpp"
 #include "drivers/lidar/lidar.hpp"
-#include "drivers/lidar/sweep.hpp"
 #include "drivers/lidar/ydlidar/packet.hpp"
 #include "drivers/lidar/ydlidar/startup.hpp"
 #include "drivers/sample_clock.hpp"
@@ -24,7 +26,9 @@ class Ydlidar final : public Lidar {
   void finish() override { sweep_.interrupt(); }
   [[nodiscard]] Counters counters() const override;
   [[nodiscard]] Counters rejected() const override { return sweep_.rejected(finder_.frames().rejected()); }
-  [[nodiscard]] std::string identity() const override { return startup_.identity(); }
+  [[nodiscard]] std::string identity() const override {
+    return startup_.identity().empty() ? told_name_ : startup_.identity();
+  }
   [[nodiscard]] std::optional<Error> problem() const override;
 
  private:
@@ -32,6 +36,7 @@ class Ydlidar final : public Lidar {
   double date(const ydlidar::Packet& packet, double now);
   [[nodiscard]] double step_of(const ydlidar::Packet& packet) const;
   void tell_packet(const ydlidar::Packet& packet) const;
+  [[nodiscard]] std::optional<Error> wrong_kind() const;
 
   LidarOptions options_;
   const ydlidar::Model& model_;
@@ -40,6 +45,7 @@ class Ydlidar final : public Lidar {
   SampleClock clock_;
   Sweep sweep_;
   double usual_step_ = 0.0;  // degrees between samples
+  std::string told_name_;    // of a model that sends it unasked
 };
 
 }  // namespace odomcalib::drivers

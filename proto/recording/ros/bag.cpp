@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <map>
 
-#include "proto/byte_reader.hpp"
+#include "proto/wire/byte_reader.hpp"
 #include "proto/recording/ros/containers.hpp"
 #include "proto/recording/ros/unpack.hpp"
 

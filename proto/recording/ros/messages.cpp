@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "proto/byte_reader.hpp"
+#include "proto/wire/byte_reader.hpp"
 
 namespace odomcalib::ros {
 namespace {

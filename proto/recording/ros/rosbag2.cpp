@@ -4,7 +4,7 @@
 #include <map>
 #include <memory>
 
-#include "proto/byte_reader.hpp"
+#include "proto/wire/byte_reader.hpp"
 #include "proto/recording/ros/containers.hpp"
 
 namespace odomcalib::ros {

@@ -1,4 +1,4 @@
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "proto/recording/ros/collector.hpp"
-#include "proto/recording_builder.hpp"
+#include "proto/recording/recording_builder.hpp"
 
 namespace odomcalib::ros {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib::sim {
 

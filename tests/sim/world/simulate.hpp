@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 #include "tests/sim/world/body.hpp"
 #include "tests/sim/world/drives.hpp"
 #include "tests/sim/world/lidar_head.hpp"

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "calib/geometry/se2.hpp"
+#include "calib/math/se2.hpp"
 #include "proto/measurements.hpp"
 
 namespace odomcalib::testing {
@@ -36,13 +36,13 @@ inline const std::vector<RoomWall> kRoom = {{-3, -2, 4, -2}, {4, -2, 4, 3}, {4, 
 inline const std::vector<RoomWall> kHall = {{-6, -5, 5, -5}, {5, -5, 5, 4}, {5, 4, -6, 4}, {-6, 4, -6, -5}};
 inline const std::vector<RoomWall> kCorridor = {{-50, -1, 50, -1}, {-50, 1, 50, 1}};
 
-inline Scan scan_from(const std::vector<RoomWall>& walls, const calib::Pose& pose, double noise,
+inline Scan scan_from(const std::vector<RoomWall>& walls, const calib::math::Pose& pose, double noise,
                       unsigned seed, int beams = 720) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> gauss(0.0, noise);
   Scan scan;
-  scan.angle_min = -calib::kPi;
-  scan.angle_increment = 2.0 * calib::kPi / beams;
+  scan.angle_min = -calib::math::kPi;
+  scan.angle_increment = 2.0 * calib::math::kPi / beams;
   scan.range_max = 12.0;
   for (int i = 0; i < beams; ++i) {
     const double range =

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "calib/predict.hpp"
+#include "calib/odometry/predict.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 #include "tests/unit/calib/shared_data.hpp"
 
@@ -53,7 +53,7 @@ TEST(Solve, a_recording_without_scans_is_refused_with_the_cause) {
 TEST(Solve, a_corridor_is_refused_as_a_place_that_scans_cannot_tell) {
   Recording recording;
   recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
-  constexpr double kSpeed = 0.2, kCountsPerMetre = 4096.0 / (kPi * 0.15);
+  constexpr double kSpeed = 0.2, kCountsPerMetre = 4096.0 / (math::kPi * 0.15);
   for (int k = 0; k <= 1500; ++k) {
     const auto counts = static_cast<std::int64_t>(std::lround(kSpeed * 0.02 * k * kCountsPerMetre));
     recording.ticks.push_back({0.02 * k, counts, counts, 0});
@@ -132,7 +132,7 @@ EndError mean_end_error(const std::string& kind, const Calibration& calibration)
   const auto files = shared_files("optiodom", "-" + kind + "-");
   for (const auto& file : files) {
     const Recording recording = load(file);
-    const auto path = predict(recording, calibration);
+    const auto path = odometry::predict(recording, calibration);
     const PoseSample& first = recording.poses.front();
     const PoseSample& last = recording.poses.back();
     const double dx = last.x - first.x;
@@ -196,9 +196,9 @@ TEST(Solve, optiodom_fitted_on_circles_too_does_better_on_squares) {
 TEST(Predict, odometry_sample_by_sample_equals_the_batch) {
   ODOMCALIB_NEEDS_SHARED("maebot/empty.jsonl.gz");
   const Recording recording = load(shared_data("maebot/empty.jsonl.gz"));
-  const Calibration nominal = nominal_calibration(recording.robot);
-  const auto batch = predict(recording, nominal);
-  Odometry odometry(nominal);
+  const Calibration nominal = odometry::nominal_calibration(recording.robot);
+  const auto batch = odometry::predict(recording, nominal);
+  odometry::Odometry odometry(nominal);
   ASSERT_EQ(batch.size(), recording.ticks.size());
   for (std::size_t k = 0; k < batch.size(); ++k) {
     const PoseSample pose = odometry.update(recording.ticks[k]);

@@ -5,12 +5,13 @@
 #include <random>
 #include <vector>
 
-#include "calib/estimators/wheel_motion.hpp"
+#include "calib/wheels/wheel_motion.hpp"
 
 namespace odomcalib::testing {
 
 /// Sensor motion for wheel rotations, written out: circle about the instantaneous centre of rotation.
-inline calib::Pose sensor_motion_by_hand(const calib::BaseParameters& p, double left, double right) {
+inline calib::math::Pose sensor_motion_by_hand(const calib::wheels::BaseParameters& p, double left,
+                                               double right) {
   const double dl = p.left_radius * left;
   const double dr = p.right_radius * right;
   const double turn = (dr - dl) / p.track_width;
@@ -25,15 +26,16 @@ inline calib::Pose sensor_motion_by_hand(const calib::BaseParameters& p, double 
   return {c * sx + s * sy, -s * sx + c * sy, turn};
 }
 
-inline std::vector<calib::WheelMotion> random_motions(const calib::BaseParameters& p, std::size_t count,
-                                                      unsigned seed, double position_noise = 0.0,
-                                                      double yaw_noise = 0.0) {
+inline std::vector<calib::wheels::WheelMotion> random_motions(const calib::wheels::BaseParameters& p,
+                                                              std::size_t count, unsigned seed,
+                                                              double position_noise = 0.0,
+                                                              double yaw_noise = 0.0) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> wheel(-1.5, 1.5);
   std::normal_distribution<double> gauss;
-  std::vector<calib::WheelMotion> motions;
+  std::vector<calib::wheels::WheelMotion> motions;
   for (std::size_t i = 0; i < count; ++i) {
-    calib::WheelMotion m{wheel(engine), wheel(engine), {}};
+    calib::wheels::WheelMotion m{wheel(engine), wheel(engine), {}};
     m.sensor_motion = sensor_motion_by_hand(p, m.left, m.right);
     m.sensor_motion.x += position_noise * gauss(engine);
     m.sensor_motion.y += position_noise * gauss(engine);

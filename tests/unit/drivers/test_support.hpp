@@ -64,13 +64,17 @@ inline std::vector<Scan> whole_scans(Lidar& lidar) {
   return out;
 }
 
-/// Folder of real captures; empty when it is absent.
-inline std::filesystem::path captures() {
+/// A folder of recordings that are not part of the repository; empty when it is absent.
+inline std::filesystem::path shared_folder(const char* name) {
   const char* given = std::getenv("ODOMCALIB_SHARED");
-  const std::filesystem::path folder =
-      std::filesystem::path(given != nullptr ? given : "../shared") / "captures";
+  const std::filesystem::path folder = std::filesystem::path(given != nullptr ? given : "../shared") / name;
   return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
 }
+
+/// Real captures.
+inline std::filesystem::path captures() { return shared_folder("captures"); }
+/// Situations that users of other tools reported, made small.
+inline std::filesystem::path cases() { return shared_folder("cases"); }
 
 inline std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

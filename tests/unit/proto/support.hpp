@@ -9,7 +9,7 @@
 #include <string>
 
 #include "proto/file_bytes.hpp"
-#include "proto/recording.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib::test {
 

@@ -1,0 +1,119 @@
+#include "calib/estimation/start_values.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "calib/classical/closed_form.hpp"
+
+namespace odomcalib::calib::estimation {
+namespace {
+
+constexpr double kReach = 0.6;  ///< s
+constexpr double kStep = 0.02;  ///< s
+/// A delay must reduce the robust misfit by this factor to be believed; otherwise zero is the better start.
+constexpr double kBelievable = 0.9;
+/// Nearer to each other, delays of both halves are within reach of the fit from the delay of the whole, s.
+constexpr double kApart = 0.06;
+
+/// Mean absolute misfit of rotation = a left + b right at this delay, a and b by least squares with one
+/// reweighting.
+double rotation_misfit(std::span<const measurement::FitData> data, double delay) {
+  const auto motions = wheel_motions(data, delay);
+  Eigen::Vector2d gains = Eigen::Vector2d::Zero();
+  double misfit = 0.0;
+  for (int round = 0; round < 3; ++round) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-9;
+    Eigen::Vector2d right_side = Eigen::Vector2d::Zero();
+    const double limit = round == 0 ? 1e9 : misfit;
+    double sum = 0.0;
+    for (const wheels::WheelMotion& m : motions) {
+      const Eigen::Vector2d wheels(m.left, m.right);
+      const double residual = m.sensor_motion.yaw - gains.dot(wheels);
+      const double weight = std::abs(residual) > limit ? limit / std::abs(residual) : 1.0;
+      normal += weight * wheels * wheels.transpose();
+      right_side += weight * m.sensor_motion.yaw * wheels;
+    }
+    gains = normal.ldlt().solve(right_side);
+    for (const wheels::WheelMotion& m : motions)
+      sum += std::abs(m.sensor_motion.yaw - gains.dot(Eigen::Vector2d(m.left, m.right)));
+    misfit = sum / std::max(static_cast<double>(motions.size()), 1.0);
+  }
+  return misfit;
+}
+
+struct Delay {
+  double seconds = 0.0;
+  double misfit = 0.0;
+};
+
+Delay search_delay(std::span<const measurement::FitData> data) {
+  const double at_zero = rotation_misfit(data, 0.0);
+  Delay best{0.0, at_zero};
+  for (double d = -kReach; d <= kReach + 1e-9; d += kStep) {
+    const double misfit = rotation_misfit(data, d);
+    if (misfit < best.misfit) best = {d, misfit};
+  }
+  return best.misfit < kBelievable * at_zero ? best : Delay{0.0, at_zero};
+}
+
+/// The first and the second half of each recording's pairs.
+std::pair<std::vector<measurement::FitData>, std::vector<measurement::FitData>> halves(
+    std::span<const measurement::FitData> data) {
+  std::pair<std::vector<measurement::FitData>, std::vector<measurement::FitData>> both;
+  for (const measurement::FitData& one : data) {
+    const auto middle = one.pairs.begin() + static_cast<std::ptrdiff_t>(one.pairs.size() / 2);
+    both.first.push_back({one.model, {one.pairs.begin(), middle}});
+    both.second.push_back({one.model, {middle, one.pairs.end()}});
+  }
+  return both;
+}
+
+/// Of the pairs, s.
+double mean_time(std::span<const measurement::FitData> data) {
+  double sum = 0.0, count = 0.0;
+  for (const measurement::FitData& one : data)
+    for (const measurement::SensorPair& pair : one.pairs) {
+      sum += 0.5 * (pair.interval.begin + pair.interval.end);
+      count += 1.0;
+    }
+  return sum / std::max(count, 1.0);
+}
+
+bool plausible(const wheels::BaseParameters& p) {
+  return p.left_radius > 0.0 && p.right_radius > 0.0 && p.track_width > 0.0 && std::isfinite(p.track_width);
+}
+
+}  // namespace
+
+ClockStart search_clock(std::span<const measurement::FitData> data) {
+  const auto [early, late] = halves(data);
+  const Delay first = search_delay(early), second = search_delay(late);
+  const auto contradicts = [](const std::vector<measurement::FitData>& half, const Delay& own,
+                              const Delay& other) {
+    return own.misfit < kBelievable * rotation_misfit(half, other.seconds);
+  };
+  const double apart = second.seconds - first.seconds;
+  if (std::abs(apart) < kApart || !contradicts(early, first, second) || !contradicts(late, second, first))
+    return {search_delay(data).seconds, 0.0};
+  return {0.5 * (first.seconds + second.seconds), apart / (mean_time(late) - mean_time(early))};
+}
+
+wheels::BaseParameters start_values(const measurement::Session& session, double delay) {
+  wheels::BaseParameters start = session.nominal();
+  if (session.reference_is_base()) return start;
+  const auto closed = classical::solve_closed_form(wheel_motions(session.data(), delay));
+  if (!closed || !plausible(closed.value().parameters)) return start;
+  const RobotDescription& robot = session.recordings().front().robot;
+  if (!robot.lidar_pose) start.mount = closed.value().parameters.mount;
+  if (!(robot.left_wheel_diameter > 0.0)) {
+    const math::Pose mount = start.mount;
+    start = closed.value().parameters;
+    start.mount = mount;
+  }
+  return start;
+}
+
+}  // namespace odomcalib::calib::estimation

@@ -1,0 +1,36 @@
+// The pace of a device that samples steadily, under stamps that came late by more or less.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace odomcalib::calib::ingest {
+
+struct EvenStamps {
+  std::vector<double> t;  ///< s, one for each stamp, never decreasing
+  double jitter = 0.0;    ///< s, standard deviation of the stamps from these, by their mean absolute one
+};
+
+/// Spreads stamps evenly: index times period, and a running robust mean of what is left, which follows a
+/// clock that wanders and keeps lost samples and pauses as the steps they are. Late by the mean delay.
+/// Whether the device really sampled so, stamps alone do not tell: see StampContest.
+/// @param stamps s, in time order
+/// @return nothing when there are fewer than 50, or when they are even to 0.3 ms
+std::optional<EvenStamps> even_stamps(const std::vector<double>& stamps);
+
+template <typename Sample>
+std::vector<double> stamps_of(const std::vector<Sample>& samples) {
+  std::vector<double> stamps;
+  stamps.reserve(samples.size());
+  for (const Sample& sample : samples) stamps.push_back(sample.t);
+  return stamps;
+}
+
+/// @param samples as many as stamps
+template <typename Sample>
+void set_stamps(std::vector<Sample>& samples, const std::vector<double>& stamps) {
+  for (std::size_t k = 0; k < samples.size(); ++k) samples[k].t = stamps[k];
+}
+
+}  // namespace odomcalib::calib::ingest

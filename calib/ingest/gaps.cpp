@@ -1,0 +1,11 @@
+#include "calib/ingest/gaps.hpp"
+
+namespace odomcalib::calib::ingest {
+
+bool has_gap(const std::vector<double>& times, std::size_t from, std::size_t to) {
+  for (std::size_t k = from; k < to; ++k)
+    if (times[k + 1] - times[k] > kMaxGap) return true;
+  return false;
+}
+
+}  // namespace odomcalib::calib::ingest

@@ -1,0 +1,168 @@
+#include "calib/ingest/recording_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/ingest/gaps.hpp"
+#include "calib/math/median.hpp"
+
+namespace odomcalib::calib::ingest {
+namespace {
+
+std::string number(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+std::optional<Error> missing_stream(const Recording& recording) {
+  if (recording.ticks.size() < 2)
+    return Error{ErrorCode::empty, "fewer than two tick samples", recording.name,
+                 "check that the controller's ticks were recorded"};
+  if ((recording.poses.empty() ? recording.scans.size() : recording.poses.size()) < 2)
+    return Error{ErrorCode::empty, "neither scans nor reference poses", recording.name,
+                 "check that the lidar was recorded"};
+  if (!(recording.robot.ticks_per_rev > 0.0))
+    return Error{ErrorCode::missing_units, "ticks_per_rev is missing", recording.name,
+                 "add it to the robot line"};
+  return std::nullopt;
+}
+
+struct Stream {
+  std::string name;
+  std::vector<double> times;  ///< s, sorted, two at least
+};
+
+template <typename Sample>
+Stream stream(const std::string& name, const std::vector<Sample>& samples) {
+  Stream out{name, {}};
+  for (const Sample& sample : samples) out.times.push_back(sample.t);
+  return out;
+}
+
+double spacing(const Stream& stream) {
+  std::vector<double> steps;
+  for (std::size_t k = 0; k + 1 < stream.times.size(); ++k)
+    steps.push_back(stream.times[k + 1] - stream.times[k]);
+  return math::median_of(std::move(steps));
+}
+
+std::optional<Error> too_seldom(const Recording& recording, const Stream& stream) {
+  const double step = spacing(stream);
+  if (step <= kMaxGap) return std::nullopt;
+  return Error{ErrorCode::format, stream.name + " come every " + number(step) + " s only", recording.name,
+               "record them at least every " + number(kMaxGap) + " s; check that times are in seconds"};
+}
+
+std::string span_text(const Stream& stream) {
+  return stream.name + " run from " + number(stream.times.front()) + " to " + number(stream.times.back()) +
+         " s";
+}
+
+/// Two clocks of which neither knows the other.
+std::optional<Error> clocks_apart(const Recording& recording, const Stream& ticks, const Stream& reference) {
+  const bool meet =
+      ticks.times.front() <= reference.times.back() && reference.times.front() <= ticks.times.back();
+  if (meet) return std::nullopt;
+  return Error{ErrorCode::empty, span_text(ticks) + ", " + span_text(reference), recording.name,
+               "stamp both with the same clock"};
+}
+
+template <typename Count>
+bool stands(const Recording& recording, Count count) {
+  constexpr std::int64_t kStanding = 2;  // counts that differ by no more are those of a wheel that stands
+  const auto [low, high] =
+      std::minmax_element(recording.ticks.begin(), recording.ticks.end(),
+                          [&](const auto& a, const auto& b) { return count(a) < count(b); });
+  return count(*high) - count(*low) <= kStanding;
+}
+
+/// One recording may well be of a turn about a wheel.
+template <typename Count>
+bool always_stands(std::span<const Recording> recordings, Count count) {
+  return std::all_of(recordings.begin(), recordings.end(),
+                     [&](const Recording& r) { return r.increments.empty() && stands(r, count); });
+}
+
+std::optional<Error> standing_counts(std::span<const Recording> recordings) {
+  const bool left = always_stands(recordings, [](const TickSample& s) { return s.left; });
+  const bool right = always_stands(recordings, [](const TickSample& s) { return s.right; });
+  if (!left && !right) return std::nullopt;
+  const std::string& name = recordings.front().name;
+  if (left && right)
+    return Error{ErrorCode::empty, "neither wheel turned", name,
+                 "record while the robot drives, or check both encoders"};
+  const std::string side = left ? "left" : "right";
+  return Error{ErrorCode::empty, "the counts of the " + side + " wheel never change", name,
+               "check that wheel's encoder and its cable, or drive with both wheels"};
+}
+
+double angle_of_sweep(const Scan& scan) {
+  return std::abs(scan.angle(scan.ranges.size() - 1) - scan.angle(0));
+}
+
+std::optional<Error> wrong_angles(const Recording& recording) {
+  std::vector<double> sweeps;
+  for (const Scan& scan : recording.scans) sweeps.push_back(angle_of_sweep(scan));
+  const double sweep = math::median_of(std::move(sweeps));
+  if (sweep <= 4.0 * std::numbers::pi) return std::nullopt;
+  return Error{ErrorCode::format, "a scan covers " + number(sweep) + " rad, several whole turns",
+               recording.name, "angle_min, angle_increment and angles must be in radians"};
+}
+
+std::size_t readings_outside(const Recording& recording) {
+  std::size_t count = 0;
+  for (const Discarded& discarded : recording.discarded)
+    if (discarded.what == "beam" && discarded.reason == kOutsideLimits) count += discarded.count;
+  return count;
+}
+
+bool is_blind(const Scan& scan) {
+  return std::all_of(scan.ranges.begin(), scan.ranges.end(), [](float range) { return range == 0.0F; });
+}
+
+std::optional<Error> no_readings(const Recording& recording) {
+  if (!std::all_of(recording.scans.begin(), recording.scans.end(), is_blind)) return std::nullopt;
+  const std::size_t outside = readings_outside(recording);
+  if (outside == 0)
+    return Error{ErrorCode::empty, "no scan has a reading", recording.name,
+                 "check what covers the lidar, and that nothing nearer than its range_min surrounds it"};
+  const Scan& scan = recording.scans.front();
+  return Error{ErrorCode::format,
+               "all " + std::to_string(outside) + " readings lie " + kOutsideLimits + ", " +
+                   number(scan.range_min) + " and " + number(scan.range_max) + " m",
+               recording.name, "ranges and their limits must be in metres"};
+}
+
+std::optional<Error> wrong_scans(const Recording& recording) {
+  if (auto error = wrong_angles(recording)) return error;
+  return no_readings(recording);
+}
+
+std::optional<Error> check_one(const Recording& recording) {
+  if (!recording.increments.empty()) return std::nullopt;
+  if (auto error = missing_stream(recording)) return error;
+  const bool by_poses = !recording.poses.empty();
+  const Stream ticks = stream("ticks", recording.ticks);
+  const Stream reference = by_poses ? stream("poses", recording.poses) : stream("scans", recording.scans);
+  for (const Stream* one : {&ticks, &reference})
+    if (auto error = too_seldom(recording, *one)) return error;
+  if (auto error = clocks_apart(recording, ticks, reference)) return error;
+  return by_poses ? std::nullopt : wrong_scans(recording);
+}
+
+}  // namespace
+
+std::optional<Error> check_recordings(std::span<const Recording> recordings) {
+  for (const Recording& recording : recordings)
+    if (auto error = check_one(recording)) return error;
+  return standing_counts(recordings);
+}
+
+}  // namespace odomcalib::calib::ingest

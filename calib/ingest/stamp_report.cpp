@@ -1,0 +1,44 @@
+#include "calib/ingest/stamp_report.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "calib/math/se2.hpp"
+#include "calib/terms/effects/factories.hpp"
+
+namespace odomcalib::calib::ingest {
+
+std::string to_json(const StampReport& report) {
+  return nlohmann::ordered_json{
+      {"ticks", report.ticks}, {"scans", report.scans}, {"time_increment", report.sweep}}
+      .dump();
+}
+
+std::vector<std::string> remarks_on(const StampReport& report) {
+  constexpr double kWorthALook = 5e-3;  // s
+  std::vector<std::string> remarks;
+  const auto remark_on = [&](const std::string& what, double seconds) {
+    if (seconds > kWorthALook)
+      remarks.push_back("stamps of the " + what + " jitter by " + std::to_string(std::lround(1e3 * seconds)) +
+                        " ms although the motion shows that the " + what +
+                        " were taken evenly: even times were used; stamp them where they are made");
+  };
+  remark_on("ticks", report.ticks);
+  remark_on("scans", report.scans);
+  if (report.sweep > 0.0)
+    remarks.push_back(
+        "scans do not say when their beams were sent; a head that turns once from scan to scan explains the "
+        "motion better, and was assumed: record time_increment");
+  return remarks;
+}
+
+std::vector<EffectResult> effects_of(const StampReport& report) {
+  if (report.turn == 0.0) return {};
+  EffectResult skew;
+  skew.name = terms::make_scan_skew()->name();
+  skew.parameters = {{"c", {report.turn / (2.0 * math::kPi), -1.0, "s"}}};
+  skew.evidence.p_value = report.sweep_p_value;
+  return {skew};
+}
+
+}  // namespace odomcalib::calib::ingest

@@ -1,0 +1,193 @@
+#include "calib/measurement/heading_pairs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "calib/matching/both_ways.hpp"
+#include "calib/math/vector2.hpp"
+
+namespace odomcalib::calib::measurement {
+namespace {
+
+constexpr double kNear = 0.8;                             // m between the two sensors
+constexpr double kLongest = 40.0;                         // s apart: odometry must still be a guess
+constexpr double kGate = 0.08;                            // m
+constexpr double kMinAgreement = 0.97;                    // cosine of the normals (14 degrees)
+constexpr double kMinIncidence = 0.3;                     // cosine
+constexpr double kMargin = 0.25;                          // m, the reach of a local line
+constexpr std::array kTurns = {2.4, 1.2, 3.0, 0.7, 1.8};  // rad, wanted between the scans of a pair
+constexpr double kTurnTolerance = 0.3;                    // rad
+
+double turn_between(const math::Pose& a, const math::Pose& b) {
+  return std::abs(math::wrap_angle(b.yaw - a.yaw));
+}
+
+/// Which scan to compare with `from`.
+std::optional<std::size_t> partner_of(const ScanSurfaces& scans, std::size_t from, double turn,
+                                      const std::vector<bool>& used) {
+  const auto& poses = scans.odometry();
+  for (std::size_t k = from + 1; k < poses.size() && scans.times()[k] - scans.times()[from] < kLongest; ++k) {
+    const math::Pose step = between(poses[from], poses[k]);
+    if (used[k] || std::hypot(step.x, step.y) > kNear) continue;
+    if (std::abs(turn_between(poses[from], poses[k]) - turn) < kTurnTolerance) return k;
+  }
+  return std::nullopt;
+}
+
+/// Pairs of scans, spread over the recording.
+class Choice {
+ public:
+  Choice(const ScanSurfaces& scans, std::size_t most)
+      : scans_(scans), most_(most), used_(scans.times().size(), false) {}
+
+  /// All turns in equal numbers; a drive that has too few of some is asked for any of them.
+  std::vector<HeadingPair> run() {
+    go_through([&](std::size_t from) { add(from, kTurns[chosen_.size() % kTurns.size()]); });
+    go_through([&](std::size_t from) {
+      for (const double turn : kTurns)
+        if (!used_[from]) add(from, turn);
+    });
+    return std::move(chosen_);
+  }
+
+ private:
+  template <typename Visit>
+  void go_through(const Visit& visit) {
+    const std::size_t stride = std::max<std::size_t>(1, used_.size() / (2 * most_));
+    for (std::size_t k = 0; k < used_.size() && chosen_.size() < most_; k += stride)
+      if (!used_[k]) visit(k);
+  }
+
+  void add(std::size_t from, double turn) {
+    const auto partner = partner_of(scans_, from, turn, used_);
+    if (!partner || scans_.gap_between(from, *partner) != nullptr) return;
+    used_[from] = used_[*partner] = true;
+    chosen_.push_back({from, *partner, {}});
+  }
+
+  const ScanSurfaces& scans_;
+  std::size_t most_;
+  std::vector<bool> used_;
+  std::vector<HeadingPair> chosen_;
+};
+
+/// A straight surface that the first scan knows from all its readings, seen from one of the sensors.
+/// Regressors made from single readings would carry those readings' noise, which is the residual's.
+struct Plane {
+  Eigen::Vector2d centre, normal;  ///< in the first scan's frame; the normal towards the sensors
+
+  /// How the surface is seen along a beam; the range is where the beam meets it.
+  [[nodiscard]] terms::Sighting seen(const Eigen::Vector2d& sensor, const Eigen::Vector2d& beam,
+                                     double bearing) const {
+    const Eigen::Vector2d back = -beam;
+    return {bearing, normal.dot(centre - sensor) / normal.dot(beam),
+            std::atan2(normal.x() * back.y() - normal.y() * back.x(), normal.dot(back))};
+  }
+};
+
+/// A beam of the second scan on a wall of the first. Everything but the distance is told from where beams
+/// meet the wall: single readings' noise would choose the partner, and the product of both would look like an
+/// error of the lidar.
+class Meeting {
+ public:
+  Meeting(const matching::MatchReference& reference, const Eigen::Vector2d& end, const Eigen::Vector2d& beam)
+      : surface_(reference.surface()), walls_(reference.walls()) {
+    const auto nearest = reference.order().nearest(end, kGate);
+    if (!nearest) return;
+    wall_ = walls_.of_point[nearest->index];
+    if (wall_ == matching::Walls::kNone) return;
+    const matching::Wall& wall = walls_.walls[wall_];
+    const double place = place_of_beam(wall.line, end, beam);
+    if (place < wall.low + kMargin || place > wall.high - kMargin) return;
+    partner_ = nearest_beam(nearest->index, place);
+    place_ = wall.line.centre + place * wall.line.direction();
+  }
+
+  /// Null when the beam does not meet a wall away from its ends: there neighbourhoods are cut off.
+  [[nodiscard]] const matching::SurfacePoint* partner() const { return partner_; }
+  [[nodiscard]] const Eigen::Vector2d& place() const { return place_; }
+  [[nodiscard]] Plane plane() const {
+    const matching::FittedLine& line = walls_.walls[wall_].line;
+    const bool turned = line.normal.dot(partner_->beam) > 0.0;
+    return {line.centre, turned ? Eigen::Vector2d(-line.normal) : line.normal};
+  }
+
+ private:
+  /// Of the readings near an index, the one on this wall whose beam meets it nearest to a place.
+  [[nodiscard]] const matching::SurfacePoint* nearest_beam(std::size_t index, double place) const {
+    constexpr std::size_t kReach = 4;
+    const matching::SurfacePoint* best = nullptr;
+    double least = kGate;
+    const std::size_t end = std::min(index + kReach + 1, surface_.points.size());
+    for (std::size_t k = index > kReach ? index - kReach : 0; k < end; ++k) {
+      const matching::SurfacePoint& point = surface_.points[k];
+      if (walls_.of_point[k] != wall_ || !point.has_line) continue;
+      const double off =
+          std::abs(place_of_beam(walls_.walls[wall_].line, point.position, point.beam) - place);
+      if (off < least) least = off, best = &point;
+    }
+    return best;
+  }
+
+  const matching::Surface& surface_;
+  const matching::Walls& walls_;
+  std::size_t wall_ = matching::Walls::kNone;
+  const matching::SurfacePoint* partner_ = nullptr;
+  Eigen::Vector2d place_ = Eigen::Vector2d::Zero();
+};
+
+std::optional<DoubleSighting> compare(const matching::MatchReference& reference,
+                                      const matching::SurfacePoint& point, const math::Frame& frame,
+                                      double range_noise) {
+  if (!point.has_line) return std::nullopt;
+  const Eigen::Vector2d& sensor = frame.origin();
+  const Eigen::Vector2d beam = frame.rotate(point.beam);
+  const Eigen::Vector2d end = sensor + frame.rotate(point.position);
+  const Meeting meeting(reference, end, beam);
+  if (meeting.partner() == nullptr) return std::nullopt;
+  const matching::SurfacePoint& partner = *meeting.partner();
+  const Plane plane = meeting.plane();
+  if (-plane.normal.dot(beam) < kMinIncidence || -plane.normal.dot(partner.beam) < kMinIncidence)
+    return std::nullopt;
+  if (frame.rotate(point.normal).dot(plane.normal) < kMinAgreement) return std::nullopt;
+  const double distance = plane.normal.dot(end - partner.anchor);
+  if (std::abs(distance) > kGate) return std::nullopt;
+  return DoubleSighting{plane.seen(Eigen::Vector2d::Zero(), partner.beam, partner.bearing),
+                        plane.seen(sensor, beam, point.bearing),
+                        partner.beam,
+                        beam,
+                        plane.normal,
+                        meeting.place() - sensor,
+                        distance,
+                        std::sqrt(2.0 * matching::distance_variance(beam.dot(plane.normal), range_noise))};
+}
+
+/// Matches the pair and collects its points; none when the match does not hold.
+void fill(const ScanSurfaces& scans, HeadingPair& pair) {
+  const matching::MatchReference reference(scans.surface(pair.from), scans.range_noise());
+  const matching::MatchReference second(scans.surface(pair.to), scans.range_noise());
+  matching::MatchOptions options;
+  options.range_noise = scans.range_noise();
+  const matching::MatchResult match =
+      match_both_ways(reference, second, scans.guess(pair.from, pair.to), options);
+  if (!match.is_usable()) return;
+  const math::Frame frame(match.motion);
+  for (const matching::SurfacePoint& point : second.surface().points)
+    if (const auto sighting = compare(reference, point, frame, scans.range_noise()))
+      pair.points.push_back(*sighting);
+}
+
+}  // namespace
+
+std::vector<HeadingPair> heading_pairs(const ScanSurfaces& scans, std::size_t most) {
+  constexpr std::size_t kFewest = 40;  // points
+  std::vector<HeadingPair> pairs = Choice(scans, most).run();
+  std::sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
+  for (HeadingPair& pair : pairs) fill(scans, pair);
+  std::erase_if(pairs, [](const HeadingPair& pair) { return pair.points.size() < kFewest; });
+  return pairs;
+}
+
+}  // namespace odomcalib::calib::measurement

@@ -1,0 +1,123 @@
+#include "calib/measurement/localise.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/matching/observability.hpp"
+#include "calib/math/median.hpp"
+#include "calib/math/tukey.hpp"
+#include "calib/math/vector2.hpp"
+
+namespace odomcalib::calib::measurement {
+namespace {
+
+constexpr std::size_t kMinInliers = 40;
+constexpr double kMinInlierShare = 0.5;  ///< of the beams that should strike a wall
+constexpr double kMinEigenvalueRatio = 0.01;
+constexpr double kSettled = 0.1;  ///< sigma
+constexpr int kWholeSteps = 5;
+
+std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>& beams,
+                                    const std::vector<Strike>& struck, const math::Pose& pose,
+                                    const PlaceOptions& options, double gate, std::size_t& strikes) {
+  std::vector<RangeTerm> terms;
+  strikes = 0;
+  terms.reserve(struck.size());
+  const math::Frame frame(pose);
+  for (const Strike& strike : struck) {
+    const auto term = range_term(map, beams[strike.beam], strike.wall, frame, options);
+    if (!term) continue;
+    ++strikes;
+    if (std::abs(term->residual) < gate) terms.push_back(*term);
+  }
+  return terms;
+}
+
+double last_gate(const PlaceOptions& options) { return std::max(0.05, 6.0 * options.range_noise); }
+
+double robust_scale(const std::vector<RangeTerm>& terms) {
+  std::vector<double> sizes;
+  sizes.reserve(terms.size());
+  for (const RangeTerm& term : terms) sizes.push_back(std::abs(term.residual) / std::sqrt(term.variance));
+  return std::max(1.0, math::kMadToSigma * math::median_of(std::move(sizes)));
+}
+
+bool is_apart(const math::Pose& a, const math::Pose& b) {
+  constexpr double kNear = 1e-3;  // m, rad
+  return math::difference(a, b).cwiseAbs().maxCoeff() > kNear;
+}
+
+/// One step, `share` of it taken; its whole length in sigmas.
+double improve(const std::vector<RangeTerm>& terms, double share, Place& place) {
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  place.information.setZero();
+  place.inliers = 0;
+  for (const RangeTerm& term : terms) {
+    const double weight = weight_of(term, place.scale);
+    if (!(weight > 0.0)) continue;
+    place.information += weight * term.by_pose * term.by_pose.transpose();
+    gradient += weight * term.residual * term.by_pose;
+    ++place.inliers;
+  }
+  const Eigen::Matrix3d damped =
+      place.information + 1e-9 * (place.information.trace() + 1.0) * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d step = damped.ldlt().solve(gradient);
+  place.pose.x -= share * step(0);
+  place.pose.y -= share * step(1);
+  place.pose.yaw -= share * step(2);
+  return std::sqrt(std::max(step.dot(place.information * step), 0.0));
+}
+
+}  // namespace
+
+std::optional<RangeTerm> range_term(const WallMap& map, const Beam& beam, std::size_t wall,
+                                    const math::Frame& sensor, const PlaceOptions& options) {
+  RangeTerm term = map.term(beam, wall, sensor, options.range_noise);
+  if (term.sighting.range > matching::far_limit(options.range_max, options.range_noise)) return std::nullopt;
+  if (!options.range_error.isZero()) term.residual -= options.range_error.dot(by_coefficient(term.sighting));
+  return term;
+}
+
+std::vector<RangeTerm> fitting_terms(const WallMap& map, const std::vector<Beam>& beams,
+                                     const math::Pose& sensor, const PlaceOptions& options) {
+  std::size_t strikes = 0;
+  return terms_within(map, beams, map.strikes(beams, sensor), sensor, options, last_gate(options), strikes);
+}
+
+double weight_of(const RangeTerm& term, double scale) {
+  return math::tukey_weight(term.residual / (std::sqrt(term.variance) * scale) / math::kTukeyCut) /
+         term.variance;
+}
+
+bool Place::is_usable() const {
+  if (!converged || inliers < kMinInliers) return false;
+  if (static_cast<double>(inliers) < kMinInlierShare * static_cast<double>(strikes)) return false;
+  return matching::observability(information).ratio > kMinEigenvalueRatio;
+}
+
+Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const math::Pose& guess,
+                 const PlaceOptions& options) {
+  Place place;
+  place.pose = guess;
+  const double last = last_gate(options);
+  std::vector<Strike> struck;
+  math::Pose cast_from;
+  for (int i = 0; i < options.iterations && !place.converged; ++i) {
+    const double gate = std::max(options.gate * std::pow(0.4, i), last);
+    // A step so short leads few beams to another wall.
+    if (i == 0 || is_apart(place.pose, cast_from)) {
+      struck = map.strikes(beams, place.pose);
+      cast_from = place.pose;
+    }
+    const auto terms = terms_within(map, beams, struck, place.pose, options, gate, place.strikes);
+    if (terms.size() < kMinInliers) return place;
+    place.scale = robust_scale(terms);
+    // Beams next to the end of a wall may strike it and miss it in turn; half steps settle between.
+    const double step = improve(terms, i < kWholeSteps ? 1.0 : 0.5, place);
+    place.converged = gate <= last && step < kSettled * place.scale;
+  }
+  return place;
+}
+
+}  // namespace odomcalib::calib::measurement

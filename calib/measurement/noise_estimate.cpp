@@ -1,0 +1,182 @@
+#include "calib/measurement/noise_estimate.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calib/math/median.hpp"
+
+namespace odomcalib::calib::measurement {
+namespace {
+
+constexpr int kSweeps = 2;
+constexpr double kWinsor = 2.5;
+
+struct Observation {
+  std::span<const SensorPair> pairs;
+  std::span<const PairState> states;
+  std::vector<Eigen::Vector3d> residuals;  ///< in room axes
+  std::vector<Eigen::Matrix3d> matcher;    ///< covariance the matcher states, in room axes
+  std::vector<Eigen::Matrix3d> jitter;     ///< what a stamp error of 1 s would add
+};
+
+/// -2 log likelihood of independent t-distributed pairs; neighbours' correlation does not matter for the
+/// scale.
+double misfit(const Observation& o, const NoiseModel& noise) {
+  const double matcher = noise.matcher_scale * noise.matcher_scale;
+  const double jitter = noise.stamp_jitter * noise.stamp_jitter;
+  const double translation = noise.process_translation * noise.process_translation;
+  const Eigen::Vector3d process(translation, translation, noise.process_rotation * noise.process_rotation);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < o.pairs.size(); ++k) {
+    Eigen::Matrix3d covariance = matcher * o.matcher[k] + jitter * o.jitter[k];
+    covariance.diagonal() += process;
+    const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
+    const Eigen::Vector3d z = llt.matrixL().solve(o.residuals[k]);
+    double log_determinant = 0.0;
+    for (Eigen::Index i = 0; i < 3; ++i) log_determinant += 2.0 * std::log(llt.matrixLLT()(i, i));
+    sum += log_determinant +
+           (kStudentDof + 3.0) * std::log1p(kStudentConsistency * z.squaredNorm() / kStudentDof);
+  }
+  return sum;
+}
+
+struct Range {
+  double NoiseModel::*member;
+  double low, high;  ///< of the search on a logarithmic scale
+  bool may_vanish;
+};
+
+constexpr std::array<Range, 4> kRanges = {{{&NoiseModel::process_rotation, 1e-5, 0.1, true},
+                                           {&NoiseModel::process_translation, 1e-5, 0.1, true},
+                                           {&NoiseModel::stamp_jitter, 2e-4, 0.1, true},
+                                           {&NoiseModel::matcher_scale, 0.2, 1.5, false}}};
+
+/// Golden-section search on the logarithm, and zero where that is as good.
+void improve(const Observation& o, const Range& range, NoiseModel& noise) {
+  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
+  double a = std::log(range.low);
+  double b = std::log(range.high);
+  const auto value_at = [&](double log_value) {
+    noise.*range.member = std::exp(log_value);
+    return misfit(o, noise);
+  };
+  double c = b - ratio * (b - a);
+  double d = a + ratio * (b - a);
+  double at_c = value_at(c);
+  double at_d = value_at(d);
+  while (b - a > 0.08) {
+    if (at_c < at_d) {
+      b = d;
+      d = c;
+      at_d = at_c;
+      c = b - ratio * (b - a);
+      at_c = value_at(c);
+    } else {
+      a = c;
+      c = d;
+      at_c = at_d;
+      d = a + ratio * (b - a);
+      at_d = value_at(d);
+    }
+  }
+  const double best = value_at((a + b) / 2.0);
+  if (!range.may_vanish) return;
+  const double found = noise.*range.member;
+  noise.*range.member = 0.0;
+  // One more parameter must earn its place: half of the usual 3.84 for a quantity at its border.
+  if (misfit(o, noise) > best + 2.71) noise.*range.member = found;
+}
+
+std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseModel& noise) {
+  std::array<double, 3> products{};
+  std::array<double, 3> weights{};
+  const auto scaled = [&](std::size_t k, const Eigen::Vector3d& v) -> Eigen::Vector3d {
+    return v.cwiseQuotient(base_covariance(o.pairs[k], o.states[k], noise).diagonal().cwiseSqrt());
+  };
+  const auto spread = [&](std::size_t k) -> Eigen::Vector3d {
+    return full_covariance(o.pairs[k], o.states[k], noise)
+        .diagonal()
+        .cwiseQuotient(base_covariance(o.pairs[k], o.states[k], noise).diagonal())
+        .cwiseSqrt();
+  };
+  for (std::size_t k = 1; k < o.pairs.size(); ++k) {
+    if (!o.pairs[k].follows_previous) continue;
+    const Eigen::Vector3d before = scaled(k - 1, o.residuals[k - 1]);
+    const Eigen::Vector3d here = scaled(k, o.residuals[k]);
+    const Eigen::Vector3d spread_before = spread(k - 1);
+    const Eigen::Vector3d spread_here = spread(k);
+    const Eigen::Vector3d jitter_before = noise.stamp_jitter * scaled(k - 1, o.states[k].begin_velocity);
+    const Eigen::Vector3d jitter_here = noise.stamp_jitter * scaled(k, o.states[k].begin_velocity);
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const double weight = 1.0 / (spread_before(c) * spread_here(c));
+      const double a = std::clamp(before(c), -kWinsor * spread_before(c), kWinsor * spread_before(c));
+      const double b = std::clamp(here(c), -kWinsor * spread_here(c), kWinsor * spread_here(c));
+      products[static_cast<std::size_t>(c)] += weight * (a * b + jitter_before(c) * jitter_here(c));
+      weights[static_cast<std::size_t>(c)] += weight;
+    }
+  }
+  std::array<double, 3> correlation{};
+  for (std::size_t c = 0; c < 3; ++c)
+    if (weights[c] > 0.0) correlation[c] = std::clamp(products[c] / weights[c], -0.48, 0.3);
+  return correlation;
+}
+
+double median_magnitude(const Observation& o, std::initializer_list<Eigen::Index> axes) {
+  std::vector<double> magnitudes;
+  for (const Eigen::Vector3d& r : o.residuals)
+    for (const Eigen::Index axis : axes) magnitudes.push_back(std::abs(r(axis)));
+  return math::median_of(std::move(magnitudes));
+}
+
+/// The heavy-tailed likelihood is flat far from the truth: the search begins where all spread is process
+/// noise.
+void begin_at_spread(const Observation& o, NoiseModel& noise) {
+  noise.process_translation = math::kMadToSigma * median_magnitude(o, {0, 1});
+  noise.process_rotation = math::kMadToSigma * median_magnitude(o, {2});
+  noise.stamp_jitter = 0.0;
+  noise.matcher_scale = 1.0;
+}
+
+Observation observe(std::span<const SensorPair> pairs, std::span<const PairState> states,
+                    std::span<const Eigen::Vector3d> residuals) {
+  Observation o{pairs, states, {}, {}, {}};
+  NoiseModel matcher_only;
+  NoiseModel one_second;
+  one_second.matcher_scale = 0.0;
+  one_second.stamp_jitter = 1.0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    o.residuals.push_back(to_room(residuals[k], states[k]));
+    o.matcher.push_back(base_covariance(pairs[k], states[k], matcher_only));
+    o.jitter.push_back(full_covariance(pairs[k], states[k], one_second));
+  }
+  return o;
+}
+
+}  // namespace
+
+NoiseModel estimate_noise(std::span<const SensorPair> pairs, std::span<const PairState> states,
+                          std::span<const Eigen::Vector3d> residuals, const NoiseModel& start) {
+  const Observation o = observe(pairs, states, residuals);
+  NoiseModel noise = start;
+  if (pairs.empty()) return noise;
+  begin_at_spread(o, noise);
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (const Range& range : kRanges) improve(o, range, noise);
+  noise.correlation = neighbour_correlation(o, noise);
+  return noise;
+}
+
+std::vector<double> squared_distances(std::span<const SensorPair> pairs, std::span<const PairState> states,
+                                      std::span<const Eigen::Vector3d> residuals, const NoiseModel& noise) {
+  std::vector<double> distances;
+  distances.reserve(pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const Eigen::LLT<Eigen::Matrix3d> llt(full_covariance(pairs[k], states[k], noise));
+    distances.push_back(llt.matrixL().solve(to_room(residuals[k], states[k])).squaredNorm());
+  }
+  return distances;
+}
+
+}  // namespace odomcalib::calib::measurement

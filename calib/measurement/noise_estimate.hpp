@@ -1,0 +1,31 @@
+// How large the noise of a recording is: matcher, wheels and time stamps told apart by how the residuals
+// spread.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "calib/measurement/whitening.hpp"
+
+namespace odomcalib::calib::measurement {
+
+/// Degrees of freedom of the Student t distribution that stands for noise with outliers (failed matches,
+/// bumps).
+inline constexpr double kStudentDof = 4.0;
+
+/// Factor on squared distances that makes the t likelihood read normally distributed noise at its true size:
+/// the root f of E[(dof + 3) f q / (dof + f q)] = 3 for q ~ chi-squared with 3 degrees of freedom.
+inline constexpr double kStudentConsistency = 1.3229464;
+
+/// Maximises the t likelihood of the single pairs over matcher scale, process noise and stamp jitter by
+/// coordinate search; then the correlation of neighbours from what the jitter does not explain.
+/// @param residuals of the pairs in the sensor's frame, m, m, rad
+NoiseModel estimate_noise(std::span<const SensorPair> pairs, std::span<const PairState> states,
+                          std::span<const Eigen::Vector3d> residuals, const NoiseModel& start);
+
+/// Squared Mahalanobis distance of each pair's residual under its own covariance.
+std::vector<double> squared_distances(std::span<const SensorPair> pairs, std::span<const PairState> states,
+                                      std::span<const Eigen::Vector3d> residuals, const NoiseModel& noise);
+
+}  // namespace odomcalib::calib::measurement

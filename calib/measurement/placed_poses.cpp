@@ -1,0 +1,84 @@
+#include "calib/measurement/placed_poses.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/ingest/gaps.hpp"
+#include "calib/math/median.hpp"
+#include "calib/math/vector2.hpp"
+#include "calib/measurement/scan_surfaces.hpp"
+
+namespace odomcalib::calib::measurement {
+namespace {
+
+constexpr double kSpan = 0.1;           // s, over which wheels err by less than a pose does
+constexpr double kLeastNoise = 1e-4;    // m and rad: nothing is measured better
+constexpr double kUnknownNoise = 1e-3;  // m and rad
+
+math::Pose pose_of(const PoseSample& sample) { return {sample.x, sample.y, math::wrap_angle(sample.yaw)}; }
+
+/// What each motion from one pose to the next has beyond that of the wheels; the step before a gap is left
+/// out.
+std::vector<Eigen::Vector3d> steps_beyond_wheels(std::span<const PoseSample> poses,
+                                                 const PathOfWheels& wheels) {
+  std::vector<Eigen::Vector3d> steps;
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    if (poses[k].t - poses[k - 1].t > ingest::kMaxGap) continue;
+    steps.push_back(math::difference(between(pose_of(poses[k - 1]), pose_of(poses[k])),
+                                     between(wheels(poses[k - 1].t), wheels(poses[k].t))));
+  }
+  return steps;
+}
+
+/// Of a single pose, x, y, yaw. Of three poses the middle one shows the noise, whatever scale the wheels
+/// have: the second difference has six times the variance of one.
+Eigen::Vector3d noise_of(std::span<const PoseSample> poses, const PathOfWheels& wheels) {
+  const std::vector<Eigen::Vector3d> steps = steps_beyond_wheels(poses, wheels);
+  if (steps.size() < 3) return Eigen::Vector3d::Constant(kUnknownNoise);
+  Eigen::Vector3d noise;
+  for (Eigen::Index i = 0; i < noise.size(); ++i) {
+    std::vector<double> sizes;
+    for (std::size_t k = 1; k < steps.size(); ++k) sizes.push_back(std::abs(steps[k](i) - steps[k - 1](i)));
+    noise(i) = std::max(math::kMadToSigma * math::median_of(std::move(sizes)) / std::sqrt(6.0), kLeastNoise);
+  }
+  const double position = std::sqrt(0.5 * (noise(0) * noise(0) + noise(1) * noise(1)));
+  return {position, position, noise(2)};
+}
+
+/// Each by itself; headings go on beyond half a turn.
+std::vector<PlacedScan> single_places(std::span<const PoseSample> poses, const Eigen::Vector3d& noise) {
+  std::vector<PlacedScan> places;
+  places.reserve(poses.size());
+  for (const PoseSample& sample : poses) {
+    math::Pose pose = pose_of(sample);
+    if (!places.empty()) {
+      const double before = places.back().pose.yaw;
+      pose.yaw = before + math::wrap_angle(pose.yaw - before);
+    }
+    places.push_back({sample.t, pose, noise.cwiseAbs2().asDiagonal()});
+  }
+  return places;
+}
+
+double mean_time(std::span<const PlacedScan> places) {
+  double sum = 0.0;
+  for (const PlacedScan& place : places) sum += place.time;
+  return sum / static_cast<double>(places.size());
+}
+
+}  // namespace
+
+std::vector<PlacedScan> placed_poses(std::span<const PoseSample> poses, const PathOfWheels& wheels) {
+  const std::vector<PlacedScan> singles = single_places(poses, noise_of(poses, wheels));
+  std::vector<PlacedScan> places;
+  for (std::size_t first = 0; first < singles.size();) {
+    std::size_t end = first + 1;
+    while (end < singles.size() && singles[end].time - singles[first].time < kSpan) ++end;
+    const auto span = std::span(singles).subspan(first, end - first);
+    places.push_back(mean_of(span, mean_time(span), wheels));
+    first = end;
+  }
+  return places;
+}
+
+}  // namespace odomcalib::calib::measurement

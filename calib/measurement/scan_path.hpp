@@ -1,0 +1,38 @@
+// Where every scan of a recording was taken: placed one after the other in a map of walls that grows on the
+// way, the map adjusted to all of them, and all placed again. Each scan's error is then its own: it does not
+// add up along the drive as that of a chain of matches does.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "calib/measurement/placed_scan.hpp"
+#include "calib/measurement/range_tracer.hpp"
+#include "calib/vehicle/drive_model.hpp"
+#include "proto/recording/recording.hpp"
+
+namespace odomcalib::calib::measurement {
+
+struct ScanPath {
+  std::vector<PlacedScan> scans;  ///< in time order
+  std::size_t lost = 0;           ///< scans that could not be placed
+  WallMap map;
+  std::vector<terms::LidarFinding> lidar;  ///< errors of the ranges, if asked for
+  /// Lost scans are few enough for the others to be trusted.
+  [[nodiscard]] bool is_usable() const;
+};
+
+struct PathOptions {
+  double range_noise = 0.01;  ///< m
+  /// Look for errors of the ranges; an offset that is found is taken out before scans are placed.
+  RangeTracer trace_ranges = {};
+};
+
+/// @param parameters, effects of the model, for guesses and for de-skewing
+/// @param known the same scans placed with other parameters, which change little but how they are de-skewed;
+/// empty: nothing is known yet
+ScanPath place_scans(const Recording& recording, const vehicle::DriveModel& model,
+                     std::span<const double> parameters, const vehicle::EffectList& effects,
+                     const PathOptions& options, const ScanPath& known = {});
+
+}  // namespace odomcalib::calib::measurement

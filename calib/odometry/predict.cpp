@@ -1,0 +1,234 @@
+#include "calib/odometry/predict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <string_view>
+
+#include "calib/ingest/tick_stamps.hpp"
+#include "calib/odometry/drive_clock.hpp"
+#include "calib/selection/tracing_json.hpp"
+#include "calib/terms/catalogue.hpp"
+#include "calib/terms/curve_effect.hpp"
+#include "calib/terms/effects/reference_effect.hpp"
+#include "calib/terms/lidar_effect.hpp"
+#include "calib/vehicle/drive_history.hpp"
+#include "calib/vehicle/drive_model.hpp"
+#include "calib/vehicle/step_context.hpp"
+
+namespace odomcalib::calib::odometry {
+namespace {
+
+/// Samples kept for smoothing: effects see speeds, and speeds need a little history.
+constexpr std::size_t kHistory = 32;
+
+constexpr std::string_view kDrift = "drift_with_time";
+
+struct Correction {
+  Eigen::VectorXd parameters;
+  vehicle::EffectList effects;
+};
+
+double value_or(const Calibration& calibration, const std::string& name, double otherwise) {
+  return calibration.parameter(name).value_or(otherwise);
+}
+
+/// Wheels that changed with time begin the next drive as they ended this one.
+bool stays_with_the_wheels(const vehicle::Effect& effect) { return effect.name() == kDrift; }
+
+/// What goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
+bool stays_with_the_wheels(const selection::FittedCurve& fitted) {
+  const terms::Curve& curve = fitted.curve;
+  return curve.law.variable == vehicle::Variable::time && !is_the_lidars(curve) &&
+         (curve.period == 0.0 || fitted.law_of == kDrift);
+}
+
+/// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the
+/// lidar is none of odometry.
+Place place_of(const vehicle::Effect& effect, const std::string& parameter = "") {
+  if (terms::concerns_wheels_too(effect, parameter)) return Place::odometry;
+  if (terms::concerns_reference(effect)) return Place::reference;
+  const bool stays_behind = effect.storage() == vehicle::Storage::nowhere && !stays_with_the_wheels(effect);
+  return stays_behind ? Place::nowhere : Place::odometry;
+}
+
+Place place_of(const selection::FittedCurve& fitted) {
+  return stays_with_the_wheels(fitted) ? Place::odometry : place_of(*make_curve_effect(fitted.curve));
+}
+
+bool acts_on_odometry(const vehicle::Effect& effect) {
+  const auto parameters = effect.parameters();
+  return std::any_of(parameters.begin(), parameters.end(), [&](const vehicle::EffectParameter& p) {
+    return place_of(effect, p.name) == Place::odometry;
+  });
+}
+
+/// The effect that the values were fitted for; null when this program does not know it.
+std::shared_ptr<const vehicle::Effect> effect_of(const EffectResult& result) {
+  if (result.parameters.empty()) return nullptr;
+  const auto effect = terms::find_effect(result.name, result.parameters.front().first);
+  return effect && result.parameters.size() <= effect->parameters().size() ? effect : nullptr;
+}
+
+/// Parameters that the file does not state, as those of another program may not, stay where a fit begins.
+std::vector<double> values_of(const EffectResult& result,
+                              const std::shared_ptr<const vehicle::Effect>& effect) {
+  std::vector<double> values = vehicle::start_of({effect});
+  for (std::size_t k = 0; k < result.parameters.size(); ++k) values[k] = result.parameters[k].second.value;
+  return values;
+}
+
+std::vector<selection::FittedCurve> curves_of(const Calibration& calibration) {
+  const auto member = calibration.extensions.find(selection::kCurvesMember);
+  return member == calibration.extensions.end() ? std::vector<selection::FittedCurve>{}
+                                                : selection::curves_from_json(member->second);
+}
+
+/// A curve of time is about its mean: where the time is not known, nothing is better known than that.
+Correction correction_of(const Calibration& calibration, const DriveClock& clock) {
+  wheels::BaseParameters base;
+  base.left_radius =
+      value_or(calibration, "left_wheel_diameter", calibration.robot.left_wheel_diameter) / 2.0;
+  base.right_radius =
+      value_or(calibration, "right_wheel_diameter", calibration.robot.right_wheel_diameter) / 2.0;
+  base.track_width = value_or(calibration, "track_width", calibration.robot.track_width);
+  Correction correction{vehicle::to_vector(base), {}};
+  std::vector<double> values(correction.parameters.data(),
+                             correction.parameters.data() + vehicle::kBaseCount);
+  for (const EffectResult& result : calibration.effects) {
+    const auto effect = effect_of(result);
+    if (!effect || !acts_on_odometry(*effect)) continue;
+    correction.effects.push_back(effect);
+    const std::vector<double> own = values_of(result, effect);
+    values.insert(values.end(), own.begin(), own.end());
+  }
+  for (const selection::FittedCurve& fitted : curves_of(calibration)) {
+    if (place_of(fitted) != Place::odometry) continue;
+    if (fitted.curve.law.variable == vehicle::Variable::time && !clock.is_known()) continue;
+    correction.effects.push_back(make_curve_effect(fitted.curve));
+    values.insert(values.end(), fitted.coefficients.begin(), fitted.coefficients.end());
+  }
+  correction.parameters =
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return correction;
+}
+
+}  // namespace
+
+std::vector<Placement> effect_placements(const Calibration& calibration) {
+  std::vector<Placement> placements;
+  for (const EffectResult& result : calibration.effects) {
+    const auto effect = effect_of(result);
+    const Place otherwise = terms::find_lidar_effect(result.name) ? Place::reference : Place::nowhere;
+    for (const auto& [name, quantity] : result.parameters)
+      placements.push_back({result.name, name, quantity, effect ? place_of(*effect, name) : otherwise});
+  }
+  for (const selection::FittedCurve& fitted : curves_of(calibration)) {
+    const Quantity count{static_cast<double>(fitted.coefficients.size()), -1.0, "coefficients"};
+    placements.push_back({make_curve_effect(fitted.curve)->name(), "", count, place_of(fitted)});
+  }
+  return placements;
+}
+
+std::vector<std::string> unknown_effects(const Calibration& calibration) {
+  std::vector<std::string> names;
+  for (const EffectResult& result : calibration.effects)
+    if (!effect_of(result) && !terms::find_lidar_effect(result.name)) names.push_back(result.name);
+  return names;
+}
+
+Calibration nominal_calibration(const RobotDescription& robot) {
+  Calibration calibration;
+  calibration.robot = robot;
+  calibration.parameters = {{"left_wheel_diameter", {robot.left_wheel_diameter, -1.0, "m"}},
+                            {"right_wheel_diameter", {robot.right_wheel_diameter, -1.0, "m"}},
+                            {"track_width", {robot.track_width, -1.0, "m"}}};
+  calibration.reasons = {"nominal values"};
+  return calibration;
+}
+
+std::vector<PoseSample> predict(const Recording& recording, const Calibration& calibration) {
+  std::vector<PoseSample> poses;
+  Recording counted;
+  counted.robot = recording.robot;
+  counted.ticks = recording.ticks;
+  if (const auto even = ingest::even_ticks(recording)) ingest::set_stamps(counted.ticks, even->t);
+  const wheels::WheelTrack track = wheels::wheel_track_from_ticks(counted);
+  if (track.empty()) return poses;
+  const DriveClock clock(calibration, track.t.front());
+  const Correction correction = correction_of(calibration, clock);
+  std::vector<vehicle::StepContext> context =
+      vehicle::make_context(track, vehicle::to_base(vehicle::as_span(correction.parameters)));
+  for (vehicle::StepContext& c : context) c.t = clock.at(track.t.front() + c.t);
+  const vehicle::DriveModel model(track, std::move(context));
+  const std::vector<math::Pose> base =
+      model.trajectory(vehicle::as_span(correction.parameters), correction.effects).poses();
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < recording.ticks.size(); ++i) {
+    // Repeated stamps keep the pose.
+    while (k + 1 < track.t.size() && track.t[k + 1] <= counted.ticks[i].t) ++k;
+    poses.push_back({recording.ticks[i].t, base[k].x, base[k].y, math::wrap_angle(base[k].yaw)});
+  }
+  return poses;
+}
+
+struct Odometry::State {
+  Calibration calibration;
+  DriveClock clock;
+  Correction correction;
+  std::deque<TickSample> history;
+  math::Pose pose;
+  vehicle::DriveHistory drive{{}, 0.0};
+
+  [[nodiscard]] double ticks_per_rev() const { return calibration.robot.ticks_per_rev; }
+
+  void begin(double stamp) {
+    clock = DriveClock(calibration, stamp);
+    correction = correction_of(calibration, clock);
+    const double tick_angle = ticks_per_rev() > 0.0 ? 2.0 * math::kPi / ticks_per_rev() : 0.0;
+    drive = vehicle::DriveHistory(vehicle::to_base(vehicle::as_span(correction.parameters)), tick_angle);
+  }
+};
+
+Odometry::Odometry(const Calibration& calibration) : state_(std::make_unique<State>()) {
+  state_->calibration = calibration;
+}
+Odometry::~Odometry() = default;
+Odometry::Odometry(Odometry&&) noexcept = default;
+Odometry& Odometry::operator=(Odometry&&) noexcept = default;
+
+PoseSample Odometry::update(const TickSample& sample) {
+  State& s = *state_;
+  if (s.history.empty()) s.begin(sample.t);
+  const bool advances = !s.history.empty() && sample.t > s.history.back().t;
+  if (s.history.empty() || advances) s.history.push_back(sample);
+  if (s.history.size() > kHistory) s.history.pop_front();
+  if (!advances || !(s.ticks_per_rev() > 0.0))
+    return {sample.t, s.pose.x, s.pose.y, math::wrap_angle(s.pose.yaw)};
+
+  // The last interval, seen with the history before it; what accumulates over the whole drive is carried
+  // along.
+  Recording recent;
+  recent.robot.ticks_per_rev = s.ticks_per_rev();
+  recent.ticks.assign(s.history.begin(), s.history.end());
+  const wheels::WheelTrack track = wheels::wheel_track_from_ticks(recent);
+  const std::size_t n = track.t.size();
+  const wheels::BaseParameters base = vehicle::to_base(vehicle::as_span(s.correction.parameters));
+  vehicle::StepContext context =
+      vehicle::make_context_of_moment(track, base, n - std::min<std::size_t>(n, 3)).back();
+  see_from_the_past(context, track, base);
+  context.t = s.clock.at(sample.t);
+  s.drive.advance(context);
+
+  wheels::WheelTrack last{{track.t[n - 2], track.t[n - 1]},
+                          {track.left[n - 2], track.left[n - 1]},
+                          {track.right[n - 2], track.right[n - 1]},
+                          {track.segment[n - 2], track.segment[n - 1]}};
+  const vehicle::DriveModel model(std::move(last), {context});
+  s.pose = compose(
+      s.pose,
+      model.trajectory(vehicle::as_span(s.correction.parameters), s.correction.effects).poses().back());
+  return {sample.t, s.pose.x, s.pose.y, math::wrap_angle(s.pose.yaw)};
+}
+
+}  // namespace odomcalib::calib::odometry

@@ -1,0 +1,53 @@
+// Dead reckoning from ticks with a calibration and its host-side effects.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "proto/calibration/calibration.hpp"
+#include "proto/recording/recording.hpp"
+
+namespace odomcalib::calib::odometry {
+
+/// Base pose at each tick sample, starting at the origin. Frame: base at the first sample. What changed with
+/// time is followed where the stamps are on the clock of the calibration's own drive (drive_clock.hpp).
+std::vector<PoseSample> predict(const Recording& recording, const Calibration& calibration);
+
+/// Where a value of an effect takes effect: in odometry; in what the reference is compared with, and not in
+/// odometry; or nowhere, because it belongs to the place or the day.
+enum class Place { odometry, reference, nowhere };
+
+struct Placement {
+  std::string effect;     ///< as in the calibration file, or "curve of ... on ..."
+  std::string parameter;  ///< empty for a curve
+  Quantity quantity;
+  Place place = Place::odometry;
+};
+/// Every value of every effect and curve of the calibration, in the order of the file.
+std::vector<Placement> effect_placements(const Calibration& calibration);
+
+/// Names of effects in the file that this program cannot compensate, because it does not know them or not
+/// with these parameters: odometry goes on without them.
+std::vector<std::string> unknown_effects(const Calibration& calibration);
+
+/// A calibration that holds the nominal values and no effects: dead reckoning as the robot does it now.
+Calibration nominal_calibration(const RobotDescription& robot);
+
+/// The same, sample by sample, for the running daemon.
+class Odometry {
+ public:
+  explicit Odometry(const Calibration& calibration);
+  ~Odometry();
+  Odometry(Odometry&&) noexcept;
+  Odometry& operator=(Odometry&&) noexcept;
+  /// Adds one sample and returns the base pose at its time. The first sample defines the origin; a new
+  /// segment continues from the last pose without motion in between.
+  PoseSample update(const TickSample& sample);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace odomcalib::calib::odometry

@@ -1,0 +1,37 @@
+// The quality gate: may this calibration be written to a robot?
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "proto/calibration/calibration.hpp"
+#include "proto/calibration/report_data.hpp"
+
+namespace odomcalib::calib::report {
+
+struct GateResult {
+  Verdict verdict = Verdict::refused;
+  std::vector<std::string> reasons;
+};
+
+/// What the values stand on.
+struct Footing {
+  bool converged = true;
+  std::size_t matched = 0;           ///< pairs of scans, where the values come from these
+  std::size_t unmatched = 0;         ///< pairs that gave no motion
+  std::vector<std::string> remarks;  ///< what else a user should know: sentences
+  /// Base quantities with the deviations that the motion leaves, without what is unknown of the effects;
+  /// empty: those of the calibration.
+  QuantityList measured = {};
+  std::vector<DriveError> drive_errors = {};
+};
+
+/// Odometry over ten seconds errs by plainly more than the reference and the wheels' noise make of it.
+bool odometry_is_off(const std::vector<DriveError>& errors);
+
+/// Refuses implausible or badly determined values, or those of the few scans that happened to match, and says
+/// what is missing; warns of what a user should know.
+GateResult judge(const Calibration& calibration, const Footing& footing);
+
+}  // namespace odomcalib::calib::report

@@ -1,0 +1,40 @@
+// From fits to the calibration file's members.
+#pragma once
+
+#include "calib/estimation/joint.hpp"
+#include "calib/measurement/session.hpp"
+#include "proto/calibration/calibration.hpp"
+
+namespace odomcalib::calib::report {
+
+/// left_wheel_diameter, right_wheel_diameter, track_width, lidar_x, lidar_y, lidar_yaw from radii and mount.
+/// @param covariance of the base parameters in radii; fixed ones have zero variance and get no deviation
+QuantityList base_quantities(const wheels::BaseParameters& base, const Eigen::MatrixXd& covariance);
+
+/// Relative, of a scan matcher's metre; it depends on the room and was 0.02 % over simulated rooms
+/// (tests/integration/accuracy_test.cpp).
+inline constexpr double kMatcherScale = 2e-4;
+
+/// Adds what the statistics of one recording cannot show: all lengths inherit the error of the metre they
+/// were measured with.
+/// @param deviation of the metre, relative
+Eigen::MatrixXd with_scale_error(const Eigen::MatrixXd& covariance, const wheels::BaseParameters& base,
+                                 double deviation);
+
+/// Covariance of the quantities above from that of the radii.
+std::vector<std::vector<double>> diameter_covariance(const Eigen::MatrixXd& covariance);
+
+std::vector<std::string> base_quantity_names();
+
+/// The four classical estimators and the closed form on the same pairs: straight, spin, linear,
+/// joint_closed_form.
+std::vector<MethodResult> classical_methods(const measurement::Session& session, double delay,
+                                            Calibration& calibration);
+
+MethodResult joint_method(const estimation::FitResult& fit);
+
+/// @param pairs of each recording; none where no pair was measured
+std::vector<DataUse> data_use(std::span<const Recording> recordings,
+                              std::span<const measurement::PairSet> pairs);
+
+}  // namespace odomcalib::calib::report

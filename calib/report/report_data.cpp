@@ -1,0 +1,180 @@
+#include "calib/report/report_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/report/report.hpp"
+#include "calib/selection/drive_error.hpp"
+#include "calib/selection/folds.hpp"
+#include "calib/selection/residual_trace.hpp"
+
+namespace odomcalib::calib::report {
+namespace {
+
+constexpr std::size_t kMostPathPoints = 600;
+constexpr std::size_t kMostSamples = 300;
+constexpr std::size_t kHistogramBins = 20;
+constexpr double kHistogramEnd = 5.0;  ///< sigma
+constexpr double kTrustedWeight = 0.3;
+
+std::size_t stride(std::size_t count, std::size_t most) {
+  return std::max<std::size_t>(1, (count + most - 1) / most);
+}
+
+PathTrace path_of(const std::string& name, const std::vector<math::Pose>& poses) {
+  PathTrace path{name, {}};
+  const std::size_t step = stride(poses.size(), kMostPathPoints);
+  for (std::size_t k = 0; k < poses.size(); k += step) path.points.push_back({poses[k].x, poses[k].y});
+  return path;
+}
+
+/// Base poses by the reference: measured motions in a chain; gaps are bridged by the calibrated odometry.
+std::vector<math::Pose> reference_path(const measurement::FitData& data,
+                                       const vehicle::Trajectory& calibrated, const math::Pose& mount) {
+  std::vector<math::Pose> poses;
+  for (const measurement::SensorPair& pair : data.pairs) {
+    if (poses.empty()) poses.push_back(calibrated.at(pair.interval.begin));
+    if (!pair.follows_previous && poses.size() > 1) {
+      const double since = (&pair - 1)->interval.end;
+      poses.push_back(
+          compose(poses.back(), between(calibrated.at(since), calibrated.at(pair.interval.begin))));
+    }
+    poses.push_back(compose(poses.back(), conjugate(pair.motion, inverse(mount))));
+  }
+  return poses;
+}
+
+/// The recording with the most to see. Tuples of separate motions make no path.
+std::vector<PathTrace> paths_of(const measurement::Session& session, const vehicle::EffectList& effects,
+                                const estimation::FitResult& fit) {
+  const auto& data = session.data();
+  if (!session.recordings().front().increments.empty()) return {};
+  const auto longest = std::max_element(
+      data.begin(), data.end(), [](const auto& a, const auto& b) { return a.pairs.size() < b.pairs.size(); });
+  const Eigen::VectorXd nominal = selection::with_wheels(fit.parameters, effects, session.nominal());
+  const vehicle::Trajectory calibrated =
+      longest->model->trajectory(vehicle::as_span(fit.parameters), effects);
+  const math::Pose mount = vehicle::to_base(vehicle::as_span(fit.parameters)).mount;
+  return {path_of("odometry", longest->model->trajectory(vehicle::as_span(nominal), effects).poses()),
+          path_of("calibrated", calibrated.poses()),
+          path_of("reference", reference_path(*longest, calibrated, mount))};
+}
+
+/// Normalised residuals of one axis, without the pairs that the fit does not trust.
+std::vector<double> sigmas_of(const estimation::FitResult& fit, Eigen::Index axis) {
+  std::vector<double> sigmas;
+  for (std::size_t k = 0; k < fit.weights.size(); ++k)
+    if (fit.weights[k] >= kTrustedWeight)
+      sigmas.push_back(fit.whitened_residual(static_cast<Eigen::Index>(3 * k) + axis));
+  return sigmas;
+}
+
+double mean_product(const std::vector<double>& values, std::size_t lag) {
+  double sum = 0.0;
+  for (std::size_t k = lag; k < values.size(); ++k) sum += values[k] * values[k - lag];
+  return sum / std::max(static_cast<double>(values.size()), 1.0);
+}
+
+/// Wald and Wolfowitz's runs test on the signs: standard normal when their order is random.
+double runs_test(const std::vector<double>& values) {
+  double positive = 0.0;
+  double runs = values.empty() ? 0.0 : 1.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (values[k] > 0.0) ++positive;
+    if (k > 0 && (values[k] > 0.0) != (values[k - 1] > 0.0)) ++runs;
+  }
+  const double n = static_cast<double>(values.size());
+  const double product = 2.0 * positive * (n - positive);
+  if (n < 10.0 || product <= n) return 0.0;
+  const double variance = product * (product - n) / (n * n * (n - 1.0));
+  return (runs - (product / n + 1.0)) / std::sqrt(variance);
+}
+
+std::vector<std::size_t> histogram_of(const std::vector<double>& sigmas) {
+  std::vector<std::size_t> counts(kHistogramBins, 0);
+  for (const double s : sigmas) {
+    const double place = (s + kHistogramEnd) / (2.0 * kHistogramEnd) * static_cast<double>(kHistogramBins);
+    if (place >= 0.0 && place < static_cast<double>(kHistogramBins))
+      ++counts[static_cast<std::size_t>(place)];
+  }
+  return counts;
+}
+
+ResidualAxis axis_of(const estimation::FitResult& fit, Eigen::Index axis, const char* name,
+                     const char* unit) {
+  ResidualAxis out;
+  out.name = name;
+  out.unit = unit;
+  double count = 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < fit.weights.size(); ++k) {
+    if (fit.weights[k] < kTrustedWeight) continue;
+    const double r = fit.residuals(static_cast<Eigen::Index>(k), axis);
+    out.mean += r;
+    squares += r * r;
+    ++count;
+  }
+  out.mean /= std::max(count, 1.0);
+  out.std = std::sqrt(std::max(squares / std::max(count, 1.0) - out.mean * out.mean, 0.0));
+  const auto sigmas = sigmas_of(fit, axis);
+  const double power = mean_product(sigmas, 0);
+  out.normalised = std::sqrt(power);
+  out.autocorrelation = power > 0.0 ? mean_product(sigmas, 1) / power : 0.0;
+  out.runs = runs_test(sigmas);
+  out.histogram = histogram_of(sigmas);
+  return out;
+}
+
+/// Of the first recording, over its time.
+std::vector<ResidualSample> series_of(const measurement::Session& session, const estimation::FitResult& fit) {
+  std::vector<ResidualSample> series;
+  const auto& pairs = session.data().front().pairs;
+  const std::size_t step = stride(pairs.size(), kMostSamples);
+  for (std::size_t k = 0; k < pairs.size(); k += step) {
+    const auto row = static_cast<Eigen::Index>(3 * k);
+    series.push_back(
+        {pairs[k].interval.begin - pairs.front().interval.begin,
+         {fit.whitened_residual(row), fit.whitened_residual(row + 1), fit.whitened_residual(row + 2)}});
+  }
+  return series;
+}
+
+std::vector<std::pair<std::string, std::vector<double>>> left_out_of(const measurement::Session& session,
+                                                                     const estimation::FitResult& fit,
+                                                                     const std::vector<bool>& fixed) {
+  const auto folds = selection::folds_of(session.data());
+  std::vector<std::pair<std::string, std::vector<double>>> parameters;
+  for (const std::string& name : base_quantity_names()) parameters.push_back({name, {}});
+  for (std::size_t fold = 0; fold < selection::kFolds; ++fold) {
+    const wheels::BaseParameters base =
+        vehicle::to_base(vehicle::as_span(selection::without_fold(fit, folds, fold, fixed)));
+    const double values[] = {2.0 * base.left_radius, 2.0 * base.right_radius,
+                             base.track_width,       base.mount.x,
+                             base.mount.y,           math::wrap_angle(base.mount.yaw)};
+    for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k].second.push_back(values[k]);
+  }
+  return parameters;
+}
+
+}  // namespace
+
+ReportData make_report_data(const measurement::Session& session, const selection::SearchResult& found,
+                            const std::optional<estimation::FitResult>& plain) {
+  const vehicle::EffectList& effects = found.model.effects;
+  const estimation::FitResult& fit = found.model.fit;
+  ReportData data;
+  const auto fixed = vehicle::fixed_with(session.fixed(0), effects);
+  const selection::JudgedModel full{&fit, fixed, effects};
+  const selection::JudgedModel geometry{plain ? &*plain : nullptr, session.fixed(0), {}};
+  data.drive_errors =
+      drive_errors(session.data(), session.nominal(), plain && !effects.empty() ? &geometry : nullptr, full);
+  data.traces = selection::residual_traces(session.data(), effects, fit, fixed, found.quiet);
+  data.detectable = found.detectable;
+  data.paths = paths_of(session, effects, fit);
+  data.axes = {axis_of(fit, 0, "x", "m"), axis_of(fit, 1, "y", "m"), axis_of(fit, 2, "yaw", "rad")};
+  data.series = series_of(session, fit);
+  data.left_out = left_out_of(session, fit, fixed);
+  return data;
+}
+
+}  // namespace odomcalib::calib::report

@@ -1,0 +1,157 @@
+#include "calib/selection/candidate_columns.hpp"
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "calib/estimation/stack.hpp"
+#include "calib/terms/basis.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+#include "calib/vehicle/sensitivity.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+constexpr std::size_t kCarriers = static_cast<std::size_t>(vehicle::kLastCarrier) + 1;
+static_assert(kCarriers <= vehicle::kJetSize);
+
+/// A constant defect on every carrier, of size zero: what curves are linear in.
+class Defects final : public terms::StepEffect<Defects> {
+ public:
+  [[nodiscard]] std::string name() const override { return "defects"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    std::vector<vehicle::EffectParameter> list;
+    for (std::size_t k = 0; k < kCarriers; ++k)
+      list.push_back({to_string(static_cast<vehicle::Carrier>(k)), "1", 1.0, -1.0, 1.0});
+    return list;
+  }
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    for (std::size_t k = 0; k < kCarriers; ++k) carry(static_cast<vehicle::Carrier>(k), c, p[k], step);
+  }
+};
+
+/// One recording at the fit along which all candidates are tried.
+class Tried {
+ public:
+  Tried(const measurement::FitData& data, const vehicle::EffectList& effects,
+        const estimation::FitResult& fit, measurement::Whitener whitener)
+      : model_(*data.model),
+        trajectory_(model_.trajectory(vehicle::as_span(fit.parameters), effects)),
+        sensitivity_(model_, trajectory_, estimation::intervals_of(data.pairs)),
+        responses_(sensitivity_.by_steps({std::make_shared<Defects>()}, std::vector<double>(kCarriers, 0.0))),
+        whitener_(std::move(whitener)) {}
+
+  [[nodiscard]] Eigen::MatrixXd by_curve(const terms::Curve& curve) const {
+    const std::span<const vehicle::Carrier> carriers = acts_on(curve);
+    Eigen::MatrixXd sum = by_part(curve, carriers.front(), 0);
+    for (std::size_t part = 1; part < carriers.size(); ++part) sum += by_part(curve, carriers[part], part);
+    return whitened(std::move(sum));
+  }
+
+  [[nodiscard]] Eigen::MatrixXd by_effects(const vehicle::EffectList& effects) const {
+    return whitened(sensitivity_.by_more(effects, vehicle::start_of(effects)));
+  }
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd by_part(const terms::Curve& curve, vehicle::Carrier carrier,
+                                        std::size_t part) const {
+    const auto steps = static_cast<Eigen::Index>(model_.context().size());
+    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(basis_size(curve)));
+    for (Eigen::Index k = 0; k < steps; ++k) {
+      const terms::BasisValues values =
+          functions_in(curve, model_.context()[static_cast<std::size_t>(k)], part);
+      for (Eigen::Index j = 0; j < functions.cols(); ++j)
+        functions(k, j) = values[static_cast<std::size_t>(j)];
+    }
+    return responses_[static_cast<std::size_t>(carrier)].by_coefficients(functions);
+  }
+
+  [[nodiscard]] Eigen::MatrixXd whitened(Eigen::MatrixXd rows) const {
+    whitener_.apply(rows);
+    return rows;
+  }
+
+  const vehicle::DriveModel& model_;
+  vehicle::Trajectory trajectory_;
+  vehicle::Sensitivity sensitivity_;
+  std::vector<vehicle::StepResponse> responses_;  ///< one per carrier
+  measurement::Whitener whitener_;
+};
+
+using AllTried = std::vector<std::unique_ptr<Tried>>;
+
+AllTried try_along(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
+                   const estimation::FitResult& fit) {
+  const estimation::Stack stack = estimation::make_stack(data, effects, fit.parameters, false);
+  AllTried all;
+  for (std::size_t d = 0; d < data.size(); ++d)
+    all.push_back(std::make_unique<Tried>(data[d], effects, fit,
+                                          whitener_of(data, stack, fit.noise[d], fit.weights, d)));
+  return all;
+}
+
+/// Rows of all recordings below each other.
+Eigen::MatrixXd stacked(const AllTried& recordings,
+                        const std::function<Eigen::MatrixXd(const Tried&)>& make) {
+  std::vector<Eigen::MatrixXd> parts;
+  Eigen::Index rows = 0;
+  for (const auto& recording : recordings) {
+    parts.push_back(make(*recording));
+    rows += parts.back().rows();
+  }
+  Eigen::MatrixXd all(rows, parts.empty() ? 0 : parts.front().cols());
+  Eigen::Index first = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    all.middleRows(first, part.rows()) = part;
+    first += part.rows();
+  }
+  return all;
+}
+
+/// As many names among the candidates from `first` on as one sweep of automatic derivatives carries, and one
+/// at least; curves are passed over.
+std::vector<std::size_t> sweep_from(const std::vector<Candidate>& candidates, std::size_t first) {
+  std::vector<std::size_t> sweep;
+  std::size_t parameters = 0;
+  for (std::size_t k = first; k < candidates.size(); ++k) {
+    if (candidates[k].curve) continue;
+    parameters += candidates[k].effect->parameters().size();
+    if (parameters > vehicle::kJetSize && !sweep.empty()) break;
+    sweep.push_back(k);
+  }
+  return sweep;
+}
+
+void fill_names(const AllTried& recordings, const std::vector<Candidate>& candidates,
+                std::vector<Eigen::MatrixXd>& columns) {
+  for (auto sweep = sweep_from(candidates, 0); !sweep.empty();
+       sweep = sweep_from(candidates, sweep.back() + 1)) {
+    vehicle::EffectList effects;
+    for (const std::size_t k : sweep) effects.push_back(candidates[k].effect);
+    const Eigen::MatrixXd all = stacked(recordings, [&](const Tried& t) { return t.by_effects(effects); });
+    Eigen::Index first = 0;
+    for (const std::size_t k : sweep) {
+      const auto size = static_cast<Eigen::Index>(candidates[k].effect->parameters().size());
+      columns[k] = all.middleCols(first, size);
+      first += size;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Eigen::MatrixXd> candidate_columns(std::span<const measurement::FitData> data,
+                                               const vehicle::EffectList& effects,
+                                               const estimation::FitResult& fit,
+                                               const std::vector<Candidate>& candidates) {
+  const AllTried recordings = try_along(data, effects, fit);
+  std::vector<Eigen::MatrixXd> columns(candidates.size());
+  fill_names(recordings, candidates, columns);
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    if (candidates[k].curve)
+      columns[k] = stacked(recordings, [&](const Tried& t) { return t.by_curve(*candidates[k].curve); });
+  return columns;
+}
+
+}  // namespace odomcalib::calib::selection

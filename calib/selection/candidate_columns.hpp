@@ -1,0 +1,21 @@
+// What candidates would change in the residual.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "calib/estimation/joint.hpp"
+#include "calib/selection/candidate.hpp"
+
+namespace odomcalib::calib::selection {
+
+/// Whitened derivatives of the prediction by the parameters of each candidate, which acts on top of `effects`
+/// at its start (where it changes nothing), at the fit and with its weights: 3 n x parameters, one matrix per
+/// candidate.
+std::vector<Eigen::MatrixXd> candidate_columns(std::span<const measurement::FitData> data,
+                                               const vehicle::EffectList& effects,
+                                               const estimation::FitResult& fit,
+                                               const std::vector<Candidate>& candidates);
+
+}  // namespace odomcalib::calib::selection

@@ -1,0 +1,155 @@
+#include "calib/selection/drive_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "calib/math/bootstrap.hpp"
+#include "calib/selection/folds.hpp"
+#include "calib/selection/stretch.hpp"
+#include "calib/terms/effects/reference_effect.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+constexpr std::size_t kFewest = 4;
+constexpr unsigned kSeed = 20010823;
+
+/// Predicted minus measured motion of each stretch, in the base's frame at its begin.
+std::vector<math::Pose> errors_of(std::span<const measurement::FitData> data,
+                                  const std::vector<Stretch>& stretches,
+                                  const std::vector<Eigen::VectorXd>& parameters,
+                                  const vehicle::EffectList& effects) {
+  std::vector<math::Pose> errors(stretches.size());
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    for (std::size_t d = 0; d < data.size(); ++d) {
+      const auto trajectory = data[d].model->trajectory(vehicle::as_span(parameters[fold]), effects);
+      const measurement::PathOfWheels wheels = measurement::path_of_wheels(trajectory);
+      const math::Pose base_seen_from_sensor =
+          inverse(vehicle::to_base(vehicle::as_span(parameters[fold])).mount);
+      for (std::size_t k = 0; k < stretches.size(); ++k) {
+        const Stretch& s = stretches[k];
+        if (s.fold != fold || s.recording != d) continue;
+        const math::Pose told = between(trajectory.at(s.interval.begin), trajectory.at(s.interval.end));
+        const math::Pose motion = conjugate(measured_motion(s, data[d], wheels), base_seen_from_sensor);
+        errors[k] = {told.x - motion.x, told.y - motion.y, math::wrap_angle(told.yaw - motion.yaw)};
+      }
+    }
+  }
+  return errors;
+}
+
+/// Which number of a pose error counts, and its variance by the noise model.
+enum class Part { along, position, heading };
+
+double square_of(Part part, const math::Pose& e) {
+  if (part == Part::along) return e.x * e.x;
+  return part == Part::heading ? e.yaw * e.yaw : e.x * e.x + e.y * e.y;
+}
+
+double variance_of(Part part, const Eigen::Matrix3d& c) {
+  if (part == Part::along) return c(0, 0);
+  return part == Part::heading ? c(2, 2) : c(0, 0) + c(1, 1);
+}
+
+Bounded bounded(Part part, const std::vector<Stretch>& stretches, const std::vector<math::Pose>& errors) {
+  std::map<std::size_t, math::RatioOfSums> by_block;
+  math::RatioOfSums total;
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    const math::RatioOfSums one{square_of(part, errors[k]), stretches[k].amount * stretches[k].amount};
+    by_block[stretches[k].block] += one;
+    total += one;
+  }
+  const math::BootstrapInterval interval = bootstrap_root(by_block, kSeed);
+  return {total.root(), interval.lower, interval.upper};
+}
+
+double noise_floor(Part part, const std::vector<Stretch>& stretches) {
+  math::RatioOfSums sums;
+  for (const Stretch& s : stretches)
+    sums += {std::max(variance_of(part, s.covariance), 0.0), s.amount * s.amount};
+  return sums.root();
+}
+
+class Judge {
+ public:
+  Judge(std::span<const measurement::FitData> data, const wheels::BaseParameters& nominal,
+        const JudgedModel* geometry, const JudgedModel& full)
+      : data_(data), full_(full), folds_(folds_of(data)) {
+    full_parameters_ = by_fold(full);
+    if (nominal.left_radius > 0.0 && nominal.right_radius > 0.0 && nominal.track_width > 0.0)
+      nominal_parameters_.assign(kFolds, with_wheels(full.fit->parameters, full.effects, nominal));
+    if (geometry != nullptr)
+      for (const Eigen::VectorXd& p : by_fold(*geometry))
+        geometry_parameters_.push_back(
+            with_wheels(full.fit->parameters, full.effects, vehicle::to_base(vehicle::as_span(p))));
+  }
+
+  void add(StretchKind kind, const std::vector<std::pair<std::string, Part>>& names,
+           std::vector<DriveError>& out) const {
+    const auto stretches =
+        find_stretches(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
+    if (stretches.size() < kFewest) return;
+    const auto errors = [&](const std::vector<Eigen::VectorXd>& parameters) {
+      return parameters.empty() ? std::vector<math::Pose>{}
+                                : errors_of(data_, stretches, parameters, full_.effects);
+    };
+    const auto before = errors(nominal_parameters_);
+    const auto geometry = errors(geometry_parameters_);
+    const auto after = errors(full_parameters_);
+    const auto figure = [&](Part part, const std::vector<math::Pose>& e) {
+      return e.empty() ? std::nullopt : std::optional(bounded(part, stretches, e));
+    };
+    for (const auto& [name, part] : names)
+      out.push_back({name, part == Part::heading ? "rad" : "m", stretches.size(), figure(part, before),
+                     figure(part, geometry), figure(part, after), noise_floor(part, stretches)});
+  }
+
+ private:
+  [[nodiscard]] std::vector<Eigen::VectorXd> by_fold(const JudgedModel& model) const {
+    std::vector<Eigen::VectorXd> parameters;
+    for (std::size_t fold = 0; fold < kFolds; ++fold)
+      parameters.push_back(without_fold(*model.fit, folds_, fold, model.fixed));
+    return parameters;
+  }
+
+  std::span<const measurement::FitData> data_;
+  const JudgedModel& full_;
+  std::vector<std::size_t> folds_;
+  std::vector<Eigen::VectorXd> nominal_parameters_, geometry_parameters_, full_parameters_;  ///< by fold
+};
+
+}  // namespace
+
+Eigen::VectorXd with_wheels(const Eigen::VectorXd& full, const vehicle::EffectList& effects,
+                            const wheels::BaseParameters& base) {
+  Eigen::VectorXd parameters = full;
+  parameters(vehicle::kLeftRadius) = base.left_radius;
+  parameters(vehicle::kRightRadius) = base.right_radius;
+  parameters(vehicle::kTrackWidth) = base.track_width;
+  Eigen::Index index = vehicle::kBaseCount;
+  for (const auto& effect : effects) {
+    const bool kept = terms::concerns_reference(*effect);
+    for (const vehicle::EffectParameter& parameter : effect->parameters()) {
+      if (!kept) parameters(index) = parameter.start;
+      ++index;
+    }
+  }
+  return parameters;
+}
+
+std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
+                                     const wheels::BaseParameters& nominal, const JudgedModel* geometry,
+                                     const JudgedModel& full) {
+  const Judge judge(data, nominal, geometry, full);
+  std::vector<DriveError> errors;
+  judge.add(StretchKind::straight,
+            {{"straight_metre_length", Part::along}, {"straight_metre_heading", Part::heading}}, errors);
+  judge.add(StretchKind::turn, {{"full_turn_heading", Part::heading}}, errors);
+  judge.add(StretchKind::open_loop,
+            {{"open_loop_10s_position", Part::position}, {"open_loop_10s_heading", Part::heading}}, errors);
+  return errors;
+}
+
+}  // namespace odomcalib::calib::selection

@@ -1,0 +1,16 @@
+// Events, told to a user.
+#pragma once
+
+#include <string>
+
+#include "calib/math/se2.hpp"
+#include "calib/selection/tracing_json.hpp"
+
+namespace odomcalib::calib::selection {
+
+/// What changed at which moment, by how much, and which state the values stand for.
+/// @param event a curve that happens at once
+/// @param mount of the sensor on the base, since then
+std::string event_to_text(const FittedCurve& event, const math::Pose& mount);
+
+}  // namespace odomcalib::calib::selection

@@ -1,0 +1,254 @@
+#include "calib/selection/law_shape.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "calib/selection/plausibility.hpp"
+#include "calib/selection/proof.hpp"
+#include "calib/terms/basis.hpp"
+#include "calib/terms/candidate_curves.hpp"
+#include "calib/terms/curve_effect.hpp"
+#include "calib/terms/curve_on_drives.hpp"
+#include "calib/terms/effects/reference_effect.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+/// Base parameters that the carrier scales.
+std::vector<vehicle::BaseIndex> lengths_of(vehicle::Carrier carrier) {
+  switch (carrier) {
+    case vehicle::Carrier::left_travel:
+      return {vehicle::kLeftRadius};
+    case vehicle::Carrier::right_travel:
+      return {vehicle::kRightRadius};
+    case vehicle::Carrier::both_travel:
+      return {vehicle::kLeftRadius, vehicle::kRightRadius};
+    case vehicle::Carrier::track:
+      return {vehicle::kTrackWidth};
+    case vehicle::Carrier::scale:
+      return {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth};
+    default:
+      return {};
+  }
+}
+
+/// A steady turn along the path is what unequal wheels do.
+bool may_pass_for_a_length(const vehicle::Effect& effect) {
+  const std::vector<vehicle::Law> laws = effect.laws();
+  return std::any_of(laws.begin(), laws.end(), [](const vehicle::Law& law) {
+    return law.carrier == vehicle::Carrier::yaw_path || !lengths_of(law.carrier).empty();
+  });
+}
+
+/// Parameters of the model with the effect's shape that of the variant; nullopt if they are the model's own.
+std::optional<Eigen::VectorXd> in_shape_of(const vehicle::Effect& variant, const FittedModel& model,
+                                           std::size_t index) {
+  Eigen::VectorXd start = model.fit.parameters;
+  Eigen::Index k = first_parameter(model.effects, index);
+  for (const vehicle::EffectParameter& parameter : variant.parameters()) {
+    if (parameter.fixed) start(k) = parameter.start;
+    ++k;
+  }
+  return start == model.fit.parameters ? std::nullopt : std::optional(start);
+}
+
+/// Relative changes of one length, each with the motion that it acted on.
+class Changes {
+ public:
+  void add(double change, double motion) {
+    if (!(motion > 0.0)) return;
+    all_.emplace_back(change, motion);
+    total_ += motion;
+  }
+  /// What of the change the length itself may have taken over.
+  /// @param two_states the change from one to the other; otherwise the least of the changes' sizes that all
+  /// but a tenth of the motion exceed on one side of zero
+  [[nodiscard]] double unknown(bool two_states) {
+    constexpr double kShare = 0.1;
+    std::sort(all_.begin(), all_.end());
+    const double low = quantile(kShare), high = quantile(1.0 - kShare);
+    if (two_states) return high - low;
+    return low * high > 0.0 ? std::min(std::abs(low), std::abs(high)) : 0.0;
+  }
+
+ private:
+  [[nodiscard]] double quantile(double share) const {
+    double sum = 0.0;
+    for (const auto& [change, motion] : all_)
+      if ((sum += motion) >= share * total_) return change;
+    return 0.0;
+  }
+
+  std::vector<std::pair<double, double>> all_;
+  double total_ = 0.0;
+};
+
+std::span<const double> values_of(const FittedModel& model, std::size_t index) {
+  const auto first = static_cast<std::size_t>(first_parameter(model.effects, index));
+  return vehicle::as_span(model.fit.parameters).subspan(first, model.effects[index]->parameters().size());
+}
+
+/// The drive can tell it from the wheels, and robots may be that bad.
+bool is_credible(const vehicle::Effect& curve, const estimation::FitResult& before,
+                 const estimation::FitResult& after) {
+  return !curve_spoils_base(curve, before, after) && impossibility(curve, after).empty();
+}
+
+/// nullopt if it is not credible.
+std::optional<Reshaped> fitted_in_shape(const FitTask& task, const FittedModel& model,
+                                        const terms::Curve& shape,
+                                        const std::vector<measurement::NoiseModel>& noise) {
+  const auto effect = make_curve_effect(shape);
+  auto fitted = with_effect(task, model, effect, noise);
+  if (!fitted || !is_credible(*effect, model.fit, fitted->fit)) return std::nullopt;
+  return Reshaped{shape, std::move(*fitted)};
+}
+
+}  // namespace
+
+std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now,
+                               const std::vector<terms::Curve>& shapes) {
+  const FittedModel& model = now.model;
+  std::vector<Reshaped> all;
+  const Eigen::Index kept = first_parameter(model.effects, model.effects.size() - 1);
+  for (const terms::Curve& shape : shapes) {
+    vehicle::EffectList effects = model.effects;
+    effects.back() = make_curve_effect(shape);
+    Eigen::VectorXd start = model.fit.parameters;
+    // As many functions say much the same; which pairs are outliers hangs on where the fit begins.
+    if (basis_size(shape) != basis_size(now.curve)) {
+      start = Eigen::VectorXd::Zero(kept + static_cast<Eigen::Index>(basis_size(shape)));
+      start.head(kept) = model.fit.parameters.head(kept);
+    }
+    auto fit = task.fit(effects, start, model.fit.noise);
+    if (!fit || !is_credible(*effects.back(), model.fit, *fit)) continue;
+    all.push_back({shape, {std::move(effects), std::move(*fit)}});
+  }
+  return all;
+}
+
+const Reshaped& most_sensible_event(const std::vector<Reshaped>& shapes, double enough) {
+  std::vector<const Reshaped*> alike;
+  for (const Reshaped& shape : shapes)
+    if (takes_an_event(shape.curve) && shape.model.fit.cost < enough) alike.push_back(&shape);
+  std::sort(alike.begin(), alike.end(),
+            [](const Reshaped* a, const Reshaped* b) { return a->curve.memory < b->curve.memory; });
+  const terms::Curve& least = alike.front()->curve;
+  const bool was_none_too_short = least.law.variable == vehicle::Variable::since_stop && least.memory == 0;
+  return *alike[was_none_too_short ? alike.size() - 1 : alike.size() / 2];
+}
+
+std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& model,
+                                      const terms::Curve& curve,
+                                      const std::vector<measurement::NoiseModel>& noise) {
+  std::vector<terms::Curve> shapes = other_shapes(curve, task.models());
+  // What is as plain as a name proves nothing against it.
+  std::erase_if(shapes, [&](const terms::Curve& shape) { return shape.degree < curve.degree; });
+  shapes.push_back(curve);
+  std::optional<Reshaped> best;
+  const auto misfit = [&](const FittedModel& m) {
+    return m.fit.cost + schwarz(m.fit) * effective_parameters(m.fit);
+  };
+  for (const terms::Curve& shape : shapes) {
+    auto fitted = fitted_in_shape(task, model, shape, noise);
+    if (!fitted && shape.mean.empty() && may_be_centred(shape))
+      fitted = fitted_in_shape(task, model, centred(shape, task.models()), noise);
+    if (fitted && (!best || misfit(fitted->model) < misfit(best->model))) best = std::move(fitted);
+  }
+  return best;
+}
+
+bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::size_t index,
+                         const FittedModel& free) {
+  const auto without = without_effect(task, named, index, named.fit.noise);
+  return without && without->fit.cost - named.fit.cost > kNearlyAll * (without->fit.cost - free.fit.cost);
+}
+
+double effective_parameters(const estimation::FitResult& fit) {
+  const Eigen::MatrixXd data = fit.whitened_jacobian.transpose() * fit.whitened_jacobian;
+  const Eigen::MatrixXd all = data + fit.prior_information;
+  Eigen::VectorXd scale = all.diagonal().cwiseSqrt();
+  for (double& s : scale) s = s > 0.0 ? 1.0 / s : 0.0;
+  Eigen::MatrixXd scaled = scale.asDiagonal() * all * scale.asDiagonal();
+  for (Eigen::Index k = 0; k < scale.size(); ++k)
+    if (scale(k) == 0.0) scaled(k, k) = 1.0;
+  return scaled.ldlt().solve(scale.asDiagonal() * data * scale.asDiagonal()).trace();
+}
+
+double schwarz(const estimation::FitResult& fit) {
+  return std::log(static_cast<double>(fit.whitened_residual.size()));
+}
+
+bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other,
+               double per_parameter) {
+  const double more = effective_parameters(other.fit) - effective_parameters(given.fit);
+  return given.fit.cost - other.fit.cost > per_parameter * more &&
+         compared_on_held_out(task, given, other, all_folds()).total > 0.0;
+}
+
+Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, const terms::Curve& curve) {
+  Eigen::VectorXd doubt = Eigen::VectorXd::Zero(vehicle::kBaseCount);
+  const bool leaves_mean = leaves_mean_to_wheels(curve, task.models());
+  // What was kept of the past has no natural zero either: neither side of it is the robot as it was measured.
+  if (curve.mean.empty() && !is_memory(curve.law.variable) && !leaves_mean) return doubt;
+  const Eigen::VectorXd own = model.fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
+  // What changes as the day goes is often right at one end of it.
+  const bool goes_with_time = curve.law.variable == vehicle::Variable::time;
+  const double spread =
+      (goes_with_time ? terms::half_span_of : terms::spread_of)(curve, vehicle::as_span(own), task.models());
+  Eigen::Index wheel_of_event = 0;
+  for (const auto k : lengths_of(curve.law.carrier))
+    doubt(k) = (happens_at_once(curve) ? 0.5 * own(wheel_of_event++) : spread) * model.fit.parameters(k);
+  if (leaves_mean) {
+    const double wheel =
+        0.5 * model.fit.parameters(vehicle::kTrackWidth) * spread;  // m for each metre of way
+    doubt(vehicle::kLeftRadius) = -wheel * model.fit.parameters(vehicle::kLeftRadius);
+    doubt(vehicle::kRightRadius) = wheel * model.fit.parameters(vehicle::kRightRadius);
+  }
+  return doubt;
+}
+
+Eigen::VectorXd doubt_of_extrapolation(const FitTask& task, const FittedModel& model,
+                                       const std::vector<std::size_t>& law) {
+  Eigen::VectorXd doubt = Eigen::VectorXd::Zero(vehicle::kBaseCount);
+  if (terms::concerns_reference(*model.effects[law.front()])) return doubt;
+  const bool two_states = law.size() > 1 || model.effects[law.front()]->has_two_states();
+  Changes left, right, track;
+  for (const vehicle::DriveModel* drive : task.models())
+    for (const vehicle::StepContext& c : drive->context()) {
+      vehicle::WheelStep<double> step{c.left_delta, c.right_delta};
+      for (const std::size_t e : law) model.effects[e]->apply(c, values_of(model, e), step);
+      left.add(step.left / c.left_delta - 1.0, std::abs(c.left_delta));
+      right.add(step.right / c.right_delta - 1.0, std::abs(c.right_delta));
+      track.add(step.track - 1.0, std::abs(c.turn_rate) * c.dt);
+    }
+  // A law that ends where the data end, instead of going on to zero, is two deviations off.
+  const auto share = [&](Changes& changes) { return 0.5 * changes.unknown(two_states); };
+  doubt(vehicle::kLeftRadius) = share(left) * model.fit.parameters(vehicle::kLeftRadius);
+  doubt(vehicle::kRightRadius) = share(right) * model.fit.parameters(vehicle::kRightRadius);
+  doubt(vehicle::kTrackWidth) = share(track) * model.fit.parameters(vehicle::kTrackWidth);
+  return doubt;
+}
+
+std::vector<Eigen::VectorXd> doubts_of_shape(const FitTask& task, const FittedModel& model,
+                                             std::size_t index) {
+  const vehicle::Effect& effect = *model.effects[index];
+  std::vector<Eigen::VectorXd> doubts;
+  if (!may_pass_for_a_length(effect)) return doubts;
+  std::vector<double> likelihoods;
+  double all = 1.0;
+  for (const auto& variant : effect.variants()) {
+    const auto start = in_shape_of(*variant, model, index);
+    const auto fit = start ? task.fit(model.effects, *start, model.fit.noise) : std::nullopt;
+    if (!fit) continue;
+    likelihoods.push_back(std::exp(std::min(0.0, 0.5 * (model.fit.cost - fit->cost))));
+    all += likelihoods.back();
+    doubts.emplace_back(fit->parameters.head<vehicle::kBaseCount>() - model.base());
+  }
+  for (std::size_t k = 0; k < doubts.size(); ++k) doubts[k] *= std::sqrt(likelihoods[k] / all);
+  return doubts;
+}
+
+}  // namespace odomcalib::calib::selection

@@ -1,0 +1,192 @@
+#include "calib/selection/lidar_trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/selection/lidar_score.hpp"
+#include "calib/terms/lidar_curve.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+constexpr std::size_t kFewestPairs = 25;  // sign flips of fewer cannot tell
+constexpr std::size_t kMostFindings = 2;
+constexpr double kLevel = 0.001;  // family-wise
+
+std::vector<double> slice(const Eigen::VectorXd& all, Eigen::Index first, Eigen::Index count) {
+  return {all.data() + first, all.data() + first + count};
+}
+
+/// Large enough to matter, and no larger than devices can be wrong.
+bool is_plausible(const terms::LidarEffect& effect, const std::vector<double>& values) {
+  const auto parameters = effect.parameters();
+  double size = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    size = std::max(size, std::abs(values[k]) / parameters[k].negligible);
+    if (std::abs(values[k]) > parameters[k].largest) return false;
+  }
+  return size > 1.0;
+}
+
+std::vector<double> bearings_in(const std::vector<measurement::HeadingPair>& pairs) {
+  std::vector<double> all;
+  for (const measurement::HeadingPair& pair : pairs)
+    for (const measurement::DoubleSighting& point : pair.points) {
+      all.push_back(point.first.bearing);
+      all.push_back(point.second.bearing);
+    }
+  return all;
+}
+
+/// No value of it is beyond what chance leaves.
+bool is_superfluous(const terms::LidarFinding& finding) {
+  constexpr double kWald = 1.960;  // normal quantile, 5 % on both sides
+  for (std::size_t k = 0; k < finding.values.size(); ++k)
+    if (std::abs(finding.values[k]) > kWald * finding.deviations[k]) return false;
+  return finding.effect->is_named();
+}
+
+class Trace {
+ public:
+  Trace(const std::vector<measurement::HeadingPair>& pairs,
+        const std::vector<terms::LidarEffectPtr>& candidates)
+      : scores_(pairs, candidates), refused_(candidates.size(), false) {}
+
+  std::vector<terms::LidarFinding> run() {
+    while (accepted_.size() < kMostFindings && add_best()) {
+    }
+    return findings();
+  }
+
+  std::vector<terms::LidarFinding> fit_all() {
+    for (std::size_t c = 0; c < refused_.size(); ++c) add(c, 1.0, scores_.held_out(accepted_, c));
+    return findings();
+  }
+
+ private:
+  [[nodiscard]] double penalised(const LidarScores::Score& score) const {
+    return score.statistic -
+           static_cast<double>(score.degrees) * std::log(static_cast<double>(scores_.pair_count()));
+  }
+
+  /// The best candidate that holds; false when there is none.
+  bool add_best() {
+    const auto scores = scores_.score(accepted_);
+    for (const std::size_t c : in_order(scores)) {
+      if (refused_[c]) continue;
+      const auto proof = scores_.held_out(accepted_, c);
+      const bool holds = proof.z >= effect(c).proof_wanted() && is_worthwhile(c, proof);
+      if (!holds || !matters(c)) {
+        refused_[c] = true;
+        if (holds) refuse_lesser_names(c, scores);
+        continue;
+      }
+      add(c, scores[c].family_p_value, proof);
+      retire_superfluous();
+      return true;
+    }
+    return false;
+  }
+
+  /// What is too small as a free law is no larger under a name that explains too little of it.
+  void refuse_lesser_names(std::size_t curve, const std::vector<LidarScores::Score>& scores) {
+    if (effect(curve).is_named()) return;
+    for (std::size_t c = 0; c < scores.size(); ++c)
+      if (effect(c).is_named() && effect(c).variable() == effect(curve).variable() &&
+          scores[c].statistic < effect(c).share_of_free_law() * scores[curve].statistic)
+        refused_[c] = true;
+  }
+
+  /// Significant candidates, the best first; a name before the free curve on its own ground unless that
+  /// explains much more.
+  [[nodiscard]] std::vector<std::size_t> in_order(const std::vector<LidarScores::Score>& scores) const {
+    std::vector<std::size_t> order;
+    for (std::size_t c = 0; c < scores.size(); ++c)
+      if (scores[c].degrees > 0 && scores[c].family_p_value <= kLevel && !refused_[c]) order.push_back(c);
+    const auto rank = [&](std::size_t c) { return penalised(scores[c]); };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
+    const auto is_name_of_best = [&](std::size_t c) {
+      const terms::LidarEffect &own = effect(c), &best = effect(order.front());
+      return own.is_named() && !best.is_named() && own.variable() == best.variable() &&
+             scores[c].statistic > own.share_of_free_law() * scores[order.front()].statistic;
+    };
+    const auto name = std::find_if(order.begin(), order.end(), is_name_of_best);
+    if (name != order.end()) std::rotate(order.begin(), name, name + 1);
+    return order;
+  }
+
+  [[nodiscard]] const terms::LidarEffect& effect(std::size_t candidate) const {
+    return *scores_.candidates()[candidate].effect;
+  }
+
+  [[nodiscard]] bool is_worthwhile(std::size_t candidate, const LidarScores::HeldOut& proof) const {
+    return proof.after * proof.after < effect(candidate).may_leave() * proof.before * proof.before;
+  }
+
+  [[nodiscard]] bool matters(std::size_t candidate) const {
+    std::vector<std::size_t> more = accepted_;
+    more.push_back(candidate);
+    const LidarFit fit = scores_.fit(more);
+    const auto count = scores_.candidates()[candidate].count;
+    return is_plausible(*scores_.candidates()[candidate].effect,
+                        slice(fit.values, fit.values.size() - count, count));
+  }
+
+  void add(std::size_t candidate, double p_value, const LidarScores::HeldOut& proof) {
+    accepted_.push_back(candidate);
+    evidence_.push_back({scores_.candidates()[candidate].effect, {}, {}, p_value, proof.before, proof.after});
+    refused_[candidate] = true;
+  }
+
+  /// A name that was only the best there was is none beside the law that was added last (Wald test, 5 %).
+  void retire_superfluous() {
+    const std::vector<terms::LidarFinding> all = findings();
+    for (std::size_t k = all.size() - 1; k-- > 0;)
+      if (is_superfluous(all[k])) {
+        accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(k));
+        evidence_.erase(evidence_.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+  }
+
+  [[nodiscard]] std::vector<terms::LidarFinding> findings() const {
+    std::vector<terms::LidarFinding> all = evidence_;
+    const LidarFit fit = scores_.fit(accepted_);
+    Eigen::Index first = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const auto count = scores_.candidates()[accepted_[k]].count;
+      all[k].values = slice(fit.values, first, count);
+      all[k].deviations = slice(fit.deviations, first, count);
+      first += count;
+    }
+    return all;
+  }
+
+  LidarScores scores_;
+  std::vector<std::size_t> accepted_;
+  std::vector<bool> refused_;
+  std::vector<terms::LidarFinding> evidence_;
+};
+
+}  // namespace
+
+std::vector<terms::LidarFinding> trace_lidar(const std::vector<measurement::HeadingPair>& pairs,
+                                             bool all_round, bool ranges_are_judged) {
+  if (pairs.size() < kFewestPairs) return {};
+  std::vector<terms::LidarEffectPtr> candidates = terms::lidar_catalogue(all_round);
+  for (const auto& curve : terms::lidar_curves()) candidates.push_back(curve);
+  if (auto sector = terms::make_sector_error(bearings_in(pairs))) candidates.push_back(std::move(sector));
+  const auto is_judged = [](const terms::LidarEffectPtr& effect) {
+    return effect->name() == terms::make_range_bias()->name() ||
+           effect->name() == terms::make_incidence_error()->name();
+  };
+  if (ranges_are_judged) std::erase_if(candidates, is_judged);
+  return Trace(pairs, candidates).run();
+}
+
+std::vector<terms::LidarFinding> fit_lidar(const std::vector<measurement::HeadingPair>& pairs,
+                                           const std::vector<terms::LidarEffectPtr>& effects) {
+  if (pairs.empty()) return {};
+  return Trace(pairs, effects).fit_all();
+}
+
+}  // namespace odomcalib::calib::selection

@@ -1,0 +1,86 @@
+#include "calib/selection/next_addition.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "calib/selection/law_shape.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+/// A delay hardly shows in odometry and cannot spoil it; what changes odometry must be beyond doubt.
+constexpr double kClockLevel = 0.003;
+constexpr double kUnnamedLevel = 0.0025;
+
+double level(const Candidate& candidate, const SearchResult& found) {
+  if (candidate.curve)
+    return found.owner_of(candidate.curve->law) || must_be_worthwhile(candidate) ? kNamedLevel
+                                                                                 : kUnnamedLevel;
+  return is_clock(candidate) ? kClockLevel : kNamedLevel;
+}
+
+/// What the free curves explain of those of a name's laws that a finding has already.
+double explained_by_curves(const std::vector<vehicle::Law>& laws, const SearchRound& round,
+                           const SearchResult& found) {
+  double all = 0.0;
+  for (const std::size_t k :
+       round.by_score([&](std::size_t k) { return round.candidate(k).curve.has_value(); }))
+    if (const vehicle::Law& law = round.candidate(k).curve->law; contains(laws, law) && found.owner_of(law))
+      all += round.score(k).statistic;
+  return all;
+}
+
+/// What a finding leaves on its own ground is the rest of its law, unless a second name explains nearly all
+/// that a free curve would.
+bool is_rest_of_a_law(std::size_t name, const SearchRound& round, const SearchResult& found) {
+  const std::vector<vehicle::Law> laws = round.candidate(name).effect->laws();
+  if (std::none_of(laws.begin(), laws.end(),
+                   [&](const vehicle::Law& law) { return found.owner_of(law) != nullptr; }))
+    return false;
+  return round.score(name).statistic < kNearlyAll * explained_by_curves(laws, round, found);
+}
+
+/// Joint refits of the most promising names on the noise model of the current fit.
+std::optional<Trial> best_name(SearchRound& round, const SearchResult& found) {
+  std::set<std::string> tried;
+  const auto is_open = [&](std::size_t k) {
+    return !round.candidate(k).curve && passes(k, round, found) && !is_rest_of_a_law(k, round, found);
+  };
+  for (const std::size_t k : round.by_score(is_open))
+    if (tried.size() < SearchRound::kRefits && tried.insert(round.candidate(k).key).second) round.try_out(k);
+  const auto best = round.best_trial([](std::size_t) { return true; });
+  return best ? round.best_shape(round.candidate(best->candidate).key) : best;
+}
+
+}  // namespace
+
+bool is_clock(const Candidate& candidate) { return candidate.effect->storage() == vehicle::Storage::driver; }
+
+bool passes(std::size_t candidate, const SearchRound& round, const SearchResult& found) {
+  return round.score(candidate).family_p_value <= level(round.candidate(candidate), found);
+}
+
+std::optional<std::size_t> best_curve(const SearchRound& round, const SearchResult& found) {
+  const auto curves =
+      round.by_score([&](std::size_t k) { return round.candidate(k).curve && passes(k, round, found); });
+  return curves.empty() ? std::nullopt : std::optional(curves.front());
+}
+
+std::optional<Trial> best_name_beside(std::optional<std::size_t> curve, SearchRound& round,
+                                      const SearchResult& found) {
+  auto name = best_name(round, found);
+  if (!name || !curve || !round.curve_beats(*curve, name->candidate)) return name;
+  const vehicle::Law& law = round.candidate(*curve).curve->law;
+  const auto own =
+      round.best_trial([&](std::size_t k) { return contains(round.candidate(k).effect->laws(), law); });
+  return own && !round.curve_beats(*curve, own->candidate) ? own : std::nullopt;
+}
+
+std::optional<Trial> best_clock(const SearchRound& round) {
+  const auto best = round.best_trial([&](std::size_t k) { return is_clock(round.candidate(k)); });
+  return best && best->gain > 0.0 ? best : std::nullopt;
+}
+
+}  // namespace odomcalib::calib::selection

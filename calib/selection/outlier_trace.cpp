@@ -1,0 +1,257 @@
+#include "calib/selection/outlier_trace.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <random>
+#include <sstream>
+
+#include "calib/estimation/stack.hpp"
+#include "calib/math/se2.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+constexpr std::size_t kFewest = 5;      ///< events; fewer have everything in common
+constexpr double kFewestShare = 0.015;  ///< of all pairs
+constexpr double kLevel = 0.001;        ///< family-wise: better than all draws
+constexpr double kAlike = 0.8;          ///< of the best gain: a variable that may as well be the one
+constexpr std::size_t kMostNamed = 3;
+constexpr std::size_t kSlices = 4;  ///< of each coordinate of a place
+constexpr std::size_t kBins = kSlices * kSlices;
+constexpr int kDraws = 999;
+constexpr unsigned kSeed = 5;
+
+/// Events and pairs by bin of one variable.
+struct Binned {
+  vehicle::Variable variable = vehicle::Variable::time;
+  std::vector<std::size_t> bin;  ///< of each pair
+  std::vector<double> value;     ///< of each pair
+};
+
+/// Which of `slices` equally filled slices each value lies in; equal values lie in the same.
+std::vector<std::size_t> sliced(const std::vector<double>& values, std::size_t slices) {
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::size_t> out;
+  for (const double value : values) {
+    const auto below = std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin();
+    out.push_back(static_cast<std::size_t>(below) * slices / sorted.size());
+  }
+  return out;
+}
+
+/// Where an event lies so far back, how far says no more than the time does.
+double farthest(vehicle::Variable variable) {
+  if (!is_distance_since(variable)) return std::numeric_limits<double>::infinity();
+  const bool is_angle_of_wheel = variable == vehicle::Variable::left_since_reversal ||
+                                 variable == vehicle::Variable::right_since_reversal;
+  return is_angle_of_wheel ? 10.0 : 0.5;  // rad, m
+}
+
+/// Mean over a pair; of an angle, in its middle.
+double value_in(vehicle::Variable variable, const vehicle::DriveModel& model,
+                const vehicle::Interval& interval, bool of_y) {
+  const auto context = model.context_within(interval);
+  if (is_angle(variable)) return math::angle_of_turn(value_of(variable, context[(context.size() - 1) / 2]));
+  const double most = farthest(variable);
+  double sum = 0.0;
+  for (const vehicle::StepContext& c : context) sum += of_y ? c.y : std::min(value_of(variable, c), most);
+  return sum / static_cast<double>(context.size());
+}
+
+std::vector<double> values_of(vehicle::Variable variable, std::span<const measurement::FitData> data,
+                              bool of_y = false) {
+  std::vector<double> values;
+  for (const measurement::FitData& d : data)
+    for (const vehicle::Interval& interval : estimation::intervals_of(d.pairs))
+      values.push_back(value_in(variable, *d.model, interval, of_y));
+  return values;
+}
+
+Binned binned(vehicle::Variable variable, std::span<const measurement::FitData> data) {
+  Binned out{variable, {}, values_of(variable, data)};
+  out.bin = sliced(out.value, variable == vehicle::Variable::position ? kSlices : kBins);
+  if (variable != vehicle::Variable::position) return out;
+  const auto across = sliced(values_of(variable, data, true), kSlices);
+  for (std::size_t k = 0; k < across.size(); ++k) out.bin[k] = kSlices * out.bin[k] + across[k];
+  return out;
+}
+
+std::vector<Binned> all_variables(std::span<const measurement::FitData> data) {
+  std::vector<Binned> all;
+  for (int k = 0; k <= static_cast<int>(vehicle::kLastVariable); ++k) {
+    const auto variable = static_cast<vehicle::Variable>(k);
+    if (is_memory(variable) || variable == vehicle::Variable::distance ||
+        (data.size() > 1 && begins_with_the_recording(variable)))
+      continue;
+    all.push_back(binned(variable, data));
+  }
+  return all;
+}
+
+/// Of a rate of `part` in `whole`, at its maximum.
+double log_likelihood(double part, double whole) {
+  return part > 0.0 && part < whole
+             ? part * std::log(part / whole) + (whole - part) * std::log(1.0 - part / whole)
+             : 0.0;
+}
+
+using Counts = std::array<double, kBins>;
+
+Counts counted(const Binned& variable, const std::vector<std::size_t>& pairs) {
+  Counts counts{};
+  for (const std::size_t k : pairs) ++counts.at(variable.bin[k]);
+  return counts;
+}
+
+/// -2 log likelihood ratio of one rate of events for all bins against one for each, less its expectation.
+double gain(const Counts& events, const Counts& pairs) {
+  double of_bins = 0.0;
+  double used = 0.0;
+  for (std::size_t b = 0; b < kBins; ++b) {
+    of_bins += log_likelihood(events.at(b), pairs.at(b));
+    used += pairs.at(b) > 0.0 ? 1.0 : 0.0;
+  }
+  const double all = std::accumulate(pairs.begin(), pairs.end(), 0.0);
+  const double one = log_likelihood(std::accumulate(events.begin(), events.end(), 0.0), all);
+  return 2.0 * (of_bins - one) - (used - 1.0);
+}
+
+/// The first of each two outliers in a row.
+std::vector<std::size_t> events_of(const estimation::FitResult& fit) {
+  std::vector<std::size_t> events;
+  for (std::size_t k = 0; k < fit.outlier.size(); ++k)
+    if (fit.outlier[k] && (events.empty() || events.back() + 1 != k)) events.push_back(k);
+  return events;
+}
+
+class Tracer {
+ public:
+  Tracer(std::span<const measurement::FitData> data, const std::vector<std::size_t>& events,
+         std::size_t pairs)
+      : variables_(all_variables(data)), events_(events), order_(pairs) {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    for (const Binned& variable : variables_) pairs_.push_back(counted(variable, order_));
+  }
+
+  void run(OutlierTrace& trace) {
+    const std::vector<double> gains = gains_of(events_);
+    const double best = *std::max_element(gains.begin(), gains.end());
+    trace.p_value = chance_of(best);
+    if (trace.p_value > kLevel) return;
+    std::vector<std::size_t> by_gain(gains.size());
+    std::iota(by_gain.begin(), by_gain.end(), std::size_t{0});
+    std::sort(by_gain.begin(), by_gain.end(), [&](auto a, auto b) { return gains[a] > gains[b]; });
+    for (const std::size_t v : by_gain)
+      if (gains[v] >= kAlike * best && trace.depends_on.size() < kMostNamed)
+        trace.depends_on.push_back(variables_[v].variable);
+    if (trace.depends_on.front() == vehicle::Variable::time) set_range(by_gain.front(), trace);
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> gains_of(const std::vector<std::size_t>& events) const {
+    std::vector<double> gains;
+    for (std::size_t v = 0; v < variables_.size(); ++v)
+      gains.push_back(gain(counted(variables_[v], events), pairs_[v]));
+    return gains;
+  }
+
+  /// That events strewn over the pairs at random gain as much by any variable.
+  double chance_of(double best) {
+    std::mt19937 engine(kSeed);
+    int as_good = 0;
+    std::vector<std::size_t> strewn(events_.size());
+    for (int draw = 0; draw < kDraws; ++draw) {
+      for (std::size_t k = 0; k < strewn.size(); ++k) {  // the beginning of a Fisher-Yates shuffle
+        std::swap(order_[k], order_[k + engine() % (order_.size() - k)]);
+        strewn[k] = order_[k];
+      }
+      const std::vector<double> gains = gains_of(strewn);
+      as_good += *std::max_element(gains.begin(), gains.end()) >= best ? 1 : 0;
+    }
+    return (1.0 + as_good) / (1.0 + kDraws);
+  }
+
+  /// Of the bins with more than twice the usual share of events.
+  void set_range(std::size_t v, OutlierTrace& trace) const {
+    const Counts events = counted(variables_[v], events_);
+    const double usual = static_cast<double>(events_.size()) / static_cast<double>(order_.size());
+    std::vector<double> values;
+    for (const std::size_t k : events_) {
+      const std::size_t bin = variables_[v].bin[k];
+      if (events.at(bin) > 2.0 * usual * pairs_[v].at(bin)) values.push_back(variables_[v].value[k]);
+    }
+    if (values.empty()) return;
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    trace.begin = *low;
+    trace.end = *high;
+  }
+
+  std::vector<Binned> variables_;
+  std::vector<Counts> pairs_;  ///< by variable
+  const std::vector<std::size_t>& events_;
+  std::vector<std::size_t> order_;
+};
+
+/// Whose fault they are, as far as a map tells.
+std::string to_text(const OutlierCause& cause) {
+  if (cause.confirmed == 0) return "";
+  std::ostringstream out;
+  out << "; the map confirms " << cause.confirmed << " of " << cause.placed
+      << ": there the robot moved otherwise than its wheels" << std::fixed << std::setprecision(1);
+  const auto excess = [&](double value, const char* verb, double unit, const char* name) {
+    if (value != 0.0)
+      out << ", " << verb << " " << std::abs(value) / unit << " " << name
+          << (value > 0.0 ? " farther" : " less far");
+  };
+  excess(cause.farther, "came", 1e-3, "mm");
+  excess(cause.turned_farther, "turned", 1e-3, "mrad");
+  return out.str();
+}
+
+}  // namespace
+
+std::optional<OutlierTrace> trace_outliers(std::span<const measurement::FitData> data,
+                                           const estimation::FitResult& fit) {
+  const std::vector<std::size_t> events = events_of(fit);
+  OutlierTrace trace{fit.discarded, fit.outlier.size(), {}, 1.0, 0.0, 0.0, {}};
+  if (events.size() < kFewest ||
+      static_cast<double>(trace.outliers) < kFewestShare * static_cast<double>(trace.pairs))
+    return std::nullopt;
+  Tracer(data, events, trace.pairs).run(trace);
+  return trace;
+}
+
+std::string to_text(const OutlierTrace& trace) {
+  std::ostringstream out;
+  out << trace.outliers << " of " << trace.pairs
+      << " pairs of scans contradict all others by more than five deviations and are left out";
+  if (trace.depends_on.empty()) out << "; nothing that was observed goes with them";
+  for (std::size_t k = 0; k < trace.depends_on.size(); ++k)
+    out << (k > 0 ? ", " : "; they go with ") << to_string(trace.depends_on[k]);
+  if (!trace.depends_on.empty() && trace.depends_on.front() == vehicle::Variable::time)
+    out << std::fixed << std::setprecision(0) << ", from " << trace.begin << " to " << trace.end << " s";
+  out << to_text(trace.cause);
+  return out.str();
+}
+
+std::string to_json(const OutlierTrace& trace) {
+  nlohmann::ordered_json names = nlohmann::ordered_json::array();
+  for (const vehicle::Variable variable : trace.depends_on) names.push_back(to_string(variable));
+  const nlohmann::ordered_json json = {{"outliers", trace.outliers},
+                                       {"pairs", trace.pairs},
+                                       {"depends_on", names},
+                                       {"p_value", trace.p_value},
+                                       {"placed", trace.cause.placed},
+                                       {"confirmed", trace.cause.confirmed},
+                                       {"farther", trace.cause.farther},
+                                       {"turned_farther", trace.cause.turned_farther}};
+  return json.dump();
+}
+
+}  // namespace odomcalib::calib::selection

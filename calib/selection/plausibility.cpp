@@ -1,0 +1,130 @@
+#include "calib/selection/plausibility.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <numeric>
+#include <sstream>
+
+#include "calib/selection/score.hpp"
+#include "calib/terms/basis.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+/// Value of each parameter of the fit's last effect.
+Eigen::VectorXd last_parameters(const vehicle::Effect& effect, const estimation::FitResult& fit) {
+  return fit.parameters.tail(static_cast<Eigen::Index>(effect.parameters().size()));
+}
+
+std::string outside(const vehicle::EffectParameter& parameter, double value) {
+  std::ostringstream out;
+  out << std::setprecision(3) << parameter.name << " of " << value;
+  if (parameter.unit != "1") out << ' ' << parameter.unit;
+  out << " is outside its physical range";
+  return out.str();
+}
+
+}  // namespace
+
+std::string impossibility(const vehicle::Effect& effect, const estimation::FitResult& fit) {
+  const Eigen::VectorXd values = last_parameters(effect, fit);
+  const auto parameters = effect.parameters();
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const double value = values(static_cast<Eigen::Index>(k));
+    if (!(value >= parameters[k].lower && value <= parameters[k].upper)) return outside(parameters[k], value);
+  }
+  return "";
+}
+
+bool is_mere_sharpening(const vehicle::Effect& effect, const estimation::FitResult& fit) {
+  if (effect.name() != "time_offset") return false;
+  const Eigen::VectorXd values = last_parameters(effect, fit);
+  return std::abs(values(0)) < vehicle::kNegligibleShare * effect.parameters().front().scale &&
+         values(1) < 0.0;
+}
+
+bool is_held_back(const vehicle::Effect& effect, const estimation::FitResult& fit) {
+  constexpr double kNear = 0.6;  // of the bound
+  const Eigen::VectorXd values = last_parameters(effect, fit);
+  const auto parameters = effect.parameters();
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (parameters[k].is_size() &&
+        !(std::abs(values(static_cast<Eigen::Index>(k))) < kNear * parameters[k].upper))
+      return true;
+  return false;
+}
+
+bool is_negligible(const vehicle::Effect& effect, const estimation::FitResult& fit) {
+  return is_negligible(effect, static_cast<std::size_t>(fit.parameters.size()) - effect.parameters().size(),
+                       fit);
+}
+
+bool is_negligible(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit) {
+  const auto parameters = effect.parameters();
+  double largest = 0.0;
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (parameters[k].is_size())
+      largest = std::max(
+          largest, std::abs(fit.parameters(static_cast<Eigen::Index>(first + k))) / parameters[k].scale);
+  return largest < vehicle::kNegligibleShare;
+}
+
+bool is_hidden_by_ticks(const terms::Curve& curve, const estimation::FitResult& fit,
+                        std::span<const vehicle::DriveModel* const> models) {
+  constexpr double kAtLeast = 2.0;                                               // times what is hidden
+  const double strongest = std::max(std::abs(curve.low), std::abs(curve.high));  // rad/s^2
+  double hidden = 0.0;
+  for (const vehicle::DriveModel* model : models) {
+    const wheels::WheelTrack& track = model->track();
+    const double step =
+        track.tick_angle * fit.parameters(vehicle::kLeftRadius) / fit.parameters(vehicle::kTrackWidth);
+    hidden = std::max(hidden, strongest * track.tick_period * track.tick_period / 8.0 + step);
+  }
+  const Eigen::VectorXd own = fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
+  double sway = 0.0;
+  for (const double share : {0.5, 1.0}) {
+    vehicle::StepContext c;
+    c.turn_acceleration_before.fill(share * strongest);
+    c.turn_acceleration_after = c.turn_acceleration_before;
+    const terms::BasisValues functions = basis(curve, c);
+    sway = std::max(sway, std::abs(std::inner_product(functions.begin(), functions.end(), own.data(), 0.0)));
+  }
+  return sway < kAtLeast * hidden;
+}
+
+bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& before,
+                 const estimation::FitResult& after) {
+  constexpr double kHarmless = 1e-3;  // of a length: a millimetre in a metre
+  const double most =
+      effect.storage() == vehicle::Storage::nowhere ? 10.0 : 3.0;  // times a standard deviation
+  for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth}) {
+    const double deviation = std::sqrt(after.covariance(k, k));
+    if (deviation > kHarmless * after.parameters(k) && deviation > most * std::sqrt(before.covariance(k, k)))
+      return true;
+  }
+  return false;
+}
+
+bool curve_spoils_base(const vehicle::Effect& curve, const estimation::FitResult& before,
+                       const estimation::FitResult& after) {
+  constexpr double kFar = 0.25;
+  for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth})
+    if (std::abs(after.parameters(k) - before.parameters(k)) > kFar * before.parameters(k)) return true;
+  return spoils_base(curve, before, after);
+}
+
+bool is_superfluous(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit) {
+  constexpr double kLevel = 0.05;
+  std::vector<Eigen::Index> sizes;
+  const auto parameters = effect.parameters();
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (parameters[k].is_size()) sizes.push_back(static_cast<Eigen::Index>(first + k));
+  const Eigen::VectorXd value = fit.parameters(sizes);
+  const Eigen::MatrixXd covariance = fit.covariance(sizes, sizes);
+  const double wald = value.dot(covariance.ldlt().solve(value));
+  return chi_squared_tail(wald, sizes.size()) > kLevel;
+}
+
+}  // namespace odomcalib::calib::selection

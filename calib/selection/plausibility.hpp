@@ -1,0 +1,47 @@
+// Reasons not to add an effect although the data like it.
+#pragma once
+
+#include <string>
+
+#include "calib/estimation/joint.hpp"
+#include "calib/terms/curve.hpp"
+
+namespace odomcalib::calib::selection {
+
+/// Which parameter of the effect, the fit's last, is outside its physical bounds; empty when none is.
+std::string impossibility(const vehicle::Effect& effect, const estimation::FitResult& fit);
+
+/// A delay next to nothing with a smoothing below zero: no filter sharpens, but what noise of coarse counts
+/// asks for, which is in the travel and in the acceleration alike. Beside a delay it may make up for the rest
+/// of its law.
+bool is_mere_sharpening(const vehicle::Effect& effect, const estimation::FitResult& fit);
+
+/// A size is so large for the effect that its prior must have kept it from being larger.
+bool is_held_back(const vehicle::Effect& effect, const estimation::FitResult& fit);
+
+/// Every size is below the share of its typical size that matters to odometry.
+/// @param first of the effect's parameters; without it they are the fit's last
+bool is_negligible(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit);
+bool is_negligible(const vehicle::Effect& effect, const estimation::FitResult& fit);
+
+/// A sway of the sensor, the curve's coefficients being the fit's last, that is no larger than what ticks
+/// hide: what a turn that speeds up does between two of them, and the step of a count.
+bool is_hidden_by_ticks(const terms::Curve& curve, const estimation::FitResult& fit,
+                        std::span<const vehicle::DriveModel* const> models);
+
+/// This drive cannot tell the addition from the wheels: it would trade a known geometry for a guess. (With
+/// what changes by the day the wheels of one moment are less well known than their mean, which up to ten
+/// times is no fault; nor is a length that is still known to a thousandth.)
+bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& before,
+                 const estimation::FitResult& after);
+
+/// Or it makes other lengths of them by a quarter, which a name may have to (a track that scrubs) but no law
+/// without one should be believed.
+bool curve_spoils_base(const vehicle::Effect& curve, const estimation::FitResult& before,
+                       const estimation::FitResult& after);
+
+/// The effect, whose parameters begin at `first`, is no longer needed beside what was added after it: its
+/// Wald statistic is not significant at 5 %.
+bool is_superfluous(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit);
+
+}  // namespace odomcalib::calib::selection

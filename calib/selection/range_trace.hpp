@@ -1,0 +1,18 @@
+// Looks for an error of the ranges in a map of walls, and proves it on scans that the map was not adjusted
+// to.
+#pragma once
+
+#include "calib/measurement/range_tracer.hpp"
+
+namespace odomcalib::calib::selection {
+
+/// @param map adjusted to `used` with `options`
+/// @param evidence of that adjustment
+/// @param others scans between those, in their places
+measurement::RangeTrace trace_ranges(const measurement::RangeEvidence& evidence,
+                                     const measurement::PlacedBeams& used,
+                                     const measurement::PlacedBeams& others,
+                                     const measurement::PlaceOptions& options,
+                                     const measurement::WallMap& map);
+
+}  // namespace odomcalib::calib::selection

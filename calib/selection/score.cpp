@@ -1,0 +1,198 @@
+#include "calib/selection/score.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "calib/selection/candidate_columns.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+constexpr double kBlockSeconds = 5.0;
+constexpr int kDraws = 1999;
+constexpr unsigned kSeed = 20210601;
+constexpr double kClip = 3.5;    ///< sigma; one bad match must not decide
+constexpr double kGauge = 1e-6;  ///< share of a signature that counts as fully absorbed
+constexpr double kRidge = 1e-9;
+constexpr double kBeyondDoubt = 1e-12;
+
+struct Blocks {
+  std::vector<Eigen::Index> borders;
+  std::vector<std::size_t> folds;
+};
+
+/// Blocks of kBlockSeconds, none across a recording or a fold.
+Blocks blocks_of(std::span<const measurement::FitData> data) {
+  const std::vector<std::size_t> folds = folds_of(data);
+  Blocks blocks;
+  std::size_t k = 0;
+  for (const measurement::FitData& d : data) {
+    double begin = -1e300;
+    for (const measurement::SensorPair& pair : d.pairs) {
+      const bool other_fold = !blocks.folds.empty() && blocks.folds.back() != folds[k];
+      if (pair.interval.begin > begin + kBlockSeconds || other_fold) {
+        blocks.borders.push_back(static_cast<Eigen::Index>(3 * k));
+        blocks.folds.push_back(folds[k]);
+        begin = pair.interval.begin;
+      }
+      ++k;
+    }
+  }
+  blocks.borders.push_back(static_cast<Eigen::Index>(3 * k));
+  return blocks;
+}
+
+/// Orthonormal basis of the candidate's columns after projection; rank-deficient directions are left out.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double scale) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  Eigen::Index rank = 0;
+  const auto& r = qr.matrixR();
+  while (rank < columns.cols() && std::abs(r(rank, rank)) > std::sqrt(kGauge) * scale) ++rank;
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), rank);
+}
+
+/// Sums of rows within blocks: column b holds basis^T r of block b.
+Eigen::MatrixXd block_scores(const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual,
+                             const std::vector<Eigen::Index>& borders) {
+  Eigen::MatrixXd scores(basis.cols(), static_cast<Eigen::Index>(borders.size()) - 1);
+  for (std::size_t b = 0; b + 1 < borders.size(); ++b) {
+    const Eigen::Index rows = borders[b + 1] - borders[b];
+    scores.col(static_cast<Eigen::Index>(b)) =
+        basis.middleRows(borders[b], rows).transpose() * residual.segment(borders[b], rows);
+  }
+  return scores;
+}
+
+/// The largest significance over all candidates of each draw of signs. Candidates of equal degrees are
+/// compared by their statistic, which spares most of the tail probabilities.
+std::vector<double> largest_of_draws(const std::vector<Eigen::MatrixXd>& scores, double variance) {
+  std::mt19937 engine(kSeed);
+  std::vector<double> largest;
+  largest.reserve(kDraws);
+  const Eigen::Index blocks = scores.empty() ? 0 : scores.front().cols();
+  Eigen::VectorXd signs(blocks);
+  for (int draw = 0; draw < kDraws; ++draw) {
+    for (Eigen::Index b = 0; b < blocks; ++b) signs(b) = (engine() & 1U) != 0U ? 1.0 : -1.0;
+    std::map<Eigen::Index, double> best_of_degrees;
+    for (const Eigen::MatrixXd& s : scores) {
+      double& best = best_of_degrees[s.rows()];
+      best = std::max(best, (s * signs).squaredNorm() / variance);
+    }
+    double best = 0.0;
+    for (const auto& [degrees, statistic] : best_of_degrees)
+      if (degrees > 0) best = std::max(best, significance(statistic, degrees));
+    largest.push_back(best);
+  }
+  std::sort(largest.begin(), largest.end());
+  return largest;
+}
+
+/// The fit's own columns, normalised; projecting on what they leave is one solve per candidate.
+class Projection {
+ public:
+  Projection(const estimation::FitResult& fit, const std::vector<bool>& fixed)
+      : fitted_(fit.whitened_jacobian) {
+    for (Eigen::Index k = 0; k < fitted_.cols(); ++k) {
+      if (fixed[static_cast<std::size_t>(k)]) fitted_.col(k).setZero();
+      const double norm = fitted_.col(k).norm();
+      if (norm > 0.0) fitted_.col(k) /= norm;
+    }
+    ldlt_.compute(fitted_.transpose() * fitted_ +
+                  kRidge * Eigen::MatrixXd::Identity(fitted_.cols(), fitted_.cols()));
+  }
+  [[nodiscard]] Eigen::MatrixXd rest(const Eigen::MatrixXd& columns) const {
+    return columns - fitted_ * ldlt_.solve(fitted_.transpose() * columns);
+  }
+
+ private:
+  Eigen::MatrixXd fitted_;
+  Eigen::LDLT<Eigen::MatrixXd> ldlt_;
+};
+
+}  // namespace
+
+Eigen::VectorXd clipped(const Eigen::VectorXd& whitened) { return whitened.cwiseMax(-kClip).cwiseMin(kClip); }
+
+double chi_squared_tail(double statistic, std::size_t degrees) {
+  if (degrees == 0 || !(statistic > 0.0)) return 1.0;
+  return boost::math::gamma_q(static_cast<double>(degrees) / 2.0, std::min(statistic, 1e6) / 2.0);
+}
+
+double significance(double statistic, Eigen::Index degrees) {
+  return -std::log10(std::max(chi_squared_tail(statistic, static_cast<std::size_t>(degrees)), 1e-300));
+}
+
+ScoreTable::ScoreTable(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
+                       const estimation::FitResult& fit, const std::vector<bool>& fixed,
+                       const std::vector<Candidate>& candidates)
+    : residual_(clipped(fit.whitened_residual)) {
+  variance_ = residual_.squaredNorm() / std::max(static_cast<double>(residual_.size()), 1.0);
+  Blocks blocks = blocks_of(data);
+  borders_ = std::move(blocks.borders);
+  block_folds_ = std::move(blocks.folds);
+  const Projection projection(fit, fixed);
+  for (const Eigen::MatrixXd& raw : candidate_columns(data, effects, fit, candidates))
+    add(raw, projection.rest(raw));
+  largest_ = largest_of_draws(block_scores_, variance_);
+  for (Score& score : scores_) score.family_p_value = family_p_value(score.statistic, score.degrees);
+}
+
+void ScoreTable::add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected) {
+  const double scale = raw.norm();
+  bases_.push_back(scale > 0.0 ? orthonormal(projected, scale) : Eigen::MatrixXd(raw.rows(), 0));
+  block_scores_.push_back(block_scores(bases_.back(), residual_, borders_));
+  Score score;
+  score.degrees = static_cast<std::size_t>(bases_.back().cols());
+  score.statistic = block_scores_.back().rowwise().sum().squaredNorm() / variance_;
+  score.p_value = chi_squared_tail(score.statistic, score.degrees);
+  for (Eigen::Index k = 0; k < raw.cols(); ++k) {
+    const double left = projected.col(k).squaredNorm();
+    score.deviations.push_back(left > kGauge * raw.col(k).squaredNorm()
+                                   ? std::sqrt(variance_ / left)
+                                   : std::numeric_limits<double>::infinity());
+  }
+  score.unabsorbed = scale > 0.0 ? projected.squaredNorm() / raw.squaredNorm() : 0.0;
+  scores_.push_back(score);
+}
+
+double ScoreTable::family_p_value(double statistic, std::size_t degrees) const {
+  const double own = significance(statistic, static_cast<Eigen::Index>(degrees));
+  // Random signs keep the size of block scores, so that beside a large effect every draw is large and the
+  // effect itself hardly stands out. Bonferroni's bound on the model's tail probability, far beyond any
+  // doubt, needs no draws.
+  const double bound = chi_squared_tail(statistic, degrees) * static_cast<double>(block_scores_.size());
+  if (bound < kBeyondDoubt) return 1.0 / (1.0 + kDraws);
+  const auto above = largest_.end() - std::lower_bound(largest_.begin(), largest_.end(), own);
+  return (1.0 + static_cast<double>(above)) / (1.0 + kDraws);
+}
+
+double ScoreTable::correlation(std::size_t a, std::size_t b) const {
+  const Eigen::MatrixXd overlap = bases_[a].transpose() * bases_[b];
+  if (overlap.size() == 0) return 0.0;
+  return std::min(Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues()(0), 1.0);
+}
+
+FoldFlags ScoreTable::selected_without(std::size_t candidate, double level) const {
+  FoldFlags selected{};
+  const Eigen::MatrixXd& basis = bases_[candidate];
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    Eigen::VectorXd score = Eigen::VectorXd::Zero(basis.cols());
+    Eigen::MatrixXd gram = kRidge * Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
+    for (std::size_t b = 0; b + 1 < borders_.size(); ++b) {
+      if (block_folds_[b] == fold) continue;
+      const auto rows = basis.middleRows(borders_[b], borders_[b + 1] - borders_[b]);
+      score += block_scores_[candidate].col(static_cast<Eigen::Index>(b));
+      gram.noalias() += rows.transpose() * rows;
+    }
+    const double statistic = score.dot(gram.ldlt().solve(score)) / variance_;
+    selected[fold] = family_p_value(statistic, scores_[candidate].degrees) <= level;
+  }
+  return selected;
+}
+
+}  // namespace odomcalib::calib::selection

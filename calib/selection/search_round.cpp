@@ -1,0 +1,116 @@
+#include "calib/selection/search_round.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "calib/selection/law_shape.hpp"
+#include "calib/selection/likeness.hpp"
+#include "calib/selection/plausibility.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+constexpr double kAmbiguity = 6.0;  ///< units of BIC
+constexpr double kSameLaw = 0.5;    ///< share of a curve's statistic that a name with that law must reach
+
+}  // namespace
+
+SearchRound::SearchRound(const FitTask& task, FittedModel basis, const std::vector<Candidate>& candidates)
+    : task_(task),
+      candidates_(candidates),
+      basis_(std::move(basis)),
+      table_(task_.data, basis_.effects, basis_.fit, task_.fixed(basis_.effects), candidates_) {}
+
+double SearchRound::penalty(std::size_t degrees) const {
+  return static_cast<double>(degrees) * schwarz(basis_.fit);
+}
+
+double SearchRound::penalised(std::size_t candidate) const {
+  const auto& curve = candidates_[candidate].curve;
+  const std::size_t chosen = curve && happens_at_once(*curve) ? 1 : 0;  // its moment
+  return score(candidate).statistic - penalty(score(candidate).degrees + chosen);
+}
+
+std::optional<Trial> SearchRound::refit(std::size_t candidate) const {
+  return refit(candidate, basis_.fit.noise);
+}
+
+std::optional<Trial> SearchRound::refit(std::size_t candidate,
+                                        const std::vector<measurement::NoiseModel>& noise) const {
+  const auto& effect = candidates_[candidate].effect;
+  auto model = with_effect(task_, basis_, effect, noise);
+  if (!model) return std::nullopt;
+  const double gain = basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect)) -
+                      (has_textbook_shape(effect) ? 0.0 : kAkaike);
+  return Trial{candidate, std::move(*model), gain};
+}
+
+void SearchRound::try_out(std::size_t candidate) {
+  const bool was_tried =
+      std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) { return t.candidate == candidate; });
+  if (was_tried) return;
+  if (auto trial = refit(candidate)) trials_.push_back(std::move(*trial));
+}
+
+std::optional<Trial> SearchRound::best_trial(const Wanted& wanted) const {
+  const Trial* best = nullptr;
+  for (const Trial& trial : trials_)
+    if (is_open(trial.candidate) && wanted(trial.candidate) && (best == nullptr || trial.gain > best->gain))
+      best = &trial;
+  return best == nullptr ? std::nullopt : std::optional(*best);
+}
+
+std::optional<Trial> SearchRound::best_shape(const std::string& key) {
+  const auto is_shape = [&](std::size_t k) { return candidates_[k].key == key; };
+  std::size_t shapes = 0;
+  for (const std::size_t k : by_score(is_shape))
+    if (shapes++ < kRefits) try_out(k);
+  return best_trial(is_shape);
+}
+
+std::vector<std::size_t> SearchRound::by_score(const Wanted& wanted) const {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < candidates_.size(); ++k)
+    if (is_open(k) && wanted(k)) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return penalised(a) > penalised(b); });
+  return order;
+}
+
+bool SearchRound::curve_beats(std::size_t curve, std::size_t name) const {
+  if (penalised(curve) - penalised(name) <= kAmbiguity) return false;
+  const bool same_ground = contains(candidates_[name].effect->laws(), candidates_[curve].curve->law) ||
+                           table_.correlation(name, curve) > kAlias;
+  const auto has_key_of_name = [&](std::size_t k) { return candidates_[k].key == candidates_[name].key; };
+  const double of_best_shape = score(by_score(has_key_of_name).front()).statistic;
+  const double of_curve = score(curve).statistic;
+  return !(same_ground &&
+           (score(name).statistic > kSameLaw * of_curve || of_best_shape > kNearlyAll * of_curve));
+}
+
+std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {
+  std::vector<std::size_t> rivals;
+  for (const Trial& trial : trials_)
+    if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity) rivals.push_back(trial.candidate);
+  for (std::size_t k = 0; k < candidates_.size(); ++k)
+    if (is_open(k) && !candidates_[k].curve && score(k).family_p_value <= kNamedLevel &&
+        are_too_close(table_, best.candidate, k))
+      rivals.push_back(k);
+  return rivals;
+}
+
+std::vector<Eigen::VectorXd> SearchRound::doubts_of(const std::vector<std::size_t>& rivals,
+                                                    const Trial& best) {
+  const std::string name = candidates_[best.candidate].effect->name();
+  for (const std::size_t rival : rivals) try_out(rival);
+  std::vector<Eigen::VectorXd> doubts;
+  for (const Trial& trial : trials_) {
+    const vehicle::Effect& effect = *candidates_[trial.candidate].effect;
+    const bool is_rival = std::find(rivals.begin(), rivals.end(), trial.candidate) != rivals.end();
+    if (is_rival && effect.name() != name && impossibility(effect, trial.model.fit).empty())
+      doubts.emplace_back(trial.model.base() - best.model.base());
+  }
+  return doubts;
+}
+
+}  // namespace odomcalib::calib::selection

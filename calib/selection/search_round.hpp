@@ -1,0 +1,78 @@
+// One round of the search: what the candidates come to on one model.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/selection/candidate.hpp"
+#include "calib/selection/fitted_model.hpp"
+#include "calib/selection/score.hpp"
+
+namespace odomcalib::calib::selection {
+
+/// Family-wise; a nominal 1 % test exceeds 1 % of robots in many campaigns.
+inline constexpr double kNamedLevel = 0.0009;
+
+struct Trial {
+  std::size_t candidate = 0;
+  FittedModel model;  ///< with the candidate as the last effect
+  double gain = 0.0;  ///< drop of -2 log L minus q log(3 n)
+};
+
+/// Scores of all candidates on a model, and joint refits of those that are asked for, each made once.
+class SearchRound {
+ public:
+  /// Of a candidate's index.
+  using Wanted = std::function<bool(std::size_t)>;
+
+  /// @param candidates must outlive the round, in the same order; those struck meanwhile no longer take part
+  SearchRound(const FitTask& task, FittedModel basis, const std::vector<Candidate>& candidates);
+
+  [[nodiscard]] const FittedModel& basis() const { return basis_; }
+  [[nodiscard]] const ScoreTable& table() const { return table_; }
+  [[nodiscard]] const Candidate& candidate(std::size_t index) const { return candidates_[index]; }
+  [[nodiscard]] const Score& score(std::size_t candidate) const { return table_.scores()[candidate]; }
+
+  /// Joint refit on the noise model of the basis, or on another.
+  /// @param noise per recording; empty: estimated anew
+  [[nodiscard]] std::optional<Trial> refit(std::size_t candidate) const;
+  [[nodiscard]] std::optional<Trial> refit(std::size_t candidate,
+                                           const std::vector<measurement::NoiseModel>& noise) const;
+
+  /// Adds its refit to the trials.
+  void try_out(std::size_t candidate);
+  /// Of the trials.
+  [[nodiscard]] std::optional<Trial> best_trial(const Wanted& wanted) const;
+  /// Which shape of a law is right, its score at size zero hardly tells.
+  std::optional<Trial> best_shape(const std::string& key);
+
+  /// Candidates that are left and wanted, the most promising first.
+  [[nodiscard]] std::vector<std::size_t> by_score(const Wanted& wanted) const;
+  /// A curve on the name's own ground that explains no more than about twice as much is the same finding with
+  /// a freer law; so is one that explains hardly more than the name in another shape than it was refitted
+  /// from.
+  [[nodiscard]] bool curve_beats(std::size_t curve, std::size_t name) const;
+
+  /// Names within a few units of BIC of the best.
+  [[nodiscard]] std::vector<std::size_t> rivals_of(const Trial& best) const;
+  /// What each name that may be the right one instead would make of the base parameters.
+  std::vector<Eigen::VectorXd> doubts_of(const std::vector<std::size_t>& rivals, const Trial& best);
+
+  /// Candidates refitted jointly per step.
+  static constexpr std::size_t kRefits = 4;
+
+ private:
+  [[nodiscard]] bool is_open(std::size_t candidate) const { return !candidates_[candidate].struck; }
+  [[nodiscard]] double penalty(std::size_t degrees) const;
+  [[nodiscard]] double penalised(std::size_t candidate) const;
+
+  const FitTask& task_;
+  const std::vector<Candidate>& candidates_;
+  FittedModel basis_;
+  ScoreTable table_;
+  std::vector<Trial> trials_;
+};
+
+}  // namespace odomcalib::calib::selection

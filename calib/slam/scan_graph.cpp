@@ -1,0 +1,304 @@
+#include "calib/slam/scan_graph.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "calib/math/vector2.hpp"
+#include "calib/slam/odometry_correction.hpp"
+#include "calib/slam/optimize.hpp"
+#include "calib/slam/robust_weights.hpp"
+
+namespace odomcalib::calib::slam {
+namespace {
+
+constexpr double kTried = 4.0;         ///< places that a keyframe is compared with, per least search window
+constexpr double kAllRound = 5.2;      ///< rad (300 degrees); what sees more sees the same in every direction
+constexpr std::size_t kAbout = 2;      ///< keyframes before and after that show the same place
+constexpr std::size_t kApart = 3;      ///< keyframes between two of them
+constexpr std::size_t kWait = 5;       ///< keyframes within which a loop must be confirmed
+constexpr std::size_t kSamePlace = 8;  ///< keyframes between what two loops that confirm each other lead to
+constexpr double kAgreement = 0.15;    ///< m, and with half the number rad, between two loops
+constexpr double kWidest = 3.0;        ///< m, of the search
+constexpr double kWidestAngle = 0.8;   ///< rad
+constexpr double kMostChi2 = 30.0;     ///< of a new loop after settling; three degrees of freedom
+/// m; neighbouring matches err together, which their covariance ignores. This and the next are what most
+/// edges of the Intel lab's graph leave; the few that leave more lose weight.
+constexpr double kMotionFloor = 2e-3;
+constexpr double kRotationFloor = 1.5e-3;  ///< rad
+constexpr double kNeighbourOverlap =
+    0.25;  ///< share of lines; doors and corners hide much from one step to the next
+constexpr double kMostFromOdometry = 0.5;  ///< m and rad between a match of neighbours and odometry
+constexpr double kMostSigmas = 6.0;        ///< the same in deviations of odometry, as learnt so far
+
+std::array<double, 6> information_of(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d floor = Eigen::Vector3d(kMotionFloor * kMotionFloor, kMotionFloor * kMotionFloor,
+                                                kRotationFloor * kRotationFloor)
+                                    .asDiagonal();
+  const Eigen::Matrix3d i = (covariance + floor).ldlt().solve(Eigen::Matrix3d::Identity());
+  return {i(0, 0), i(0, 1), i(0, 2), i(1, 1), i(1, 2), i(2, 2)};
+}
+
+GraphEdge edge_of(std::size_t from, std::size_t to, const math::Pose& motion,
+                  const Eigen::Matrix3d& covariance) {
+  return {from, to, {motion.x, motion.y, math::wrap_angle(motion.yaw)}, information_of(covariance)};
+}
+
+double size_of(const math::Pose& motion) {
+  return std::max(std::hypot(motion.x, motion.y), std::abs(math::wrap_angle(motion.yaw)));
+}
+
+/// Angle between the outermost readings, rad.
+double view_of(const matching::Surface& surface) {
+  const auto by_bearing = [](const matching::SurfacePoint& a, const matching::SurfacePoint& b) {
+    return a.bearing < b.bearing;
+  };
+  const auto [low, high] = std::minmax_element(surface.points.begin(), surface.points.end(), by_bearing);
+  return low == surface.points.end() ? 0.0 : high->bearing - low->bearing;
+}
+
+struct Loop {
+  std::size_t from = 0, to = 0;
+  LoopMatch match;
+};
+
+class Builder {
+ public:
+  Builder(std::span<const matching::Surface> surfaces, std::span<const math::Pose> odometry,
+          const ScanGraphOptions& options)
+      : surfaces_(surfaces), odometry_(odometry), options_(options), correction_(options.odometry_sigma) {
+    out_.scans = choose_keyframes(odometry, options.spacing);
+  }
+
+  ScanGraph run() {
+    for (std::size_t k = 0; k < out_.scans.size(); ++k) {
+      add_vertex(k);
+      for (const std::size_t j : places_seen_before(k)) look(j, k);
+    }
+    for (const Loop& loop : waiting_) refuse(loop, "not confirmed");
+    settle_robustly(out_.graph);
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] const matching::Surface& surface(std::size_t k) const { return surfaces_[out_.scans[k]]; }
+  [[nodiscard]] math::Pose pose(std::size_t k) const {
+    const GraphVertex& v = out_.graph.vertices[k];
+    return {v.x, v.y, v.yaw};
+  }
+
+  void add_vertex(std::size_t k) {
+    references_.push_back(std::make_unique<matching::MatchReference>(surface(k), options_.loop.range_noise));
+    views_.push_back(view_of(surface(k)));
+    math::Pose at;
+    if (k > 0) {
+      const GraphEdge edge = step_to(k);
+      out_.graph.edges.push_back(edge);
+      at = compose(pose(k - 1), math::Pose{edge.motion[0], edge.motion[1], edge.motion[2]});
+      const math::Pose step = between(pose(k - 1), at);
+      way_.push_back(way_.back() +
+                     std::max(std::hypot(step.x, step.y), 0.5 * std::abs(math::wrap_angle(step.yaw))));
+    } else {
+      way_.push_back(0.0);
+    }
+    out_.graph.vertices.push_back(
+        {static_cast<std::int64_t>(k), VertexKind::pose, at.x, at.y, at.yaw, k == 0});
+  }
+
+  /// A match of neighbours, completed by odometry where the match leaves a direction open; odometry alone
+  /// where there is no match that agrees with it.
+  GraphEdge step_to(std::size_t k) {
+    const math::Pose step = between(odometry_[out_.scans[k - 1]], odometry_[out_.scans[k]]);
+    const math::Pose guess = correction_.corrected(step);
+    const StepMatch found = match_neighbour(k, guess);
+    if (found.match.ok && agrees(guess, found.match.motion)) {
+      if (!found.leans_on_odometry) correction_.learn(step, found.match.motion);
+      add_source(EdgeSource::match, found.match.overlap);
+      return edge_of(k - 1, k, found.match.motion, found.match.covariance);
+    }
+    add_source(EdgeSource::odometry, 0.0);
+    return edge_of(k - 1, k, guess, odometry_covariance());
+  }
+
+  void add_source(EdgeSource source, double overlap) {
+    out_.sources.push_back(source);
+    out_.overlaps.push_back(overlap);
+  }
+
+  [[nodiscard]] Eigen::Matrix3d odometry_covariance() const {
+    return correction_.sigma().cwiseAbs2().asDiagonal();
+  }
+
+  /// As far as odometry is known by now.
+  [[nodiscard]] bool agrees(const math::Pose& guess, const math::Pose& motion) const {
+    const math::Pose apart = between(guess, motion);
+    const Eigen::Vector3d limit = (kMostSigmas * correction_.sigma()).cwiseMin(kMostFromOdometry);
+    return std::abs(apart.x) < limit(0) && std::abs(apart.y) < limit(1) &&
+           std::abs(math::wrap_angle(apart.yaw)) < limit(2);
+  }
+
+  struct StepMatch {
+    LoopMatch match;
+    bool leans_on_odometry = false;
+  };
+
+  [[nodiscard]] StepMatch match_neighbour(std::size_t k, const math::Pose& guess) const {
+    matching::MatchOptions match;
+    match.range_noise = options_.loop.range_noise;
+    match.min_overlap = kNeighbourOverlap;
+    match.guess_information = odometry_covariance().ldlt().solve(Eigen::Matrix3d::Identity());
+    const matching::MatchResult found = match_point_to_line(*references_[k - 1], surface(k), guess, match);
+    if (found.is_usable()) return {{true, "", found.motion, found.covariance, found.overlap}};
+    if (found.status == matching::MatchStatus::degenerate)
+      return {
+          {true, "", found.motion, with_odometry(found.information, match.guess_information), found.overlap},
+          true};
+    LoopCheckOptions narrow = options_.loop;
+    narrow.half_width = narrow.half_angle = kMostFromOdometry;
+    narrow.min_overlap = kNeighbourOverlap;
+    return {match_loop(*references_[k - 1], surface(k), guess, narrow)};
+  }
+
+  /// Covariance where the wheels know what the scans do not tell, as along a corridor: there the scans'
+  /// information may come out below zero.
+  static Eigen::Matrix3d with_odometry(const Eigen::Matrix3d& scans, const Eigen::Matrix3d& odometry) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scans);
+    const Eigen::Matrix3d known = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+                                  eigen.eigenvectors().transpose();
+    return (known + odometry).ldlt().solve(Eigen::Matrix3d::Identity());
+  }
+
+  /// Half width of the search: what may have gone wrong since the map last closed. Errors of steps are
+  /// independent, so that heading wanders with the root of the way; integrated, that displaces the end.
+  [[nodiscard]] double reach(std::size_t k) const {
+    const double way = way_[k] - closed_at_;
+    const double wander = options_.drift * (std::sqrt(way) + std::pow(way, 1.5) / std::sqrt(3.0));
+    return std::min(options_.loop.half_width + wander, kWidest);
+  }
+
+  /// Of two scans with a limited view, taken in directions that are `turned` apart, whether each sees half of
+  /// what the other does.
+  [[nodiscard]] bool share_view(std::size_t j, std::size_t k, double turned) const {
+    const double view = std::min(views_[j], views_[k]);
+    return view > kAllRound || std::abs(math::wrap_angle(turned)) < 0.5 * view + kWidestAngle;
+  }
+
+  /// The nearest ones, some keyframes apart: more of them the less the graph knows where this is.
+  [[nodiscard]] std::vector<std::size_t> places_seen_before(std::size_t k) const {
+    std::vector<std::pair<double, std::size_t>> near;
+    for (std::size_t j = 0; j < k; ++j) {
+      if (way_[k] - way_[j] < options_.min_way_round) break;
+      const math::Pose apart = between(pose(j), pose(k));
+      const double distance = std::hypot(apart.x, apart.y);
+      if (distance < reach(k) && share_view(j, k, apart.yaw))
+        near.emplace_back(distance + 0.5 * std::abs(math::wrap_angle(apart.yaw)), j);
+    }
+    std::sort(near.begin(), near.end());
+    std::vector<std::size_t> places;
+    for (const auto& [distance, j] : near) {
+      const bool close = std::any_of(places.begin(), places.end(), [j = j](std::size_t other) {
+        return (other > j ? other - j : j - other) < kApart;
+      });
+      if (!close) places.push_back(j);
+      if (static_cast<double>(places.size()) >= kTried * reach(k) / options_.loop.half_width) break;
+    }
+    return places;
+  }
+
+  /// What the keyframes next to j saw, in its frame, without those next to k.
+  [[nodiscard]] std::vector<Eigen::Vector2d> seen_about(std::size_t j, std::size_t k) const {
+    std::vector<Eigen::Vector2d> points;
+    const std::size_t last = std::min(j + kAbout, k - 1);
+    for (std::size_t i = j > kAbout ? j - kAbout : 0; i <= last; ++i) {
+      if (i == j) continue;
+      const math::Frame frame(between(pose(j), pose(i)));
+      for (const matching::SurfacePoint& point : surface(i).points)
+        points.push_back(frame.transform(point.position));
+    }
+    return points;
+  }
+
+  void look(std::size_t j, std::size_t k) {
+    LoopCheckOptions check = options_.loop;
+    check.half_width = reach(k);
+    check.half_angle =
+        std::min(check.half_angle + options_.drift * std::sqrt(way_[k] - closed_at_), kWidestAngle);
+    const math::Pose guess = between(pose(j), pose(k));
+    const Loop loop{j, k, match_loop(*references_[j], surface(k), guess, check, seen_about(j, k))};
+    if (!loop.match.ok) return refuse(loop, loop.match.reason);
+    confirm(loop);
+  }
+
+  void refuse(const Loop&, const std::string& reason) { ++out_.refused[reason]; }
+
+  /// Two loops of different keyframes that say the same about the drift are believed, one alone is not.
+  void confirm(const Loop& loop) {
+    bool confirmed = false;
+    std::vector<Loop> still;
+    for (Loop& earlier : waiting_) {
+      if (earlier.to + kWait < loop.to)
+        refuse(earlier, "not confirmed");
+      else if (earlier.to != loop.to && agree(earlier, loop))
+        confirmed = tie(earlier) || confirmed;
+      else
+        still.push_back(std::move(earlier));
+    }
+    waiting_ = std::move(still);
+    if (confirmed)
+      tie(loop);
+    else
+      waiting_.push_back(loop);
+  }
+
+  [[nodiscard]] bool agree(const Loop& a, const Loop& b) const {
+    const std::size_t apart = a.from > b.from ? a.from - b.from : b.from - a.from;
+    if (apart > kSamePlace && size_of(between(pose(a.from), pose(b.from))) > 1.0) return false;
+    const math::Pose by_a = compose(compose(between(pose(b.from), pose(a.from)), a.match.motion),
+                                    between(pose(a.to), pose(b.to)));
+    const math::Pose error = between(by_a, b.match.motion);
+    return std::hypot(error.x, error.y) < kAgreement &&
+           std::abs(math::wrap_angle(error.yaw)) < 0.5 * kAgreement;
+  }
+
+  /// The edge stays if the graph can live with it.
+  bool tie(const Loop& loop) {
+    const PoseGraph before = out_.graph;
+    out_.graph.edges.push_back(edge_of(loop.from, loop.to, loop.match.motion, loop.match.covariance));
+    const GraphSummary summary = optimize_graph(out_.graph);
+    PoseGraph alone = out_.graph;
+    alone.edges = {out_.graph.edges.back()};
+    if (!summary.is_usable() || graph_chi2(alone) > kMostChi2) {
+      out_.graph = before;
+      refuse(loop, "contradicts the graph");
+      return false;
+    }
+    add_source(EdgeSource::loop, loop.match.overlap);
+    closed_at_ = way_[loop.to];
+    return true;
+  }
+
+  std::span<const matching::Surface> surfaces_;
+  std::span<const math::Pose> odometry_;
+  const ScanGraphOptions& options_;
+  OdometryCorrection correction_;
+  ScanGraph out_;
+  std::vector<std::unique_ptr<matching::MatchReference>> references_;  ///< of each vertex
+  std::vector<double> way_;    ///< to each vertex: m, turning counted, too
+  std::vector<double> views_;  ///< of each vertex, rad
+  double closed_at_ = 0.0;     ///< way at the last loop
+  std::vector<Loop> waiting_;  ///< to be confirmed
+};
+
+}  // namespace
+
+std::size_t ScanGraph::count(EdgeSource source) const {
+  return static_cast<std::size_t>(std::count(sources.begin(), sources.end(), source));
+}
+
+ScanGraph build_scan_graph(std::span<const matching::Surface> surfaces, std::span<const math::Pose> odometry,
+                           const ScanGraphOptions& options) {
+  return Builder(surfaces, odometry, options).run();
+}
+
+}  // namespace odomcalib::calib::slam

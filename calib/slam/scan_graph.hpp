@@ -1,0 +1,43 @@
+// From scans and odometry to a pose graph: consecutive keyframes are matched, places seen again are found,
+// questioned and tied together, and the graph is settled after each of them. A false loop ruins a map and a
+// missed one only leaves it as good as it was: when in doubt a loop is refused, and every refusal is
+// recorded.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/slam/keyframes.hpp"
+#include "calib/slam/loop_check.hpp"
+#include "proto/recording/pose_graph.hpp"
+
+namespace odomcalib::calib::slam {
+
+struct ScanGraphOptions {
+  KeyframeSpacing spacing;
+  LoopCheckOptions loop;        ///< window: of the least search; it grows with the way since the last loop
+  double min_way_round = 4.0;   ///< m of path (or radians times 0.5 m) before a place counts as seen again
+  double drift = 0.04;          ///< m and rad of error that matches and odometry gather per root of a metre
+  double odometry_sigma = 0.1;  ///< m and rad per step, where a match fails and odometry stands in
+};
+
+/// How an edge came about.
+enum class EdgeSource { match, odometry, loop };
+
+struct ScanGraph {
+  PoseGraph graph;                             ///< vertices are keyframes, poses those of the sensor, settled
+  std::vector<std::size_t> scans;              ///< of each vertex
+  std::vector<EdgeSource> sources;             ///< of each edge
+  std::vector<double> overlaps;                ///< of each edge, as in MatchResult; 0 for odometry
+  std::map<std::string, std::size_t> refused;  ///< reason -> candidates for loops
+  [[nodiscard]] std::size_t count(EdgeSource source) const;
+};
+
+/// @param surfaces of all scans in time order, in the sensor's frame
+/// @param odometry poses of the sensor at those scans
+ScanGraph build_scan_graph(std::span<const matching::Surface> surfaces, std::span<const math::Pose> odometry,
+                           const ScanGraphOptions& options);
+
+}  // namespace odomcalib::calib::slam

@@ -1,0 +1,21 @@
+// All effects the software knows, by name.
+#pragma once
+
+#include <string>
+
+#include "calib/vehicle/drive_model.hpp"
+
+namespace odomcalib::calib::terms {
+
+/// In the fixed order in which they are tried and listed.
+const vehicle::EffectList& effect_catalogue();
+
+/// nullptr when there is none. Effects that exist once per wheel share their name and differ by their
+/// parameters.
+std::shared_ptr<const vehicle::Effect> find_effect(const std::string& name,
+                                                   const std::string& first_parameter = {});
+
+/// All effects of that name, e.g. one per wheel.
+vehicle::EffectList find_effects(const std::string& name);
+
+}  // namespace odomcalib::calib::terms

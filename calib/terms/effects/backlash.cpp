@@ -1,0 +1,80 @@
+#include <algorithm>
+
+#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+/// The motor turns through the play before the wheel follows: after each reversal of a wheel that wheel
+/// misses the play g, whatever its speed; after one within the play it misses what it has to go back. What
+/// gives way instead of being loose (a belt, a friction wheel) misses as much over a longer way, the more the
+/// nearer to the reversal.
+class Backlash final : public StepEffect<Backlash> {
+ public:
+  /// @param spread over which the loss falls off exponentially, rad; 0: play
+  explicit Backlash(double spread) : spread_(spread) {}
+  [[nodiscard]] std::string name() const override { return "backlash"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    return {{"left_play", "rad", 0.02, -0.3, 0.3},
+            {"right_play", "rad", 0.02, -0.3, 0.3},
+            {"spread", "rad", 1e9, 0.0, 1.0, spread_, 0.0, true}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override { return {"time_offset", "caster_kick"}; }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "reversals at low and high speed; spins left and right, where the wheels reverse and the robot "
+           "does not";
+  }
+  [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
+    std::vector<std::shared_ptr<const vehicle::Effect>> all;
+    for (const double spread : {0.0, 0.05, 0.15}) all.push_back(std::make_shared<Backlash>(spread));
+    return all;
+  }
+  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+    return {{vehicle::Variable::left_since_reversal, vehicle::Carrier::left_travel},
+            {vehicle::Variable::right_since_reversal, vehicle::Carrier::right_travel}};
+  }
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    const double spread = plain(p[2]);
+    if (spread > 0.0) {
+      fade(c.left_since_reversal, c.left_delta, p[0], spread, step.left);
+      fade(c.right_since_reversal, c.right_delta, p[1], spread, step.right);
+      return;
+    }
+    lose(c.left_lost, c.left_delta, p[0], step.left);
+    lose(c.right_lost, c.right_delta, p[1], step.right);
+  }
+
+ private:
+  template <typename T>
+  static void fade(double since, double delta, const T& play, double spread, T& travel) {
+    if (since > 20.0 * spread || std::abs(delta) < 1e-9) return;
+    const double share = std::exp(-since / spread) - std::exp(-(since + std::abs(delta)) / spread);
+    travel *= 1.0 - play * (share / std::abs(delta));
+  }
+
+  /// What a play loses is known of kPlays; in between it is interpolated, from nothing on.
+  template <typename T>
+  static void lose(const vehicle::LostToPlay& lost, double delta, const T& play, T& travel) {
+    if (std::abs(delta) < 1e-9) return;
+    const double size = std::min(std::abs(plain(play)), vehicle::kPlays.back());
+    const auto next = static_cast<std::size_t>(
+        std::lower_bound(vehicle::kPlays.begin(), vehicle::kPlays.end(), size) - vehicle::kPlays.begin());
+    const double play_before = next > 0 ? vehicle::kPlays[next - 1] : 0.0,
+                 lost_before = next > 0 ? lost[next - 1] : 0.0;
+    const double slope = (lost[next] - lost_before) / (vehicle::kPlays[next] - play_before);
+    const T magnitude = plain(play) < 0.0 ? T(-play) : play;
+    const T loss = lost_before + slope * (magnitude - play_before);
+    travel *= 1.0 - (plain(play) < 0.0 ? T(-loss) : loss) / delta;
+  }
+
+  double spread_;
+};
+
+}  // namespace
+
+std::shared_ptr<const vehicle::Effect> make_backlash() { return std::make_shared<Backlash>(0.0); }
+
+}  // namespace odomcalib::calib::terms

@@ -1,0 +1,71 @@
+#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+// Trailing casters swing through half a turn after a reversal and push the chassis aside: the yaw added after
+// the distance s since the reversal falls off as exp(-s / length), with a length of two to four caster
+// trails. The side it swings to follows the direction of travel, the turn before (kappa_turn), or is always
+// the same (kappa_side). One that stands nearly straight has to fall over first: the push then grows with s
+// before it fades (order 2). After turns too, the push may follow the angle by which the caster points past
+// the way of its pivot, the length being its trail and the lean what is left of that angle when it has
+// settled (order 0).
+class CasterKick final : public StepEffect<CasterKick> {
+ public:
+  CasterKick(double length, double order, double lean = 0.0) : length_(length), order_(order), lean_(lean) {}
+  [[nodiscard]] std::string name() const override { return "caster_kick"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    return {{"kappa", "rad", 0.01, -0.2, 0.2},
+            {"kappa_turn", "rad", 0.01, -0.2, 0.2},
+            {"kappa_side", "rad", 0.01, -0.2, 0.2},
+            {"length", "m", 1e9, 0.005, 1.0, length_, 0.0, order_ == 0.0},
+            {"order", "1", 1e9, 0.0, 2.0, order_, 0.0, true},
+            {"lean", "rad", 1e9, -0.1, 0.1, lean_, 0.0, true}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "reversals straight after a left and after a right arc, and long straights after a reversal";
+  }
+  [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
+    std::vector<std::shared_ptr<const vehicle::Effect>> all;
+    for (const double length : {0.04, 0.08, 0.15}) all.push_back(std::make_shared<CasterKick>(length, 1.0));
+    for (const double length : {0.04, 0.08}) all.push_back(std::make_shared<CasterKick>(length, 2.0));
+    for (const double length : vehicle::kCasterTrails)
+      for (const double lean : vehicle::kCasterLeans)
+        all.push_back(std::make_shared<CasterKick>(length, 0.0, lean));
+    return all;
+  }
+  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+    return {{vehicle::Variable::since_reversal, vehicle::Carrier::yaw_path}};
+  }
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    using std::exp;
+    if (plain(p[4]) < 0.5) {
+      step.yaw += p[0] * c.caster[nearest_caster(plain(p[3]), plain(p[5]))] * c.way / p[3];
+      return;
+    }
+    const T side = p[0] * c.direction + p[1] * c.previous_turn[vehicle::kUsualMemory] + p[2];
+    const T distance = c.since_reversal / p[3];
+    const T rise = p[4] > 1.5 ? distance : T(1.0);
+    step.yaw += side * (c.way / p[3]) * rise * exp(-distance);
+  }
+
+ private:
+  static std::size_t nearest_caster(double trail, double lean) {
+    return vehicle::nearest_of(vehicle::kCasterTrails, trail) * vehicle::kCasterLeans.size() +
+           vehicle::nearest_of(vehicle::kCasterLeans, lean);
+  }
+
+  double length_;
+  double order_;
+  double lean_;
+};
+
+}  // namespace
+
+std::shared_ptr<const vehicle::Effect> make_caster_kick() { return std::make_shared<CasterKick>(0.08, 1.0); }
+
+}  // namespace odomcalib::calib::terms

@@ -1,0 +1,32 @@
+#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+/// One wheel's counts are older than the other's: two nodes on a bus that answer in turn, a filter in one of
+/// two drives. What a wheel did in its lag is still to come: dL' = dL + lag/2 du_L, dR' = dR - lag/2 du_R.
+/// The lag that both have is time_offset's.
+class EncoderLag final : public StepEffect<EncoderLag> {
+ public:
+  [[nodiscard]] std::string name() const override { return "encoder_lag"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    return {{"left_less_right", "s", 5e-3, -0.2, 0.2}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "straight lines and turns on the spot with quick starts, without reversing";
+  }
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    step.left += 0.5 * p[0] * (c.left_acceleration * c.dt);
+    step.right -= 0.5 * p[0] * (c.right_acceleration * c.dt);
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const vehicle::Effect> make_encoder_lag() { return std::make_shared<EncoderLag>(); }
+
+}  // namespace odomcalib::calib::terms

@@ -1,0 +1,50 @@
+#include <cmath>
+
+#include "calib/terms/lidar_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+// A scan plane tilted by a about a horizontal axis meets vertical walls late: r / cos(a cos(bearing - b))
+// with b the direction of the steepest beam. To first order in a^2 that is a common stretch a^2/4, which no
+// scan shows, and a^2/4 cos 2(bearing - b): the two parameters are its cosine and sine parts.
+class LidarTilt final : public LidarEffect {
+ public:
+  [[nodiscard]] std::string name() const override { return "lidar_tilt"; }
+  [[nodiscard]] std::string variable() const override { return "bearing"; }
+  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
+    constexpr double kNegligible = 2.5e-4;  // 1.8 degrees
+    return {{"stretch_cos", "1", kNegligible, 0.02}, {"stretch_sin", "1", kNegligible, 0.02}};
+  }
+  [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& s) const override {
+    return {{s.range * std::cos(2.0 * s.bearing), 0.0}, {s.range * std::sin(2.0 * s.bearing), 0.0}};
+  }
+  [[nodiscard]] BeamShift total(const Sighting& s, std::span<const double> values) const override {
+    const Tilt tilt = tilt_of(values);
+    return {s.range * (1.0 - std::cos(tilt.angle * std::cos(s.bearing - tilt.direction))), 0.0};
+  }
+  [[nodiscard]] std::vector<std::pair<std::string, Quantity>> quantities(
+      std::span<const double> values, std::span<const double> deviations) const override {
+    const Tilt tilt = tilt_of(values);
+    const double stretch = std::hypot(values[0], values[1]);
+    const double deviation =
+        std::hypot(values[0] * deviations[0], values[1] * deviations[1]) / std::max(stretch, 1e-12);
+    return {{"angle", {tilt.angle, 2.0 * deviation / std::max(tilt.angle, 1e-6), "rad"}},
+            {"direction", {tilt.direction, deviation / std::max(2.0 * stretch, 1e-12), "rad"}}};
+  }
+
+ private:
+  struct Tilt {
+    double angle = 0.0;      // rad
+    double direction = 0.0;  // rad, of the steepest beam, to a half turn
+  };
+  static Tilt tilt_of(std::span<const double> values) {
+    return {2.0 * std::sqrt(std::hypot(values[0], values[1])), 0.5 * std::atan2(values[1], values[0])};
+  }
+};
+
+}  // namespace
+
+LidarEffectPtr make_lidar_tilt() { return std::make_shared<LidarTilt>(); }
+
+}  // namespace odomcalib::calib::terms

@@ -1,0 +1,36 @@
+#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+// The head needs T_s for a turn. If the sweep is not de-skewed, or with wrong beam times, a feature is met
+// again after a shortened or lengthened time: d(yaw) = -c omega^2 dt with c = T_s / 2 pi, the same sign for
+// left and right turns.
+class ScanSkew final : public StepEffect<ScanSkew> {
+ public:
+  [[nodiscard]] std::string name() const override { return "scan_skew"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    return {{"c", "s", 5e-3, -0.1, 0.1}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override {
+    return {"turn_direction_asymmetry", "direction_dependent_diameter"};
+  }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "turns left and right at two or more rates of at least 1:3, and single-wheel turns";
+  }
+  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+    return {{vehicle::Variable::turn_rate, vehicle::Carrier::track}};
+  }
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    step.yaw -= p[0] * c.turn_rate * c.turn_rate * c.dt;
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const vehicle::Effect> make_scan_skew() { return std::make_shared<ScanSkew>(); }
+
+}  // namespace odomcalib::calib::terms

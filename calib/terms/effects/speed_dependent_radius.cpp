@@ -1,0 +1,61 @@
+#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+// A viscoelastic tyre rolls on a radius that changes with its speed: dL' = dL (1 + kappa |u_L|) by the
+// textbook. One that has stiffened as far as it will once it rolls fast (Ferry, Viscoelastic Properties of
+// Polymers, 1980, chapter 3: the storage modulus of a Maxwell element) grows by kappa h u^2 / (u^2 + h^2)
+// instead.
+class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
+ public:
+  /// @param half_speed at which half of the growth is reached, m/s; 0: the textbook's law
+  explicit SpeedDependentRadius(double half_speed) : half_speed_(half_speed) {}
+  [[nodiscard]] std::string name() const override { return "speed_dependent_radius"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    return {{"kappa", "s/m", 0.01, -1.0, 1.0}, {"half_speed", "m/s", 1e9, 0.0, 10.0, half_speed_, 0.0, true}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override {
+    return {"track_depends_on_motion", "tick_loss"};
+  }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "straight lines at three speeds over 1:3, and spins whose wheel speeds overlap those of the "
+           "straights";
+  }
+  [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
+    std::vector<std::shared_ptr<const vehicle::Effect>> all;
+    for (const double half_speed : {0.0, 0.1, 0.2, 0.4, 0.8})
+      all.push_back(std::make_shared<SpeedDependentRadius>(half_speed));
+    return all;
+  }
+  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+    return {vehicle::kOfEachWheel,
+            {vehicle::Variable::left_speed, vehicle::Carrier::left_travel},
+            {vehicle::Variable::right_speed, vehicle::Carrier::right_travel},
+            {vehicle::Variable::speed, vehicle::Carrier::both_travel}};
+  }
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    step.left *= 1.0 + p[0] * growth(std::abs(c.left_speed), p[1]);
+    step.right *= 1.0 + p[0] * growth(std::abs(c.right_speed), p[1]);
+  }
+
+ private:
+  template <typename T>
+  static T growth(double speed, const T& half_speed) {
+    if (!(plain(half_speed) > 0.0)) return T(speed);
+    return half_speed * speed * speed / (speed * speed + half_speed * half_speed);
+  }
+
+  double half_speed_;
+};
+
+}  // namespace
+
+std::shared_ptr<const vehicle::Effect> make_speed_dependent_radius() {
+  return std::make_shared<SpeedDependentRadius>(0.0);
+}
+
+}  // namespace odomcalib::calib::terms

@@ -1,0 +1,62 @@
+#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+// What a motion has wound up, such as the side walls of tyres in a turn on the spot, unwinds after it
+// (negative sizes), and a robot on a slack gear rolls on (positive ones): a little motion after each stop
+// that no encoder counts.
+class StopSettling final : public StepEffect<StopSettling> {
+ public:
+  /// @param lasting whether a turn stays wound up until another
+  /// @param speed at which the sizes are stated where they grow with the speed before the stop, m/s; 0: they
+  /// do not
+  StopSettling(bool lasting, double speed) : lasting_(lasting), speed_(speed) {}
+  [[nodiscard]] std::string name() const override { return "stop_settling"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    return {{"turn", "rad", 0.005, -0.2, 0.2},
+            {"way", "m", 0.005, -0.1, 0.1},
+            {"lasting", "1", 1e9, 0.0, 1.0, lasting_ ? 1.0 : 0.0, 0.0, true},
+            {"speed", "m/s", 1e9, 0.0, 10.0, speed_, 0.0, true}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override { return {"backlash", "time_offset"}; }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "many stops, after straights and after turns on the spot, beside reversals without one";
+  }
+  [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
+    std::vector<std::shared_ptr<const vehicle::Effect>> all;
+    for (const bool lasting : {false, true})
+      for (const double speed : {0.0, kSpeed}) all.push_back(std::make_shared<StopSettling>(lasting, speed));
+    return all;
+  }
+  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+    return {{vehicle::Variable::since_stop, vehicle::Carrier::both_travel},
+            {vehicle::Variable::since_stop, vehicle::Carrier::yaw_path}};
+  }
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    const vehicle::Unwound& unwound = c.unwound[plain(p[2]) > 0.5 ? 1 : 0];
+    const double speed = plain(p[3]);
+    const double growth = speed > 0.0 ? c.fastest / speed : 1.0;
+    const T way = p[1] * (growth * unwound.way);
+    step.left += way;
+    step.right += way;
+    step.yaw += p[0] * (growth * unwound.turn);
+  }
+
+ private:
+  static constexpr double kSpeed = 0.3;
+
+  bool lasting_;
+  double speed_;
+};
+
+}  // namespace
+
+std::shared_ptr<const vehicle::Effect> make_stop_settling() {
+  return std::make_shared<StopSettling>(false, 0.0);
+}
+
+}  // namespace odomcalib::calib::terms

@@ -1,0 +1,62 @@
+#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+/// A counter that misses edges above a wheel speed: dL' = dL (1 + kappa_L [|u_L| > threshold]). The step has
+/// a width: that over which the smoothed speed changes anyway, or more.
+class TickLoss final : public StepEffect<TickLoss> {
+ public:
+  explicit TickLoss(double threshold) : threshold_(threshold) {}
+  [[nodiscard]] std::string name() const override { return "tick_loss"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    return {{"left_kappa", "1", 0.01, -0.3, 0.3},
+            {"right_kappa", "1", 0.01, -0.3, 0.3},
+            {"threshold", "m/s", 1e9, 0.02, 5.0, threshold_},
+            {"width", "m/s", 1e9, -0.2, 0.2, kWidth}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override {
+    return {"speed_dependent_radius", "track_depends_on_motion"};
+  }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "straight lines above and below the threshold, and spins whose wheel speed stays below it";
+  }
+  [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
+    std::vector<std::shared_ptr<const vehicle::Effect>> all;
+    for (const double threshold : {0.1, 0.14, 0.19, 0.25, 0.32, 0.4, 0.5, 0.7, 1.0, 1.5})
+      all.push_back(std::make_shared<TickLoss>(threshold));
+    return all;
+  }
+  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+    return {vehicle::kOfEachWheel,
+            {vehicle::Variable::left_speed, vehicle::Carrier::left_travel},
+            {vehicle::Variable::right_speed, vehicle::Carrier::right_travel}};
+  }
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    step.left *= 1.0 + p[0] * above(std::abs(c.left_speed), p[2], p[3]);
+    step.right *= 1.0 + p[1] * above(std::abs(c.right_speed), p[2], p[3]);
+  }
+
+ private:
+  static constexpr double kWidth = 0.03;     // m/s
+  static constexpr double kSharpest = 0.01;  // m/s
+
+  /// However sharp the step is, the speed that is compared with it is a mean. The width's sign says nothing.
+  template <typename T>
+  static T above(double speed, const T& threshold, const T& width) {
+    using std::exp;
+    using std::sqrt;
+    const T steps = (threshold - speed) / sqrt(width * width + kSharpest * kSharpest);
+    return 1.0 / (1.0 + exp(steps));
+  }
+  double threshold_;
+};
+
+}  // namespace
+
+std::shared_ptr<const vehicle::Effect> make_tick_loss() { return std::make_shared<TickLoss>(0.25); }
+
+}  // namespace odomcalib::calib::terms

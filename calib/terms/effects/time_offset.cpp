@@ -1,0 +1,48 @@
+#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+// A scan stamped t was taken at encoder time t - offset. Late encoders are seldom a pure delay: a first-order
+// filter that is late by tau reads phi(t - tau) + tau^2 / 2 phi'' + ..., two half as long in a row add half
+// of that. So dL' = dL - smoothing (aL(end) - aL(begin)), and dR' likewise; zero for a pure delay.
+class TimeOffset final : public StepEffect<TimeOffset> {
+ public:
+  [[nodiscard]] std::string name() const override { return "time_offset"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    return {{"offset", "s", 0.02, -1.0, 1.0},
+            {"smoothing", "s^2", kTypicalSmoothing, -0.02, 0.02, 0.0, kTypicalSmoothing}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override {
+    return {"encoder_lag", "acceleration_slip"};
+  }
+  [[nodiscard]] std::vector<std::string> always_alike() const override { return {"encoder_lag"}; }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "equal accelerations at low and at high speed, forward and backward; a filter in the encoder path "
+           "cannot be told "
+           "apart from a late scan";
+  }
+  [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::driver; }
+  [[nodiscard]] double delay(double /*time*/, std::span<const double> parameters) const override {
+    return parameters[0];
+  }
+  [[nodiscard]] vehicle::Jet delay(double /*time*/, std::span<const vehicle::Jet> parameters) const override {
+    return parameters[0];
+  }
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    step.left -= p[1] * c.left_acceleration_change;
+    step.right -= p[1] * c.right_acceleration_change;
+  }
+
+ private:
+  static constexpr double kTypicalSmoothing = 1e-3;  ///< a filter that is late by 45 ms
+};
+
+}  // namespace
+
+std::shared_ptr<const vehicle::Effect> make_time_offset() { return std::make_shared<TimeOffset>(); }
+
+}  // namespace odomcalib::calib::terms

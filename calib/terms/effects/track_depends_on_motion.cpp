@@ -1,0 +1,50 @@
+#include "calib/terms/effects/factories.hpp"
+#include "calib/terms/effects/step_effect.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+// In a spin the whole contact patch scrubs, rolling forward re-lays it: b (1 + kappa s) with
+// s = |omega| arm / (|omega| arm + |v|), 1 in a spin and towards 0 in a wide arc. The arm is half the track
+// by the textbook; wide and soft patches scrub sooner, narrow and hard ones later.
+class TrackDependsOnMotion final : public StepEffect<TrackDependsOnMotion> {
+ public:
+  explicit TrackDependsOnMotion(double arm) : arm_(arm) {}
+  [[nodiscard]] std::string name() const override { return "track_depends_on_motion"; }
+  [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
+    return {{"kappa", "1", 0.01, -0.9, 0.9}, {"arm", "tracks", 1e9, 0.0, 10.0, arm_, 0.0, true}};
+  }
+  [[nodiscard]] std::vector<std::string> aliases() const override {
+    return {"tick_loss", "speed_dependent_radius", "speed_dependent_track"};
+  }
+  [[nodiscard]] std::string separating_motion() const override {
+    return "spins and arcs with equal wheel speeds";
+  }
+  [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
+    std::vector<std::shared_ptr<const vehicle::Effect>> all;
+    for (const double arm : {0.5, 0.25, 1.0, 2.0}) all.push_back(std::make_shared<TrackDependsOnMotion>(arm));
+    return all;
+  }
+  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+    return {{vehicle::Variable::turn_rate, vehicle::Carrier::track},
+            {vehicle::Variable::speed, vehicle::Carrier::track}};
+  }
+
+  template <typename T>
+  static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
+    const T turning = std::abs(c.right_speed - c.left_speed) * p[1];  // |omega| arm
+    const double rolling = 0.5 * std::abs(c.right_speed + c.left_speed);
+    if (plain(turning) + rolling > 5e-4) step.track *= 1.0 + p[0] * turning / (turning + rolling);
+  }
+
+ private:
+  double arm_;
+};
+
+}  // namespace
+
+std::shared_ptr<const vehicle::Effect> make_track_depends_on_motion() {
+  return std::make_shared<TrackDependsOnMotion>(0.5);
+}
+
+}  // namespace odomcalib::calib::terms

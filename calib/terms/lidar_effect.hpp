@@ -1,0 +1,75 @@
+// What can be wrong with the readings themselves: where a beam's end is reported, against where it is. Such
+// errors hide in the matches as scale or lever arm and show only between scans taken in different directions.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/calibration/calibration.hpp"
+
+namespace odomcalib::calib::terms {
+
+/// What a reading's error may depend on.
+struct Sighting {
+  double bearing = 0.0;    ///< rad, direction of the beam in the sensor's frame
+  double range = 0.0;      ///< m
+  double incidence = 0.0;  ///< rad, signed; 0 where it is not asked for
+};
+
+/// Displacement of a beam's end, measured minus true.
+struct BeamShift {
+  double radial = 0.0;   ///< m, outwards
+  double angular = 0.0;  ///< rad, counter-clockwise
+};
+
+struct LidarParameter {
+  std::string name;
+  std::string unit;
+  double negligible = 0.0;  ///< size below which it is not worth a claim
+  double largest = 0.0;     ///< no device is worse
+};
+
+class LidarEffect {
+ public:
+  virtual ~LidarEffect() = default;
+  /// Of an unnamed dependence, the variable.
+  [[nodiscard]] virtual std::string name() const = 0;
+  [[nodiscard]] virtual bool is_named() const { return true; }
+  /// Whether scans may be corrected by it. What is nearly a common scale no scan shows well enough: it is
+  /// reported, and the scans stay as they are.
+  [[nodiscard]] virtual bool is_correctable() const { return true; }
+  /// Share of the squared disagreement between scans that it may leave, at most, to be worth its freedom.
+  [[nodiscard]] virtual double may_leave() const { return 0.9965; }
+  /// How many deviations the mean gain on held-out pairs must lie above zero.
+  [[nodiscard]] virtual double proof_wanted() const { return 2.5; }
+  /// Share of the statistic of a free law of its variable that it must reach to be taken instead.
+  [[nodiscard]] virtual double share_of_free_law() const { return 0.5; }
+  /// The variable it depends on. A rest that depends on the same one is the same effect with another law.
+  [[nodiscard]] virtual std::string variable() const = 0;
+  [[nodiscard]] virtual std::vector<LidarParameter> parameters() const = 0;
+  /// Shift per unit of each parameter: errors are linear in them to first order.
+  [[nodiscard]] virtual std::vector<BeamShift> shifts(const Sighting& sighting) const = 0;
+  /// What the parameters add up to, beyond first order where the physics is known.
+  [[nodiscard]] virtual BeamShift total(const Sighting& sighting, std::span<const double> values) const;
+  /// Estimates as a user reads them, from parameters and their deviations.
+  [[nodiscard]] virtual std::vector<std::pair<std::string, Quantity>> quantities(
+      std::span<const double> values, std::span<const double> deviations) const;
+  [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
+};
+
+using LidarEffectPtr = std::shared_ptr<const LidarEffect>;
+
+LidarEffectPtr make_range_bias();
+/// @param all_round whether the head sees all directions, so that its stated steps add up to a turn
+LidarEffectPtr make_angle_scale(bool all_round = false);
+LidarEffectPtr make_lidar_tilt();
+
+/// Every named effect of the lidar.
+std::vector<LidarEffectPtr> lidar_catalogue(bool all_round);
+LidarEffectPtr find_lidar_effect(const std::string& name);
+
+}  // namespace odomcalib::calib::terms

@@ -1,0 +1,88 @@
+// What can be missing in the plain differential-drive model: the interface of one effect.
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/vehicle/carrier.hpp"
+#include "calib/vehicle/motion_step.hpp"
+
+namespace odomcalib::calib::vehicle {
+
+/// Scalar for automatic derivatives: the value and its derivatives by up to 16 parameters at a time.
+inline constexpr int kJetSize = 16;
+using Jet = ceres::Jet<double, kJetSize>;
+
+struct EffectParameter {
+  std::string name;
+  std::string unit;
+  double scale = 1.0;  ///< typical size; steps and tolerances are relative to it
+  double lower = 0.0;  ///< physically plausible range
+  double upper = 0.0;
+  double start = 0.0;  ///< where a fit begins; not zero for what gives the law its shape, such as a threshold
+  double prior =
+      0.0;  ///< deviation of a normal prior about zero; 0: none. What the data do not show stays small
+  bool fixed = false;  ///< a shape that is tried at several values instead of being fitted
+  /// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
+  [[nodiscard]] bool is_size() const { return start == 0.0 && !fixed; }
+};
+
+/// Share of an effect's typical size below which it does not matter to odometry and is not claimed: what a
+/// scan matcher's own bias in one room amounts to.
+inline constexpr double kNegligibleShare = 0.15;
+
+/// Where a correction can live.
+enum class Storage { controller, host, driver, nowhere };
+
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  [[nodiscard]] virtual std::string name() const = 0;
+  [[nodiscard]] virtual std::vector<EffectParameter> parameters() const = 0;
+  /// Combinations of the parameters, in deviations, that a prior expects to be zero beside the parameters'
+  /// own: a row each, a factor for each parameter.
+  [[nodiscard]] virtual std::vector<std::vector<double>> expected_zeros() const { return {}; }
+  /// Names of the effects that look alike, and the motion that tells them apart.
+  [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
+  /// Names that no motion can tell from this one: listed beside it whenever it is found.
+  [[nodiscard]] virtual std::vector<std::string> always_alike() const { return {}; }
+  [[nodiscard]] virtual std::string separating_motion() const { return {}; }
+  /// The same effect with other shapes to start from; a search tries them all and keeps the best.
+  [[nodiscard]] virtual std::vector<std::shared_ptr<const Effect>> variants() const { return {}; }
+  /// Where its signature lies. A rest that depends on these variables on these carriers is the same effect
+  /// with another law than the textbook's.
+  [[nodiscard]] virtual std::vector<Law> laws() const { return {}; }
+  [[nodiscard]] virtual Storage storage() const { return Storage::host; }
+
+  /// Whether either of two states may be the undisturbed one: nothing tells which way of turning is the
+  /// normal one.
+  [[nodiscard]] virtual bool has_two_states() const { return false; }
+
+  /// Changes the motion of one tick interval in place. Parameters at their start leave it unchanged.
+  virtual void apply(const StepContext& context, std::span<const double> parameters,
+                     WheelStep<double>& step) const {
+    (void)context, (void)parameters, (void)step;
+  }
+  virtual void apply(const StepContext& context, std::span<const Jet> parameters,
+                     WheelStep<Jet>& step) const {
+    (void)context, (void)parameters, (void)step;
+  }
+  /// Delay in s of the sensor against the encoders: a scan stamped t was taken at encoder time t - delay.
+  /// @param time s, counted from the middle of the recording
+  [[nodiscard]] virtual double delay(double time, std::span<const double> parameters) const {
+    (void)time, (void)parameters;
+    return 0.0;
+  }
+  [[nodiscard]] virtual Jet delay(double time, std::span<const Jet> parameters) const {
+    (void)time, (void)parameters;
+    return Jet(0.0);
+  }
+};
+
+using EffectList = std::vector<std::shared_ptr<const Effect>>;
+
+}  // namespace odomcalib::calib::vehicle

@@ -1,0 +1,233 @@
+#include "calib/vehicle/sensitivity.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "calib/math/vector2.hpp"
+#include "calib/vehicle/part_of_step.hpp"
+#include "calib/vehicle/step_twist.hpp"
+
+namespace odomcalib::calib::vehicle {
+namespace {
+
+using Chunk = Eigen::Matrix<double, 3, kJetSize>;
+
+template <int N>
+using SmallJet = ceres::Jet<double, N>;
+
+template <int N>
+Eigen::Matrix<double, 3, N> derivatives_of(const math::Pose2<SmallJet<N>>& pose) {
+  Eigen::Matrix<double, 3, N> rows;
+  rows << pose.x.v.transpose(), pose.y.v.transpose(), pose.yaw.v.transpose();
+  return rows;
+}
+
+/// d exp(w) / d w.
+Eigen::Matrix3d exp_derivative(const math::Pose& w) {
+  using J = SmallJet<3>;
+  return derivatives_of<3>(math::exp_se2<J>(J(w.x, 0), J(w.y, 1), J(w.yaw, 2)));
+}
+
+/// Derivatives of m = mount^-1 * base * mount: columns base x, y, yaw, mount x, y, yaw.
+Eigen::Matrix<double, 3, 6> conjugate_derivative(const math::Pose& base, const math::Pose& mount) {
+  using J = SmallJet<6>;
+  return derivatives_of<6>(math::conjugate<J>({J(base.x, 0), J(base.y, 1), J(base.yaw, 2)},
+                                              {J(mount.x, 3), J(mount.y, 4), J(mount.yaw, 5)}));
+}
+
+/// One end of an interval on the trajectory.
+struct End {
+  std::size_t step = 0;
+  PartOfStep::Weights<double> weights{};  ///< of the twist since the step's begin
+  Eigen::Matrix3d by_twist;               ///< of the motion since the step's begin, by that twist
+  math::Pose pose;
+  Eigen::Vector3d velocity;  ///< by encoder time, in room axes
+};
+
+End end_at(const wheels::WheelTrack& track, const Trajectory& along, double sensor_time) {
+  using J = SmallJet<1>;
+  const double time = along.encoder_time(sensor_time);
+  End end;
+  end.step = track.interval_at(time);
+  const double begin = track.t[end.step];
+  const J share = (J(time, 0) - begin) / (track.t[end.step + 1] - begin);
+  const PartOfStep part(track, along.twists(), end.step);
+  const math::Pose2<J> w = part.twist(share);
+  const math::Pose& p = along.poses()[end.step];
+  const auto pose = math::compose<J>({J(p.x), J(p.y), J(p.yaw)}, math::exp_se2<J>(w.x, w.y, w.yaw));
+  end.weights = part.weights(share.a);
+  end.by_twist = exp_derivative({w.x.a, w.y.a, w.yaw.a});
+  end.pose = {pose.x.a, pose.y.a, pose.yaw.a};
+  end.velocity = derivatives_of<1>(pose);
+  return end;
+}
+
+/// What a change of the pose `here` (x, y in room axes, yaw) does to the base motion from `begin` to `end`,
+/// when everything after `here` is carried along rigidly.
+Eigen::Matrix3d carried(const math::Pose& begin, const math::Pose& here, const math::Pose& end) {
+  const double c = std::cos(begin.yaw), s = std::sin(begin.yaw);
+  const double lever_x = -(end.y - here.y), lever_y = end.x - here.x;
+  Eigen::Matrix3d m;
+  m << c, s, c * lever_x + s * lever_y, -s, c, c * lever_y - s * lever_x, 0.0, 0.0, 1.0;
+  return m;
+}
+
+/// How the twist of a step changes a base motion: `part` of the twist from the pose `from` on leads to `to`.
+Eigen::Matrix3d twist_to_motion(const math::Pose& begin, const math::Pose& from, const math::Pose& to,
+                                const math::Pose& end, const Eigen::Matrix3d& part) {
+  return carried(begin, to, end) * math::rotation_about_z(from.yaw) * part;
+}
+
+/// Twist derivatives of every step by the parameters [first, first + kJetSize).
+std::vector<Chunk> twist_derivatives(const std::vector<StepContext>& steps, const std::vector<Jet>& jets,
+                                     const PlacedEffects& effects) {
+  std::vector<Chunk> all;
+  all.reserve(steps.size());
+  for (const StepContext& context : steps)
+    all.push_back(derivatives_of<kJetSize>(twist_of<Jet>(context, jets, effects)));
+  return all;
+}
+
+/// Parameters as jets; those in [first, first + kJetSize) carry derivatives.
+std::vector<Jet> seed(std::span<const double> parameters, std::size_t first) {
+  std::vector<Jet> jets;
+  jets.reserve(parameters.size());
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const bool active = k >= first && k < first + kJetSize;
+    jets.push_back(active ? Jet(parameters[k], static_cast<int>(k - first)) : Jet(parameters[k]));
+  }
+  return jets;
+}
+
+}  // namespace
+
+/// One interval with all that does not depend on which parameters are asked for.
+struct Sensitivity::Path {
+  End begin, end;
+  Eigen::Matrix<double, 3, 6> to_sensor;  ///< by base motion, then by mount
+  std::size_t first = 0;                  ///< step whose twist matters
+  std::vector<Eigen::Matrix3d> by_twist;  ///< base motion by the twist of each step from `first` on
+  Eigen::Vector3d by_begin, by_end;       ///< base motion by the encoder times of the ends
+
+  Path(const Trajectory& along, const math::Pose& mount, const End& from, const End& to,
+       const std::vector<Eigen::Matrix3d>& whole_steps);
+  /// @param by_part base motion by the twist of the part of the step that lies before one of its ends
+  void add(const End& at, const Eigen::Matrix3d& by_part);
+  /// What delays of both ends do.
+  [[nodiscard]] Chunk by_delays(const Jet& at_begin, const Jet& at_end) const {
+    return -by_begin * at_begin.v.transpose() - by_end * at_end.v.transpose();
+  }
+};
+
+Sensitivity::Path::Path(const Trajectory& along, const math::Pose& mount, const End& from, const End& to,
+                        const std::vector<Eigen::Matrix3d>& whole_steps)
+    : begin(from), end(to) {
+  const math::Pose &b = begin.pose, &e = end.pose;
+  to_sensor = conjugate_derivative(between(b, e), mount);
+  by_end = math::rotation_about_z(-b.yaw) * end.velocity;
+  by_begin = -carried(b, b, e) * begin.velocity;
+  first = begin.step > 0 ? begin.step - 1 : 0;
+  const std::size_t last = std::min(end.step + 1, along.twists().size() - 1);
+  by_twist.assign(last - first + 1, Eigen::Matrix3d::Zero());
+  for (std::size_t k = begin.step; k < end.step; ++k)
+    by_twist[k - first] = twist_to_motion(b, along.poses()[k], along.poses()[k + 1], e, whole_steps[k]);
+  add(end, twist_to_motion(b, along.poses()[end.step], e, e, end.by_twist));
+  add(begin, -twist_to_motion(b, along.poses()[begin.step], b, e, begin.by_twist));
+}
+
+void Sensitivity::Path::add(const End& at, const Eigen::Matrix3d& by_part) {
+  by_twist[at.step - first] += at.weights.own * by_part;
+  if (at.step > first) by_twist[at.step - first - 1] += at.weights.before * by_part;
+  if (at.step + 1 < first + by_twist.size()) by_twist[at.step - first + 1] += at.weights.after * by_part;
+}
+
+Sensitivity::Sensitivity(const DriveModel& model, const Trajectory& along,
+                         std::span<const Interval> intervals)
+    : model_(model), along_(along), intervals_(intervals.begin(), intervals.end()) {
+  std::vector<Eigen::Matrix3d> whole_steps;
+  whole_steps.reserve(along.twists().size());
+  for (const math::Pose& w : along.twists()) whole_steps.push_back(exp_derivative(w));
+  const math::Pose mount = to_base(along.parameters()).mount;
+  paths_.reserve(intervals.size());
+  for (const Interval& i : intervals)
+    paths_.emplace_back(along, mount, end_at(model.track(), along, i.begin),
+                        end_at(model.track(), along, i.end), whole_steps);
+}
+
+Sensitivity::~Sensitivity() = default;
+
+Eigen::MatrixXd Sensitivity::by_all() const { return by(along_.parameters(), along_.effects(), 0); }
+
+Eigen::MatrixXd Sensitivity::by_more(const EffectList& effects, std::span<const double> parameters) const {
+  const More more = with(effects, parameters);
+  return by(more.parameters, more.effects, along_.parameters().size());
+}
+
+Sensitivity::More Sensitivity::with(const EffectList& effects, std::span<const double> parameters) const {
+  EffectList all = along_.effects().list();
+  all.insert(all.end(), effects.begin(), effects.end());
+  std::vector<double> values(along_.parameters().begin(), along_.parameters().end());
+  values.insert(values.end(), parameters.begin(), parameters.end());
+  return {PlacedEffects(all, kBaseCount), std::move(values)};
+}
+
+std::vector<StepResponse> Sensitivity::by_steps(const EffectList& effects,
+                                                std::span<const double> parameters) const {
+  const More more = with(effects, parameters);
+  const std::vector<Jet> jets = seed(more.parameters, along_.parameters().size());
+  const std::vector<Chunk> twists = twist_derivatives(model_.context(), jets, more.effects);
+  std::vector<std::size_t> first;
+  for (const Path& path : paths_) first.push_back(path.first);
+  std::vector<StepResponse> responses;
+  for (Eigen::Index p = 0; p < static_cast<Eigen::Index>(parameters.size()); ++p) {
+    std::vector<Eigen::Matrix3Xd> rows;
+    rows.reserve(paths_.size());
+    for (const Path& path : paths_) {
+      Eigen::Matrix3Xd row(3, static_cast<Eigen::Index>(path.by_twist.size()));
+      for (std::size_t k = 0; k < path.by_twist.size(); ++k)
+        row.col(static_cast<Eigen::Index>(k)) =
+            path.to_sensor.leftCols<3>() * (path.by_twist[k] * twists[path.first + k].col(p));
+      rows.push_back(std::move(row));
+    }
+    responses.emplace_back(first, std::move(rows));
+  }
+  return responses;
+}
+
+Eigen::MatrixXd StepResponse::by_coefficients(const Eigen::MatrixXd& functions) const {
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(3 * rows_.size()), functions.cols());
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() =
+        rows_[i].lazyProduct(functions.middleRows(static_cast<Eigen::Index>(first_[i]), rows_[i].cols()));
+  return all;
+}
+
+Eigen::MatrixXd Sensitivity::by(std::span<const double> parameters, const PlacedEffects& effects,
+                                std::size_t first) const {
+  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(3 * paths_.size()),
+                           static_cast<Eigen::Index>(parameters.size() - first));
+  if (paths_.empty()) return jacobian;
+  const double middle = middle_of(model_.track());
+  for (std::size_t chunk = first; chunk < parameters.size(); chunk += kJetSize) {
+    const auto count = static_cast<Eigen::Index>(std::min<std::size_t>(kJetSize, parameters.size() - chunk));
+    const std::vector<Jet> jets = seed(parameters, chunk);
+    const std::vector<Chunk> twists = twist_derivatives(model_.context(), jets, effects);
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      const Path& path = paths_[i];
+      Chunk base = path.by_delays(effects.delay<Jet>(intervals_[i].begin - middle, jets),
+                                  effects.delay<Jet>(intervals_[i].end - middle, jets));
+      for (std::size_t k = 0; k < path.by_twist.size(); ++k)
+        base.noalias() += path.by_twist[k] * twists[path.first + k];
+      Chunk rows = path.to_sensor.leftCols<3>() * base;
+      for (Eigen::Index m = 0; m < 3; ++m) {
+        const auto column = static_cast<Eigen::Index>(kMountX) + m - static_cast<Eigen::Index>(chunk);
+        if (column >= 0 && column < kJetSize) rows.col(column) += path.to_sensor.col(3 + m);
+      }
+      jacobian.block(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(chunk - first), 3, count) =
+          rows.leftCols(count);
+    }
+  }
+  return jacobian;
+}
+
+}  // namespace odomcalib::calib::vehicle

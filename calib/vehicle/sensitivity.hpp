@@ -1,0 +1,66 @@
+// Derivatives of predicted sensor motions by the parameters, by the chain rule: parameters act on the twists
+// of tick intervals and on the times at which the trajectory is asked; the trajectory carries both on.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "calib/vehicle/drive_model.hpp"
+
+namespace odomcalib::calib::vehicle {
+
+/// What an effect of one parameter does to each motion, tick interval by tick interval.
+class StepResponse {
+ public:
+  /// @param first tick interval of each motion
+  /// @param rows of each motion: by the parameter as it acts in the first interval, the second, ...
+  StepResponse(std::vector<std::size_t> first, std::vector<Eigen::Matrix3Xd> rows)
+      : first_(std::move(first)), rows_(std::move(rows)) {}
+
+  /// Derivatives of the motions by coefficients of functions that the parameter is the sum of.
+  /// @param functions tick intervals x coefficients
+  /// @return 3 n x coefficients
+  [[nodiscard]] Eigen::MatrixXd by_coefficients(const Eigen::MatrixXd& functions) const;
+
+ private:
+  std::vector<std::size_t> first_;
+  std::vector<Eigen::Matrix3Xd> rows_;
+};
+
+/// Derivatives of the sensor's motions along a trajectory.
+class Sensitivity {
+ public:
+  /// @param along must outlive this, as must its model
+  Sensitivity(const DriveModel& model, const Trajectory& along, std::span<const Interval> intervals);
+  ~Sensitivity();
+  Sensitivity(const Sensitivity&) = delete;
+  Sensitivity& operator=(const Sensitivity&) = delete;
+
+  /// 3 n x parameters: rows x, y, yaw of each interval's sensor motion, in m and rad, by the parameters of
+  /// the trajectory.
+  [[nodiscard]] Eigen::MatrixXd by_all() const;
+  /// The same by the parameters of more effects at values that leave the trajectory as it is.
+  [[nodiscard]] Eigen::MatrixXd by_more(const EffectList& effects, std::span<const double> parameters) const;
+  /// For each parameter of more effects (kJetSize of them at most) at values that leave the trajectory as it
+  /// is.
+  [[nodiscard]] std::vector<StepResponse> by_steps(const EffectList& effects,
+                                                   std::span<const double> parameters) const;
+
+ private:
+  struct Path;
+  struct More {
+    PlacedEffects effects;
+    std::vector<double> parameters;
+  };
+  [[nodiscard]] More with(const EffectList& effects, std::span<const double> parameters) const;
+  [[nodiscard]] Eigen::MatrixXd by(std::span<const double> parameters, const PlacedEffects& effects,
+                                   std::size_t first) const;
+
+  const DriveModel& model_;
+  const Trajectory& along_;
+  std::vector<Interval> intervals_;
+  std::vector<Path> paths_;
+};
+
+}  // namespace odomcalib::calib::vehicle

@@ -1,0 +1,255 @@
+#include "calib/vehicle/step_context.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/vehicle/drive_history.hpp"
+
+namespace odomcalib::calib::vehicle {
+namespace {
+
+constexpr double kSmoothing = 0.25;  ///< s; differences of raw ticks over less are mostly quantisation noise
+constexpr double kCoarse = 5e-4;     ///< m; ticks from which on shorter times show nothing else either
+
+/// Least-squares parabola through (t, values) around `centre` within the smoothing window: slope and
+/// curvature.
+struct LocalDerivatives {
+  double first = 0.0;
+  double second = 0.0;
+};
+
+LocalDerivatives local_derivatives(const std::vector<double>& t, const std::vector<double>& values,
+                                   std::size_t low, std::size_t high, double centre) {
+  // Normal equations of c0 + c1 u + c2 u^2 with u = (t - centre) / window, solved by Cramer's rule on sums.
+  double s[5] = {};
+  double b[3] = {};
+  for (std::size_t k = low; k <= high; ++k) {
+    const double u = (t[k] - centre) / kSmoothing;
+    const double y = values[k] - values[low];
+    double power = 1.0;
+    for (int j = 0; j < 5; ++j, power *= u) {
+      s[j] += power;
+      if (j < 3) b[j] += power * y;
+    }
+  }
+  Eigen::Matrix3d normal;
+  normal << s[0], s[1], s[2], s[1], s[2], s[3], s[2], s[3], s[4];
+  const double determinant = normal.determinant();
+  if (high - low >= 3 && std::abs(determinant) > 1e-9 * std::pow(s[0], 3)) {
+    const Eigen::Vector3d c = normal.inverse() * Eigen::Vector3d(b[0], b[1], b[2]);
+    return {c(1) / kSmoothing, 2.0 * c(2) / (kSmoothing * kSmoothing)};
+  }
+  const double duration = t[high] - t[low];
+  return {duration > 0.0 ? (values[high] - values[low]) / duration : 0.0, 0.0};
+}
+
+struct Window {
+  std::size_t low = 0;
+  std::size_t high = 0;
+};
+
+/// Samples within half a smoothing window of `centre`, at least interval k itself, never across a segment.
+Window window_around(const wheels::WheelTrack& track, std::size_t k, Window window, double centre,
+                     double duration) {
+  while (track.t[window.low] < centre - duration / 2.0 && window.low < k) ++window.low;
+  window.high = std::max(window.high, k + 1);
+  while (window.high + 1 < track.t.size() && track.t[window.high + 1] <= centre + duration / 2.0)
+    ++window.high;
+  while (track.segment[window.low] != track.segment[k] && window.low < k) ++window.low;
+  while (track.segment[window.high] != track.segment[k] && window.high > k + 1) --window.high;
+  return window;
+}
+
+void fill_speeds(StepContext& c, const wheels::WheelTrack& track, Window window, double centre,
+                 const wheels::BaseParameters& base) {
+  const auto left = local_derivatives(track.t, track.left, window.low, window.high, centre);
+  const auto right = local_derivatives(track.t, track.right, window.low, window.high, centre);
+  c.left_speed = base.left_radius * left.first;
+  c.right_speed = base.right_radius * right.first;
+  c.left_acceleration = base.left_radius * left.second;
+  c.right_acceleration = base.right_radius * right.second;
+  c.speed = (c.left_speed + c.right_speed) / 2.0;
+  c.turn_rate = (c.right_speed - c.left_speed) / base.track_width;
+}
+
+/// Fine encoders show an acceleration over a shorter time than coarse ones.
+double duration_for(const wheels::WheelTrack& track, const wheels::BaseParameters& base, double if_fine) {
+  const double tick = track.tick_angle * std::max(base.left_radius, base.right_radius);
+  return tick <= kCoarse ? if_fine : kSmoothing;
+}
+
+/// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on.
+struct WheelAccelerations {
+  std::vector<double> left, right;
+};
+WheelAccelerations latest_accelerations(const wheels::WheelTrack& track, std::size_t first, double duration) {
+  constexpr std::size_t kFewest = 3;  // intervals that a curvature needs
+  WheelAccelerations all;
+  std::size_t low = 0;
+  for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
+    const double from = track.t[k + 1] - duration;
+    while (track.segment[low] != track.segment[k + 1] || (low + kFewest < k + 1 && track.t[low + 1] <= from))
+      ++low;
+    const double centre = (track.t[low] + track.t[k + 1]) / 2.0;
+    all.left.push_back(local_derivatives(track.t, track.left, low, k + 1, centre).second);
+    all.right.push_back(local_derivatives(track.t, track.right, low, k + 1, centre).second);
+  }
+  return all;
+}
+
+/// The same over the time about the middle of each interval.
+WheelAccelerations centred_accelerations(const wheels::WheelTrack& track, std::size_t first,
+                                         double duration) {
+  WheelAccelerations all;
+  Window window;
+  for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
+    const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
+    window = window_around(track, k, window, centre, duration);
+    all.left.push_back(local_derivatives(track.t, track.left, window.low, window.high, centre).second);
+    all.right.push_back(local_derivatives(track.t, track.right, window.low, window.high, centre).second);
+  }
+  return all;
+}
+
+/// From the smoothed accelerations in the middles of the intervals beside it.
+void fill_changes_of_acceleration(std::vector<StepContext>& contexts) {
+  for (std::size_t k = 0; k < contexts.size(); ++k) {
+    const StepContext& before = contexts[k > 0 ? k - 1 : k];
+    const StepContext& after = contexts[k + 1 < contexts.size() ? k + 1 : k];
+    contexts[k].left_acceleration_change = 0.5 * (after.left_acceleration - before.left_acceleration);
+    contexts[k].right_acceleration_change = 0.5 * (after.right_acceleration - before.right_acceleration);
+  }
+}
+
+/// A robot that slows down ever more gently stands from no certain time on, but passes a slow speed at one; a
+/// count or two by which its wheels settle are no motion.
+void fill_paces(std::vector<StepContext>& contexts, const wheels::WheelTrack& track, std::size_t first,
+                const wheels::BaseParameters& base) {
+  constexpr double kSlow = 0.003;        // m/s
+  constexpr std::size_t kIntervals = 3;  // the last of them the one in question: odometry knows no later ones
+  constexpr double kFew = 1.5;           // counts in them, mean of both wheels
+  const double count = track.tick_angle * std::max(base.left_radius, base.right_radius);
+  for (std::size_t j = 0; j < contexts.size(); ++j) {
+    std::size_t from = first + j;
+    const std::size_t to = from + 1;
+    while (to - from < kIntervals && from > 0 && track.segment[from - 1] == track.segment[to]) --from;
+    double way = 0.0;
+    for (std::size_t k = from; k < to; ++k)
+      way += 0.5 * (base.left_radius * std::abs(track.left[k + 1] - track.left[k]) +
+                    base.right_radius * std::abs(track.right[k + 1] - track.right[k]));
+    contexts[j].pace = way / std::max(kSlow * (track.t[to] - track.t[from]), kFew * count);
+  }
+}
+
+/// A push may be short, but what lies beyond a threshold must not be noise: the curvature of a parabola
+/// through values of deviation s, one every dt over a time T, has the deviation sqrt(720 dt / T^5) s.
+double duration_of_push(const wheels::WheelTrack& track, const wheels::BaseParameters& base) {
+  constexpr double kTolerated = 0.03;  // m/s^2
+  constexpr double kFewest = 3.1;      // intervals that a curvature needs, with some leeway
+  constexpr double kShortest = 0.08;   // s; stamps are no better than to a millisecond
+  const double dt =
+      (track.t.back() - track.t.front()) / std::max(1.0, static_cast<double>(track.t.size() - 1));
+  const double count = track.tick_angle * std::max(base.left_radius, base.right_radius);
+  const double variance = count * count / 12.0 / 2.0;  // of both wheels' mean
+  const double wanted = std::pow(720.0 * dt * variance / (kTolerated * kTolerated), 0.2);
+  return std::max(std::clamp(wanted, kShortest, kSmoothing), kFewest * dt);
+}
+
+double push_of(const WheelAccelerations& wheels, std::size_t k, const wheels::BaseParameters& base) {
+  return 0.5 * (base.left_radius * wheels.left[k] + base.right_radius * wheels.right[k]);
+}
+
+/// What a hard push moves it moves when it begins, however hard it has to be.
+void fill_pushes(std::vector<StepContext>& contexts, const wheels::WheelTrack& track, std::size_t first,
+                 const wheels::BaseParameters& base) {
+  const auto wheels = centred_accelerations(track, first, duration_of_push(track, base));
+  double hardest = 0.0;
+  for (std::size_t k = contexts.size(); k-- > 0;) {
+    const double push = push_of(wheels, k, base);
+    const bool goes_on = std::abs(push) > kPushes.front() && push * hardest > 0.0;
+    hardest = goes_on && std::abs(hardest) > std::abs(push) ? hardest : push;
+    contexts[k].push = push;
+    contexts[k].hardest_push = hardest;
+  }
+}
+
+/// At the samples between two intervals, from accelerations in their middles that are smoothed no more than a
+/// mast with a lag of its own allows.
+void fill_accelerations_at_ends(std::vector<StepContext>& contexts, const wheels::WheelTrack& track,
+                                std::size_t first, const wheels::BaseParameters& base) {
+  constexpr double kSharp = 0.12;  // s
+  const auto wheels = centred_accelerations(track, first, duration_for(track, base, kSharp));
+  const auto in_middle = [&](std::size_t k) {
+    return (base.right_radius * wheels.right[k] - base.left_radius * wheels.left[k]) / base.track_width;
+  };
+  for (std::size_t k = 0; k < contexts.size(); ++k) {
+    const double before = in_middle(k > 0 ? k - 1 : k), own = in_middle(k),
+                 after = in_middle(k + 1 < contexts.size() ? k + 1 : k);
+    contexts[k].turn_acceleration_before.fill(0.5 * (before + own));
+    contexts[k].turn_acceleration_after.fill(0.5 * (own + after));
+  }
+}
+
+/// A mast with friction follows what bends it with a time constant.
+void delay_sways(std::vector<StepContext>& contexts) {
+  Sways bend{};
+  for (StepContext& c : contexts)
+    for (std::size_t k = 0; k < kSwayLags.size(); ++k) {
+      if (kSwayLags[k] == 0.0) continue;
+      c.turn_acceleration_before[k] = bend[k];
+      bend[k] -= std::expm1(-c.dt / kSwayLags[k]) * (c.turn_acceleration_after[k] - bend[k]);
+      c.turn_acceleration_after[k] = bend[k];
+    }
+}
+
+}  // namespace
+
+std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
+                                                const wheels::BaseParameters& base, std::size_t first) {
+  std::vector<StepContext> contexts;
+  if (track.empty()) return contexts;
+  contexts.reserve(track.t.size() - 1 - first);
+  Window window;
+  for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
+    StepContext& c = contexts.emplace_back();
+    const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
+    const bool joined = track.segment[k] == track.segment[k + 1];
+    c.t = centre - track.t.front();
+    c.dt = track.t[k + 1] - track.t[k];
+    c.left_angle = (track.left[k] + track.left[k + 1]) / 2.0;
+    c.right_angle = (track.right[k] + track.right[k + 1]) / 2.0;
+    c.left_delta = joined ? track.left[k + 1] - track.left[k] : 0.0;
+    c.right_delta = joined ? track.right[k + 1] - track.right[k] : 0.0;
+    window = window_around(track, k, window, centre, kSmoothing);
+    fill_speeds(c, track, window, centre, base);
+  }
+  fill_accelerations_at_ends(contexts, track, first, base);
+  fill_changes_of_acceleration(contexts);
+  fill_pushes(contexts, track, first, base);
+  fill_paces(contexts, track, first, base);
+  delay_sways(contexts);
+  return contexts;
+}
+
+void see_from_the_past(StepContext& last, const wheels::WheelTrack& track,
+                       const wheels::BaseParameters& base) {
+  constexpr double kSharp = 0.1;  // s
+  const std::size_t n = track.t.size();
+  const auto wheels =
+      latest_accelerations(track, n - std::min<std::size_t>(n, 3), duration_for(track, base, kSharp));
+  last.left_acceleration_change = base.left_radius * (wheels.left.back() - wheels.left.front());
+  last.right_acceleration_change = base.right_radius * (wheels.right.back() - wheels.right.front());
+  const auto pushing =
+      latest_accelerations(track, n - std::min<std::size_t>(n, 3), duration_of_push(track, base));
+  last.push = last.hardest_push = push_of(pushing, pushing.left.size() - 1, base);
+}
+
+std::vector<StepContext> make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base) {
+  std::vector<StepContext> contexts = make_context_of_moment(track, base);
+  DriveHistory history(base, track.tick_angle);
+  for (StepContext& c : contexts) history.advance(c);
+  return contexts;
+}
+
+}  // namespace odomcalib::calib::vehicle

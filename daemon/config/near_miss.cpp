@@ -1,0 +1,47 @@
+#include "daemon/config/near_miss.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace odomcalib {
+namespace {
+
+std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+/// Damerau-Levenshtein distance with adjacent exchanges (optimal string alignment).
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::optional<std::string> near_miss(const std::string& word, const std::set<std::string>& known) {
+  constexpr std::size_t kLettersPerError = 3;  // as in "trackwidht" for "track_width"
+  constexpr std::size_t kLongest = 64;         // no key is longer; bounds the work on hostile files
+  if (word.empty() || word.size() > kLongest) return std::nullopt;
+  std::optional<std::string> nearest;
+  std::size_t least = word.size() / kLettersPerError + 1;
+  for (const std::string& candidate : known) {
+    const bool elsewhere = last_part(candidate) == last_part(word);
+    const std::size_t errors = elsewhere ? 0 : distance(word, candidate);
+    if (errors >= least) continue;
+    least = errors;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,156 @@
+#include "daemon/service/loop.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "daemon/service/methods/methods.hpp"
+#include "daemon/service/status_report.hpp"
+#include "daemon/service/write_outcome.hpp"
+
+namespace odomcalib {
+namespace {
+
+constexpr int kMovingTimeout = 5;    // ms: control steps every 10 ms need a loop that turns faster
+constexpr double kIdleStep = 0.020;  // s, between looks at a device or client that says nothing
+
+}  // namespace
+
+Loop::Loop(const Config& configuration, Clock& clock, Calibrator functions, BaseLink base, LidarLink lidar,
+           ControlServer server, Journal journal)
+    : bench_(configuration, clock, std::move(functions), std::move(base), std::move(lidar), std::move(server),
+             std::move(journal)) {
+  // The end of a write-back may have been written down and nothing after it.
+  const auto& last = bench_.write_back.journal.last();
+  const bool committed = last && last->state == JournalState::commit;
+  (void)settle_calibration(bench_, committed ? last->calibration : "");
+}
+
+void Loop::wait(int timeout_ms) {
+  polled_ = {{bench_.drive.link.fd(), POLLIN, 0},
+             {bench_.surroundings.link.fd(), POLLIN, 0}};  // one that is absent is -1: poll passes it over
+  const auto clients = static_cast<std::ptrdiff_t>(polled_.size());
+  bench_.outbox.server.watch(polled_);
+  const int limit = task_ && task_->moves() ? std::min(timeout_ms, kMovingTimeout) : timeout_ms;
+  bench_.loop.begin(bench_.clock.now(), 1e-3 * limit);
+  const bool any = poll(polled_.data(), polled_.size(), limit) > 0;
+  lidar_woke_ = any && polled_[1].revents != 0;
+  clients_woke_ = any && std::any_of(polled_.begin() + clients, polled_.end(),
+                                     [](const pollfd& file) { return file.revents != 0; });
+}
+
+// A counter that reports every millisecond must not make everything else turn as often.
+bool Loop::due(bool woke, double& next) const {
+  if (!woke && bench_.now < next) return false;
+  next = bench_.now + kIdleStep;
+  return true;
+}
+
+void Loop::turn() {
+  using Part = std::pair<const char*, void (Loop::*)()>;
+  static constexpr std::array<Part, 7> kParts = {{{"base", &Loop::serve_drive},
+                                                  {"lidar", &Loop::serve_lidar},
+                                                  {"clients", &Loop::serve_clients},
+                                                  {"recording", &Loop::serve_recordings},
+                                                  {"write-back", &Loop::serve_write_back},
+                                                  {nullptr, &Loop::serve_task},
+                                                  {"telemetry", &Loop::serve_telemetry}}};
+  const auto& clock = bench_.clock;
+  bench_.now = clock.now();
+  bench_.outbox.begin_turn(bench_.now);
+  bench_.loop.passed("waiting", bench_.now);
+  for (const auto& [name, serve] : kParts) {
+    const char* const of_task = task_ ? task_->part() : "idle";
+    (this->*serve)();
+    bench_.loop.passed(name != nullptr ? name : of_task, clock.now());
+  }
+  bench_.drive.link.flush();
+  const double end = clock.now();
+  bench_.loop.passed("sending", end);
+  bench_.loop.end(end);
+}
+
+void Loop::serve_drive() {
+  const auto news = bench_.drive.serve(bench_.clock, bench_.now);
+  const RobotDescription robot = news.ticks.empty() ? RobotDescription{} : bench_.drive.robot();
+  for (const TickSample& sample : news.ticks) {
+    bench_.odometry.add(sample, robot);
+    bench_.outbox.ticks(sample, bench_.odometry.pose(), bench_.applied.corrected(sample));
+  }
+  for (const auto& happened : news.events) {
+    bench_.outbox.event(happened.stop ? messages::Severity::stop : messages::Severity::info, happened.code,
+                        happened.text);
+    if (happened.stop && task_) task_->drive_stopped(happened.code + ": " + happened.text);
+  }
+  if (news.state) bench_.outbox.event(messages::Severity::info, "controller_state", name_of(*news.state));
+}
+
+void Loop::serve_lidar() {
+  if (!due(lidar_woke_, next_lidar_)) return;
+  for (const Scan& scan : bench_.surroundings.serve(bench_.clock)) {
+    bench_.surroundings.judge(scan, task_ ? task_->twist() : routines::Twist{}, bench_.now);
+    bench_.outbox.scan(scan);
+    if (task_) task_->scanned(bench_, scan);
+  }
+}
+
+void Loop::serve_clients() {
+  // The last wait saw every client: where nothing woke it, nothing had arrived.
+  if (!due(clients_woke_, next_clients_)) return bench_.lease.looked(bench_.now);
+  ControlServer& server = bench_.outbox.server;
+  server.step();
+  for (const ClientId gone : server.take_gone()) forget(gone);
+  for (const IncomingCall& incoming : server.take_calls())
+    if (auto begun = handle_call({bench_, task_.get()}, incoming)) task_ = std::move(begun);
+  bench_.lease.looked(bench_.now);
+}
+
+void Loop::forget(ClientId gone) {
+  bench_.lease.lost(gone);
+  bench_.outbox.forget(gone);
+  if (task_ && task_->caller.client == gone) task_->abandoned(bench_);
+}
+
+void Loop::serve_recordings() { bench_.outbox.telemetry.recorder.serve(); }
+
+void Loop::serve_write_back() {
+  Drive& drive = bench_.drive;
+  const bool may_begin = !task_ || !task_->moves();
+  if (const auto report = bench_.write_back.serve(drive.controller(), drive.values_known, may_begin,
+                                                  bench_.now, bench_.clock.wall_us()))
+    settle_write(bench_, *report);
+}
+
+void Loop::serve_task() {
+  if (task_) settle(task_->turn(bench_));
+}
+
+void Loop::settle(TaskTurn turn) {
+  if (auto* next = std::get_if<Then>(&turn)) task_ = std::move(next->task);
+  if (const auto* failed = std::get_if<Failed>(&turn)) {
+    bench_.outbox.event(messages::Severity::warning, "failed", failed->error.text());
+    bench_.outbox.refuse(task_->caller.client, failed->error);
+    task_.reset();
+  }
+  if (const auto* done = std::get_if<Done>(&turn)) {
+    bench_.outbox.answer(task_->caller.client, done->reply);
+    task_.reset();
+  }
+}
+
+void Loop::serve_telemetry() {
+  if (bench_.outbox.robot_due()) bench_.outbox.send_robot(bench_.drive.robot());
+  if (bench_.outbox.status_due()) bench_.outbox.send_status(status_report(bench_, task_.get()));
+}
+
+void Loop::stop_all(const std::string& why) {
+  bench_.now = bench_.clock.now();
+  bench_.outbox.begin_turn(bench_.now);
+  bench_.ending = true;
+  bench_.write_back.end();
+  const bool moves = task_ && task_->moves();
+  if (!moves) return stop_drive(bench_);
+  settle(task_->daemon_ends(bench_, {ErrorCode::cancelled, why, "odomcalibd", "start again"}));
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,43 @@
+// Who may move the robot, and the stop, which everybody may ask for.
+#include <cmath>
+
+#include "daemon/service/call_parameters.hpp"
+#include "daemon/service/methods/methods.hpp"
+
+namespace odomcalib {
+namespace {
+
+const auto kTtl_ms = std::lround(1000.0 * safety::kLeaseTime);
+
+}  // namespace
+
+Reading acquire(Context& context, const Call& call) {
+  const auto granted = context.bench.lease.acquire(call.caller.client, context.bench.now);
+  if (!granted) return granted.error();
+  return Answer{{{"lease", granted.value()}, {"ttl_ms", kTtl_ms}}};
+}
+
+Reading renew(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  const double now = context.bench.now;
+  const std::string lease = given.text("lease", "");
+  const double sent = given.number("sent", now);
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  const auto renewed = context.bench.lease.renew(lease, now, sent);
+  if (!renewed) return renewed.error();
+  return Answer{{{"ttl_ms", kTtl_ms}}};
+}
+
+Reading release(Context& context, const Call& call) {
+  context.bench.lease.release(CallParameters(call.parameters).text("lease", ""));
+  return Answer{ordered_json::object()};
+}
+
+Reading stop(Context& context, const Call& /*call*/) {
+  stop_drive(context.bench);
+  if (context.task != nullptr) context.task->stop(context.bench);
+  context.bench.outbox.event(messages::Severity::stop, "stop", "stopped on request of a client");
+  return Answer{ordered_json::object()};
+}
+
+}  // namespace odomcalib

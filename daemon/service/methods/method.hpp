@@ -1,0 +1,56 @@
+// A method of the control interface: what a call comes to, and what it requires.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "daemon/service/tasks/task.hpp"
+
+namespace odomcalib {
+
+/// What a method works on.
+struct Context {
+  Bench& bench;
+  Task* task = nullptr;  ///< that runs, or null
+};
+
+struct Call {
+  Caller caller;
+  const ordered_json& parameters;  ///< an object
+};
+
+struct Answer {
+  ordered_json parameters;
+};
+/// A member of the call is missing or of a wrong type.
+struct WrongParameter {
+  std::string name;
+};
+/// Replies follow by themselves.
+struct Subscribed {};
+/// What a call came to. A task answers its caller when it ends.
+using Outcome = std::variant<Answer, Error, WrongParameter, Subscribed, std::unique_ptr<Task>>;
+
+/// A call that is right in itself. It begins when its caller holds the lease that the method requires.
+struct Request {
+  std::string lease;
+  bool dry_run = false;
+  std::function<Outcome()> begin;
+};
+using Reading = std::variant<Outcome, Request>;
+
+struct Method {
+  enum class When { always, unless_ending, when_idle };
+  enum class Lease { none, unless_dry_run, always };
+
+  const char* name;
+  When when = When::unless_ending;
+  Lease lease = Lease::none;
+  const char* lease_of = "";  ///< what the lease is for, in the error
+  Reading (*handle)(Context& context, const Call& call) = nullptr;
+  const char* flag = nullptr;  ///< this row is about calls in which the flag is set
+};
+
+}  // namespace odomcalib

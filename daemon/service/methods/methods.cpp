@@ -1,0 +1,98 @@
+#include "daemon/service/methods/methods.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "daemon/service/call_parameters.hpp"
+#include "daemon/service/status_report.hpp"
+
+namespace odomcalib {
+namespace {
+
+using When = Method::When;
+using Lease = Method::Lease;
+
+// Who may call at all is checked when a client connects (ControlServer). Order: the first row that fits.
+constexpr std::array kMethods = {
+    Method{"GetStatus", When::always, Lease::none, "", get_status},
+    Method{"Stop", When::always, Lease::none, "", stop},
+    Method{"Describe", When::unless_ending, Lease::none, "", describe},
+    Method{"GetParameters", When::unless_ending, Lease::none, "", get_parameters},
+    Method{"History", When::unless_ending, Lease::none, "", get_history},
+    Method{"Monitor", When::unless_ending, Lease::none, "", monitor},
+    Method{"Acquire", When::unless_ending, Lease::none, "", acquire},
+    Method{"Renew", When::unless_ending, Lease::none, "", renew},
+    Method{"Release", When::unless_ending, Lease::none, "", release},
+    Method{"Check", When::when_idle, Lease::unless_dry_run, "motion", nudge, "nudge"},
+    Method{"Check", When::unless_ending, Lease::none, "", check},
+    Method{"Straight", When::when_idle, Lease::unless_dry_run, "motion", straight},
+    Method{"Spin", When::when_idle, Lease::unless_dry_run, "motion", spin},
+    Method{"Calibrate", When::when_idle, Lease::unless_dry_run, "motion", calibrate},
+    Method{"Record", When::when_idle, Lease::none, "", record},
+    Method{"Apply", When::when_idle, Lease::always, "write-back", apply},
+    Method{"SetParameters", When::when_idle, Lease::always, "write-back", set_parameters},
+    Method{"Rollback", When::when_idle, Lease::always, "write-back", rollback},
+};
+
+// Of the interface, but of no service of this version.
+constexpr Method kUnknown{"", When::when_idle};
+
+const Method& method_of(const std::string& name, const ordered_json& parameters) {
+  const auto found = std::find_if(kMethods.begin(), kMethods.end(), [&](const Method& method) {
+    return name == method.name && (method.flag == nullptr || CallParameters(parameters).flag(method.flag));
+  });
+  return found == kMethods.end() ? kUnknown : *found;
+}
+
+std::optional<Error> not_now(const Method& method, const Context& context) {
+  if (context.bench.ending && method.when != When::always)
+    return Error{ErrorCode::refused, "the daemon is ending", "odomcalibd",
+                 "start it again: systemctl start odomcalib"};
+  if (context.task != nullptr && method.when == When::when_idle)
+    return Error{ErrorCode::refused, "busy: " + activity(context.bench, context.task), "",
+                 "wait for its end, or stop it"};
+  return std::nullopt;
+}
+
+Outcome begin(const Method& method, const Context& context, const Request& request) {
+  const bool required =
+      method.lease == Lease::always || (method.lease == Lease::unless_dry_run && !request.dry_run);
+  if (required && !context.bench.lease.holds(request.lease))
+    return Error{ErrorCode::not_permitted, "no lease", method.lease_of, "acquire one and keep it alive"};
+  return request.begin();
+}
+
+Outcome outcome_of(const Method& method, Context& context, const Call& call) {
+  Reading read = method.handle(context, call);
+  if (auto* outcome = std::get_if<Outcome>(&read)) return std::move(*outcome);
+  return begin(method, context, std::get<Request>(read));
+}
+
+std::unique_ptr<Task> reply_with(Outcome outcome, ClientId client, Outbox& outbox) {
+  if (const auto* answer = std::get_if<Answer>(&outcome)) outbox.answer(client, answer->parameters);
+  if (const auto* error = std::get_if<Error>(&outcome)) outbox.refuse(client, *error);
+  if (const auto* wrong = std::get_if<WrongParameter>(&outcome)) outbox.refuse_parameter(client, wrong->name);
+  auto* task = std::get_if<std::unique_ptr<Task>>(&outcome);
+  return task != nullptr ? std::move(*task) : nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming) {
+  Outbox& outbox = context.bench.outbox;
+  const ClientId client = incoming.client;
+  const auto parameters = ordered_json::parse(incoming.call.parameters, nullptr, false);
+  if (!parameters.is_object())
+    return reply_with(
+        Error{ErrorCode::usage, "parameters are no object", "parameters", "see odomcalibctl(1)"}, client,
+        outbox);
+  const Method& method = method_of(incoming.call.name(), parameters);
+  if (auto refused = not_now(method, context)) return reply_with(*refused, client, outbox);
+  if (method.handle == nullptr) {
+    outbox.server.reply(client, control::encode_method_not_implemented(incoming.call.method));
+    return nullptr;
+  }
+  return reply_with(outcome_of(method, context, {{client, incoming.call.more}, parameters}), client, outbox);
+}
+
+}  // namespace odomcalib

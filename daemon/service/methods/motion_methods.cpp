@@ -1,0 +1,215 @@
+// Guided motions and recordings.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/routines/manoeuvres.hpp"
+#include "daemon/routines/pattern.hpp"
+#include "daemon/routines/plans.hpp"
+#include "daemon/routines/wiring.hpp"
+#include "daemon/service/call_parameters.hpp"
+#include "daemon/service/methods/methods.hpp"
+#include "daemon/service/motion_gate.hpp"
+#include "daemon/service/tasks/motion_task.hpp"
+#include "daemon/service/tasks/recording_task.hpp"
+
+namespace odomcalib {
+namespace {
+
+Error out_of_range(const std::string& what) {
+  return {ErrorCode::usage, what, "parameters", "see odomcalibctl(1)"};
+}
+
+bool within(double value, double least, double most) { return value >= least && value <= most; }
+
+std::optional<Error> wrong_straight(const routines::StraightOptions& options) {
+  if (!within(std::abs(options.distance), 0.05, 5.0))
+    return out_of_range("distance is not between 0.05 and 5 m");
+  if (!within(options.speed, 0.02, 10.0)) return out_of_range("speed is not between 0.02 and 10 m/s");
+  if (options.repeat < 1 || options.repeat > 20) return out_of_range("repeat is not between 1 and 20");
+  return std::nullopt;
+}
+
+std::optional<Error> wrong_spin(const routines::SpinOptions& options) {
+  if (!within(options.turns, 0.05, 10.0)) return out_of_range("turns is not between 0.05 and 10");
+  if (!within(options.rate, 0.05, 10.0)) return out_of_range("rate is not between 0.05 and 10 rad/s");
+  if (options.repeat < 1 || options.repeat > 20) return out_of_range("repeat is not between 1 and 20");
+  return std::nullopt;
+}
+
+constexpr std::size_t kMostRecordings = 8;
+
+// "with": file names of this daemon's own recordings; nothing outside its folder is read for a client.
+Result<std::vector<std::filesystem::path>> earlier_recordings(const ordered_json& given,
+                                                              const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> paths;
+  if (!given.is_null() && (!given.is_array() || given.size() > kMostRecordings))
+    return out_of_range("\"with\" is no list of recordings");
+  for (const auto& name : given) {
+    const auto file = std::filesystem::path(name.is_string() ? name.get<std::string>() : "").filename();
+    std::error_code error;
+    if (file.empty() || !std::filesystem::is_regular_file(folder / file, error))
+      return out_of_range("no recording \"" + file.string() + "\"");
+    paths.push_back(folder / file);
+  }
+  return paths;
+}
+
+// Names of effects to fit; without the member those of the daemon.
+std::vector<std::string> wanted_effects(CallParameters& options) {
+  const ordered_json& given = options.member("effects");
+  if (given.is_null()) return SolveRecording{}.effects;
+  std::vector<std::string> names;
+  for (const auto& name : given)
+    if (name.is_string()) names.push_back(name.get<std::string>());
+  if (!given.is_array() || names.empty() || names.size() != given.size()) options.reject("effects");
+  return names;
+}
+
+// The turns of a spin go to the sides that are named.
+void choose_sides(CallParameters& parameters, routines::SpinOptions& options) {
+  const std::string direction = parameters.text("direction", "both");
+  if (direction != "both" && direction != "cw" && direction != "ccw") parameters.reject("direction");
+  options.left = direction != "cw";
+  options.right = direction != "ccw";
+}
+
+ordered_json json_of(const std::vector<safety::Sector>& sectors) {
+  ordered_json list = ordered_json::array();
+  for (const auto& sector : sectors) list.push_back({sector.from, sector.to});
+  return list;
+}
+
+ordered_json plan_report(const routines::Plan& plan, const routines::Preview& preview,
+                         const std::vector<std::string>& unseen, const std::vector<safety::Sector>& blind) {
+  return {{"plan", plan.name},      {"moves", plan.moves.size()}, {"duration", preview.duration},
+          {"reach", preview.reach}, {"unseen_moves", unseen},     {"blind_sectors", json_of(blind)}};
+}
+
+Outcome begin_motion(Bench& bench, const Caller& caller, const MotionTask::Order& order, bool dry_run) {
+  const routines::Plan& plan = order.plan;
+  if (const auto error = too_long(plan)) return *error;
+  const auto preview = routines::preview(plan);
+  if (const auto error = motion_forbidden(bench, preview)) return *error;
+  const auto blind = bench.surroundings.cover.blind(bench.now);
+  const auto unseen = safety::unseen_moves(plan, blind, bench.surroundings.obstacles.options());
+  if (dry_run) return Answer{{{"result", plan_report(plan, preview, unseen, blind.sectors())}}};
+  if (!unseen.empty())
+    bench.outbox.event(messages::Severity::warning, "lidar_blind",
+                       fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
+                                   safety::text_of(blind.sectors()), fmt::join(unseen, "\", \"")));
+  auto task = MotionTask::begin(bench, caller, order);
+  if (!task) return task.error();
+  return std::move(task).value();
+}
+
+Reading motion_request(Context& context, const Call& call, routines::Plan plan, MotionPurpose purpose) {
+  CallParameters given(call.parameters);
+  const std::string lease = given.text("lease", "");
+  const bool dry_run = given.flag("dry_run");
+  return Request{lease, dry_run,
+                 [&bench = context.bench, caller = call.caller, dry_run,
+                  order = MotionTask::Order{std::move(plan), lease, std::move(purpose)}] {
+                   return begin_motion(bench, caller, order, dry_run);
+                 }};
+}
+
+// Straight, spin and pattern as one motion in one recording, or a single manoeuvre that goes with earlier
+// recordings.
+Result<routines::Plan> calibration_plan(const Bench& bench, CallParameters& options) {
+  const Config& config = bench.config;
+  const routines::PatternOptions pattern{.area_length = config.area_length,
+                                         .area_width = config.area_width,
+                                         .track_width = bench.drive.robot().track_width,
+                                         .quick = options.flag("quick"),
+                                         .limits = config.limits};
+  if (const std::string name = options.text("manoeuvre", ""); !name.empty()) {
+    auto plan = routines::manoeuvre_plan(name, pattern);
+    if (!plan) return out_of_range("there is no manoeuvre \"" + name + "\"");
+    return std::move(*plan);
+  }
+  routines::StraightOptions straight;
+  straight.distance = options.number("distance", std::min(1.0, 0.45 * config.area_length));
+  straight.speed = options.number("speed", straight.speed);
+  straight.repeat = options.whole("repeat", 1);
+  routines::SpinOptions spin;
+  spin.turns = options.number("turns", 1.0);
+  spin.rate = options.number("rate", spin.rate);
+  spin.repeat = straight.repeat;
+  if (const auto wrong = wrong_straight(straight)) return *wrong;
+  if (const auto wrong = wrong_spin(spin)) return *wrong;
+  routines::Plan plan = routines::straight_plan(straight);
+  for (const auto& part : {routines::spin_plan(spin), routines::pattern_plan(pattern)})
+    plan.moves.insert(plan.moves.end(), part.moves.begin(), part.moves.end());
+  plan.name = "calibrate";
+  plan.limits = config.limits;
+  return plan;
+}
+
+}  // namespace
+
+Reading nudge(Context& context, const Call& call) {
+  return motion_request(context, call, routines::nudge_plan(context.bench.config.limits), ReportWiring{});
+}
+
+Reading straight(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  routines::StraightOptions options;
+  options.distance = given.number("distance");
+  options.speed = given.number("speed", options.speed);
+  options.repeat = given.whole("repeat", 1);
+  options.limits = context.bench.config.limits;
+  (void)given.flag("dry_run");
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  if (auto wrong = wrong_straight(options)) return *wrong;
+  return motion_request(context, call, routines::straight_plan(options), ReportMoves{});
+}
+
+Reading spin(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  routines::SpinOptions options;
+  options.turns = given.number("turns");
+  options.rate = given.number("rate", options.rate);
+  options.repeat = given.whole("repeat", 1);
+  options.limits = context.bench.config.limits;
+  choose_sides(given, options);
+  (void)given.flag("dry_run");
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  if (auto wrong = wrong_spin(options)) return *wrong;
+  return motion_request(context, call, routines::spin_plan(options), ReportMoves{});
+}
+
+Reading calibrate(Context& context, const Call& call) {
+  static const ordered_json kNone = ordered_json::object();
+  const Bench& bench = context.bench;
+  CallParameters given(call.parameters);
+  (void)given.flag("dry_run");
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  const ordered_json& wanted = given.member("options");
+  CallParameters options(wanted.is_null() ? kNone : wanted, "options");
+  SolveRecording solve{wanted_effects(options), {}};
+  auto plan = calibration_plan(bench, options);
+  if (options.wrong()) return WrongParameter{*options.wrong()};
+  if (bench.calibrator.wrong_effects)
+    if (auto wrong = bench.calibrator.wrong_effects(solve.effects)) return *wrong;
+  if (!plan) return plan.error();
+  auto earlier = earlier_recordings(options.member("with"), bench.config.state_dir / "recordings");
+  if (!earlier) return earlier.error();
+  solve.earlier = std::move(earlier).value();
+  return motion_request(context, call, std::move(plan).value(), std::move(solve));
+}
+
+Reading record(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  const double duration = given.number("duration", 0.0);
+  const std::string name = given.text("name", "record");
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  if (!within(duration, 0.0, 3600.0)) return out_of_range("duration is not 0 to 3600 s");
+  auto task = RecordingTask::begin(context.bench, call.caller, name, duration);
+  if (!task) return task.error();
+  return std::move(task).value();
+}
+
+}  // namespace odomcalib

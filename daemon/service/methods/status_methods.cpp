@@ -1,0 +1,47 @@
+// What is there, what is in force, what was.
+#include <limits>
+
+#include "daemon/service/call_parameters.hpp"
+#include "daemon/service/methods/methods.hpp"
+#include "daemon/service/status_report.hpp"
+
+namespace odomcalib {
+
+Reading get_status(Context& context, const Call& /*call*/) {
+  return Answer{{{"status", status_report(context.bench, context.task)}}};
+}
+
+Reading describe(Context& context, const Call& /*call*/) {
+  return Answer{{{"description", description(context.bench.config)}}};
+}
+
+Reading check(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  (void)given.flag("nudge");
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  return Answer{{{"checks", check_report(context.bench)}}};
+}
+
+Reading get_parameters(Context& context, const Call& /*call*/) {
+  return Answer{{{"parameters", parameter_report(context.bench, context.bench.applied.get())}}};
+}
+
+Reading get_history(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  const int limit = given.whole("limit", std::numeric_limits<int>::max());
+  if (given.wrong() || limit < 0) return WrongParameter{"limit"};
+  ordered_json list = ordered_json::array();
+  for (const auto& entry : context.bench.write_back.history.entries())
+    if (list.size() < static_cast<std::size_t>(limit))
+      list.push_back(ordered_json::parse(to_json(entry, false)));
+  return Answer{{{"entries", list}}};
+}
+
+// A stream of events needs a client that takes more than one reply.
+Reading monitor(Context& context, const Call& call) {
+  if (!call.caller.more) return WrongParameter{"more"};
+  context.bench.outbox.monitor(call.caller.client);
+  return Subscribed{};
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,128 @@
+// Values into the controller, and back.
+#include "daemon/service/call_parameters.hpp"
+#include "daemon/service/json_text.hpp"
+#include "daemon/service/methods/methods.hpp"
+#include "daemon/service/status_report.hpp"
+#include "daemon/service/tasks/write_task.hpp"
+#include "daemon/service/write_gate.hpp"
+
+namespace odomcalib {
+namespace {
+
+// Values to write by name. None at all is no wish.
+ParameterMap wanted_values(CallParameters& parameters) {
+  ParameterMap values;
+  const ordered_json& given = parameters.member("values");
+  if (!given.is_object() || given.empty()) parameters.reject("values");
+  if (!given.is_object()) return values;
+  CallParameters members(given, "values");
+  for (const auto& item : given.items()) values[item.key()] = members.number(item.key().c_str());
+  if (members.wrong()) parameters.reject(*members.wrong());
+  return values;
+}
+
+// What is written is rounded to what the controller can hold.
+struct Wish {
+  ParameterMap values;
+  std::string label = "apply";
+  std::optional<std::string> calibration;  ///< JSON text
+  bool replaces_calibration = true;
+};
+
+ordered_json dry_run_report(const Bench& bench, const ParameterMap& present, const RoundedParameters& rounded,
+                            const Wish& wish) {
+  std::optional<Calibration> wanted;
+  if (wish.calibration)
+    if (auto read = calibration_from_json(*wish.calibration, "calibration")) wanted = std::move(read).value();
+  return {{"outcome", "dry_run"},
+          {"before", present},
+          {"after", rounded.values},
+          {"rounding_error", to_json(rounded.remaining)},
+          {"parameters", parameter_report(bench, wanted)}};
+}
+
+Outcome begin_write(Bench& bench, const Caller& caller, const Wish& wish, bool dry_run) {
+  const ParameterMap present = present_lengths(bench.drive.robot());
+  if (auto wrong = implausible(wish.values, present)) return *wrong;
+  const RoundedParameters rounded = round_together(wish.values, bench.drive.in_force);
+  if (dry_run) return Answer{{{"result", dry_run_report(bench, present, rounded, wish)}}};
+  auto task =
+      WriteTask::begin(bench, caller, {wish.label, rounded, wish.calibration, wish.replaces_calibration});
+  if (!task) return task.error();
+  return std::move(task).value();
+}
+
+/// The values of a calibration that a controller may hold.
+Result<Wish> wish_of(const Calibration& calibration) {
+  if (calibration.verdict == Verdict::refused)
+    return Error{ErrorCode::refused, "this calibration was refused by its quality gate", "calibration",
+                 "record again and solve"};
+  if (const auto member = non_finite_value(calibration))
+    return Error{ErrorCode::format, "\"" + *member + "\" has no finite value", "calibration",
+                 "solve the recording again"};
+  Wish wish;
+  for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
+    if (const auto value = calibration.parameter(name)) wish.values[name] = *value;
+  wish.calibration = to_json(calibration);
+  return wish;
+}
+
+/// @param wish from the call to what is to be written, once a write-back is allowed at all
+template <typename MakeWish>
+Reading write_request(Context& context, const Call& call, MakeWish make_wish) {
+  CallParameters given(call.parameters);
+  const std::string lease = given.text("lease", "");
+  const bool dry_run = given.flag("dry_run");
+  return Request{lease, dry_run,
+                 [&bench = context.bench, caller = call.caller, dry_run, make_wish]() -> Outcome {
+                   if (auto forbidden = write_forbidden(bench)) return *forbidden;
+                   const Result<Wish> wish = make_wish();
+                   if (!wish) return wish.error();
+                   return begin_write(bench, caller, wish.value(), dry_run);
+                 }};
+}
+
+}  // namespace
+
+Reading apply(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  (void)given.flag("dry_run");
+  const ordered_json& wanted = given.member("calibration");
+  if (!wanted.is_object()) given.reject("calibration");
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  return write_request(context, call, [&wanted]() -> Result<Wish> {
+    const auto calibration = calibration_from_json(json_text(wanted), "calibration");
+    if (!calibration) return calibration.error();
+    return wish_of(calibration.value());
+  });
+}
+
+Reading set_parameters(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  (void)given.flag("dry_run");
+  const ParameterMap values = wanted_values(given);
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  return write_request(context, call, [values]() -> Result<Wish> {
+    Wish wish;
+    wish.values = values;
+    wish.replaces_calibration = false;
+    return wish;
+  });
+}
+
+Reading rollback(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  (void)given.flag("dry_run");
+  const std::string id = given.text("id", "");
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  return write_request(context, call, [&bench = context.bench, id]() -> Result<Wish> {
+    const auto former = bench.write_back.former_values(id, bench.applied.text());
+    if (!former)
+      return Error{ErrorCode::usage,
+                   id.empty() ? "no write-back was committed" : "no history entry \"" + id + "\"", "",
+                   "odomcalibctl history"};
+    return Wish{former->values, "rollback", former->calibration};
+  });
+}
+
+}  // namespace odomcalib

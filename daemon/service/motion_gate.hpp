@@ -1,0 +1,17 @@
+// What must be true before the robot may move.
+#pragma once
+
+#include <optional>
+
+#include "daemon/service/parts/bench.hpp"
+
+namespace odomcalib {
+
+/// Error usage: nobody watches a robot for so long.
+std::optional<Error> too_long(const routines::Plan& plan);
+
+/// Why the robot must not drive this now: interrupted write-back, controller, its watchdog, stale sensors,
+/// unknown dimensions, something on the way.
+std::optional<Error> motion_forbidden(const Bench& bench, const routines::Preview& preview);
+
+}  // namespace odomcalib

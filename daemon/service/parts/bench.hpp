@@ -1,0 +1,46 @@
+// The parts that are always there, whatever the robot does.
+#pragma once
+
+#include <string>
+
+#include "daemon/safety/lease.hpp"
+#include "daemon/service/dead_reckoning.hpp"
+#include "daemon/service/loop_watch.hpp"
+#include "daemon/service/parts/applied_calibration.hpp"
+#include "daemon/service/parts/drive.hpp"
+#include "daemon/service/parts/outbox.hpp"
+#include "daemon/service/parts/surroundings.hpp"
+#include "daemon/service/parts/write_back.hpp"
+
+namespace odomcalib {
+
+struct Bench {
+  Bench(const Config& configuration, Clock& time, Calibrator functions, BaseLink base_link,
+        LidarLink lidar_link, ControlServer control_server, Journal write_journal);
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+  ~Bench() = default;
+
+  Config config;
+  Clock& clock;
+  Calibrator calibrator;
+  double now = 0.0;  ///< s, begin of this turn
+  LoopWatch loop;
+
+  Outbox outbox;
+  Drive drive;
+  Surroundings surroundings;
+  DeadReckoning odometry;
+  AppliedCalibration applied;
+  WriteBack write_back;
+  safety::Lease lease;
+
+  std::string last_stop;         ///< why the robot was stopped last
+  std::uint64_t late_steps = 0;  ///< control steps that came noticeably late
+  bool ending = false;           ///< the daemon was told to end
+};
+
+/// Zero speed and quick stop, on the bus when it returns.
+void stop_drive(Bench& bench);
+
+}  // namespace odomcalib

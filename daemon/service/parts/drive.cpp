@@ -1,0 +1,94 @@
+#include "daemon/service/parts/drive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+namespace odomcalib {
+namespace {
+
+Error forbidden(ErrorCode code, const std::string& what, const std::string& remedy) {
+  return {code, what, "motion", remedy};
+}
+
+}  // namespace
+
+std::string name_of(drivers::ControllerState state) {
+  constexpr std::array kNames = {"absent", "configuring", "disabled", "enabling", "enabled", "fault"};
+  return kNames.at(static_cast<std::size_t>(state));
+}
+
+Drive::News Drive::serve(const Clock& clock, double now) {
+  link.step(clock);
+  News news{controller().take_ticks(), controller().take_events(), std::nullopt};
+  for (const TickSample& sample : news.ticks) encoders.seen(sample, now);
+  if (!news.ticks.empty()) newest_ticks = news.ticks.back();
+  tick_count += news.ticks.size();
+  const auto state = controller().state();
+  if (state != state_) news.state = state;
+  state_ = state;
+  return news;
+}
+
+bool Drive::off() const {
+  const auto state = controller().state();
+  return !link.connected() ||
+         (state != drivers::ControllerState::enabled && state != drivers::ControllerState::enabling);
+}
+
+RobotDescription Drive::nominal() const {
+  RobotDescription all = controller().description();
+  const RobotDescription& given = config_.robot;
+  if (given.left_wheel_diameter > 0.0) all.left_wheel_diameter = given.left_wheel_diameter;
+  if (given.right_wheel_diameter > 0.0) all.right_wheel_diameter = given.right_wheel_diameter;
+  if (given.track_width > 0.0) all.track_width = given.track_width;
+  all.lidar_pose = config_.lidar_pose;
+  if (!given.robot_id.empty()) all.robot_id = given.robot_id;
+  return all;
+}
+
+RobotDescription Drive::robot() const {
+  RobotDescription all = nominal();
+  for (const auto& parameter : in_force) {
+    if (parameter.quantity == "left_wheel_diameter") all.left_wheel_diameter = parameter.value;
+    if (parameter.quantity == "right_wheel_diameter") all.right_wheel_diameter = parameter.value;
+    if (parameter.quantity == "track_width") all.track_width = parameter.value;
+  }
+  return all;
+}
+
+routines::WheelGeometry Drive::geometry() const {
+  const RobotDescription all = robot();
+  return {all.left_wheel_diameter, all.right_wheel_diameter, all.track_width};
+}
+
+// Speeds are wheel rates times diameters: with wrong diameters the cap of M7 is none. What the controller
+// holds goes before the configuration, so it has to be known and likely.
+std::optional<Error> Drive::geometry_forbidden() const {
+  const auto held = controller().capabilities();
+  const bool readable = std::any_of(held.begin(), held.end(), [](const auto& one) { return one.readable; });
+  if (readable && !values_known)
+    return forbidden(ErrorCode::device, "the controller's values were not read yet",
+                     "wait two seconds; if it stays, check the bus");
+  const RobotDescription expected = nominal(), all = robot();
+  if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
+    return forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
+                     "state robot.wheel_diameter and robot.track_width in the configuration");
+  const std::array<std::tuple<const char*, double, double>, 3> values{
+      {{"left_wheel_diameter", all.left_wheel_diameter, expected.left_wheel_diameter},
+       {"right_wheel_diameter", all.right_wheel_diameter, expected.right_wheel_diameter},
+       {"track_width", all.track_width, expected.track_width}}};
+  for (const auto& [name, value, wanted] : values)
+    if (wanted > 0.0 && std::abs(value / wanted - 1.0) > kPlausible)
+      return forbidden(ErrorCode::refused,
+                       fmt::format("the controller holds {} = {:.4f} m, the configuration says {:.4f} m",
+                                   name, value, wanted),
+                       "measure the robot; correct robot.* in the configuration or the profile, or the "
+                       "controller's value");
+  return std::nullopt;
+}
+
+}  // namespace odomcalib

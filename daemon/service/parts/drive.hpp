@@ -1,0 +1,57 @@
+// The motor controller as the daemon sees it: its line, what it counts and what it holds.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.hpp"
+#include "daemon/safety/freshness.hpp"
+#include "daemon/service/base_link.hpp"
+
+namespace odomcalib {
+
+/// Share of a length; one that is further from what is known of it is another robot's.
+inline constexpr double kPlausible = 0.15;
+
+std::string name_of(drivers::ControllerState state);
+
+class Drive {
+ public:
+  /// What one turn brought.
+  struct News {
+    std::vector<TickSample> ticks;
+    std::vector<drivers::ControllerEvent> events;
+    std::optional<drivers::ControllerState> state;  ///< when it has changed
+  };
+
+  /// @param config outlives this
+  Drive(BaseLink base_link, const Config& config) : link(std::move(base_link)), config_(config) {}
+
+  News serve(const Clock& clock, double now);
+  [[nodiscard]] drivers::Controller& controller() const { return link.controller(); }
+  /// The axes have no torque, as far as the controller says.
+  [[nodiscard]] bool off() const;
+
+  /// From profile and configuration.
+  [[nodiscard]] RobotDescription nominal() const;
+  /// The same with what the controller holds.
+  [[nodiscard]] RobotDescription robot() const;
+  [[nodiscard]] routines::WheelGeometry geometry() const;
+  /// Why the wheels' dimensions are no base for a speed.
+  [[nodiscard]] std::optional<Error> geometry_forbidden() const;
+
+  BaseLink link;
+  safety::EncoderFreshness encoders;
+  TickSample newest_ticks;
+  std::uint64_t tick_count = 0;
+  std::vector<drivers::StoredParameter> in_force;  ///< newest reading
+  bool values_known = false;                       ///< `in_force` was read since the controller came
+
+ private:
+  const Config& config_;
+  drivers::ControllerState state_ = drivers::ControllerState::absent;
+};
+
+}  // namespace odomcalib

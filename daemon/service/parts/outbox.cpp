@@ -1,0 +1,98 @@
+#include "daemon/service/parts/outbox.hpp"
+
+#include <cmath>
+
+#include "daemon/service/json_text.hpp"
+
+namespace odomcalib {
+namespace {
+
+constexpr double kRobotPeriod = 10.0;    // s
+constexpr double kStatusPeriod = 1.0;    // s
+constexpr double kProgressPeriod = 0.2;  // s
+
+PoseSample pose_sample(double t, const routines::Pose& pose) {
+  return {t, pose.x, pose.y, routines::wrapped(pose.yaw)};
+}
+
+}  // namespace
+
+Outbox::Outbox(ControlServer control_server, const Config& config, const Clock& time)
+    : server(std::move(control_server)),
+      telemetry(config.lcm_enabled ? config.lcm_url : "", config.channel_prefix,
+                config.state_dir / "recordings"),
+      clock_(time) {}
+
+void Outbox::answer(ClientId client, const ordered_json& parameters) {
+  server.reply(client, control::encode_reply(json_text(parameters)));
+}
+
+void Outbox::refuse(ClientId client, const Error& error) {
+  server.reply(client, control::encode_error(error));
+}
+
+void Outbox::refuse_parameter(ClientId client, const std::string& name) {
+  server.reply(client, control::encode_invalid_parameter(name));
+}
+
+void Outbox::event(messages::Severity severity, const std::string& code, const std::string& text) {
+  const std::int64_t time = clock_.wall_us();
+  telemetry.emit(time, "EVENT", messages::encode_event(stamp(now_), severity, code, text));
+  const ordered_json body = {
+      {"time", time}, {"severity", static_cast<int>(severity)}, {"code", code}, {"text", text}};
+  for (const ClientId client : monitors_)
+    server.reply(client, control::encode_reply(json_text({{"event", body}}), true));
+}
+
+void Outbox::progress(const Caller& caller, const std::string& phase, double fraction,
+                      std::optional<double> eta) {
+  if (now_ < next_progress_) return;
+  next_progress_ = now_ + kProgressPeriod;
+  ordered_json body = {{"phase", phase}, {"fraction", fraction}, {"eta", nullptr}, {"hint", nullptr}};
+  if (eta) body["eta"] = *eta;
+  telemetry.publisher.send("PROGRESS",
+                           messages::encode_json(clock_.wall_us(), "odomcalib-progress/1", json_text(body)));
+  if (caller.more) server.reply(caller.client, control::encode_reply(json_text({{"progress", body}}), true));
+}
+
+void Outbox::send_robot(const RobotDescription& robot) {
+  next_robot_ = now_ + kRobotPeriod;
+  const std::int64_t utime = clock_.wall_us();
+  telemetry.emit(utime, "ROBOT", messages::encode(utime, robot));
+}
+
+void Outbox::send_status(const ordered_json& status) {
+  next_status_ = now_ + kStatusPeriod;
+  telemetry.publisher.serve(now_);
+  telemetry.publisher.send("STATUS",
+                           messages::encode_json(clock_.wall_us(), "odomcalib-status/1", json_text(status)));
+}
+
+void Outbox::send_result(const std::string& calibration) {
+  telemetry.publisher.send("RESULT",
+                           messages::encode_json(clock_.wall_us(), "odomcalib-calibration/1", calibration));
+}
+
+void Outbox::ticks(const TickSample& sample, const routines::Pose& odometry,
+                   const std::optional<PoseSample>& corrected) {
+  const messages::Stamp when = stamp(sample.t);
+  telemetry.emit(when.utime, "TICKS", messages::encode(when, sample));
+  telemetry.publisher.send("ODOM", messages::encode(when, pose_sample(sample.t, odometry)));
+  if (corrected) telemetry.publisher.send("ODOM_CALIBRATED", messages::encode(when, *corrected));
+}
+
+void Outbox::scan(const Scan& scan) {
+  const messages::Stamp when = stamp(scan.t);
+  telemetry.emit(when.utime, "SCAN", messages::encode(when, scan));
+}
+
+void Outbox::frame(const drivers::CanFrame& frame) {
+  if (telemetry.recorder.active()) telemetry.recorder.write_frame(stamp(frame.t).utime, frame);
+}
+
+messages::Stamp Outbox::stamp(double t) const {
+  const auto age_us = static_cast<std::int64_t>(std::llround((now_ - t) * 1e6));
+  return {clock_.wall_us() - age_us, static_cast<std::int64_t>(std::llround(t * 1e9))};
+}
+
+}  // namespace odomcalib

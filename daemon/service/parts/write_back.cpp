@@ -1,0 +1,84 @@
+#include "daemon/service/parts/write_back.hpp"
+
+#include <limits>
+
+namespace odomcalib {
+namespace {
+
+constexpr double kReadAgain = 2.0;  // s, after a reading that may have failed
+
+}  // namespace
+
+std::string name_of(WriteOutcome outcome) {
+  if (outcome == WriteOutcome::committed) return "committed";
+  return outcome == WriteOutcome::rolled_back ? "rolled_back" : "unknown";
+}
+
+WriteBack::WriteBack(Journal write_journal, const std::filesystem::path& state_dir)
+    : journal(std::move(write_journal)),
+      transaction(journal),
+      history(state_dir / "history"),
+      operator_needed(journal.unfinished().has_value()) {}
+
+std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, bool& values_known,
+                                            bool may_begin, double now, std::int64_t wall_us) {
+  const auto state = controller.state();
+  // What is there when it comes back, and what it holds, is to be seen, at once: nothing moves before.
+  if (state == drivers::ControllerState::absent && !busy()) {
+    values_known = recovery_tried_ = false;
+    if (!ending_) next_read_ = now;
+  }
+  if (state == drivers::ControllerState::disabled && !busy() && may_begin && now >= next_read_)
+    begin_reading(controller, values_known, now);
+  transaction.step(controller, now, wall_us);
+  return transaction.take_report();
+}
+
+// One recovery a connection: each may store once, and permanent memory wears out. After it only reads are
+// repeated. It waits for rest (B6 step 2), reading alone does not.
+void WriteBack::begin_reading(const drivers::Controller& controller, bool values_known, double now) {
+  const bool recover = operator_needed && !recovery_tried_;
+  if (recover ? !controller.at_rest() : values_known) return;
+  next_read_ = now + kReadAgain;
+  (void)(recover ? transaction.recover() : transaction.read());
+}
+
+Result<void> WriteBack::write(const std::string& label, const ParameterMap& values,
+                              const std::string& calibration) {
+  ended.reset();
+  return transaction.write(label, values, calibration);
+}
+
+void WriteBack::learn(const WriteReport& report) {
+  const bool unknown = report.outcome == WriteOutcome::unknown;
+  recovery_tried_ = recovery_tried_ || unknown;
+  operator_needed = unknown || (report.outcome == WriteOutcome::read && journal.unfinished());
+  if (operator_needed && report.error) problem = report.error->text();
+}
+
+void WriteBack::end() {
+  ending_ = true;
+  next_read_ = std::numeric_limits<double>::infinity();
+}
+
+std::string WriteBack::journaled_calibration() const {
+  return journal.last() ? journal.last()->calibration : "";
+}
+
+// One that was rolled back or ended unknown has put nothing in force that could be taken back.
+std::optional<FormerValues> WriteBack::former_values(const std::string& id,
+                                                     const std::optional<std::string>& in_force) const {
+  const auto unfinished = journal.unfinished();
+  if (id.empty() && unfinished && !unfinished->before.empty())
+    return FormerValues{unfinished->before, in_force};
+  const auto entry = id.empty() ? history.newest_committed() : history.find(id);
+  if (!entry) return std::nullopt;
+  FormerValues former{entry->before, std::nullopt};
+  // The calibration in force before that entry is the one of the newest older entry that was committed.
+  for (const auto& older : history.entries())
+    if (older.id < entry->id && older.outcome == "committed" && !former.calibration)
+      former.calibration = older.calibration;
+  return former;
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,66 @@
+// The way of values into the controller: one transaction at a time, its journal, its history, and the
+// recovery of one that was interrupted.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "daemon/writeback/history.hpp"
+#include "daemon/writeback/journal.hpp"
+#include "daemon/writeback/transaction.hpp"
+
+namespace odomcalib {
+
+/// What a rollback goes back to.
+struct FormerValues {
+  ParameterMap values;
+  std::optional<std::string> calibration;  ///< JSON text; nullopt: none was in force
+};
+
+/// How a write-back has ended, for whoever asked for it.
+struct WriteEnd {
+  WriteReport report;
+  std::optional<Error> unsettled;  ///< why the host goes on with the former calibration
+};
+
+class WriteBack {
+ public:
+  WriteBack(Journal write_journal, const std::filesystem::path& state_dir);
+
+  /// Reads and recovers when it is time for it, and goes on with what runs.
+  /// @param may_begin the robot does not move. @return the end of a transaction
+  std::optional<WriteReport> serve(drivers::Controller& controller, bool& values_known, bool may_begin,
+                                   double now, std::int64_t wall_us);
+  /// Begins one, see Transaction::write.
+  Result<void> write(const std::string& label, const ParameterMap& values, const std::string& calibration);
+  /// What the end of a transaction says about what the controller holds.
+  void learn(const WriteReport& report);
+  /// From now on nothing is read or recovered any more.
+  void end();
+  [[nodiscard]] bool busy() const { return transaction.busy(); }
+  /// Without an id: what an unfinished write-back is to be taken back to, else what the newest committed one
+  /// replaced. @param in_force JSON text of the calibration in force. nullopt: there is nothing to go back to
+  [[nodiscard]] std::optional<FormerValues> former_values(const std::string& id,
+                                                          const std::optional<std::string>& in_force) const;
+  /// Id of the calibration in the newest record of the journal.
+  [[nodiscard]] std::string journaled_calibration() const;
+  [[nodiscard]] std::optional<WriteEnd> take_end() { return std::exchange(ended, std::nullopt); }
+
+  Journal journal;
+  Transaction transaction;
+  History history;
+  bool operator_needed = false;
+  std::string problem = "an interrupted write-back waits for the controller";  ///< operator_needed: why
+  std::optional<WriteEnd> ended;
+
+ private:
+  void begin_reading(const drivers::Controller& controller, bool values_known, double now);
+
+  bool recovery_tried_ = false;  // on this connection to the controller
+  bool ending_ = false;
+  double next_read_ = 0.0;
+};
+
+std::string name_of(WriteOutcome outcome);
+
+}  // namespace odomcalib

@@ -1,0 +1,231 @@
+#include "daemon/service/status_report.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "odomcalib_version.hpp"
+
+namespace odomcalib {
+namespace {
+
+ordered_json check(const std::string& name, bool good, const std::string& found, const std::string& remedy) {
+  return {
+      {"name", name}, {"outcome", good ? "ok" : "fail"}, {"found", found}, {"remedy", good ? "" : remedy}};
+}
+
+/// What the lidar does not see is no failure: it is to be looked at by somebody.
+ordered_json view_check(const std::vector<safety::Sector>& blind) {
+  if (blind.empty()) return check("lidar view", true, "all around", "");
+  return {{"name", "lidar view"},
+          {"outcome", "warn"},
+          {"found", "blind from " + safety::text_of(blind) + " (0 is ahead, 90 left)"},
+          {"remedy", "moves that go there are asked about: see that this area is free"}};
+}
+
+ordered_json check_disk(const std::filesystem::path& folder) {
+  constexpr std::uintmax_t kMegabyte = 1'000'000, kLeast = 64;
+  std::error_code error;
+  const auto space = std::filesystem::space(folder, error);
+  if (error) return check("disk", false, error.message(), "see that " + folder.string() + " is there");
+  const std::uintmax_t left = space.available / kMegabyte;
+  return check("disk", left > kLeast,
+               left > kLeast ? "enough space" : "only " + std::to_string(left) + " MB left",
+               "remove old recordings");
+}
+
+ordered_json json_of(const LoopWatch::Longest& turn) {
+  return {{"seconds", turn.seconds}, {"part", turn.part}};
+}
+
+std::string text_of(const std::optional<Error>& problem) { return problem ? problem->text() : ""; }
+
+std::string found_at(bool connected, const std::optional<Error>& problem) {
+  if (problem) return problem->text();
+  return connected ? "open" : "not open yet";
+}
+
+// What a controller cannot hold stays on the host, value by value.
+void add_host_values(const std::vector<HostValue>& values, ordered_json& list) {
+  for (const HostValue& value : values)
+    list.push_back({{"name", value.name},
+                    {"unit", value.quantity.unit},
+                    {"value", nullptr},
+                    {"calibrated", value.quantity.value},
+                    {"stored_in", "host"},
+                    {"applied_in", value.applied_in}});
+}
+
+ordered_json controller_report(const Bench& bench) {
+  const Drive& drive = bench.drive;
+  const drivers::Controller& controller = drive.controller();
+  ordered_json body = {{"device", drive.link.device()},
+                       {"connected", drive.link.connected()},
+                       {"state", name_of(controller.state())},
+                       {"problem", text_of(drive.link.problem())},
+                       {"watchdog_armed", controller.watchdog_armed()},
+                       {"ticks", drive.tick_count},
+                       {"stale", drive.encoders.stale(bench.now).value_or("")},
+                       {"counters", drive.link.counters()}};
+  for (const auto& one : controller.capabilities())
+    body["holds"][one.quantity] = {{"readable", one.readable},
+                                   {"writable", one.writable},
+                                   {"stored", one.stored},
+                                   {"object", one.object},
+                                   {"step", one.step}};
+  if (const auto id = controller.identity())
+    body["identity"] = {{"vendor", id->vendor},
+                        {"product", id->product},
+                        {"revision", id->revision},
+                        {"serial", id->serial},
+                        {"name", id->name}};
+  return body;
+}
+
+ordered_json lidar_report(const Bench& bench) {
+  const LidarLink& lidar = bench.surroundings.link;
+  return {{"device", lidar.device()},
+          {"identity", lidar.identity()},
+          {"connected", lidar.connected()},
+          {"problem", text_of(lidar.problem())},
+          {"scans", bench.surroundings.scan_count},
+          {"stale", bench.surroundings.scans.stale(bench.now).value_or("")},
+          {"counters", lidar.counters()}};
+}
+
+ordered_json robot_report(const Drive& drive) {
+  const RobotDescription all = drive.robot();
+  return {{"left_wheel_diameter", all.left_wheel_diameter},
+          {"right_wheel_diameter", all.right_wheel_diameter},
+          {"track_width", all.track_width},
+          {"ticks_per_rev", all.ticks_per_rev},
+          {"in_controller", !drive.in_force.empty()}};
+}
+
+ordered_json client_report(const ControlServer& server) {
+  return {{"connected", server.clients()},
+          {"not_permitted", server.counters().not_permitted},
+          {"malformed", server.counters().malformed},
+          {"too_many", server.counters().too_many}};
+}
+
+ordered_json loop_report(const Bench& bench) {
+  return {{"turns", bench.loop.turns()},
+          {"late_steps", bench.late_steps},
+          {"longest_turn", json_of(bench.loop.since_start())},
+          {"longest_turn_in_motion", json_of(bench.loop.in_motion())}};
+}
+
+}  // namespace
+
+std::string activity(const Bench& bench, const Task* task) {
+  if (bench.ending) return bench.write_back.busy() ? "ending: reading or writing parameters" : "ending";
+  if (task != nullptr) return task->activity(bench);
+  return bench.write_back.busy() ? "reading or writing parameters" : "idle";
+}
+
+ordered_json status_report(const Bench& bench, const Task* task) {
+  const Telemetry& telemetry = bench.outbox.telemetry;
+  const auto& pose = bench.odometry.pose();
+  ordered_json body;
+  body["schema"] = 1;
+  body["state"] = activity(bench, task);
+  body["version"] = kVersion;
+  body["controller"] = controller_report(bench);
+  body["lidar"] = lidar_report(bench);
+  body["robot"] = robot_report(bench.drive);
+  body["odometry"] = {pose.x, pose.y, routines::wrapped(pose.yaw)};
+  body["calibrated"] = bench.applied.get().has_value();
+  body["operator_needed"] = bench.write_back.operator_needed;
+  body["last_stop"] = bench.last_stop;
+  body["lcm"] = {{"sent", telemetry.publisher.sent()}, {"failed", telemetry.publisher.failed()}};
+  body["clients"] = client_report(bench.outbox.server);
+  body["loop"] = loop_report(bench);
+  body["recording_bytes"] = telemetry.recorder.bytes();
+  body["recording_bytes_waiting"] = telemetry.recorder.bytes_waiting();
+  return body;
+}
+
+ordered_json description(const Config& config) {
+  return {
+      {"version", kVersion},
+      {"controller", {{"device", config.controller_device}, {"profile", config.controller_profile}}},
+      {"lidar", {{"device", config.lidar_device}, {"type", config.lidar_type}, {"pose", config.lidar_pose}}},
+      {"limits",
+       {{"speed", config.limits.speed},
+        {"turn_rate", config.limits.turn_rate},
+        {"acceleration", config.limits.acceleration},
+        {"area", {config.area_length, config.area_width}},
+        {"countdown", config.countdown}}},
+      {"lcm", {{"url", config.lcm_enabled ? config.lcm_url : ""}, {"channel_prefix", config.channel_prefix}}},
+      {"state_dir", config.state_dir.string()}};
+}
+
+ordered_json check_report(const Bench& bench) {
+  using drivers::ControllerState;
+  const Drive& drive = bench.drive;
+  const Surroundings& around = bench.surroundings;
+  const WriteBack& write_back = bench.write_back;
+  const auto state = drive.controller().state();
+  const RobotDescription all = drive.robot();
+  ordered_json list = ordered_json::array();
+  list.push_back(check("bus", drive.link.connected(), found_at(drive.link.connected(), drive.link.problem()),
+                       "connect the adapter; check controller.device"));
+  list.push_back(check("controller", state == ControllerState::disabled || state == ControllerState::enabled,
+                       name_of(state),
+                       "switch the controller on; check the profile's node id and the bit rate"));
+  const bool armed = drive.controller().watchdog_armed();
+  list.push_back(check("watchdog", armed,
+                       armed ? "controller stops by itself" : "controller would not stop by itself",
+                       "use a profile with a watchdog"));
+  list.push_back(check("encoders", !drive.encoders.stale(bench.now),
+                       drive.encoders.stale(bench.now).value_or("counts arrive"), "check the bus"));
+  list.push_back(check("lidar port", around.link.connected(),
+                       found_at(around.link.connected(), around.link.problem()),
+                       "connect it; check lidar.device"));
+  list.push_back(check("scans", !around.scans.stale(bench.now),
+                       around.scans.stale(bench.now).value_or("scans arrive"), "check lidar and baud rate"));
+  list.push_back(view_check(around.cover.blind(bench.now).sectors()));
+  const auto wrong = drive.geometry_forbidden();
+  const bool ticks_known = all.ticks_per_rev > 0.0;
+  list.push_back(wrong ? check("geometry", false, wrong->what, wrong->remedy)
+                       : check("geometry", ticks_known,
+                               !ticks_known             ? "not known: ticks per turn"
+                               : drive.in_force.empty() ? "from the configuration"
+                                                        : "from the controller",
+                               "state the ticks per turn in the profile"));
+  list.push_back(
+      check("write-back", !write_back.operator_needed,
+            write_back.operator_needed ? write_back.problem : "nothing unfinished",
+            "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
+  list.push_back(check_disk(bench.config.state_dir));
+  return list;
+}
+
+ordered_json parameter_report(const Bench& bench, const std::optional<Calibration>& calibration) {
+  const auto& in_force = bench.drive.in_force;
+  const RobotDescription all = bench.drive.robot();
+  const std::array<std::pair<const char*, double>, 3> values = {
+      {{"left_wheel_diameter", all.left_wheel_diameter},
+       {"right_wheel_diameter", all.right_wheel_diameter},
+       {"track_width", all.track_width}}};
+  ordered_json list = ordered_json::array();
+  for (const auto& [name, value] : values) {
+    const bool stored = std::any_of(in_force.begin(), in_force.end(),
+                                    [n = std::string(name)](const auto& p) { return p.quantity == n; });
+    ordered_json entry = {{"name", name}, {"unit", "m"}, {"value", nullptr}, {"calibrated", nullptr}};
+    if (value > 0.0) entry["value"] = value;
+    const auto calibrated = calibration ? calibration->parameter(name) : std::nullopt;
+    if (calibrated) entry["calibrated"] = *calibrated;
+    // What rounding in the controller leaves over is applied in the corrected odometry.
+    if (calibrated) entry["remainder"] = *calibrated - value;
+    entry["stored_in"] = stored ? "controller" : "host";
+    entry["applied_in"] =
+        stored ? "controller, rounding remainder in corrected odometry" : "corrected odometry on the host";
+    list.push_back(entry);
+  }
+  if (calibration && bench.calibrator.host_values)
+    add_host_values(bench.calibrator.host_values(*calibration), list);
+  return list;
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,18 @@
+// What the service reports of itself, as `odomcalibctl status`, `check` and `params get` show it.
+#pragma once
+
+#include "daemon/service/tasks/task.hpp"
+
+namespace odomcalib {
+
+/// @param task that runs, or null
+std::string activity(const Bench& bench, const Task* task);
+ordered_json status_report(const Bench& bench, const Task* task);
+/// The configuration in force.
+ordered_json description(const Config& config);
+/// Rows {name, outcome, found, remedy}.
+ordered_json check_report(const Bench& bench);
+/// @param calibration whose values are shown beside those in force
+ordered_json parameter_report(const Bench& bench, const std::optional<Calibration>& calibration);
+
+}  // namespace odomcalib

@@ -1,0 +1,68 @@
+// A guided motion with its recording: from the countdown until the recording is on the disk.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "daemon/service/agreement.hpp"
+#include "daemon/service/motion_run.hpp"
+#include "daemon/service/tasks/task.hpp"
+#include "daemon/service/tasks/written_recording.hpp"
+
+namespace odomcalib {
+
+/// What is made of a motion when it has come to its end.
+struct ReportMoves {};   ///< each move by odometry and by the lidar
+struct ReportWiring {};  ///< whether every wire goes where it should
+struct SolveRecording {
+  std::vector<std::string> effects{"auto"};
+  std::vector<std::filesystem::path> earlier;  ///< recordings to be solved together with the new one
+};
+using MotionPurpose = std::variant<ReportMoves, ReportWiring, SolveRecording>;
+
+class MotionTask final : public Task {
+ public:
+  struct Order {
+    routines::Plan plan;
+    std::string lease;
+    MotionPurpose purpose;
+  };
+  /// The robot may move; motion_gate.hpp was asked. Errors: those of Recorder::start
+  static Result<std::unique_ptr<Task>> begin(Bench& bench, const Caller& caller, Order order);
+
+  [[nodiscard]] const char* part() const override { return "motion"; }
+  [[nodiscard]] std::string activity(const Bench& bench) const override;
+  TaskTurn turn(Bench& bench) override;
+  void stop(Bench& bench) override;
+  /// Who asked for a motion and went away cannot watch it.
+  void abandoned(Bench& bench) override;
+  void drive_stopped(const std::string& why) override;
+  void scanned(const Bench& bench, const Scan& scan) override;
+  TaskTurn daemon_ends(Bench& bench, const Error& why) override;
+  [[nodiscard]] bool moves() const override { return run_.has_value(); }
+  [[nodiscard]] routines::Twist twist() const override { return run_ ? run_->twist() : routines::Twist{}; }
+
+ private:
+  MotionTask(Bench& bench, const Caller& waits, Order order);
+  void watch_loop(Bench& bench);
+  [[nodiscard]] std::optional<std::string> lapsed(const Bench& bench) const;
+  [[nodiscard]] Situation situation(const Bench& bench) const;
+  TaskTurn ended(Bench& bench);
+  [[nodiscard]] ordered_json report(const Bench& bench) const;
+  TaskTurn written(const Bench& bench, const Result<std::filesystem::path>& path);
+
+  std::string lease_;
+  MotionPurpose purpose_;
+  AgreementWatch agreement_;
+  std::optional<MotionRun> run_;  // until it has ended
+  ordered_json report_;           // of the motion, while its recording goes to the disk
+  WrittenRecording written_;
+  double next_step_ = 0.0;     // s
+  double stepped_at_ = 0.0;    // s, last control step
+  double suspended_at_ = 0.0;  // s, Clock::suspended() then
+};
+
+}  // namespace odomcalib

@@ -1,0 +1,62 @@
+// What the robot is used for: one task at a time. Motion, recording, solving and writing are the four kinds.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+
+#include "daemon/service/parts/bench.hpp"
+
+namespace odomcalib {
+
+class Task;
+
+/// What a turn has made of a task.
+struct Running {};
+struct Done {
+  ordered_json reply;  ///< parameters of the reply to the caller
+};
+struct Failed {
+  Error error;
+};
+/// The caller waits for the end of another task, which follows from this one.
+struct Then {
+  std::unique_ptr<Task> task;
+};
+using TaskTurn = std::variant<Running, Done, Failed, Then>;
+
+/// Begins when it is made and has something to do in every turn of the loop until that says how it ended.
+class Task {
+ public:
+  explicit Task(const Caller& waits) : caller(waits) {}
+  virtual ~Task() = default;
+  Task(const Task&) = delete;
+  Task& operator=(const Task&) = delete;
+
+  /// Part of the loop as which the duration of its turns is counted (LoopWatch).
+  [[nodiscard]] virtual const char* part() const = 0;
+  /// What `odomcalibctl status` shows.
+  [[nodiscard]] virtual std::string activity(const Bench& bench) const = 0;
+  virtual TaskTurn turn(Bench& bench) = 0;
+
+  /// Somebody wants the robot to stand still: the task ends as soon as it may, and turn() says how.
+  virtual void stop(Bench& bench) = 0;
+  /// The client `caller` has closed its connection.
+  virtual void abandoned(Bench& bench) = 0;
+  /// The drive has stopped by itself.
+  virtual void drive_stopped(const std::string& /*why*/) {}
+  /// A whole turn of the lidar; odometry is up to date.
+  virtual void scanned(const Bench& /*bench*/, const Scan& /*scan*/) {}
+  /// The daemon ends. A task that moves the robot has ended it when this returns; others go on as they can.
+  /// @return how it ended, Running where it did not
+  virtual TaskTurn daemon_ends(Bench& /*bench*/, const Error& /*why*/) { return Running{}; }
+
+  [[nodiscard]] virtual bool moves() const { return false; }
+  /// Of the robot now.
+  [[nodiscard]] virtual routines::Twist twist() const { return {}; }
+
+  const Caller caller;
+};
+
+}  // namespace odomcalib

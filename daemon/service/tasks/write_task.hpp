@@ -1,0 +1,41 @@
+// A client's write-back: new values into the controller, or what had been there before.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "daemon/service/tasks/task.hpp"
+#include "daemon/writeback/rounding.hpp"
+
+namespace odomcalib {
+
+class WriteTask final : public Task {
+ public:
+  struct Order {
+    std::string label;                            ///< "apply" or "rollback"
+    RoundedParameters rounded;                    ///< what the controller can hold of the values
+    std::optional<std::string> calibration = {};  ///< JSON text that comes into force with them
+    bool replaces_calibration = true;             ///< false: the one in force stays
+  };
+  /// Errors: of announcing the calibration (io), of Transaction::write.
+  static Result<std::unique_ptr<Task>> begin(Bench& bench, const Caller& caller, const Order& order);
+
+  [[nodiscard]] const char* part() const override { return "write-back"; }
+  [[nodiscard]] std::string activity(const Bench& /*bench*/) const override {
+    return "reading or writing parameters";
+  }
+  TaskTurn turn(Bench& bench) override;
+  /// Values are written wholly or not at all: what has begun goes on.
+  void stop(Bench& /*bench*/) override {}
+  void abandoned(Bench& /*bench*/) override {}
+
+ private:
+  WriteTask(const Caller& waits, const RoundingError& rounding) : Task(waits), rounding_(rounding) {}
+
+  RoundingError rounding_;
+};
+
+ordered_json to_json(const RoundingError& error);
+
+}  // namespace odomcalib

@@ -1,0 +1,42 @@
+#include "daemon/service/write_gate.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace odomcalib {
+
+std::optional<Error> write_forbidden(const Bench& bench) {
+  const auto state = bench.drive.controller().state();
+  if (bench.write_back.busy())
+    return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
+  if (state != drivers::ControllerState::disabled)
+    return Error{ErrorCode::device, "controller is " + name_of(state), "write-back",
+                 "values are written only to a controller that answers and whose axes are off"};
+  if (!bench.drive.values_known)
+    return Error{ErrorCode::device, "the controller's values were not read yet", "write-back",
+                 "wait, or check the bus"};
+  return std::nullopt;
+}
+
+std::optional<Error> implausible(const ParameterMap& values, const ParameterMap& present) {
+  for (const auto& [name, value] : values) {
+    const auto known = present.find(name);
+    if (known == present.end())
+      return Error{ErrorCode::usage, "unknown parameter \"" + name + "\"", "", "odomcalibctl params get"};
+    const bool plausible = std::isfinite(value) && std::abs(value / known->second - 1.0) <= kPlausible;
+    if (!plausible)
+      return Error{ErrorCode::refused,
+                   fmt::format("{} = {} m is more than 15 % from {} m", name, value, known->second),
+                   "write-back", "check the nominal values"};
+  }
+  return std::nullopt;
+}
+
+ParameterMap present_lengths(const RobotDescription& robot) {
+  return {{"left_wheel_diameter", robot.left_wheel_diameter},
+          {"right_wheel_diameter", robot.right_wheel_diameter},
+          {"track_width", robot.track_width}};
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,189 @@
+// From "nothing heard" to "configured and sending": identity before any write, then what the profile says,
+// read back.
+#include <cmath>
+#include <utility>
+
+#include "drivers/base/canopen/words.hpp"
+#include "drivers/base/cia402/dual_axis.hpp"
+#include "drivers/base/cia402/settings.hpp"
+#include "drivers/clean_text.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+using namespace cia402;
+
+using canopen::NumberType;
+using canopen::SdoStep;
+constexpr std::uint8_t kNmtStart = 0x01;
+constexpr std::uint8_t kNmtPreOperational = 0x80;
+constexpr std::uint8_t kOperational = 0x05;
+constexpr NumberType kU16{2, false};
+constexpr NumberType kU32{4, false};
+constexpr NumberType kI16{2, true};
+constexpr NumberType kI32{4, true};
+
+SdoStep read_step(std::uint16_t index, std::uint8_t sub, NumberType type, bool optional,
+                  const std::string& tag) {
+  return {SdoStep::Kind::read, {index, sub}, type, 0, optional, canopen::kSdoTimeout_s, tag};
+}
+
+SdoStep write_step(const canopen::ObjectAddress& object, NumberType type, std::int64_t value, bool optional) {
+  return {SdoStep::Kind::write, object, type, value, optional, canopen::kSdoTimeout_s, ""};
+}
+
+void add_watchdog(std::vector<SdoStep>& steps, const Profile& profile) {
+  const ProfileWatchdog& watchdog = profile.watchdog;
+  if (watchdog.kind == ProfileWatchdog::Kind::none) return;
+  const auto counts = std::int64_t{std::llround(watchdog.time_ms / watchdog.unit_ms)};
+  const bool consumer = watchdog.kind == ProfileWatchdog::Kind::heartbeat_consumer;
+  const std::int64_t value = consumer ? (std::int64_t{profile.host_node} << 16 | counts) : counts;
+  add_checked_write(steps, watchdog.object, watchdog.type, value, true, "watchdog");
+  for (const ProfileWrite& also : watchdog.also)
+    add_checked_write(steps, also.object, also.type, also.value, true, "watchdog");
+}
+
+void add_rest(std::vector<SdoStep>& steps, const Profile& profile) {
+  // An earlier master may have left the axes enabled with a target.
+  steps.push_back(write_step(profile.speed_left, kI32, 0, true));
+  if (profile.axes == 2) steps.push_back(write_step(profile.speed_right, kI32, 0, true));
+  steps.push_back(write_step(profile.control, kU16, canopen::kDisableVoltage, true));
+}
+
+void add_safety_readings(std::vector<SdoStep>& steps) {
+  steps.push_back(read_step(0x605A, 0, kI16, true, "605A"));
+  steps.push_back(read_step(0x605B, 0, kI16, true, "605B"));
+  steps.push_back(read_step(0x605D, 0, kI16, true, "605D"));
+  steps.push_back(read_step(0x605E, 0, kI16, true, "605E"));
+}
+
+std::vector<SdoStep> configuration(const Profile& profile) {
+  std::vector<SdoStep> steps;
+  add_rest(steps, profile);
+  for (const ProfileWrite& init : profile.init) add_checked_write(steps, init.object, init.type, init.value);
+  add_safety_readings(steps);
+  const auto heartbeat = std::int64_t{std::llround(profile.heartbeat_ms / profile.heartbeat_unit_ms)};
+  add_checked_write(steps, {0x1017, 0}, kU16, heartbeat);
+  add_watchdog(steps, profile);
+  if (profile.mode) {
+    steps.push_back(write_step(profile.mode->object, profile.mode->type, profile.mode->value, false));
+    steps.push_back({SdoStep::Kind::check, profile.mode_display, profile.mode->type, profile.mode->value,
+                     true, canopen::kSdoTimeout_s, "mode"});
+  }
+  for (const canopen::Pdo& pdo : profile.pdos) add_pdo_configuration(steps, pdo);
+  return steps;
+}
+
+}  // namespace
+
+void DualAxis::advance_setup() {
+  if (phase_ == Phase::ready) return job_.advance(sdo_, now_);
+  if (phase_ == Phase::absent) return look_for_node();
+  if (phase_ == Phase::starting) return check_started();
+  if (!setup_.advance(sdo_, now_)) return;
+  if (phase_ == Phase::identifying) return end_identification();
+  if (phase_ == Phase::configuring) end_configuration();
+}
+
+void DualAxis::look_for_node() {
+  if (!look_after_) look_after_ = now_ + kListen_s;
+  const bool quiet = now_ - last_other_master_ > kOtherMaster_s;
+  if (now_ >= *look_after_ && quiet) begin_identification();
+}
+
+void DualAxis::begin_identification() {
+  phase_ = Phase::identifying;
+  phase_since_ = now_;
+  sdo_.cancel();
+  setup_.start({read_step(0x1018, 1, kU32, false, "vendor"), read_step(0x1018, 2, kU32, false, "product"),
+                read_step(0x1018, 3, kU32, true, "revision"), read_step(0x1018, 4, kU32, true, "serial"),
+                read_step(0x1008, 0, kU32, true, "name")});
+  setup_.advance(sdo_, now_);
+}
+
+void DualAxis::end_identification() {
+  if (setup_.error()) {
+    phase_ = Phase::absent;
+    heard_at_.reset();
+    look_after_ = now_ + kAskAgain_s;
+    return;
+  }
+  const auto number = [&](const char* tag) {
+    const auto* outcome = setup_.find(tag);
+    return outcome == nullptr || outcome->error ? 0U : static_cast<std::uint32_t>(outcome->value);
+  };
+  Identity found{number("vendor"), number("product"), number("revision"), number("serial"), ""};
+  if (const auto* name = setup_.find("name"); name != nullptr)
+    found.name = clean_text(std::string(name->bytes.begin(), name->bytes.end()));
+  identity_ = found;
+  heard_at_ = now_;
+  const bool ours = (profile_.vendor == 0 || profile_.vendor == found.vendor) &&
+                    (profile_.product == 0 || profile_.product == found.product);
+  if (ours) return begin_configuration();
+  phase_ = Phase::foreign;
+  event("identity_mismatch",
+        "node " + std::to_string(profile_.node) + " is vendor " + std::to_string(found.vendor) +
+            ", product " + std::to_string(found.product) + "; profile \"" + profile_.name + "\" expects " +
+            std::to_string(profile_.vendor) + ", " + std::to_string(profile_.product) +
+            ": nothing is written to it",
+        true);
+}
+
+void DualAxis::begin_configuration() {
+  phase_ = Phase::configuring;
+  phase_since_ = now_;
+  send_nmt(kNmtPreOperational);
+  setup_.start(configuration(profile_));
+  setup_.advance(sdo_, now_);
+}
+
+void DualAxis::end_configuration() {
+  if (setup_.error()) {
+    event("configuration_failed", setup_.error()->text(), true);
+    phase_ = Phase::absent;
+    look_after_ = now_ + kFailedAgain_s;
+    return;
+  }
+  note_safety_objects();
+  phase_ = Phase::starting;
+  phase_since_ = now_;
+  positions_at_.reset();
+  status_at_.reset();
+  send_nmt(kNmtStart);
+}
+
+void DualAxis::note_safety_objects() {
+  watchdog_armed_ = profile_.watchdog.kind != ProfileWatchdog::Kind::none;
+  for (const canopen::SdoOutcome& outcome : setup_.outcomes()) {
+    if (outcome.step.tag != "watchdog" || !outcome.error) continue;
+    watchdog_armed_ = false;
+    event("watchdog_refused", "the controller cannot watch this program: " + outcome.error->text(), false);
+  }
+  const auto* quick_stop_option = setup_.find("605A");
+  if (quick_stop_option != nullptr && !quick_stop_option->error && quick_stop_option->value == 0)
+    event("coasts_on_quick_stop",
+          "605Ah = 0: the drive coasts on a quick stop; the stopping distance is longer", false);
+  const auto* mode = setup_.find("mode");
+  if (mode != nullptr && mode->error)
+    event("mode_not_active", "mode of operation: " + mode->error->text(), false);
+}
+
+void DualAxis::check_started() {
+  const bool running = node_state_ == kOperational && positions_at_ && status_at_;
+  if (running) {
+    phase_ = Phase::ready;
+    phase_since_ = now_;
+    motion_.forget();
+    heard_at_ = now_;
+    return job_.on_set_up_again();
+  }
+  if (now_ - phase_since_ < kStart_s) return;
+  event("start_failed",
+        "the controller is " + canopen::nmt_state_text(node_state_) + " and sends " +
+            (positions_at_ ? "no status" : "no positions") + " after the NMT start",
+        true);
+  phase_ = Phase::absent;
+  look_after_ = now_ + kFailedAgain_s;
+}
+
+}  // namespace odomcalib::drivers

@@ -1,0 +1,279 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "proto/calibration/calibration.hpp"
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kFormat = "odomcalib-calibration/1";
+constexpr std::array<std::string_view, 12> kMembers{
+    "format",  "verdict", "reasons",     "robot",    "parameters", "covariance", "linear_correction",
+    "methods", "effects", "unexplained", "residual", "data"};
+constexpr int kDeepest = 64;
+
+/// One JSON value and its path. Wrong types are noted once, in `problem`, and read as empty values.
+class Node {
+ public:
+  Node(const Json& json, std::string path, std::string& problem)
+      : json_(&json), path_(std::move(path)), problem_(&problem) {}
+
+  [[nodiscard]] bool is_null() const { return json_->is_null(); }
+  [[nodiscard]] Node operator[](const char* name) const {
+    static const Json kNull;
+    const std::string path = path_.empty() ? std::string(name) : path_ + "." + name;
+    if (json_->is_null()) return {kNull, path, *problem_};
+    if (!expect(json_->is_object(), "an object")) return {kNull, path, *problem_};
+    const auto found = json_->find(name);
+    return {found == json_->end() ? kNull : *found, path, *problem_};
+  }
+
+  /// NaN for null: a value that was not finite when it was written.
+  [[nodiscard]] double number() const {
+    if (is_null() || !expect(json_->is_number(), "a number")) return std::numeric_limits<double>::quiet_NaN();
+    return json_->get<double>();
+  }
+  [[nodiscard]] std::optional<double> optional_number() const {
+    return is_null() ? std::nullopt : std::optional(number());
+  }
+  [[nodiscard]] std::string text() const {
+    return !is_null() && expect(json_->is_string(), "a text") ? json_->get<std::string>() : std::string();
+  }
+  [[nodiscard]] bool flag(bool absent) const {
+    return !is_null() && expect(json_->is_boolean(), "true or false") ? json_->get<bool>() : absent;
+  }
+  [[nodiscard]] std::size_t count() const {
+    return !is_null() && expect(json_->is_number_unsigned(), "a count") ? json_->get<std::size_t>() : 0;
+  }
+  /// Calls `visit(Node)` for each element; null is an empty list.
+  template <typename Visit>
+  void each(Visit visit) const {
+    if (is_null() || !expect(json_->is_array(), "a list")) return;
+    for (std::size_t i = 0; i < json_->size(); ++i)
+      visit(Node((*json_)[i], path_ + "[" + std::to_string(i) + "]", *problem_));
+  }
+  /// Calls `visit(name, Node)` for each member; null is an empty object.
+  template <typename Visit>
+  void each_member(Visit visit) const {
+    if (is_null() || !expect(json_->is_object(), "an object")) return;
+    for (const auto& [name, value] : json_->items()) visit(name, Node(value, path_ + "." + name, *problem_));
+  }
+  bool expect(bool holds, const std::string& what) const {
+    if (!holds && problem_->empty()) *problem_ = "\"" + path_ + "\" is not " + what;
+    return holds;
+  }
+
+ private:
+  const Json* json_;
+  std::string path_;
+  std::string* problem_;
+};
+
+std::vector<double> numbers(const Node& node) {
+  std::vector<double> out;
+  node.each([&](const Node& element) { out.push_back(element.number()); });
+  return out;
+}
+
+std::array<double, 3> triple(const Node& node) {
+  const auto values = numbers(node);
+  std::array<double, 3> out{};
+  if (!node.is_null() && node.expect(values.size() == 3, "three numbers"))
+    std::copy(values.begin(), values.end(), out.begin());
+  return out;
+}
+
+std::vector<std::string> texts(const Node& node) {
+  std::vector<std::string> out;
+  node.each([&](const Node& element) { out.push_back(element.text()); });
+  return out;
+}
+
+QuantityList quantities(const Node& node) {
+  QuantityList out;
+  node.each_member([&](const std::string& name, const Node& value) {
+    out.emplace_back(name, Quantity{value["value"].number(), value["std"].optional_number().value_or(-1.0),
+                                    value["unit"].text()});
+  });
+  return out;
+}
+
+RobotDescription robot(const Node& node) {
+  RobotDescription out;
+  out.left_wheel_diameter = node["left_wheel_diameter"].optional_number().value_or(0.0);
+  out.right_wheel_diameter = node["right_wheel_diameter"].optional_number().value_or(0.0);
+  out.track_width = node["track_width"].optional_number().value_or(0.0);
+  out.ticks_per_rev = node["ticks_per_rev"].optional_number().value_or(0.0);
+  if (!node["lidar_pose"].is_null()) out.lidar_pose = triple(node["lidar_pose"]);
+  out.robot_id = node["robot_id"].text();
+  out.controller = node["controller"].text();
+  return out;
+}
+
+std::optional<LinearCorrection> linear_correction(const Node& node) {
+  if (node.is_null()) return std::nullopt;
+  LinearCorrection out;
+  std::size_t row = 0;
+  node["matrix"].each([&](const Node& values) {
+    if (row < 3) out.matrix.at(row) = triple(values);
+    ++row;
+  });
+  node["matrix"].expect(row == 3, "three rows");
+  out.condition = node["condition"].number();
+  out.rms = triple(node["rms"]);
+  return out;
+}
+
+std::vector<MethodResult> methods(const Node& node) {
+  std::vector<MethodResult> out;
+  node.each_member([&](const std::string& name, const Node& value) {
+    MethodResult result;
+    result.name = name;
+    if (!value["refused"].is_null()) result.refused = value["refused"].text();
+    result.parameters = quantities(value["parameters"]);
+    result.rms = triple(value["rms"]);
+    result.used = value["used"].count();
+    result.discarded = value["discarded"].count();
+    out.push_back(std::move(result));
+  });
+  return out;
+}
+
+std::vector<EffectResult> effects(const Node& node) {
+  std::vector<EffectResult> out;
+  node.each([&](const Node& value) {
+    EffectResult effect;
+    effect.name = value["name"].text();
+    effect.parameters = quantities(value["parameters"]);
+    const auto evidence = value["evidence"];
+    effect.evidence = {evidence["p_value"].number(), evidence["held_out_before"].optional_number(),
+                       evidence["held_out_after"].optional_number()};
+    effect.aliases = texts(value["aliases"]);
+    effect.stored_in = value["stored_in"].text();
+    out.push_back(std::move(effect));
+  });
+  return out;
+}
+
+std::optional<Unexplained> unexplained(const Node& node) {
+  if (node.is_null()) return std::nullopt;
+  return Unexplained{texts(node["depends_on"]), node["p_value"].number(), node["share"].number()};
+}
+
+std::optional<std::array<double, 3>> by_axis(const Node& node) {
+  if (node.is_null()) return std::nullopt;
+  return std::array<double, 3>{node["x"].number(), node["y"].number(), node["yaw"].number()};
+}
+
+ResidualReport residual(const Node& node) {
+  return {node["held_out"].flag(true), by_axis(node["before"]), by_axis(node["after"]),
+          by_axis(node["noise_floor"])};
+}
+
+Verdict verdict(const Node& node) {
+  const auto name = node.text();
+  if (name == "accepted") return Verdict::accepted;
+  if (name == "accepted_with_warnings") return Verdict::accepted_with_warnings;
+  node.expect(name == "refused", "a known verdict");
+  return Verdict::refused;
+}
+
+std::vector<std::pair<std::string, std::size_t>> counts(const Node& node) {
+  std::vector<std::pair<std::string, std::size_t>> out;
+  node.each_member(
+      [&](const std::string& name, const Node& value) { out.emplace_back(name, value.count()); });
+  return out;
+}
+
+std::vector<DataUse> data(const Node& node) {
+  std::vector<DataUse> out;
+  node.each([&](const Node& value) {
+    out.push_back({value["file"].text(), value["sha256"].text(), value["begin"].optional_number(),
+                   value["duration"].optional_number().value_or(0.0), counts(value["counts"]),
+                   counts(value["discarded"]), texts(value["choices"])});
+  });
+  return out;
+}
+
+std::map<std::string, std::string> extensions(const Json& json) {
+  std::map<std::string, std::string> out;
+  for (const auto& [name, value] : json.items())
+    if (std::find(kMembers.begin(), kMembers.end(), name) == kMembers.end())
+      out[name] = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return out;
+}
+
+/// Refuses deep nesting while parsing, before it costs memory.
+Json parse(const std::string& text) {
+  bool too_deep = false;
+  const auto guard = [&](int depth, Json::parse_event_t, Json&) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
+  auto json = Json::parse(text, guard, false);
+  return too_deep || json.is_discarded() ? Json() : json;
+}
+
+Calibration calibration(const Json& json, std::string& problem) {
+  const Node root(json, "", problem);
+  Calibration out;
+  out.robot = robot(root["robot"]);
+  out.parameters = quantities(root["parameters"]);
+  out.covariance_order = texts(root["covariance"]["order"]);
+  root["covariance"]["matrix"].each([&](const Node& row) { out.covariance.push_back(numbers(row)); });
+  out.linear_correction = linear_correction(root["linear_correction"]);
+  out.methods = methods(root["methods"]);
+  out.effects = effects(root["effects"]);
+  out.unexplained = unexplained(root["unexplained"]);
+  out.residual = residual(root["residual"]);
+  out.verdict = verdict(root["verdict"]);
+  out.reasons = texts(root["reasons"]);
+  out.data = data(root["data"]);
+  out.extensions = extensions(json);
+  return out;
+}
+
+/// The covariance belongs to the named parameters: a matrix of another size cannot be read.
+bool covariance_fits(const Calibration& calibration) {
+  const std::size_t size = calibration.covariance_order.size();
+  return (calibration.covariance.empty() && size == 0) ||
+         (calibration.covariance.size() == size &&
+          std::all_of(calibration.covariance.begin(), calibration.covariance.end(),
+                      [size](const auto& row) { return row.size() == size; }));
+}
+
+}  // namespace
+
+Result<Calibration> calibration_from_json(const std::string& text, const std::string& where) {
+  const Json json = parse(text);
+  if (!json.is_object())
+    return Error{ErrorCode::format, "is not a calibration file (no JSON object)", where,
+                 "name a file that solve wrote"};
+  std::string problem;
+  if (Node(json, "", problem)["format"].text() != kFormat)
+    return Error{ErrorCode::format,
+                 "is not a calibration file (\"format\" is not \"odomcalib-calibration/1\")", where,
+                 "name a file that solve wrote"};
+  auto out = calibration(json, problem);
+  if (problem.empty() && !covariance_fits(out))
+    problem = "\"covariance\" has a matrix that does not fit its order";
+  if (!problem.empty())
+    return Error{ErrorCode::format, "calibration file is damaged: " + problem, where,
+                 "solve the recording again"};
+  return out;
+}
+
+Result<Calibration> read_calibration(const std::filesystem::path& path) {
+  auto bytes = read_file_bytes(path);
+  if (!bytes) return bytes.error();
+  return calibration_from_json(bytes.value(), path.string());
+}
+
+}  // namespace odomcalib

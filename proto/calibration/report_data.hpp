@@ -1,0 +1,96 @@
+// What a report shows beyond the contract of the calibration file: errors that a user feels, and the points
+// of its pictures. Additive members `drive_errors`, `detectable` and `picture` of the file.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "proto/calibration/calibration.hpp"
+
+namespace odomcalib {
+
+/// A figure with its 95 % interval.
+struct Bounded {
+  double value = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Error of dead reckoning against the reference over one kind of motion, on data not used in the fit.
+struct DriveError {
+  std::string name;               ///< straight_metre_length, full_turn_heading, ...
+  std::string unit;               ///< m or rad
+  std::size_t stretches = 0;      ///< of motion that the figures stand on
+  std::optional<Bounded> before;  ///< with the nominal values
+  std::optional<Bounded>
+      geometry;  ///< with wheels and track width corrected, no effects; absent without effects
+  std::optional<Bounded> after;       ///< with everything that was found
+  std::optional<double> noise_floor;  ///< what noise of reference and wheels alone would show
+};
+
+/// Residual of single measured motions with and without one effect, by the variable that the effect acts by.
+struct ResidualTrace {
+  struct Point {
+    double variable = 0.0, before = 0.0, after = 0.0;
+  };
+  /// Means of neighbouring points; errors are half widths of 95 % intervals.
+  struct Bin {
+    double variable = 0.0, before = 0.0, before_error = 0.0, after = 0.0, after_error = 0.0;
+  };
+  std::string effect;  ///< name, or "curve of ... on ..."
+  std::string variable, variable_unit;
+  std::string residual, residual_unit;  ///< forward, sideways or heading; m, rad, m/m, ...
+  double explained = 0.0;  ///< share of the effect's own pattern that a function of the variable describes
+  std::vector<Point> points;
+  std::vector<Bin> bins;
+};
+
+/// An effect that was not found, and what size it would have been found at.
+struct Detectable {
+  std::string effect, parameter, unit;
+  std::optional<double> smallest;  ///< absent where no size shows: other parameters take all of it
+  double typical = 0.0;            ///< what robots have; where the smallest is larger, this drive was no test
+  std::string motion;              ///< that shows it
+};
+
+struct PathTrace {
+  std::string name;                           ///< odometry (nominal values), calibrated, reference
+  std::vector<std::array<double, 2>> points;  ///< m, frame of the base at the start
+};
+
+/// Residual of the final model in one axis of the sensor.
+struct ResidualAxis {
+  std::string name, unit;
+  double mean = 0.0, std = 0.0;        ///< in the unit; outliers weigh less
+  double normalised = 0.0;             ///< standard deviation in units of the expected one
+  double autocorrelation = 0.0;        ///< of neighbours, normalised residual
+  double runs = 0.0;                   ///< runs test: standard normal when the order is random
+  std::vector<std::size_t> histogram;  ///< of the normalised residual, equal bins over -5 to 5
+};
+
+struct ResidualSample {
+  double t = 0.0;                  ///< s
+  std::array<double, 3> sigmas{};  ///< normalised x, y, yaw
+};
+
+struct ReportData {
+  std::vector<DriveError> drive_errors;
+  std::vector<ResidualTrace> traces;
+  std::vector<Detectable> detectable;
+  std::vector<PathTrace> paths;
+  std::vector<ResidualAxis> axes;
+  std::vector<ResidualSample> series;
+  /// Each parameter fitted without one fifth of the data, five times.
+  std::vector<std::pair<std::string, std::vector<double>>> left_out;
+};
+
+/// Puts the data into the calibration's additive members, rounded to what a picture can show.
+void store_report_data(const ReportData& data, Calibration& calibration);
+/// What is there of it; members that are absent or not understood are empty.
+ReportData report_data_of(const Calibration& calibration);
+
+}  // namespace odomcalib

@@ -1,0 +1,313 @@
+#include "proto/recording/recording_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <type_traits>
+
+#include "proto/recording/scan_checks.hpp"
+#include "proto/recording/tick_counts.hpp"
+#include "proto/recording/wheel_motion.hpp"
+
+namespace odomcalib {
+namespace {
+
+constexpr double kReorderWindow = 1.0;  // s, DESIGN 4.2: out of order by up to a second
+constexpr double kLeap = 60.0;          // s, a longer step ahead is believed when the next sample confirms it
+constexpr double kLatestTime =
+    9e9;  // s; as nanoseconds it still fits 64 bits, and is later than any clock shows
+constexpr std::int64_t kLargestCount = std::int64_t{1} << 53;
+constexpr double kNone = -std::numeric_limits<double>::infinity();
+
+// rad; as a count of 2^20 a turn it still is an exact double.
+constexpr double kLargestAngle = 1e9;
+// rad/s; a wheel of 1 cm at 10 m/s turns at 2000 rad/s.
+constexpr double kLargestWheelSpeed = 1e4;
+
+// m; UTM coordinates stay below.
+constexpr double kFarthestPosition = 1e7;
+
+bool is_angle(double value) { return std::abs(value) <= kLargestAngle; }
+bool is_wheel_speed(double value) { return std::abs(value) <= kLargestWheelSpeed; }
+bool is_position(double value) { return std::abs(value) <= kFarthestPosition; }
+
+bool sane_time(double t) { return std::isfinite(t) && std::abs(t) <= kLatestTime; }
+
+template <typename Sample>
+void sort_by_time(std::vector<Sample>& samples) {
+  const auto earlier = [](const Sample& a, const Sample& b) { return a.t < b.t; };
+  if (!std::is_sorted(samples.begin(), samples.end(), earlier))
+    std::stable_sort(samples.begin(), samples.end(), earlier);
+}
+
+/// Keeps the first of several samples with one stamp; returns how many went.
+template <typename Sample, typename Same>
+std::size_t drop_repeated(std::vector<Sample>& samples, Same same) {
+  const auto end = std::unique(samples.begin(), samples.end(), same);
+  const auto dropped = static_cast<std::size_t>(samples.end() - end);
+  samples.erase(end, samples.end());
+  return dropped;
+}
+
+std::string number_text(double value) {
+  std::string text = std::to_string(value);
+  return text;
+}
+
+Error missing_unit(const std::string& field, double value, const char* unit, double limit,
+                   const std::string& where) {
+  const std::string remedy = "state it in " + std::string(unit) + " in the robot line or with --robot";
+  if (value == 0.0)
+    return {ErrorCode::missing_units, "robot description lacks \"" + field + "\"", where, remedy};
+  const std::string bound =
+      value > 0.0 || std::isnan(value) ? "at most " + number_text(limit) : "greater than 0";
+  return {
+      ErrorCode::missing_units,
+      "robot description has \"" + field + "\" = " + number_text(value) + ", must be " + bound + " " + unit,
+      where, remedy};
+}
+
+}  // namespace
+
+RecordingBuilder::StreamClock::StreamClock() : newest(kNone) {}
+
+std::optional<Error> check_robot(const RobotDescription& robot, const std::string& where) {
+  struct Field {
+    const char* name;
+    double value;
+    const char* unit;
+    double limit;  // beyond it, the number is in another unit (mm instead of m)
+  };
+  // Both sides come from one member of the file, mostly: name that one.
+  const bool one_diameter = robot.left_wheel_diameter == robot.right_wheel_diameter ||
+                            (std::isnan(robot.left_wheel_diameter) && std::isnan(robot.right_wheel_diameter));
+  const std::array<Field, 4> fields{{
+      {one_diameter ? "wheel_diameter" : "left_wheel_diameter", robot.left_wheel_diameter, "m", 10.0},
+      {one_diameter ? "wheel_diameter" : "right_wheel_diameter", robot.right_wheel_diameter, "m", 10.0},
+      {"track_width", robot.track_width, "m", 50.0},
+      {"ticks_per_rev", robot.ticks_per_rev, "counts per wheel turn", 1e9},
+  }};
+  for (const auto& field : fields)
+    if (!(field.value > 0.0 && field.value <= field.limit))
+      return missing_unit(field.name, field.value, field.unit, field.limit, where);
+  return std::nullopt;
+}
+
+void RecordingBuilder::discard(const std::string& what, const std::string& reason, std::size_t count) {
+  if (count > 0) discarded_[{what, reason}] += count;
+}
+
+/// One wild stamp far ahead must not make everything behind it late: it goes, when the next sample continues
+/// before it.
+template <typename Sample>
+void RecordingBuilder::forget_leap(const char* what, StreamClock& clock, std::vector<Sample>& stream) {
+  const auto leap = std::find_if(stream.rbegin(), stream.rend(),
+                                 [&](const Sample& sample) { return sample.t == clock.newest; });
+  if (leap != stream.rend()) stream.erase(std::next(leap).base());
+  discard(what, "time stamp far ahead of its neighbours");
+  clock.newest = *clock.before_leap;
+}
+
+template <typename Sample>
+bool RecordingBuilder::in_time(const char* what, const Sample& sample, StreamClock& clock,
+                               std::vector<Sample>& stream) {
+  if (!sane_time(sample.t)) {
+    discard(what, "time stamp missing or impossible");
+    return false;
+  }
+  const bool late = sample.t < clock.newest - kReorderWindow;
+  if (late && clock.before_leap && sample.t >= *clock.before_leap - kReorderWindow)
+    forget_leap(what, clock, stream);
+  else if (late) {
+    discard(what, "out of order by more than 1 s");
+    return false;
+  }
+  clock.before_leap.reset();
+  if (clock.newest != kNone && sample.t > clock.newest + kLeap) clock.before_leap = clock.newest;
+  clock.newest = std::max(clock.newest, sample.t);
+  return true;
+}
+
+void RecordingBuilder::add_robot(RobotDescription robot) {
+  const auto& old = recording_.robot;
+  if (!have_robot_) {
+    recording_.robot = std::move(robot);
+    have_robot_ = true;
+  } else if (robot.left_wheel_diameter != old.left_wheel_diameter || robot.track_width != old.track_width ||
+             robot.right_wheel_diameter != old.right_wheel_diameter || robot.lidar_pose != old.lidar_pose ||
+             robot.ticks_per_rev != old.ticks_per_rev) {
+    discard("robot", "differs from the first robot description");
+  }
+}
+
+void RecordingBuilder::add_ticks(TickSample sample) {
+  if (std::abs(sample.left) > kLargestCount || std::abs(sample.right) > kLargestCount)
+    discard("ticks", "count beyond 2^53");
+  else if (in_time("ticks", sample, ticks_clock_, recording_.ticks))
+    recording_.ticks.push_back(sample);
+}
+
+void RecordingBuilder::add_wheels(WheelSample sample) {
+  if (!is_angle(sample.left) || !is_angle(sample.right))
+    discard("wheels", "left or right missing or not an angle");
+  else if (in_time("wheels", sample, wheels_clock_, recording_.wheels))
+    recording_.wheels.push_back(sample);
+}
+
+void RecordingBuilder::add_wheel_speeds(WheelSample sample) {
+  if (!is_wheel_speed(sample.left) || !is_wheel_speed(sample.right))
+    discard("wheel_speeds", "left or right missing or not the speed of a wheel");
+  else if (in_time("wheel_speeds", sample, wheel_speeds_clock_, recording_.wheel_speeds))
+    recording_.wheel_speeds.push_back(sample);
+}
+
+void RecordingBuilder::add_odometry(PoseSample sample) {
+  if (!is_position(sample.x) || !is_position(sample.y) || !is_angle(sample.yaw))
+    discard("odometry", "x, y or yaw missing or impossible");
+  else if (in_time("odometry", sample, odometry_clock_, recording_.odometry))
+    recording_.odometry.push_back(sample);
+}
+
+void RecordingBuilder::add_scan(Scan scan) {
+  if (!sane_time(scan.t)) return discard("scan", "time stamp missing or impossible");
+  if (const char* problem = scan_problem(scan)) return discard("scan", problem);
+  if (!in_time("scan", scan, scan_clocks_[scan.sensor], recording_.scans)) return;
+  const auto problems = clean_scan(scan);
+  discard("beam", "not a number", problems.not_a_number);
+  discard("beam", kOutsideLimits, problems.out_of_limits);
+  recording_.scans.push_back(std::move(scan));
+}
+
+void RecordingBuilder::add_pose(PoseSample sample) {
+  if (!std::isfinite(sample.x) || !std::isfinite(sample.y) || !std::isfinite(sample.yaw))
+    discard("pose", "x, y or yaw missing or not a number");
+  else if (in_time("pose", sample, pose_clock_, recording_.poses))
+    recording_.poses.push_back(sample);
+}
+
+void RecordingBuilder::add_gyro(GyroSample sample) {
+  if (!std::isfinite(sample.yaw_rate))
+    discard("gyro", "yaw_rate missing or not a number");
+  else if (in_time("gyro", sample, gyro_clock_, recording_.gyro))
+    recording_.gyro.push_back(sample);
+}
+
+void RecordingBuilder::add_increment(IncrementSample sample) {
+  const bool finite = std::isfinite(sample.left_speed) && std::isfinite(sample.right_speed) &&
+                      std::all_of(sample.lidar_motion.begin(), sample.lidar_motion.end(),
+                                  [](double v) { return std::isfinite(v); });
+  if (!finite || !std::isfinite(sample.duration) || sample.duration <= 0.0)
+    discard("tuple", "a value is missing or impossible");
+  else
+    recording_.increments.push_back(sample);
+}
+
+bool RecordingBuilder::has_data() const {
+  return !recording_.ticks.empty() || !recording_.wheels.empty() || !recording_.wheel_speeds.empty() ||
+         !recording_.odometry.empty() || !recording_.scans.empty() || !recording_.poses.empty() ||
+         !recording_.gyro.empty() || !recording_.increments.empty();
+}
+
+void RecordingBuilder::merge_robot(const RobotDescription* fallback) {
+  if (fallback == nullptr) return;
+  auto& robot = recording_.robot;
+  const auto take = [](double& value, double other) {
+    if (value == 0.0) value = other;
+  };
+  take(robot.left_wheel_diameter, fallback->left_wheel_diameter);
+  take(robot.right_wheel_diameter, fallback->right_wheel_diameter);
+  take(robot.track_width, fallback->track_width);
+  take(robot.ticks_per_rev, fallback->ticks_per_rev);
+  if (!robot.lidar_pose) robot.lidar_pose = fallback->lidar_pose;
+  if (robot.robot_id.empty()) robot.robot_id = fallback->robot_id;
+  if (robot.controller.empty()) robot.controller = fallback->controller;
+}
+
+void RecordingBuilder::sort_streams() {
+  sort_by_time(recording_.ticks);
+  sort_by_time(recording_.wheels);
+  sort_by_time(recording_.wheel_speeds);
+  sort_by_time(recording_.odometry);
+  sort_by_time(recording_.scans);
+  sort_by_time(recording_.poses);
+  sort_by_time(recording_.gyro);
+  const auto same = [](const auto& a, const auto& b) { return a.t == b.t; };
+  const auto same_scan = [](const Scan& a, const Scan& b) { return a.t == b.t && a.sensor == b.sensor; };
+  discard("ticks", "repeated time stamp", drop_repeated(recording_.ticks, same));
+  discard("wheels", "repeated time stamp", drop_repeated(recording_.wheels, same));
+  discard("wheel_speeds", "repeated time stamp", drop_repeated(recording_.wheel_speeds, same));
+  discard("odometry", "repeated time stamp", drop_repeated(recording_.odometry, same));
+  discard("scan", "repeated time stamp", drop_repeated(recording_.scans, same_scan));
+  discard("pose", "repeated time stamp", drop_repeated(recording_.poses, same));
+  discard("gyro", "repeated time stamp", drop_repeated(recording_.gyro, same));
+}
+
+/// The finest that is there decides; what is coarser is left out, and counted.
+void RecordingBuilder::decide_motion() {
+  bool decided = !recording_.ticks.empty();
+  const auto weigh = [&](MotionSource source, auto& samples) {
+    if (samples.empty()) return;
+    if (!decided) {
+      recording_.motion = source;
+      decided = true;
+    } else {
+      discard(name_of(source), std::string(name_of(recording_.motion)) + " are finer and decide",
+              samples.size());
+      samples.clear();
+    }
+  };
+  weigh(MotionSource::wheels, recording_.wheels);
+  weigh(MotionSource::wheel_speeds, recording_.wheel_speeds);
+  weigh(MotionSource::odometry, recording_.odometry);
+  // Not counted: a resolution is no unit that has to be known.
+  if (recording_.motion != MotionSource::ticks && recording_.robot.ticks_per_rev == 0.0)
+    recording_.robot.ticks_per_rev = kFineCountsPerRev;
+}
+
+void RecordingBuilder::make_ticks() {
+  const RobotDescription& robot = recording_.robot;
+  MadeTicks made;
+  if (recording_.motion == MotionSource::wheels)
+    made = ticks_from_wheels(recording_.wheels, robot.ticks_per_rev);
+  else if (recording_.motion == MotionSource::wheel_speeds)
+    made = ticks_from_wheel_speeds(recording_.wheel_speeds);
+  else
+    made = ticks_from_odometry(recording_.odometry, robot);
+  recording_.ticks = std::move(made.ticks);
+  recording_.robot.ticks_per_rev = made.ticks_per_rev;
+  choose("wheel motion from " + std::string(name_of(recording_.motion)));
+}
+
+const char* name_of(MotionSource source) {
+  switch (source) {
+    case MotionSource::wheels:
+      return "wheels";
+    case MotionSource::wheel_speeds:
+      return "wheel_speeds";
+    case MotionSource::odometry:
+      return "odometry";
+    case MotionSource::ticks:
+      break;
+  }
+  return "ticks";
+}
+
+Result<Recording> RecordingBuilder::finish(const std::string& where, const RobotDescription* fallback,
+                                           RobotNeed need) && {
+  if (!has_data())
+    return Error{ErrorCode::empty, "no usable wheel motion, scans, poses or increments", where,
+                 "check that the recording was running while the robot moved"};
+  merge_robot(fallback);
+  decide_motion();
+  if (need == RobotNeed::required)
+    if (auto problem = check_robot(recording_.robot, where)) return *problem;
+  sort_streams();
+  if (recording_.motion != MotionSource::ticks) make_ticks();
+  const ContinuedCounts counts = continue_counts(recording_.ticks, recording_.robot);
+  discard("ticks", "count read wrong once", counts.misread);
+  for (const auto& [key, count] : discarded_) recording_.discarded.push_back({key.first, key.second, count});
+  return std::move(recording_);
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,276 @@
+// CARMEN logs: one message a line, blank-separated. They carry odometry instead of counts; with the robot's
+// nominal values the counts behind it are recovered, because odometry was integrated from them with just
+// these values.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "proto/recording/recording_readers.hpp"
+#include "proto/recording/wheel_motion.hpp"
+
+namespace odomcalib {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kAssumedInterval = 0.2;  // s between scans of a log without time stamps
+constexpr std::size_t kMostBeams = 100'000;
+constexpr double kFarthest = 1e4;  // m
+
+/// The words of one line; a word that is missing or no number reads as NaN.
+class Words {
+ public:
+  explicit Words(std::string_view line) : rest_(line) {}
+
+  std::string_view word() {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r"), rest_.size()));
+    const auto out = rest_.substr(0, rest_.find_first_of(" \t\r"));
+    rest_.remove_prefix(out.size());
+    return out;
+  }
+  double number() {
+    const auto text = word();
+    double value = kNone;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size() ? value : kNone;
+  }
+  std::size_t count(std::size_t most) {
+    const double value = number();
+    return value >= 0.0 && value <= static_cast<double>(most) ? static_cast<std::size_t>(value) : most + 1;
+  }
+  std::array<double, 3> triple() {
+    std::array<double, 3> out{};
+    for (double& value : out) value = number();
+    return out;
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+bool finite(const std::array<double, 3>& pose) { return std::isfinite(pose[0] + pose[1] + pose[2]); }
+
+struct Odometry {
+  double t = kNone;
+  std::array<double, 3> pose{};
+};
+
+struct Log {
+  std::vector<Odometry> odometry;       // of ODOM lines
+  std::vector<Odometry> scan_odometry;  // of laser lines: used when there are no ODOM lines
+  std::vector<Scan> scans;
+  std::optional<std::array<double, 3>> lidar_pose;
+};
+
+/// FLASER gives no angles: 180 degrees from the right; an odd number of beams includes both ends.
+void set_half_circle(Scan& scan) {
+  const auto beams = static_cast<double>(scan.ranges.size());
+  scan.angle_min = -std::numbers::pi / 2.0;
+  scan.angle_increment =
+      std::numbers::pi / (scan.ranges.size() % 2 == 1 ? std::max(1.0, beams - 1.0) : beams);
+}
+
+/// "nan" and beyond any lidar: no reading.
+bool read_ranges(Words& words, std::vector<float>& ranges) {
+  const std::size_t beams = words.count(kMostBeams);
+  if (beams == 0 || beams > kMostBeams) return false;
+  ranges.reserve(beams);
+  for (std::size_t i = 0; i < beams; ++i) {
+    const auto text = words.word();
+    if (text.empty()) return false;
+    Words one(text);
+    const double range = one.number();
+    ranges.push_back(range > 0.0 && range < kFarthest ? static_cast<float>(range) : 0.0F);
+  }
+  return true;
+}
+
+/// Time stamps end a line: of the sending program (since 1970, or 0), its host, and of the logger (since its
+/// start).
+double read_time(Words& words) {
+  const double sent = words.number();
+  words.word();
+  const double logged = words.number();
+  return sent > 0.0 ? sent : logged;
+}
+
+/// The lidar in the robot's frame, when the log tells the pose of both.
+void note_lidar_pose(Log& log, const std::array<double, 3>& laser, const std::array<double, 3>& robot) {
+  if (log.lidar_pose || laser == robot) return;
+  const double dx = laser[0] - robot[0];
+  const double dy = laser[1] - robot[1];
+  const double c = std::cos(robot[2]);
+  const double s = std::sin(robot[2]);
+  log.lidar_pose = {c * dx + s * dy, -s * dx + c * dy,
+                    std::remainder(laser[2] - robot[2], 2.0 * std::numbers::pi)};
+}
+
+/// FLASER n ranges x y theta odom_x odom_y odom_theta time host logger_time
+bool read_flaser(Words& words, Log& log) {
+  Scan scan;
+  if (!read_ranges(words, scan.ranges)) return false;
+  set_half_circle(scan);
+  const auto laser = words.triple();
+  const auto robot = words.triple();
+  if (!finite(laser) || !finite(robot)) return false;
+  scan.t = read_time(words);
+  note_lidar_pose(log, laser, robot);
+  log.scan_odometry.push_back({scan.t, robot});
+  log.scans.push_back(std::move(scan));
+  return true;
+}
+
+/// ROBOTLASER1 type start fov step max accuracy remission_mode n ranges m remissions laser_pose robot_pose tv
+/// rv forward_safety side_safety turn_axis time host logger_time
+bool read_robotlaser(Words& words, Log& log) {
+  Scan scan;
+  words.number();  // type
+  scan.angle_min = words.number();
+  words.number();  // field of view
+  scan.angle_increment = words.number();
+  scan.range_max = words.number();
+  words.number();  // accuracy
+  words.number();  // remission mode
+  if (!read_ranges(words, scan.ranges)) return false;
+  const std::size_t remissions = words.count(kMostBeams);
+  if (remissions > kMostBeams) return false;
+  for (std::size_t i = 0; i < remissions; ++i) words.word();
+  const auto laser = words.triple();
+  const auto robot = words.triple();
+  for (int i = 0; i < 5; ++i) words.number();
+  scan.t = read_time(words);
+  if (!finite(laser) || !finite(robot)) return false;
+  note_lidar_pose(log, laser, robot);
+  log.scan_odometry.push_back({scan.t, robot});
+  log.scans.push_back(std::move(scan));
+  return true;
+}
+
+/// ODOM x y theta tv rv accel time host logger_time
+bool read_odometry(Words& words, Log& log) {
+  Odometry odometry;
+  odometry.pose = words.triple();
+  for (int i = 0; i < 3; ++i) words.number();
+  odometry.t = read_time(words);
+  if (!finite(odometry.pose)) return false;
+  log.odometry.push_back(odometry);
+  return true;
+}
+
+/// Lines that hold nothing for calibration, or the same again.
+bool is_other_line(std::string_view word) {
+  static constexpr std::array<std::string_view, 12> kOther{"PARAM",   "SYNC",    "TRUEPOS",     "RLASER",
+                                                           "LASER3",  "LASER4",  "RAWLASER1",   "RAWLASER2",
+                                                           "NMEAGGA", "NMEARMC", "ROBOTLASER2", "MARKER"};
+  return word.empty() || word.starts_with('#') ||
+         std::find(kOther.begin(), kOther.end(), word) != kOther.end();
+}
+
+void read_line(std::string_view line, bool last, Log& log, RecordingBuilder& builder) {
+  Words words(line);
+  const auto name = words.word();
+  bool good = true;
+  if (name == "FLASER")
+    good = read_flaser(words, log);
+  else if (name == "ROBOTLASER1")
+    good = read_robotlaser(words, log);
+  else if (name == "ODOM")
+    good = read_odometry(words, log);
+  else if (!is_other_line(name))
+    builder.discard("line", "unknown message");
+  if (!good) builder.discard("line", last ? "cut off" : "too few or wrong fields");
+}
+
+bool has_times(const Log& log) {
+  const auto stamped = [](const auto& item) { return std::isfinite(item.t); };
+  return !log.scans.empty() && std::all_of(log.scans.begin(), log.scans.end(), stamped) &&
+         log.scans.front().t != log.scans.back().t;
+}
+
+/// Some logs were converted without their stamps: a made-up clock keeps them usable, and is reported.
+void assume_times(Log& log, RecordingBuilder& builder) {
+  builder.discard("time stamp", "the log has none: 0.2 s per scan assumed", log.scans.size());
+  log.odometry.clear();
+  for (std::size_t i = 0; i < log.scans.size(); ++i)
+    log.scans[i].t = log.scan_odometry[i].t = kAssumedInterval * static_cast<double>(i);
+}
+
+/// Large stamps lose precision as seconds since 1970: count from the whole second of the first.
+void shift_times(Log& log) {
+  const double start = std::floor(log.scans.front().t);
+  if (start < 1e6) return;
+  for (auto& scan : log.scans) scan.t -= start;
+  for (auto& odometry : log.odometry) odometry.t -= start;
+  for (auto& odometry : log.scan_odometry) odometry.t -= start;
+}
+
+/// Wheel counts whose odometry, with the nominal values, is the one in the log.
+class Counts {
+ public:
+  explicit Counts(const RobotDescription& robot) : robot_(robot) {}
+
+  TickSample at(const Odometry& odometry) {
+    if (started_) add(last_, odometry.pose);
+    last_ = odometry.pose;
+    started_ = true;
+    return {odometry.t, count(left_, robot_.left_wheel_diameter), count(right_, robot_.right_wheel_diameter),
+            0};
+  }
+
+ private:
+  void add(const std::array<double, 3>& from, const std::array<double, 3>& to) {
+    const auto ways = wheel_ways(from, to, robot_.track_width);
+    left_ += ways[0];
+    right_ += ways[1];
+  }
+  [[nodiscard]] std::int64_t count(double path, double diameter) const {
+    const double counts = path / (std::numbers::pi * diameter) * robot_.ticks_per_rev;
+    return std::abs(counts) < 1e15 ? std::llround(counts) : 0;
+  }
+
+  const RobotDescription& robot_;
+  std::array<double, 3> last_{};
+  bool started_ = false;
+  double left_ = 0.0, right_ = 0.0;  // m
+};
+
+void add_counts(const Log& log, const RobotDescription& robot, RecordingBuilder& builder) {
+  Counts counts(robot);
+  const auto& odometry = log.odometry.size() > 1 ? log.odometry : log.scan_odometry;
+  for (const auto& sample : odometry) builder.add_ticks(counts.at(sample));
+}
+
+}  // namespace
+
+bool looks_like_carmen(std::string_view text) {
+  for (int lines = 0; lines < 1000 && !text.empty(); ++lines) {
+    const std::size_t end = text.find('\n');
+    Words words(text.substr(0, end));
+    const auto name = words.word();
+    if (name == "FLASER" || name == "ROBOTLASER1" || name == "ODOM" || name == "PARAM") return true;
+    if (!name.empty() && !name.starts_with('#') && !is_other_line(name)) return false;
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return false;
+}
+
+void read_carmen(std::string_view text, const RobotDescription* robot, RecordingBuilder& builder) {
+  Log log;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const bool last = end == std::string_view::npos;
+    read_line(text.substr(0, end), last, log, builder);
+    text.remove_prefix(last ? text.size() : end + 1);
+  }
+  if (log.scans.empty()) return;
+  if (!has_times(log)) assume_times(log, builder);
+  shift_times(log);
+  RobotDescription description = robot != nullptr ? *robot : RobotDescription{};
+  if (!description.lidar_pose) description.lidar_pose = log.lidar_pose;
+  if (!check_robot(description, "")) add_counts(log, description, builder);
+  for (auto& scan : log.scans) builder.add_scan(std::move(scan));
+  builder.add_robot(std::move(description));
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <cmath>
+
+#include "proto/recording/recording_readers.hpp"
+#include "proto/wire/json_fields.hpp"
+
+namespace odomcalib {
+namespace {
+
+float to_float(double value) {
+  // A double that no float can hold is not a length or an angle of a lidar.
+  return std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())
+             ? static_cast<float>(value)
+             : std::numeric_limits<float>::quiet_NaN();
+}
+
+std::vector<float> to_floats(const std::vector<double>& values) {
+  std::vector<float> out(values.size());
+  std::transform(values.begin(), values.end(), out.begin(), to_float);
+  return out;
+}
+
+/// [s, us] as in Censi's raw logs.
+double split_time(const std::vector<double>& stamp) {
+  return stamp.size() == 2 ? stamp[0] + 1e-6 * stamp[1] : std::numeric_limits<double>::quiet_NaN();
+}
+
+double time_of(const JsonFields& fields) {
+  return fields.has(Scalar::t) ? fields[Scalar::t] : split_time(fields[Array::timestamp]);
+}
+
+/// 0 for what is absent; what is present but no number stays NaN and is refused by name later.
+double unit_value(const JsonFields& fields, Scalar field) { return fields.has(field) ? fields[field] : 0.0; }
+
+double diameter(const JsonFields& fields, Scalar side) {
+  return unit_value(fields, fields.has(side) ? side : Scalar::wheel_diameter);
+}
+
+void add_robot(const JsonFields& fields, RecordingBuilder& builder) {
+  RobotDescription robot;
+  robot.left_wheel_diameter = diameter(fields, Scalar::left_wheel_diameter);
+  robot.right_wheel_diameter = diameter(fields, Scalar::right_wheel_diameter);
+  robot.track_width = unit_value(fields, Scalar::track_width);
+  robot.ticks_per_rev = unit_value(fields, Scalar::ticks_per_rev);
+  robot.robot_id = fields[Text::robot_id];
+  robot.controller = fields[Text::controller];
+  const auto& pose = fields[Array::lidar_pose];
+  if (pose.size() == 3 && std::all_of(pose.begin(), pose.end(), [](double v) { return std::isfinite(v); }))
+    robot.lidar_pose = {pose[0], pose[1], pose[2]};
+  else if (!pose.empty())
+    builder.discard("robot", "lidar_pose is not three numbers");
+  builder.add_robot(std::move(robot));
+}
+
+void add_ticks(const JsonFields& fields, double t, RecordingBuilder& builder) {
+  const double segment = fields.has(Scalar::segment) ? fields[Scalar::segment] : 0.0;
+  if (!(std::abs(segment) < 2e9))
+    builder.discard("ticks", "segment is not a number");
+  else if (fields.counts[0] && fields.counts[1])
+    builder.add_ticks({t, *fields.counts[0], *fields.counts[1], static_cast<std::int32_t>(segment)});
+  else
+    builder.discard("ticks", "left or right missing or not a whole number");
+}
+
+/// Censi's raw logs give the first and the last direction instead of the step.
+double grid_step(const JsonFields& fields, std::size_t beams) {
+  if (fields.has(Scalar::angle_increment) || beams < 2) return fields[Scalar::angle_increment];
+  return (fields[Scalar::angle_max] - fields[Scalar::angle_min]) / static_cast<double>(beams - 1);
+}
+
+void add_scan(const JsonFields& fields, RecordingBuilder& builder) {
+  Scan scan;
+  scan.t = time_of(fields);
+  scan.ranges = to_floats(fields[Array::ranges]);
+  scan.angles = to_floats(fields[Array::angles]);
+  scan.times = to_floats(fields[Array::times]);
+  scan.intensities = to_floats(fields[Array::intensities]);
+  scan.angle_min = fields[Scalar::angle_min];
+  scan.angle_increment = grid_step(fields, scan.ranges.size());
+  if (fields.has(Scalar::time_increment)) scan.time_increment = fields[Scalar::time_increment];
+  scan.range_min = fields[Scalar::range_min];
+  scan.range_max = fields[Scalar::range_max];
+  scan.sensor = fields[Text::sensor];
+  builder.add_scan(std::move(scan));
+}
+
+/// Scans of Censi's raw logs carry the counts that were read last, with their own stamps.
+void add_scan_ticks(const JsonFields& fields, RecordingBuilder& builder) {
+  if (fields[Array::left_timestamp].empty() || fields[Array::right_timestamp].empty()) return;
+  add_ticks(fields,
+            std::max(split_time(fields[Array::left_timestamp]), split_time(fields[Array::right_timestamp])),
+            builder);
+}
+
+void add_line(const JsonFields& fields, RecordingBuilder& builder) {
+  const auto& type = fields[Text::type];
+  if (type == "scan") {
+    add_scan_ticks(fields, builder);
+    add_scan(fields, builder);
+  } else if (type == "ticks") {
+    add_ticks(fields, time_of(fields), builder);
+  } else if (type == "pose") {
+    builder.add_pose({time_of(fields), fields[Scalar::x], fields[Scalar::y], fields[Scalar::yaw]});
+  } else if (type == "wheels") {
+    builder.add_wheels({time_of(fields), fields[Scalar::left], fields[Scalar::right]});
+  } else if (type == "wheel_speeds") {
+    builder.add_wheel_speeds({time_of(fields), fields[Scalar::left], fields[Scalar::right]});
+  } else if (type == "odometry") {
+    builder.add_odometry({time_of(fields), fields[Scalar::x], fields[Scalar::y], fields[Scalar::yaw]});
+  } else if (type == "gyro") {
+    builder.add_gyro({time_of(fields), fields[Scalar::yaw_rate]});
+  } else if (type == "robot") {
+    add_robot(fields, builder);
+  } else {
+    builder.discard("line", type.empty() ? "no type" : "unknown type");
+  }
+}
+
+bool is_blank(std::string_view line) { return line.find_first_not_of(" \t\r") == std::string_view::npos; }
+
+}  // namespace
+
+void read_jsonl(std::string_view text, RecordingBuilder& builder) {
+  JsonFields fields;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const bool last = end == std::string_view::npos;
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(last ? text.size() : end + 1);
+    if (is_blank(line)) continue;
+    if (parse_fields(line, fields))
+      add_line(fields, builder);
+    else
+      builder.discard("line", last ? "cut off" : "not valid JSON");
+  }
+}
+
+}  // namespace odomcalib

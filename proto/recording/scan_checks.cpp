@@ -1,0 +1,74 @@
+#include "proto/recording/scan_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace odomcalib {
+namespace {
+
+constexpr std::size_t kMostBeams = 100'000;
+constexpr double kLargestRange = 10'000.0;  // m
+
+bool all_finite(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+}
+
+bool is_grid(const Scan& scan) {
+  return std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment) && scan.angle_increment != 0.0;
+}
+
+/// Replaces what is no distance by 0 ("no reading").
+BeamProblems clean_ranges(Scan& scan) {
+  BeamProblems problems;
+  // Limits and ranges were rounded on their own ways to float: allow for one unit in the last place.
+  const auto nearest = static_cast<float>(scan.range_min) * (1.0F - 1e-6F);
+  const auto farthest =
+      static_cast<float>(scan.range_max > 0.0 ? scan.range_max : kLargestRange) * (1.0F + 1e-6F);
+  for (float& range : scan.ranges) {
+    if (range == 0.0F) continue;
+    const bool number = std::isfinite(range);
+    if (number && range > 0.0F && range >= nearest && range <= farthest) continue;
+    ++(number ? problems.out_of_limits : problems.not_a_number);
+    range = 0.0F;
+  }
+  return problems;
+}
+
+void complete_scan(Scan& scan) {
+  if (!std::isfinite(scan.range_min) || scan.range_min < 0.0) scan.range_min = 0.0;
+  if (!std::isfinite(scan.range_max) || scan.range_max <= 0.0) scan.range_max = 0.0;
+  if (!std::isfinite(scan.angle_min)) scan.angle_min = 0.0;
+  if (!std::isfinite(scan.angle_increment)) scan.angle_increment = 0.0;
+  if (scan.time_increment && !(std::isfinite(*scan.time_increment) && *scan.time_increment > 0.0))
+    scan.time_increment.reset();
+}
+
+/// A lidar that states no limit: the farthest reading is the best that is known.
+void set_missing_range_max(Scan& scan) {
+  if (scan.range_max > 0.0) return;
+  scan.range_max = static_cast<double>(*std::max_element(scan.ranges.begin(), scan.ranges.end()));
+}
+
+}  // namespace
+
+const char* scan_problem(const Scan& scan) {
+  const std::size_t beams = scan.ranges.size();
+  if (beams == 0) return "no ranges";
+  if (beams > kMostBeams) return "more than 100000 beams";
+  if (!scan.angles.empty() && scan.angles.size() != beams) return "angles do not match ranges";
+  if (!scan.times.empty() && scan.times.size() != beams) return "times do not match ranges";
+  if (!scan.intensities.empty() && scan.intensities.size() != beams) return "intensities do not match ranges";
+  if (scan.angles.empty() && !is_grid(scan)) return "angle_min or angle_increment missing or impossible";
+  if (!all_finite(scan.angles)) return "an angle is not a number";
+  if (!all_finite(scan.times)) return "a beam time is not a number";
+  return nullptr;
+}
+
+BeamProblems clean_scan(Scan& scan) {
+  complete_scan(scan);
+  const auto problems = clean_ranges(scan);
+  set_missing_range_max(scan);
+  return problems;
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,252 @@
+#include "proto/recording/tick_counts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace odomcalib {
+namespace {
+
+// No robot that this program calibrates drives faster; nominal diameters may be wrong by a factor of three.
+constexpr double kFastest = 10.0;  // m/s
+// A step of one sample that stands out from both its neighbours by so much is a jump, not motion: wheels
+// neither reach such an acceleration nor end it with the same deceleration one sample later. The floor allows
+// for slip and coarse stamps.
+constexpr double kSpikeAcceleration = 30.0;  // m/s^2
+constexpr double kSpikeSpeed = 1.0;          // m/s
+
+using Counts = std::array<std::int64_t, 2>;
+
+struct Step {
+  Counts change{};
+  Counts wraps{};  // what was added to the raw difference, as a count offset
+};
+
+/// Both counts always fit into `bits`, signed or unsigned: only then can they wrap there.
+struct Width {
+  std::int64_t modulus;
+  bool possible;
+};
+
+bool fits(const std::vector<TickSample>& ticks, std::int64_t modulus) {
+  const auto inside = [&](std::int64_t low) {
+    return std::all_of(ticks.begin(), ticks.end(), [&](const TickSample& s) {
+      return s.left >= low && s.left < low + modulus && s.right >= low && s.right < low + modulus;
+    });
+  };
+  return inside(0) || inside(-modulus / 2);
+}
+
+/// The upper median of at least one value.
+double middle_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Over many samples: where a bus hands over several at a time, most intervals are next to nothing.
+double median_interval(const std::vector<TickSample>& ticks) {
+  constexpr std::size_t kMostAtATime = 20;
+  if (ticks.size() < 2) return 0.1;
+  const std::size_t n = std::min(kMostAtATime, ticks.size() - 1);
+  std::vector<double> intervals;
+  intervals.reserve(ticks.size() - n);
+  for (std::size_t i = n; i < ticks.size(); ++i)
+    intervals.push_back((ticks[i].t - ticks[i - n].t) / static_cast<double>(n));
+  return std::max(middle_of(std::move(intervals)), 1e-3);
+}
+
+/// Between samples in which a count is another: a controller may be asked more often than it counts anew, and
+/// steps then come all at once.
+double interval_of_changes(const std::vector<TickSample>& ticks) {
+  constexpr double kLongest = 0.5;  // s; longer ones are stops
+  std::vector<double> intervals;
+  double last = ticks.empty() ? 0.0 : ticks.front().t;
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    if (ticks[i].left == ticks[i - 1].left && ticks[i].right == ticks[i - 1].right) continue;
+    if (ticks[i].t - last < kLongest) intervals.push_back(ticks[i].t - last);
+    last = ticks[i].t;
+  }
+  return intervals.empty() ? 0.0 : middle_of(std::move(intervals));
+}
+
+/// Speeds in m/s from counts, with the nominal geometry.
+class Speeds {
+ public:
+  Speeds(const std::vector<TickSample>& ticks, const RobotDescription& robot)
+      : floor_(std::max(median_interval(ticks), interval_of_changes(ticks))), metres_per_tick_(0.0) {
+    const double diameter = std::max(robot.left_wheel_diameter, robot.right_wheel_diameter);
+    if (diameter > 0.0 && robot.ticks_per_rev > 0.0)
+      metres_per_tick_ = diameter * std::numbers::pi / robot.ticks_per_rev;
+  }
+  [[nodiscard]] bool known() const { return metres_per_tick_ > 0.0; }
+  /// Jittering stamps make short intervals: never divide by less than the usual one.
+  [[nodiscard]] double operator()(std::int64_t change, double interval) const {
+    return static_cast<double>(change) * metres_per_tick_ / usual_interval(interval);
+  }
+  [[nodiscard]] double usual_interval(double interval) const { return std::max(interval, floor_); }
+  /// Of one count in an interval: what a slow wheel seems to have, or not, by when its count comes.
+  [[nodiscard]] double of_one_count(double interval) const { return (*this)(1, interval); }
+  [[nodiscard]] bool possible(std::int64_t change, double interval) const {
+    return !known() || std::abs((*this)(change, interval)) <= kFastest + of_one_count(interval);
+  }
+
+ private:
+  double floor_;
+  double metres_per_tick_;
+};
+
+/// The smaller of the raw difference and the same difference wrapped once in either direction.
+std::int64_t nearest_wrap(std::int64_t difference, const std::array<Width, 2>& widths) {
+  std::int64_t best = difference;
+  for (const auto& width : widths) {
+    if (!width.possible) continue;
+    for (const std::int64_t offset : {-width.modulus, width.modulus})
+      if (std::abs(difference + offset) < std::abs(best)) best = difference + offset;
+  }
+  return best;
+}
+
+/// Counters that both return to exactly zero by more than one sample's motion were reset.
+bool is_reset(const TickSample& now, const Counts& change, const Counts& previous_change) {
+  if (now.left != 0 || now.right != 0) return false;
+  const auto unlike = [](std::int64_t step, std::int64_t usual) {
+    return std::abs(step - usual) > 2 * std::abs(usual) + 8;
+  };
+  return unlike(change[0], previous_change[0]) || unlike(change[1], previous_change[1]);
+}
+
+/// Differences that int64 cannot hold come only from garbage.
+std::optional<std::int64_t> difference(std::int64_t now, std::int64_t before) {
+  std::int64_t out = 0;
+  if (__builtin_sub_overflow(now, before, &out) || out == INT64_MIN) return std::nullopt;
+  return out;
+}
+
+struct Change {
+  Counts counts{};
+  bool continued = false;
+  bool misread = false;  ///< the count that it leads to
+};
+
+class Continuation {
+ public:
+  Continuation(const std::vector<TickSample>& ticks, const RobotDescription& robot)
+      : speeds_(ticks, robot),
+        widths_{{{std::int64_t{1} << 16, fits(ticks, std::int64_t{1} << 16)},
+                 {std::int64_t{1} << 32, fits(ticks, std::int64_t{1} << 32)}}} {}
+
+  [[nodiscard]] std::vector<Change> changes(const std::vector<TickSample>& ticks) const {
+    std::vector<Change> out(ticks.size());
+    Counts usual{};
+    for (std::size_t i = 1; i < ticks.size(); ++i) {
+      out[i] = between(ticks[i - 1], ticks[i], usual);
+      if (out[i].continued) usual = out[i].counts;
+    }
+    mend_glitches(ticks, out);
+    break_at_spikes(ticks, out);
+    return out;
+  }
+
+ private:
+  [[nodiscard]] Change between(const TickSample& before, const TickSample& now, const Counts& usual) const {
+    if (before.segment != now.segment) return {};
+    const auto left = difference(now.left, before.left);
+    const auto right = difference(now.right, before.right);
+    if (!left || !right || is_reset(now, {*left, *right}, usual)) return {};
+    const Counts counts{nearest_wrap(*left, widths_), nearest_wrap(*right, widths_)};
+    const double interval = now.t - before.t;
+    const bool possible = speeds_.possible(counts[0], interval) && speeds_.possible(counts[1], interval);
+    return {counts, possible};
+  }
+
+  [[nodiscard]] double excess(const Change& change, const Change& other, double interval,
+                              double other_interval, std::size_t side) const {
+    return std::abs(speeds_(change.counts.at(side), interval) -
+                    speeds_(other.counts.at(side), other_interval));
+  }
+
+  /// More than wheels can change by from one step to the next.
+  [[nodiscard]] double limit(double interval) const {
+    return std::max(kSpikeSpeed, kSpikeAcceleration * speeds_.usual_interval(interval)) +
+           2.0 * speeds_.of_one_count(interval);
+  }
+
+  /// @param share of the limit
+  [[nodiscard]] bool in_line(const Change& change, double interval, const Change& other,
+                             double other_interval, double share) const {
+    const double most = share * limit(interval);
+    return change.continued && excess(change, other, interval, other_interval, 0) <= most &&
+           excess(change, other, interval, other_interval, 1) <= most;
+  }
+
+  /// One sample that neither continues the one before nor is continued by the one after, while these two
+  /// continue each other, was read wrong. The motion across it is shared out over both its steps.
+  void mend_glitches(const std::vector<TickSample>& ticks, std::vector<Change>& changes) const {
+    constexpr double kClear = 0.5;  // neither step may pass for motion while the other breaks the track
+    if (!speeds_.known()) return;
+    for (std::size_t i = 2; i + 1 < ticks.size(); ++i) {
+      const Change& before = changes[i - 1];
+      if (!before.continued) continue;
+      const double usual = ticks[i - 1].t - ticks[i - 2].t, to = ticks[i].t - ticks[i - 1].t,
+                   from = ticks[i + 1].t - ticks[i].t;
+      if (in_line(changes[i], to, before, usual, kClear) ||
+          in_line(changes[i + 1], from, before, usual, kClear))
+        continue;
+      const Change across = between(ticks[i - 1], ticks[i + 1], before.counts);
+      if (!in_line(across, to + from, before, usual, 1.0)) continue;
+      changes[i] = changes[i + 1] = across;
+      changes[i].misread = true;
+      for (std::size_t side = 0; side < 2; ++side) {
+        const auto whole = static_cast<double>(across.counts.at(side));
+        changes[i].counts.at(side) = std::llround(whole * to / (to + from));
+        changes[i + 1].counts.at(side) -= changes[i].counts.at(side);
+      }
+    }
+  }
+
+  void break_at_spikes(const std::vector<TickSample>& ticks, std::vector<Change>& changes) const {
+    if (!speeds_.known()) return;
+    for (std::size_t i = 2; i + 1 < ticks.size(); ++i) {
+      if (!changes[i].continued || !changes[i - 1].continued || !changes[i + 1].continued) continue;
+      const double interval = ticks[i].t - ticks[i - 1].t;
+      const double most = limit(interval);
+      for (std::size_t side = 0; side < 2; ++side)
+        if (excess(changes[i], changes[i - 1], interval, ticks[i - 1].t - ticks[i - 2].t, side) > most &&
+            excess(changes[i], changes[i + 1], interval, ticks[i + 1].t - ticks[i].t, side) > most)
+          changes[i].continued = false;
+    }
+  }
+
+  Speeds speeds_;
+  std::array<Width, 2> widths_;
+};
+
+}  // namespace
+
+ContinuedCounts continue_counts(std::vector<TickSample>& ticks, const RobotDescription& robot) {
+  const auto changes = Continuation(ticks, robot).changes(ticks);
+  ContinuedCounts found;
+  std::int32_t segment = 0;
+  Counts counts{};
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    if (changes[i].misread) ++found.misread;
+    if (i == 0 || !changes[i].continued) {
+      segment += i == 0 ? 0 : 1;
+      counts = {ticks[i].left, ticks[i].right};
+    } else {
+      counts = {counts[0] + changes[i].counts[0], counts[1] + changes[i].counts[1]};
+    }
+    ticks[i].left = counts[0];
+    ticks[i].right = counts[1];
+    ticks[i].segment = segment;
+  }
+  found.breaks = static_cast<std::size_t>(segment);
+  return found;
+}
+
+}  // namespace odomcalib

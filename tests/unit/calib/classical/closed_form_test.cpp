@@ -1,0 +1,144 @@
+#include "calib/classical/closed_form.hpp"
+
+#include <gtest/gtest.h>
+
+#include "proto/recording/recording.hpp"
+#include "tests/unit/calib/shared_data.hpp"
+#include "tests/unit/calib/synthetic.hpp"
+
+namespace odomcalib::calib::classical {
+namespace {
+
+using odomcalib::testing::random_motions;
+using odomcalib::testing::shared_data;
+
+constexpr unsigned kSeed = 1;
+const wheels::BaseParameters kTruth{0.0752, 0.0748, 0.405, {0.11, -0.02, 0.4}};
+
+void expect_parameters(const wheels::BaseParameters& a, const wheels::BaseParameters& b, double tolerance) {
+  EXPECT_NEAR(a.left_radius, b.left_radius, tolerance);
+  EXPECT_NEAR(a.right_radius, b.right_radius, tolerance);
+  EXPECT_NEAR(a.track_width, b.track_width, tolerance);
+  EXPECT_NEAR(a.mount.x, b.mount.x, tolerance);
+  EXPECT_NEAR(a.mount.y, b.mount.y, tolerance);
+  EXPECT_NEAR(math::wrap_angle(a.mount.yaw - b.mount.yaw), 0.0, tolerance);
+}
+
+TEST(ClosedForm, recovers_the_truth_from_noise_free_motions) {
+  const auto result = solve_closed_form(random_motions(kTruth, 200, kSeed), {0, 0.01});
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  expect_parameters(result.value().parameters, kTruth, 1e-9);
+}
+
+TEST(ClosedForm, swapped_wheels_swap_the_named_parameters) {
+  auto motions = random_motions(kTruth, 200, kSeed);
+  for (wheels::WheelMotion& m : motions) {
+    std::swap(m.left, m.right);
+    m.sensor_motion.y = -m.sensor_motion.y;
+    m.sensor_motion.yaw = -m.sensor_motion.yaw;
+  }
+  const auto result = solve_closed_form(motions, {0, 0.01});
+  ASSERT_TRUE(result.ok());
+  EXPECT_NEAR(result.value().parameters.left_radius, kTruth.right_radius, 1e-9);
+  EXPECT_NEAR(result.value().parameters.right_radius, kTruth.left_radius, 1e-9);
+}
+
+TEST(ClosedForm, scaling_all_lengths_scales_the_answer) {
+  // The eigenvector must be chosen by index, not by the size of its eigenvalue.
+  auto motions = random_motions(kTruth, 200, kSeed);
+  for (wheels::WheelMotion& m : motions) {
+    m.sensor_motion.x *= 100.0;
+    m.sensor_motion.y *= 100.0;
+  }
+  const auto result = solve_closed_form(motions, {0, 0.01});
+  ASSERT_TRUE(result.ok());
+  EXPECT_NEAR(result.value().parameters.track_width, 100.0 * kTruth.track_width, 1e-6);
+  EXPECT_NEAR(result.value().parameters.mount.yaw, kTruth.mount.yaw, 1e-9);
+}
+
+TEST(ClosedForm, slipping_samples_change_the_answer_by_less_than_a_sigma) {
+  auto motions = random_motions(kTruth, 1000, kSeed, 1e-3, 2e-3);
+  const auto clean = solve_closed_form(motions, {4, 0.02});
+  for (std::size_t i = 0; i < motions.size(); i += 25) motions[i].left *= 1.5;
+  const auto slipped = solve_closed_form(motions, {4, 0.02});
+  ASSERT_TRUE(clean.ok() && slipped.ok());
+  const double change = slipped.value().parameters.left_radius - clean.value().parameters.left_radius;
+  EXPECT_LT(std::abs(change), std::sqrt(clean.value().covariance(0, 0)));
+}
+
+TEST(ClosedForm, predicted_deviations_agree_with_the_scatter) {
+  constexpr int kRuns = 200;
+  Eigen::Matrix<double, 6, 1> squares = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Matrix<double, 6, 1> predicted = Eigen::Matrix<double, 6, 1>::Zero();
+  for (int run = 0; run < kRuns; ++run) {
+    const auto result = solve_closed_form(
+        random_motions(kTruth, 300, kSeed + static_cast<unsigned>(run), 1e-3, 2e-3), {0, 0.01});
+    ASSERT_TRUE(result.ok());
+    const wheels::BaseParameters& p = result.value().parameters;
+    Eigen::Matrix<double, 6, 1> error;
+    error << p.left_radius - kTruth.left_radius, p.right_radius - kTruth.right_radius,
+        p.track_width - kTruth.track_width, p.mount.x - kTruth.mount.x, p.mount.y - kTruth.mount.y,
+        p.mount.yaw - kTruth.mount.yaw;
+    squares += error.cwiseAbs2();
+    predicted += result.value().covariance.diagonal();
+  }
+  // The closed form is unweighted in x, y, so that it may scatter a little more than the bound.
+  for (int k = 0; k < 6; ++k)
+    EXPECT_NEAR(std::sqrt(squares(k) / predicted(k)), 1.0, 0.3) << "parameter " << k;
+}
+
+TEST(ClosedForm, refuses_straight_lines_alone_and_spins_alone) {
+  auto motions = random_motions(kTruth, 100, kSeed);
+  for (wheels::WheelMotion& m : motions) {
+    m.right = m.left * kTruth.left_radius / kTruth.right_radius;
+    m.sensor_motion = odomcalib::testing::sensor_motion_by_hand(kTruth, m.left, m.right);
+  }
+  EXPECT_FALSE(solve_closed_form(motions).ok());
+  EXPECT_FALSE(solve_closed_form({}).ok());
+}
+
+struct Published {
+  const char* file;
+  double left_diameter, right_diameter, track_width, x, y, yaw;
+  std::size_t kept;
+};
+
+class CensiTuples : public ::testing::TestWithParam<Published> {};
+
+// Censi et al., T-RO 2013; reference output of the authors, six digits.
+TEST_P(CensiTuples, give_the_published_values) {
+  const Published& expected = GetParam();
+  ODOMCALIB_NEEDS_SHARED("khepera-censi");
+  RobotDescription unknown;
+  const auto recording = read_recording(shared_data("khepera-censi") / expected.file, &unknown);
+  ASSERT_TRUE(recording.ok()) << recording.error().text();
+  std::vector<wheels::WheelMotion> samples;
+  for (const IncrementSample& s : recording.value().increments)
+    samples.push_back({s.duration * s.left_speed,
+                       s.duration * s.right_speed,
+                       {s.lidar_motion[0], s.lidar_motion[1], s.lidar_motion[2]}});
+  const auto result = solve_closed_form(samples);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  const wheels::BaseParameters& p = result.value().parameters;
+  constexpr double kRelative = 1e-5;
+  EXPECT_NEAR(2.0 * p.left_radius / expected.left_diameter, 1.0, kRelative);
+  EXPECT_NEAR(2.0 * p.right_radius / expected.right_diameter, 1.0, kRelative);
+  EXPECT_NEAR(p.track_width / expected.track_width, 1.0, kRelative);
+  EXPECT_NEAR(p.mount.x / expected.x, 1.0, kRelative);
+  EXPECT_NEAR(p.mount.y / expected.y, 1.0, kRelative);
+  EXPECT_NEAR(p.mount.yaw / expected.yaw, 1.0, kRelative);
+  EXPECT_EQ(result.value().inliers.size(), expected.kept);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Khepera, CensiTuples,
+    ::testing::Values(Published{"lstraight.tuple", 0.0417709, 0.0418957, 0.0890519, -0.00581279, 0.000185606,
+                                0.00949588, 4008},
+                      Published{"l90.tuple", 0.0411796, 0.0414408, 0.0880134, -0.00262327, 0.00584952,
+                                -1.55772, 3035}),
+    [](const auto& tested) {
+      return std::string(tested.param.file).substr(0, std::string(tested.param.file).find('.'));
+    });
+
+}  // namespace
+}  // namespace odomcalib::calib::classical

@@ -1,0 +1,253 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/odometry/predict.hpp"
+#include "calib/report/next_test.hpp"
+#include "calib/selection/tracing_json.hpp"
+#include "calib/terms/basis.hpp"
+#include "calib/terms/catalogue.hpp"
+
+namespace odomcalib::calib::odometry {
+namespace {
+
+const RobotDescription kRobot{0.15, 0.15, 0.4, 16384.0, std::nullopt, "", ""};
+
+/// Straights, spins and arcs both ways at two paces, each from rest to rest; counts begin anywhere.
+Recording drive() {
+  constexpr std::array<std::array<double, 2>, 6> kMoves{
+      {{2.7, 2.7}, {-2.7, -2.7}, {-1.6, 1.6}, {1.6, -1.6}, {1.0, 2.6}, {-2.0, -0.4}}};
+  Recording recording;
+  recording.robot = kRobot;
+  double left = 5000.0;
+  double right = -70000.0;
+  for (int k = 0; k < 3000; ++k) {
+    const double t = 0.02 * k;
+    recording.ticks.push_back({t, std::llround(left), std::llround(right), 0});
+    const double phase = std::fmod(t, 5.0);
+    const auto move = static_cast<std::size_t>(t / 5.0);
+    const double pace = (move / kMoves.size()) % 2 == 0 ? 1.0 : 0.4;
+    const double ramp = std::clamp(std::min(phase, 4.6 - phase), 0.0, 1.0) * pace;
+    left += 0.02 * ramp * kMoves.at(move % kMoves.size())[0] * kRobot.ticks_per_rev / (2.0 * M_PI);
+    right += 0.02 * ramp * kMoves.at(move % kMoves.size())[1] * kRobot.ticks_per_rev / (2.0 * M_PI);
+  }
+  return recording;
+}
+
+Calibration with_effect(const vehicle::Effect& effect) {
+  Calibration calibration = nominal_calibration(kRobot);
+  EffectResult result;
+  result.name = effect.name();
+  for (const vehicle::EffectParameter& p : effect.parameters())
+    result.parameters.push_back({p.name, {p.start + (p.fixed ? 0.0 : p.scale), -1.0, p.unit}});
+  calibration.effects = {result};
+  return calibration;
+}
+
+PoseSample end_of(const Recording& recording, const Calibration& calibration) {
+  Odometry odometry(calibration);
+  PoseSample pose;
+  for (const TickSample& sample : recording.ticks) pose = odometry.update(sample);
+  return pose;
+}
+
+double distance(const PoseSample& a, const PoseSample& b) {
+  return std::hypot(a.x - b.x, a.y - b.y) + 0.2 * std::abs(std::remainder(a.yaw - b.yaw, 2.0 * M_PI));
+}
+
+Calibration with_drift(double growth) {
+  Calibration calibration = nominal_calibration(kRobot);
+  calibration.data.resize(1);
+  calibration.data[0].duration = 200.0;
+  calibration.effects = {{"drift_with_time",
+                          {{"common", {growth, -1.0, "1/(100 s)"}},
+                           {"differential", {0.0, -1.0, "1/(100 s)"}},
+                           {"time_constant", {1e5, -1.0, "s"}}},
+                          {},
+                          {},
+                          "host"}};
+  return calibration;
+}
+
+Calibration with_wheels_larger_by(double share) {
+  Calibration calibration = nominal_calibration(kRobot);
+  for (std::size_t k = 0; k < 2; ++k) calibration.parameters[k].second.value *= 1.0 + share;
+  return calibration;
+}
+
+/// That wheels without a law, larger by `share`, lead to the same end (`drive` takes 60 s).
+void expect_as_larger(const Calibration& calibration, double share, const std::string& what) {
+  const Recording recording = drive();
+  const Calibration larger = with_wheels_larger_by(share);
+  EXPECT_LT(distance(predict(recording, calibration).back(), predict(recording, larger).back()), 1e-4)
+      << what;
+  EXPECT_LT(distance(end_of(recording, calibration), end_of(recording, larger)), 1e-4) << what;
+}
+
+// A drive may begin with cold wheels or warm ones: odometry takes what they were on the average.
+TEST(Odometry, wheels_that_change_with_time_count_by_their_mean_over_the_drive) {
+  expect_as_larger(with_drift(0.01), 0.01, "the time is not known");
+}
+
+// Growth of 1 % in 100 s; the drive of the calibration took 200 s.
+TEST(Odometry, wheels_that_change_with_time_are_known_on_the_same_clock) {
+  for (const auto& [since, share] : {std::pair{300.0, 0.02}, {399.0, 0.02}, {401.0, 0.01}, {-10.0, 0.01}}) {
+    Calibration drifting = with_drift(0.01);
+    drifting.data[0].begin = -since;
+    expect_as_larger(drifting, share, std::to_string(since) + " s since the calibration's drive began");
+    drifting.data.push_back(drifting.data[0]);
+    expect_as_larger(drifting, 0.01, "of two drives");
+  }
+}
+
+TEST(Odometry, wheels_go_on_to_change_while_the_drive_of_the_calibration_lasts) {
+  Calibration drifting = with_drift(0.01);
+  drifting.data[0].begin = 0.0;
+  const Recording recording = drive();
+  const auto grown = predict(recording, drifting);
+  const auto larger = predict(recording, with_wheels_larger_by(0.006));
+  const auto nominal = predict(recording, nominal_calibration(kRobot));
+  const auto step = [](const std::vector<PoseSample>& path, std::size_t k) {
+    return std::hypot(path[k + 1].x - path[k].x, path[k + 1].y - path[k].y);
+  };
+  EXPECT_NEAR(step(grown, 100), step(nominal, 100), 3e-4 * step(nominal, 100)) << "after 2 s";
+  EXPECT_NEAR(step(grown, 2900), step(larger, 2900), 3e-4 * step(larger, 2900)) << "after 58 s";
+}
+
+// A straight line from -1 to 1 over 200 s (the first Legendre polynomial), or a cosine.
+TEST(Odometry, a_curve_of_time_acts_where_the_time_is_known) {
+  Calibration bent = nominal_calibration(kRobot);
+  bent.data.resize(1);
+  bent.data[0].duration = 200.0;
+  const auto set_curve = [&bent](double period, const std::string& law_of) {
+    const terms::Curve curve{{vehicle::Variable::time, vehicle::Carrier::both_travel}, 0.0, 200.0, period};
+    std::vector<double> coefficients(basis_size(curve), 0.0);
+    coefficients[0] = 0.01;
+    bent.extensions[selection::kCurvesMember] = selection::curves_to_json({{curve, coefficients, law_of}});
+  };
+  set_curve(0.0, "");
+  expect_as_larger(bent, 0.0, "another clock");
+  EXPECT_EQ(effect_placements(bent).front().place, Place::odometry);
+  bent.data[0].begin = -300.0;
+  expect_as_larger(bent, 0.01, "as at the end");
+  set_curve(100.0, "");
+  expect_as_larger(bent, 0.0, "up and down");
+  EXPECT_EQ(effect_placements(bent).front().place, Place::nowhere);
+  set_curve(100.0, "drift_with_time");
+  expect_as_larger(bent, 0.01, "what is left of a drift, as at the end");
+}
+
+// A base does not begin to crab, nor do wheels grow with a lidar's metre.
+TEST(Odometry, what_a_lidar_did_in_time_is_not_followed) {
+  Calibration lidars = nominal_calibration(kRobot);
+  lidars.data.resize(1);
+  lidars.data[0].duration = 200.0;
+  lidars.data[0].begin = 0.0;
+  for (const auto carrier :
+       {vehicle::Carrier::sideways, vehicle::Carrier::scale, vehicle::Carrier::way_turned}) {
+    terms::Curve curve{{vehicle::Variable::time, carrier}, 0.0, 200.0};
+    curve.moment = 100.0;
+    const std::vector<double> coefficients(basis_size(curve), 0.01);
+    lidars.extensions[selection::kCurvesMember] = selection::curves_to_json({{curve, coefficients, ""}});
+    expect_as_larger(lidars, 0.0, to_string(carrier).c_str());
+    EXPECT_EQ(effect_placements(lidars).front().place, Place::reference) << to_string(carrier);
+  }
+}
+
+// The daemon sees speeds from the past only; apart from that it does what predict does.
+TEST(Odometry, sample_by_sample_applies_every_effect_as_predict_does) {
+  const Recording recording = drive();
+  const PoseSample nominal = predict(recording, nominal_calibration(kRobot)).back();
+  std::size_t applied = 0;
+  for (const auto& effect : terms::effect_catalogue()) {
+    const Calibration calibration = with_effect(*effect);
+    const PoseSample batch = predict(recording, calibration).back();
+    const PoseSample live = end_of(recording, calibration);
+    const double size = distance(batch, nominal);
+    const auto placements = effect_placements(calibration);
+    ASSERT_EQ(placements.size(), effect->parameters().size()) << effect->name();
+    const bool is_applied = std::any_of(placements.begin(), placements.end(),
+                                        [](const Placement& p) { return p.place == Place::odometry; });
+    if (!is_applied) {
+      EXPECT_EQ(size, 0.0) << effect->name();
+      EXPECT_LT(distance(live, nominal), 1e-9) << effect->name();
+      continue;
+    }
+    if (size > 1e-3) ++applied;
+    EXPECT_LT(distance(live, batch), 0.25 * size + 1e-3)
+        << effect->name() << " moves the end by " << size << " m in predict";
+  }
+  EXPECT_GE(applied, 6U);
+}
+
+TEST(Odometry, an_error_of_the_lidar_is_no_error_of_odometry_but_encoders_that_smooth_are) {
+  for (const char* name : {"time_offset", "clock_drift", "scan_skew"})
+    EXPECT_EQ(effect_placements(with_effect(*terms::find_effect(name))).front().place, Place::reference)
+        << name;
+  EXPECT_EQ(effect_placements(with_effect(*terms::find_effect("time_offset"))).back().parameter, "smoothing");
+  EXPECT_EQ(effect_placements(with_effect(*terms::find_effect("time_offset"))).back().place, Place::odometry);
+  EXPECT_EQ(effect_placements(with_effect(*terms::find_effect("carpet"))).front().place, Place::nowhere);
+  EXPECT_EQ(effect_placements(with_effect(*terms::find_effect("backlash"))).front().place, Place::odometry);
+}
+
+// A wheel that is off centre is off centre at the same counts, in whatever recording.
+TEST(Odometry, the_phase_of_a_wheel_is_that_of_its_counter) {
+  Recording late = drive();
+  const Calibration calibration = with_effect(*terms::find_effect("wheel_eccentricity"));
+  const auto whole = predict(late, calibration);
+  constexpr std::size_t kCut = 137;
+  late.ticks.erase(late.ticks.begin(), late.ticks.begin() + kCut);
+  const auto part = predict(late, calibration);
+  for (const std::size_t k : {std::size_t{50}, std::size_t{900}}) {
+    const auto moved = [](const std::vector<PoseSample>& path, std::size_t from, std::size_t to) {
+      return std::hypot(path[to].x - path[from].x, path[to].y - path[from].y);
+    };
+    EXPECT_NEAR(moved(part, 0, k), moved(whole, kCut, kCut + k), 1e-9);
+  }
+}
+
+Calibration accepted(double diameter_std, double track_std) {
+  Calibration calibration = nominal_calibration(kRobot);
+  calibration.verdict = Verdict::accepted;
+  calibration.parameters = {{"left_wheel_diameter", {0.15, diameter_std, "m"}},
+                            {"right_wheel_diameter", {0.15, diameter_std, "m"}},
+                            {"track_width", {0.4, track_std, "m"}}};
+  return calibration;
+}
+
+TEST(NextTest, ambiguity_goes_before_a_nameless_defect_and_that_before_uncertainty) {
+  Calibration calibration = accepted(1e-5, 4e-3);
+  EXPECT_EQ(report::next_test(calibration).value().manoeuvre, "turns");
+  calibration.unexplained = Unexplained{{"left_phase"}, 1e-3, 0.5};
+  EXPECT_EQ(report::next_test(calibration).value().manoeuvre, "slow_straights");
+  EffectResult backlash;
+  backlash.name = "backlash";
+  backlash.aliases = {"caster_kick"};
+  calibration.effects = {backlash};
+  const auto next = report::next_test(calibration);
+  ASSERT_TRUE(next.has_value());
+  EXPECT_EQ(next->manoeuvre, "reversals");
+  EXPECT_NE(next->why.find("caster_kick"), std::string::npos) << next->why;
+}
+
+TEST(NextTest, nothing_when_everything_is_certain_or_nothing_is) {
+  EXPECT_FALSE(report::next_test(accepted(1e-5, 1e-5)).has_value());
+  EXPECT_EQ(report::next_test(accepted(1e-3, 1e-5)).value().manoeuvre, "straights");
+  Calibration refused = accepted(1e-3, 1e-3);
+  refused.verdict = Verdict::refused;
+  EXPECT_FALSE(report::next_test(refused).has_value());
+}
+
+TEST(NextTest, what_no_motion_separates_asks_for_no_motion) {
+  Calibration calibration = accepted(1e-5, 1e-5);
+  EffectResult offset;
+  offset.name = "time_offset";
+  offset.aliases = terms::find_effect("time_offset")->always_alike();
+  ASSERT_FALSE(offset.aliases.empty());
+  calibration.effects = {offset};
+  EXPECT_FALSE(report::next_test(calibration).has_value());
+}
+
+}  // namespace
+}  // namespace odomcalib::calib::odometry

@@ -1,0 +1,140 @@
+#include "calib/report/gate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace odomcalib::calib::report {
+namespace {
+
+/// All as it should be.
+Calibration sound() {
+  Calibration calibration;
+  calibration.robot.left_wheel_diameter = calibration.robot.right_wheel_diameter = 0.15;
+  calibration.robot.track_width = 0.4;
+  calibration.parameters = {{"left_wheel_diameter", {0.151, 1e-4, "m"}},
+                            {"right_wheel_diameter", {0.149, 1e-4, "m"}},
+                            {"track_width", {0.41, 2e-4, "m"}},
+                            {"lidar_x", {0.1, 0.5, "m"}}};
+  return calibration;
+}
+
+Calibration with_track(double value, double deviation) {
+  Calibration calibration = sound();
+  calibration.parameters[2].second = {value, deviation, "m"};
+  return calibration;
+}
+
+const Footing kFirm{true, 400, 20, {}};
+
+TEST(Gate, accepts_what_is_sound_and_leaves_the_lidar_pose_alone) {
+  const GateResult gate = judge(sound(), kFirm);
+  EXPECT_EQ(gate.verdict, Verdict::accepted);
+  EXPECT_TRUE(gate.reasons.empty());
+}
+
+TEST(Gate, refuses_a_badly_determined_length_and_names_the_motion_for_it) {
+  EXPECT_EQ(judge(with_track(0.4, 0.0019), kFirm).verdict, Verdict::accepted);
+  EXPECT_EQ(judge(with_track(0.4, 0.0021), kFirm).verdict, Verdict::accepted_with_warnings);
+  const GateResult gate = judge(with_track(0.4, 0.0121), kFirm);
+  EXPECT_EQ(gate.verdict, Verdict::refused);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("turn on the spot"), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, of_a_length_that_is_not_determined_the_value_says_nothing) {
+  for (const double track : {-20.0, 0.05}) {
+    const GateResult gate = judge(with_track(track, 0.7 * std::abs(track)), kFirm);
+    EXPECT_EQ(gate.verdict, Verdict::refused);
+    ASSERT_EQ(gate.reasons.size(), 1U) << "neither swapped wheels nor wrong units";
+    EXPECT_NE(gate.reasons[0].find("is determined to 70 % only"), std::string::npos) << gate.reasons[0];
+  }
+}
+
+TEST(Gate, accepts_what_only_a_law_of_unknown_shape_makes_uncertain_and_says_so) {
+  const Calibration uncertain = with_track(0.4, 0.0121);
+  Footing footing = kFirm;
+  footing.measured = {{"track_width", {0.4, 1e-4, "m"}}};
+  const GateResult gate = judge(uncertain, footing);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons.front().find("track_width without what was found"), std::string::npos)
+      << gate.reasons.front();
+  footing.measured.front().second.std = 0.0121;
+  EXPECT_EQ(judge(uncertain, footing).verdict, Verdict::refused);
+}
+
+TEST(Gate, warns_of_a_way_that_adds_up_to_more_than_noise) {
+  Footing footing = kFirm;
+  const auto drifting = [&](double value, double low) {
+    footing.drive_errors = {
+        {"open_loop_10s_position", "m", 20, {}, {}, Bounded{value, low, 2.0 * value}, 0.004}};
+    return judge(sound(), footing);
+  };
+  EXPECT_EQ(drifting(0.0079, 0.006).verdict, Verdict::accepted);
+  EXPECT_EQ(drifting(0.0096, 0.0039).verdict, Verdict::accepted) << "a few stretches may have made that";
+  const GateResult gate = drifting(0.0096, 0.0041);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons.front().find("2.4 times the noise floor"), std::string::npos)
+      << gate.reasons.front();
+}
+
+TEST(Gate, refuses_what_cannot_be_the_robot) {
+  EXPECT_EQ(judge(with_track(0.43, 1e-4), kFirm).verdict, Verdict::accepted);
+  EXPECT_EQ(judge(with_track(0.45, 1e-4), kFirm).verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(judge(with_track(0.81, 1e-4), kFirm).verdict, Verdict::refused);
+  EXPECT_EQ(judge(with_track(0.19, 1e-4), kFirm).verdict, Verdict::refused);
+  EXPECT_EQ(judge(with_track(-0.4, 1e-4), kFirm).verdict, Verdict::refused);
+}
+
+TEST(Gate, warns_of_a_lidar_that_looks_elsewhere_than_its_description_says) {
+  const auto with_yaw = [](double yaw) {
+    Calibration calibration = sound();
+    calibration.robot.lidar_pose = {0.1, 0.0, 3.1};
+    calibration.parameters.push_back({"lidar_yaw", {yaw, 1e-3, "rad"}});
+    return judge(calibration, kFirm);
+  };
+  EXPECT_EQ(with_yaw(-3.0).verdict, Verdict::accepted);
+  const GateResult gate = with_yaw(0.0);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("-178 degrees"), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, refuses_values_of_the_few_scans_that_happened_to_match) {
+  EXPECT_EQ(judge(sound(), {true, 50, 50, {}}).verdict, Verdict::accepted);
+  EXPECT_EQ(judge(sound(), {true, 49, 51, {}}).verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(judge(sound(), {true, 10, 90, {}}).verdict, Verdict::accepted_with_warnings);
+  const GateResult gate = judge(sound(), {true, 9, 91, {}});
+  EXPECT_EQ(gate.verdict, Verdict::refused);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("9 of 100"), std::string::npos) << gate.reasons[0];
+  EXPECT_EQ(judge(sound(), Footing{}).verdict, Verdict::accepted) << "places in a map, poses or tuples";
+}
+
+TEST(Gate, warns_of_a_residual_that_noise_does_not_explain) {
+  Calibration calibration = sound();
+  calibration.residual.noise_floor = {{1e-3, 1e-3, 5e-4}};
+  calibration.residual.after = {{1.9e-3, 1e-3, 9e-4}};
+  EXPECT_EQ(judge(calibration, kFirm).verdict, Verdict::accepted);
+  calibration.residual.after = {{1.9e-3, 1e-3, 1.8e-3}};
+  const GateResult gate = judge(calibration, kFirm);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("in yaw is 3.6 times"), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, passes_remarks_on) {
+  const GateResult gate = judge(sound(), {true, 400, 20, {"24 of 546 pairs contradict all others"}});
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("24 of 546"), std::string::npos);
+}
+
+TEST(Gate, warns_of_a_fit_that_has_not_settled) {
+  EXPECT_EQ(judge(sound(), {false, 400, 20, {}}).verdict, Verdict::accepted_with_warnings);
+}
+
+}  // namespace
+}  // namespace odomcalib::calib::report

@@ -1,0 +1,305 @@
+#include "proto/calibration/report_data.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "calib/selection/drive_error.hpp"
+#include "calib/selection/residual_trace.hpp"
+#include "calib/terms/catalogue.hpp"
+#include "calib/vehicle/step_context.hpp"
+
+namespace odomcalib::calib::report {
+namespace {
+
+constexpr double kTick = 0.02;  // s
+constexpr double kPair = 0.7;   // s
+constexpr double kPositionNoise = 2e-4;
+constexpr double kYawNoise = 2e-4;
+
+const wheels::BaseParameters kNominal{0.075, 0.075, 0.40, {0.1, 0.0, 0.0}};
+const wheels::BaseParameters kTruth{0.0765, 0.0760, 0.39, {0.09, 0.01, 0.02}};
+
+/// Wheel angles of straights, spins and arcs, each forth and back, at two paces, from rest to rest.
+wheels::WheelTrack drive(double duration) {
+  constexpr std::array<std::array<double, 2>, 6> kMoves{
+      {{2.7, 2.7}, {-2.7, -2.7}, {-1.6, 1.6}, {1.6, -1.6}, {1.0, 2.6}, {-1.0, -2.6}}};
+  wheels::WheelTrack track;
+  double left = 0.0;
+  double right = 0.0;
+  for (int k = 0; k * kTick < duration; ++k) {
+    const double t = k * kTick;
+    track.t.push_back(t);
+    track.left.push_back(left);
+    track.right.push_back(right);
+    track.segment.push_back(0);
+    const double phase = std::fmod(t, 9.0);
+    const auto move = static_cast<std::size_t>(t / 9.0);
+    const double pace = (move / kMoves.size()) % 2 == 0 ? 1.0 : 0.4;
+    const double ramp = std::clamp(std::min(phase, 8.4 - phase), 0.0, 1.0) * pace;
+    left += kTick * ramp * kMoves.at(move % kMoves.size())[0];
+    right += kTick * ramp * kMoves.at(move % kMoves.size())[1];
+  }
+  return track;
+}
+
+struct World {
+  vehicle::DriveModel model;
+  std::vector<measurement::FitData> data;
+};
+
+/// What a sensor with white noise of its scans sees when the robot moves as `truth` and `effects` say.
+std::unique_ptr<World> make_world(const vehicle::EffectList& effects, const std::vector<double>& values,
+                                  unsigned seed) {
+  const wheels::WheelTrack track = drive(420.0);
+  auto world =
+      std::make_unique<World>(World{vehicle::DriveModel(track, vehicle::make_context(track, kNominal)), {}});
+  Eigen::VectorXd truth = vehicle::to_vector(kTruth, vehicle::count_parameters(effects));
+  for (std::size_t k = 0; k < values.size(); ++k)
+    truth(vehicle::kBaseCount + static_cast<Eigen::Index>(k)) = values[k];
+  std::vector<vehicle::Interval> intervals;
+  for (double t = 0.0; t + kPair < 419.0; t += kPair) intervals.push_back({t, t + kPair});
+  const auto motions =
+      world->model.predict({truth.data(), static_cast<std::size_t>(truth.size())}, effects, intervals);
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> gauss;
+  measurement::FitData data{&world->model, {}};
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    measurement::SensorPair pair{intervals[k], motions[k], Eigen::Matrix3d::Zero(), k > 0};
+    pair.motion.x += kPositionNoise * gauss(engine);
+    pair.motion.y += kPositionNoise * gauss(engine);
+    pair.motion.yaw += kYawNoise * gauss(engine);
+    pair.covariance.diagonal() << kPositionNoise * kPositionNoise, kPositionNoise * kPositionNoise,
+        kYawNoise * kYawNoise;
+    data.pairs.push_back(pair);
+  }
+  world->data.push_back(data);
+  return world;
+}
+
+estimation::FitResult fitted(const World& world, const vehicle::EffectList& effects) {
+  auto fit = estimation::fit_joint(world.data, effects,
+                                   vehicle::to_vector(kNominal, vehicle::count_parameters(effects)));
+  EXPECT_TRUE(fit.ok()) << (fit.ok() ? "" : fit.error().text());
+  return std::move(fit).value();
+}
+
+std::vector<bool> none_fixed(const vehicle::EffectList& effects) {
+  return std::vector<bool>(vehicle::kBaseCount + vehicle::count_parameters(effects), false);
+}
+
+DriveError named(const std::vector<DriveError>& errors, const std::string& name) {
+  for (const auto& error : errors)
+    if (error.name == name) return error;
+  ADD_FAILURE() << name << " is missing";
+  return {};
+}
+
+TEST(DriveErrors, before_is_what_the_wrong_dimensions_do_and_after_is_noise) {
+  const unsigned seed = 11;
+  const auto world = make_world({}, {}, seed);
+  const estimation::FitResult fit = fitted(*world, {});
+  const auto errors = selection::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
+
+  const double mean = 0.5 * (kTruth.left_radius + kTruth.right_radius);
+  const DriveError metre = named(errors, "straight_metre_length");
+  ASSERT_TRUE(metre.before && metre.after && metre.noise_floor);
+  EXPECT_NEAR(metre.before->value, 1.0 - kNominal.left_radius / mean, 2e-4);
+  EXPECT_FALSE(metre.geometry.has_value());
+
+  // A full turn of the robot is 2 pi b / (r phi) with true values; the nominal ones read another angle for
+  // it.
+  const double read = kNominal.left_radius / mean * kTruth.track_width / kNominal.track_width;
+  const DriveError turn = named(errors, "full_turn_heading");
+  ASSERT_TRUE(turn.before && turn.after && turn.noise_floor);
+  EXPECT_NEAR(turn.before->value, 2.0 * M_PI * std::abs(read - 1.0), 2e-3);
+
+  for (const DriveError& error : errors) {
+    ASSERT_TRUE(error.before && error.after && error.noise_floor) << error.name;
+    EXPECT_LT(error.after->value, 0.2 * error.before->value) << error.name;
+    EXPECT_GT(error.after->value, 0.6 * *error.noise_floor) << error.name << " seed " << seed;
+    EXPECT_LT(error.after->value, 1.5 * *error.noise_floor) << error.name << " seed " << seed;
+    EXPECT_LE(error.after->low, error.after->value);
+    EXPECT_GE(error.after->high, error.after->value);
+    EXPECT_GE(error.stretches, 4U);
+  }
+}
+
+TEST(DriveErrors, unknown_nominal_values_give_no_before) {
+  const auto world = make_world({}, {}, 12);
+  const estimation::FitResult fit = fitted(*world, {});
+  for (const auto& error :
+       selection::drive_errors(world->data, {0.0, 0.0, 0.0, {}}, nullptr, {&fit, none_fixed({}), {}}))
+    EXPECT_FALSE(error.before.has_value()) << error.name;
+}
+
+/// In one pair in twelve the robot is pushed by 30 mm, which the matches see and the wheels do not.
+std::unique_ptr<World> pushed_world() {
+  auto world = make_world({}, {}, 13);
+  measurement::FitData& data = world->data.front();
+  for (std::size_t k = 5; k < data.pairs.size(); k += 12) data.pairs[k].motion.x += 0.03;
+  return world;
+}
+
+/// Places of all scans between which a world's pairs lie.
+std::vector<measurement::PlacedScan> places_along(const std::vector<measurement::SensorPair>& pairs) {
+  std::vector<measurement::PlacedScan> places;
+  math::Pose here;
+  for (const measurement::SensorPair& pair : pairs) {
+    for (const double before : {1e-4, 0.0, -1e-4})
+      places.push_back({pair.interval.begin - before, here, 1e-8 * Eigen::Matrix3d::Identity()});
+    here = compose(here, pair.motion);
+  }
+  return places;
+}
+
+TEST(DriveErrors, what_a_fit_leaves_out_counts_where_a_map_confirms_it) {
+  const auto world = pushed_world();
+  const estimation::FitResult fit = fitted(*world, {});
+  ASSERT_GT(fit.discarded, 40U) << "seed 13";
+  const auto over_ten_seconds = [&] {
+    return named(selection::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}}),
+                 "open_loop_10s_position");
+  };
+  const auto without = selection::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
+  EXPECT_FALSE(std::any_of(without.begin(), without.end(), [](const DriveError& error) {
+    return error.name == "open_loop_10s_position" && error.after->value > 0.01;
+  }));
+  world->data.front().places = places_along(world->data.front().pairs);
+  EXPECT_GT(over_ten_seconds().after->value, 0.025);
+}
+
+TEST(DriveErrors, are_no_smaller_when_held_against_places) {
+  const auto world = make_world({}, {}, 11);
+  const estimation::FitResult fit = fitted(*world, {});
+  const auto metre = [&] {
+    return named(selection::drive_errors(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}}),
+                 "straight_metre_length");
+  };
+  const DriveError by_matches = metre();
+  world->data.front().places = places_along(world->data.front().pairs);
+  const DriveError by_places = metre();
+  EXPECT_EQ(by_places.stretches, by_matches.stretches);
+  EXPECT_NEAR(by_places.before->value, by_matches.before->value, 0.02 * by_matches.before->value);
+}
+
+TEST(DriveErrors, too_short_a_recording_gives_no_figures) {
+  const auto world = make_world({}, {}, 13);
+  const estimation::FitResult fit = fitted(*world, {});
+  world->data.front().pairs.resize(5);
+  estimation::FitResult cut = fit;
+  cut.weights.resize(5);
+  cut.whitened_residual = fit.whitened_residual.head(15).eval();
+  cut.whitened_jacobian = fit.whitened_jacobian.topRows(15).eval();
+  EXPECT_TRUE(selection::drive_errors(world->data, kNominal, nullptr, {&cut, none_fixed({}), {}}).empty());
+}
+
+/// With an effect the geometry alone is worse than everything that was found.
+TEST(DriveErrors, effects_show_between_geometry_and_after) {
+  const vehicle::EffectList effects = {terms::find_effect("backlash")};
+  const auto world = make_world(effects, {0.06, 0.06}, 14);
+  const estimation::FitResult full = fitted(*world, effects);
+  const estimation::FitResult plain = fitted(*world, {});
+  const selection::JudgedModel geometry{&plain, none_fixed({}), {}};
+  const auto errors = drive_errors(world->data, kNominal, &geometry, {&full, none_fixed(effects), effects});
+  const DriveError turn = named(errors, "open_loop_10s_heading");
+  ASSERT_TRUE(turn.geometry && turn.after && turn.before);
+  EXPECT_GT(turn.geometry->low, 2.0 * turn.after->high);
+  EXPECT_GT(turn.before->value, turn.geometry->value);
+}
+
+double systematic(const ResidualTrace& trace, double ResidualTrace::Bin::*member) {
+  double sum = 0.0;
+  for (const auto& bin : trace.bins) sum += bin.*member * bin.*member;
+  return std::sqrt(sum / static_cast<double>(trace.bins.size()));
+}
+
+struct Expected {
+  const char* effect;
+  std::vector<double> values;
+  const char* variable;  ///< part of its name
+  double explained;      ///< least share of the pattern; play is taken up over two measured motions
+};
+
+class Traces : public ::testing::TestWithParam<Expected> {};
+
+TEST_P(Traces, show_the_variable_that_the_effect_acts_by_and_that_it_is_gone) {
+  const Expected& expected = GetParam();
+  const vehicle::EffectList effects = {terms::find_effect(expected.effect)};
+  ASSERT_NE(effects.front(), nullptr);
+  const auto world = make_world(effects, expected.values, 15);
+  const auto traces =
+      selection::residual_traces(world->data, effects, fitted(*world, effects), none_fixed(effects));
+  ASSERT_EQ(traces.size(), 1U);
+  EXPECT_THAT(traces[0].variable, ::testing::HasSubstr(expected.variable));
+  EXPECT_GT(traces[0].explained, expected.explained);
+  EXPECT_GT(systematic(traces[0], &ResidualTrace::Bin::before),
+            3.0 * systematic(traces[0], &ResidualTrace::Bin::after));
+  EXPECT_LE(traces[0].points.size(), 300U);
+  EXPECT_GE(traces[0].points.size(), 100U);
+}
+
+INSTANTIATE_TEST_SUITE_P(effects, Traces,
+                         ::testing::Values(Expected{"backlash", {0.06, 0.06}, "reversals", 0.2},
+                                           Expected{
+                                               "wheel_eccentricity", {0.01, 0.005}, "left wheel angle", 0.5},
+                                           Expected{"time_offset", {0.03}, "acceleration", 0.5}),
+                         [](const auto& test) { return std::string(test.param.effect); });
+
+TEST(Trace, is_not_shown_of_an_effect_that_is_too_small_to_be_told) {
+  const vehicle::EffectList effects = {terms::find_effect("time_offset"), terms::find_effect("scan_skew")};
+  const auto world = make_world(effects, {0.03, 0.0, 0.0}, 15);
+  const auto traces = selection::residual_traces(world->data, effects, fitted(*world, effects),
+                                                 none_fixed(effects), {effects.front()});
+  ASSERT_EQ(traces.size(), 1U);
+  EXPECT_EQ(traces.front().effect, "scan_skew");
+}
+
+ReportData example() {
+  ReportData data;
+  data.drive_errors = {{"straight_metre_length", "m", 9, Bounded{0.02, 0.01, 0.03}, std::nullopt,
+                        Bounded{0.001, 0.0005, 0.002}, 0.0008}};
+  data.traces = {{"backlash", "speed", "m/s", "heading", "rad", 0.8, {{0.1, 0.2, 0.3}}, {{1, 2, 3, 4, 5}}}};
+  data.paths = {{"odometry", {{0.0, 0.0}, {1.0, -2.5}}}};
+  data.axes = {{"x", "m", 1e-4, 2e-3, 1.1, 0.2, -1.5, {1, 2, 3}}};
+  data.series = {{1.5, {0.1, -0.2, 3.0}}};
+  data.left_out = {{"track_width", {0.4, 0.41}}};
+  return data;
+}
+
+TEST(ReportData, survives_the_calibration_file) {
+  Calibration calibration;
+  store_report_data(example(), calibration);
+  const auto read = calibration_from_json(to_json(calibration), "test");
+  ASSERT_TRUE(read.ok()) << read.error().text();
+  const ReportData data = report_data_of(read.value());
+  ASSERT_EQ(data.drive_errors.size(), 1U);
+  EXPECT_DOUBLE_EQ(data.drive_errors[0].before->high, 0.03);
+  EXPECT_FALSE(data.drive_errors[0].geometry.has_value());
+  EXPECT_DOUBLE_EQ(*data.drive_errors[0].noise_floor, 0.0008);
+  ASSERT_EQ(data.traces.size(), 1U);
+  EXPECT_DOUBLE_EQ(data.traces[0].points.at(0).after, 0.3);
+  EXPECT_DOUBLE_EQ(data.traces[0].bins.at(0).after_error, 5.0);
+  EXPECT_EQ(data.paths.at(0).points.at(1)[1], -2.5);
+  EXPECT_EQ(data.axes.at(0).histogram, (std::vector<std::size_t>{1, 2, 3}));
+  EXPECT_EQ(data.series.at(0).sigmas[2], 3.0);
+  EXPECT_EQ(data.left_out.at(0).second.size(), 2U);
+}
+
+TEST(ReportData, members_of_another_shape_are_as_good_as_absent) {
+  for (const char* text :
+       {"7", "[1,2]", "{}", "[{\"name\":3}]", "null", "{\"paths\":{\"a\":1}}", "no JSON"}) {
+    Calibration calibration;
+    store_report_data(example(), calibration);
+    calibration.extensions["picture"] = text;
+    const ReportData data = report_data_of(calibration);
+    EXPECT_EQ(data.drive_errors.size(), 1U) << text;
+    EXPECT_TRUE(data.paths.empty() && data.traces.empty() && data.axes.empty() && data.series.empty())
+        << text;
+  }
+}
+
+}  // namespace
+}  // namespace odomcalib::calib::report

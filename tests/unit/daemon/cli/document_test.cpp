@@ -1,0 +1,160 @@
+#include "daemon/cli/document.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/calibration_document.hpp"
+#include "daemon/cli/export_formats.hpp"
+#include "daemon/cli/figure_svg.hpp"
+#include "daemon/cli/parameter_tables.hpp"
+#include "proto/calibration/report_data.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Calibration example() {
+  Calibration calibration;
+  calibration.robot.left_wheel_diameter = calibration.robot.right_wheel_diameter = 0.15;
+  calibration.robot.track_width = 0.4;
+  calibration.parameters = {{"left_wheel_diameter", {0.147, 1e-4, "m"}},
+                            {"right_wheel_diameter", {0.147, 1e-4, "m"}},
+                            {"track_width", {0.4, 2e-4, "m"}}};
+  calibration.covariance_order = {"left_wheel_diameter", "right_wheel_diameter", "track_width"};
+  calibration.covariance = {{1e-8, 0.9e-8, 0.0}, {0.9e-8, 1e-8, 0.0}, {0.0, 0.0, 4e-8}};
+  calibration.verdict = Verdict::accepted;
+  calibration.reasons = {"fits <well> & \"truly\""};
+  ReportData data;
+  data.drive_errors = {{"straight_metre_length", "m", 12, Bounded{0.0204, 0.02, 0.021}, std::nullopt,
+                        Bounded{0.0011, 0.0009, 0.0014}, 0.001}};
+  data.paths = {{"odometry", {{0.0, 0.0}, {1.0, 0.5}}}, {"calibrated", {{0.0, 0.0}, {0.9, 0.4}}}};
+  data.traces = {
+      {"backlash", "speed", "m/s", "heading", "rad", 0.9, {{0.1, 0.01, 0.0}}, {{0.1, 0.01, 1e-3, 0, 1e-3}}}};
+  data.detectable = {{"backlash", "left_play", "rad", 0.002, 0.02, "reversals"},
+                     {"lateral_slip", "kappa", "s", 0.2, 0.01, "arcs at two speeds"},
+                     {"carpet", "p_x", "1", std::nullopt, 0.015, "lines on four headings"}};
+  store_report_data(data, calibration);
+  return calibration;
+}
+
+TEST(Report, text_and_page_say_the_same) {
+  const Document document = report(example());
+  const std::string text = to_text(document);
+  const std::string page = to_html(document);
+  for (const char* said :
+       {"ACCEPTED", "20.40 (20.00..21.00)", "1.10 (0.90..1.40)", "a metre straight: length",
+        "a metre read 20.4 mm too long", "0.90", "noise floor"}) {
+    EXPECT_THAT(text, HasSubstr(said));
+    EXPECT_THAT(page, HasSubstr(said));
+  }
+}
+
+TEST(Report, says_what_the_drive_was_no_test_of) {
+  const std::string text = to_text(report(example()));
+  EXPECT_THAT(text, HasSubstr("this drive is no test of lateral slip; one has arcs at two speeds"));
+  EXPECT_THAT(text, HasSubstr("this drive is no test of carpet"));
+  EXPECT_THAT(text, HasSubstr("never"));
+  EXPECT_THAT(text, Not(HasSubstr("no test of backlash")));
+  EXPECT_THAT(text, HasSubstr("0.115"));  // 0.002 rad in degrees
+}
+
+TEST(Report, page_is_self_contained_and_escaped) {
+  const std::string page = to_html(report(example()));
+  EXPECT_THAT(page, HasSubstr("fits &lt;well&gt; &amp; &quot;truly&quot;"));
+  for (const char* outside : {"http:", "https:", "<script", "src=", "url(", "@import", "<link"})
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
+  EXPECT_THAT(page, HasSubstr("prefers-color-scheme:dark"));
+  EXPECT_THAT(page, HasSubstr("<svg"));
+}
+
+TEST(Report, a_file_without_points_still_makes_a_page) {
+  Calibration calibration;
+  calibration.reasons = {"no data"};
+  const std::string page = to_html(report(calibration));
+  EXPECT_THAT(page, HasSubstr("REFUSED"));
+  EXPECT_THAT(page, Not(HasSubstr("<svg")));
+}
+
+TEST(Figure, what_is_not_finite_is_not_drawn) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  Figure figure{"caption", "x", "y", false, {{"", Curve::Style::line, Curve::Tone::after, {}}}};
+  EXPECT_EQ(to_svg(figure), "");
+  figure.curves[0].points = {{nan, 1.0}, {infinite, 2.0}};
+  EXPECT_EQ(to_svg(figure), "");
+  figure.curves[0].points = {{0.0, 1.0}, {nan, 1.0}, {1.0, infinite}, {2.0, 3.0}};
+  figure.curves[0].errors = {nan, 1.0, 1.0, 0.5};
+  const std::string svg = to_svg(figure);
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
+}
+
+TEST(Figure, a_single_point_or_a_level_line_has_a_scale) {
+  for (const double value : {0.0, 1e-12, -5.0, 1e9}) {
+    Figure figure{"", "", "", false, {{"", Curve::Style::dots, Curve::Tone::after, {{value, value}}}}};
+    EXPECT_THAT(to_svg(figure), HasSubstr("<path class=\"d a\" d=\"M")) << value;
+    figure.equal_scales = true;
+    EXPECT_THAT(to_svg(figure), Not(HasSubstr("nan"))) << value;
+  }
+}
+
+TEST(Figure, axis_marks_are_round_and_inside) {
+  for (const double length : {1e-6, 0.3, 1.0, 7.7, 999.0, 1e7}) {
+    const auto marks = axis_marks(-0.31 * length, 0.69 * length, 6);
+    EXPECT_GE(marks.size(), 2U) << length;
+    EXPECT_LE(marks.size(), 13U) << length;
+    for (const double mark : marks) {
+      EXPECT_GE(mark, -0.31 * length);
+      EXPECT_LE(mark, 0.69 * length * (1.0 + 1e-12));
+    }
+  }
+  EXPECT_TRUE(axis_marks(1.0, 1.0, 5).empty());
+}
+
+TEST(Export, csv_and_configuration_files) {
+  const Calibration calibration = example();
+  const auto parameters = exported(calibration, "parameters");
+  ASSERT_TRUE(parameters.ok());
+  EXPECT_EQ(parameters.value().substr(0, 64),
+            "name,value,std,unit\nleft_wheel_diameter,0.147,0.0001,m\nright_whe");
+  const auto errors = exported(calibration, "errors");
+  ASSERT_TRUE(errors.ok());
+  EXPECT_THAT(errors.value(),
+              HasSubstr("straight_metre_length,m,0.0204,0.02,0.021,,,,0.0011,0.0009,0.0014,0.001,12"));
+  const auto yaml = exported(calibration, "diff_drive");
+  ASSERT_TRUE(yaml.ok());
+  EXPECT_THAT(yaml.value(), HasSubstr("wheel_radius: 0.0735"));
+  EXPECT_THAT(yaml.value(), HasSubstr("left_wheel_radius_multiplier: 1"));
+}
+
+TEST(Export, every_format_is_known_and_others_are_not) {
+  for (const auto& format : export_formats()) EXPECT_TRUE(exported(example(), format).ok()) << format;
+  EXPECT_EQ(exported(example(), "fax").error().code, ErrorCode::usage);
+  EXPECT_EQ(exported(Calibration{}, "toml").error().code, ErrorCode::refused);
+}
+
+TEST(Report, a_length_that_nobody_stated_has_no_nominal_value) {
+  auto calibration = example();
+  calibration.robot = {};
+  EXPECT_THAT(to_text(describe(calibration)), Not(HasSubstr(" 0.000 ")));
+  EXPECT_THAT(to_text(describe(calibration)), HasSubstr("147.000"));
+}
+
+TEST(WriteBack, a_dry_run_says_what_would_be_written_in_place_of_what) {
+  const auto result = nlohmann::ordered_json::parse(R"({"outcome":"dry_run",
+    "before":{"left_wheel_diameter":0.15,"right_wheel_diameter":0.15,"track_width":0.4},
+    "after":{"track_width":0.4033},"parameters":[]})");
+  const std::string text = to_text(describe_write_back(result));
+  EXPECT_THAT(text, HasSubstr("nothing was written"));
+  EXPECT_THAT(text, HasSubstr("400.000 -> 403.300"));
+  EXPECT_THAT(text, Not(HasSubstr("150.000"))) << "what stays is not listed";
+}
+
+}  // namespace
+}  // namespace odomcalib::cli

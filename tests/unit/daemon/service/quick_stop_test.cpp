@@ -1,0 +1,37 @@
+// The stop that follows a daemon that has ended.
+#include "daemon/service/quick_stop.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/wires/pty.hpp"
+
+namespace odomcalib {
+namespace {
+
+Config config_of(const std::string& port) {
+  Config config;
+  config.controller_device = "serial:" + port + "?baud=57600";
+  config.controller_profile = "drivers/base/profiles/ros_arduino.toml";
+  return config;
+}
+
+TEST(QuickStop, is_sent_more_than_once_and_nothing_that_moves) {
+  auto pty = std::move(sim::Pty::open()).value();
+  const auto stopped = quick_stop(config_of(pty->path()), SystemClock());
+  ASSERT_TRUE(stopped.ok()) << stopped.error().text();
+  const std::string sent = pty->read();
+  std::size_t stops = 0;
+  for (std::size_t at = 0; (at = sent.find("m 0 0\r", at)) != std::string::npos; ++at) ++stops;
+  EXPECT_GE(stops, 2U) << sent;
+  for (std::size_t at = 0; (at = sent.find("m ", at)) != std::string::npos; ++at)
+    EXPECT_EQ(sent.substr(at, 6), "m 0 0\r") << sent;
+}
+
+TEST(QuickStop, of_a_line_that_is_away_says_so) {
+  const auto stopped = quick_stop(config_of("/dev/odomcalib-no-such-port"), SystemClock());
+  ASSERT_FALSE(stopped.ok());
+  EXPECT_NE(stopped.error().text().find("/dev/odomcalib-no-such-port"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace odomcalib

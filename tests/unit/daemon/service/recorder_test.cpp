@@ -1,0 +1,229 @@
+// Recordings and a disk that takes its time: nothing waits for it, nothing is lost, what fails is told.
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "daemon/service/telemetry.hpp"
+#include "proto/recording/recording.hpp"
+
+namespace odomcalib {
+namespace {
+
+using Path = std::filesystem::path;
+
+/// A disk that does nothing until it is let go, and fails where it is told to.
+struct Disk {
+  std::atomic<bool> stalls = false;
+  std::atomic<int> fails_at = -1;  ///< item; 0 also: the file cannot be made
+  std::vector<RecordedItem> written;
+  std::atomic<bool> whole = false;
+
+  void wait() const {
+    while (stalls) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+};
+
+class SinkOnDisk final : public RecordingSink {
+ public:
+  explicit SinkOnDisk(std::shared_ptr<Disk> disk) : disk_(std::move(disk)) {}
+  Result<void> open() override {
+    disk_->wait();
+    return fails(0);
+  }
+  Result<void> write(const RecordedItem& item) override {
+    disk_->wait();
+    if (auto done = fails(static_cast<int>(disk_->written.size()) + 1); !done) return done;
+    disk_->written.push_back(item);
+    return {};
+  }
+  Result<void> finish() override {
+    disk_->wait();
+    disk_->whole = true;
+    return {};
+  }
+
+ private:
+  [[nodiscard]] Result<void> fails(int at) const {
+    if (disk_->fails_at != at) return {};
+    return Error{ErrorCode::io, "disk full", "disk", ""};
+  }
+  std::shared_ptr<Disk> disk_;
+};
+
+class RecordingOnDisk : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = "/tmp/odomcalib-rec-XXXXXX";
+    folder_ = mkdtemp(name.data());
+  }
+  void TearDown() override {
+    disk_->stalls = false;
+    recorder_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+  void on_slow_disk() {
+    recorder_ = std::make_unique<Recorder>(folder_, "P_", [this](const Path&, const std::string&) {
+      return std::make_unique<SinkOnDisk>(disk_);
+    });
+  }
+  Recorder::Done note() {
+    return [this](const Result<Path>& path) { ended_ = std::make_unique<Result<Path>>(path); };
+  }
+  bool ends() {
+    for (int i = 0; i < 20'000 && !ended_; ++i) {
+      recorder_->serve();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return ended_ != nullptr;
+  }
+
+  Path folder_;
+  std::shared_ptr<Disk> disk_ = std::make_shared<Disk>();
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<Result<Path>> ended_;
+};
+
+// Every call returns while the disk stalls: if one waited for it, this test would never end.
+TEST_F(RecordingOnDisk, goes_on_while_the_disk_stalls_and_loses_nothing) {
+  on_slow_disk();
+  disk_->stalls = true;
+  ASSERT_TRUE(recorder_->start("slow").ok());
+  constexpr int kItems = 20'000;
+  for (int i = 0; i < kItems; ++i) recorder_->write(i, "TICKS", "message " + std::to_string(i));
+  EXPECT_GT(recorder_->bytes_waiting(), 100'000U);
+  recorder_->finish(note());
+  for (int i = 0; i < 100; ++i) recorder_->serve();
+  EXPECT_FALSE(ended_);
+  EXPECT_TRUE(recorder_->finishing());
+  disk_->stalls = false;
+  ASSERT_TRUE(ends());
+  EXPECT_TRUE(ended_->ok());
+  EXPECT_TRUE(disk_->whole);
+  ASSERT_EQ(disk_->written.size(), static_cast<std::size_t>(kItems));
+  for (int i = 0; i < kItems; ++i) {
+    ASSERT_EQ(disk_->written[static_cast<std::size_t>(i)].utime, i);
+    ASSERT_EQ(disk_->written[static_cast<std::size_t>(i)].bytes, "message " + std::to_string(i));
+    ASSERT_EQ(disk_->written[static_cast<std::size_t>(i)].channel, "P_TICKS");
+  }
+}
+
+TEST_F(RecordingOnDisk, begins_anew_while_the_one_before_is_still_being_written) {
+  on_slow_disk();
+  disk_->stalls = true;
+  const auto first = recorder_->start("same");
+  ASSERT_TRUE(first.ok());
+  recorder_->finish({});
+  const auto second = recorder_->start("same");
+  ASSERT_TRUE(second.ok());
+  EXPECT_NE(first.value(), second.value()) << "the first file does not exist yet";
+  for (std::size_t i = 2; i < Recorder::kMostUnfinished; ++i) {
+    recorder_->finish({});
+    ASSERT_TRUE(recorder_->start("same").ok());
+  }
+  recorder_->finish({});
+  EXPECT_EQ(recorder_->start("same").error().code, ErrorCode::io) << "bounded";
+}
+
+TEST_F(RecordingOnDisk, tells_a_queue_that_is_full) {
+  on_slow_disk();
+  disk_->stalls = true;
+  ASSERT_TRUE(recorder_->start("full").ok());
+  const std::string large(std::size_t{1} << 20, 'x');
+  for (std::size_t i = 0; i <= RecordingWriter::kMostBytes / large.size(); ++i)
+    recorder_->write(0, "SCAN", large);
+  ASSERT_TRUE(recorder_->problem().has_value());
+  EXPECT_NE(recorder_->problem()->what.find("keep up"), std::string::npos);
+  disk_->stalls = false;
+  recorder_->finish(note());
+  ASSERT_TRUE(ends());
+  EXPECT_EQ(ended_->error().code, ErrorCode::io);
+}
+
+class FailingDisk : public RecordingOnDisk, public ::testing::WithParamInterface<int> {};
+
+TEST_P(FailingDisk, is_told_while_recording_and_at_the_end) {
+  on_slow_disk();
+  disk_->fails_at = GetParam();
+  ASSERT_TRUE(recorder_->start("failing").ok());
+  for (int i = 0; i < 10; ++i) recorder_->write(i, "TICKS", "x");
+  for (int i = 0; i < 20'000 && !recorder_->problem(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_TRUE(recorder_->problem().has_value());
+  EXPECT_EQ(recorder_->problem()->what, "disk full");
+  recorder_->finish(note());
+  ASSERT_TRUE(ends());
+  EXPECT_EQ(ended_->error().what, "disk full");
+  EXPECT_EQ(disk_->written.size(), static_cast<std::size_t>(std::max(0, GetParam() - 1)));
+}
+
+INSTANTIATE_TEST_SUITE_P(RecordingOnDisk, FailingDisk, ::testing::Values(0, 1, 5));
+
+TEST_F(RecordingOnDisk, of_files_is_whole_when_its_end_is_told) {
+  recorder_ = std::make_unique<Recorder>(folder_, "ODOMCALIB_");
+  ASSERT_TRUE(recorder_->start("real").ok());
+  RobotDescription robot;
+  robot.left_wheel_diameter = robot.right_wheel_diameter = 0.15;
+  robot.track_width = 0.4;
+  robot.ticks_per_rev = 4096;
+  recorder_->write(1'000'000, "ROBOT", messages::encode(1'000'000, robot));
+  constexpr int kSamples = 3000;
+  for (int i = 0; i < kSamples; ++i) {
+    const messages::Stamp stamp{1'000'000 + 20'000 * i, std::int64_t{20'000'000} * i};
+    recorder_->write(stamp.utime, "TICKS", messages::encode(stamp, TickSample{0.02 * i, i, i, 0}));
+    drivers::CanFrame frame;
+    frame.id = 0x181;
+    recorder_->write_frame(stamp.utime, frame);
+  }
+  recorder_->finish(note());
+  ASSERT_TRUE(ends());
+  ASSERT_TRUE(ended_->ok()) << ended_->error().text();
+  const auto recording = read_recording(ended_->value());
+  ASSERT_TRUE(recording.ok()) << recording.error().text();
+  EXPECT_EQ(recording.value().ticks.size(), static_cast<std::size_t>(kSamples));
+  std::ifstream frames(Path(ended_->value()).replace_extension(".candump"));
+  int lines = 0;
+  for (std::string line; std::getline(frames, line);) ++lines;
+  EXPECT_EQ(lines, kSamples);
+}
+
+TEST_F(RecordingOnDisk, has_a_name_within_its_folder) {
+  on_slow_disk();
+  EXPECT_EQ(recorder_->start("../escape").error().code, ErrorCode::usage);
+  EXPECT_EQ(recorder_->start("").error().code, ErrorCode::usage);
+}
+
+struct ListedOutlet final : Outlet {
+  explicit ListedOutlet(std::vector<std::string>& list) : channels(list) {}
+  bool publish(const std::string& channel, const std::string& /*message*/) override {
+    channels.push_back(channel);
+    return true;
+  }
+  std::vector<std::string>& channels;
+};
+
+// At start the network may not be up; the service must not have to be restarted for it.
+TEST(Publisher, that_could_not_be_opened_is_opened_later) {
+  int tries = 0;
+  std::vector<std::string> channels;
+  Publisher publisher("udpm://", "P_", [&](const std::string&) -> std::unique_ptr<Outlet> {
+    if (++tries < 3) return nullptr;
+    return std::make_unique<ListedOutlet>(channels);
+  });
+  for (double now = 100.0; now < 120.0; now += 1.0) {
+    publisher.serve(now);
+    publisher.send("TICKS", "bytes");
+  }
+  EXPECT_EQ(tries, 3);
+  EXPECT_EQ(publisher.failed(), 10U);
+  EXPECT_EQ(publisher.sent(), 10U);
+  EXPECT_EQ(channels.at(0), "P_TICKS");
+}
+
+}  // namespace
+}  // namespace odomcalib

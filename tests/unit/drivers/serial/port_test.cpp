@@ -1,0 +1,258 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <thread>
+
+#include "drivers/can/transport.hpp"
+#include "drivers/serial/port.hpp"
+#include "tests/unit/drivers/test_support.hpp"
+
+namespace odomcalib::drivers {
+namespace {
+
+/// The device's end of a pseudo-terminal.
+class Pty {
+ public:
+  Pty() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+    EXPECT_EQ(grantpt(master_), 0);
+    EXPECT_EQ(unlockpt(master_), 0);
+    std::array<char, 64> name{};
+    EXPECT_EQ(ptsname_r(master_, name.data(), name.size()), 0);
+    path = name.data();
+  }
+  ~Pty() { unplug(); }
+  Pty(const Pty&) = delete;
+  Pty& operator=(const Pty&) = delete;
+
+  void unplug() {
+    if (master_ >= 0) ::close(master_);
+    master_ = -1;
+  }
+  void say(const std::string& text) const {
+    EXPECT_EQ(::write(master_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  /// What arrives until nothing comes for so long.
+  [[nodiscard]] std::string hear(int quiet_ms = 50) const {
+    std::string out;
+    pollfd state{master_, POLLIN, 0};
+    std::array<char, 256> chunk{};
+    while (poll(&state, 1, quiet_ms) > 0) {
+      const ssize_t n = ::read(master_, chunk.data(), chunk.size());
+      if (n <= 0) break;
+      out.append(chunk.data(), static_cast<std::size_t>(n));
+    }
+    return out;
+  }
+
+  std::string path;
+
+ private:
+  int master_;
+};
+
+Result<std::vector<std::uint8_t>> read_soon(ByteStream& port) {
+  pollfd state{port.fd(), POLLIN, 0};
+  poll(&state, 1, 1000);
+  return port.read();
+}
+
+TEST(DeviceString, is_taken_apart) {
+  const auto device = parse_device("slcan:/dev/ttyACM0?bitrate=250000&baud=1000000");
+  ASSERT_TRUE(device.ok());
+  EXPECT_EQ(device.value().scheme, "slcan");
+  EXPECT_EQ(device.value().path, "/dev/ttyACM0");
+  EXPECT_EQ(device.value().option("bitrate", ""), "250000");
+  EXPECT_EQ(device.value().option("missing", "7"), "7");
+  EXPECT_TRUE(parse_device("tcp:192.168.0.10:2112").ok());
+}
+
+TEST(DeviceString, that_is_wrong_is_refused_with_an_example) {
+  for (const std::string text :
+       {"", "can0", "usb:/dev/x", "serial:", "serial:?baud=1", "serial:/dev/x?", "serial:/dev/x?baud",
+        "serial:/dev/x?=1", "serial:/dev/x?baud=", "serial:/dev/x?a=1&a=2", ":x"}) {
+    const auto device = parse_device(text);
+    ASSERT_FALSE(device.ok()) << text;
+    EXPECT_EQ(device.error().code, ErrorCode::usage);
+    EXPECT_NE(device.error().text().find("serial:/dev/ttyUSB0"), std::string::npos);
+  }
+}
+
+TEST(Serial, carries_every_byte_value_unchanged_in_both_directions) {
+  for (const unsigned baud : {115200U, 230400U, 256000U}) {
+    Pty pty;
+    auto port = open_serial(pty.path, baud);
+    ASSERT_TRUE(port.ok()) << port.error().text();
+    std::string all;
+    for (int i = 0; i < 256; ++i) all += static_cast<char>(i);
+    pty.say(all);
+    test::ByteString got;
+    while (got.size() < all.size()) {
+      const auto more = read_soon(*port.value());
+      ASSERT_TRUE(more.ok());
+      ASSERT_FALSE(more.value().empty());
+      got.insert(got.end(), more.value().begin(), more.value().end());
+    }
+    EXPECT_EQ(got, test::bytes_of(all));
+    ASSERT_TRUE(port.value()->write(test::bytes_of(all)).ok());
+    EXPECT_EQ(pty.hear(), all);
+  }
+}
+
+TEST(Serial, silence_is_empty_and_unplugging_is_an_error) {
+  Pty pty;
+  auto port = open_serial(pty.path, 115200);
+  ASSERT_TRUE(port.ok());
+  const auto nothing = port.value()->read();
+  ASSERT_TRUE(nothing.ok());
+  EXPECT_TRUE(nothing.value().empty());
+  pty.unplug();
+  const auto gone = read_soon(*port.value());
+  ASSERT_FALSE(gone.ok());
+  EXPECT_EQ(gone.error().code, ErrorCode::device);
+  EXPECT_FALSE(port.value()->write(test::bytes_of("x")).ok());
+}
+
+TEST(Serial, a_port_in_use_or_absent_is_refused_and_can_be_opened_again_later) {
+  Pty pty;
+  auto first = open_serial(pty.path, 115200);
+  ASSERT_TRUE(first.ok());
+  EXPECT_FALSE(open_serial(pty.path, 115200).ok());
+  first.value().reset();
+  EXPECT_TRUE(open_serial(pty.path, 115200).ok());
+  EXPECT_NE(open_serial("/dev/does-not-exist", 115200).error().text().find("by-id"), std::string::npos);
+  EXPECT_EQ(open_serial(pty.path, 0).error().code, ErrorCode::usage);
+  EXPECT_FALSE(open_serial("/dev/null", 115200).ok());
+}
+
+TEST(Serial, a_device_that_takes_nothing_does_not_block) {
+  Pty pty;
+  auto port = open_serial(pty.path, 115200);
+  ASSERT_TRUE(port.ok());
+  const test::ByteString block(4096, 'x');
+  bool full = false;
+  for (int i = 0; i < 100 && !full; ++i) full = !port.value()->write(block).ok();
+  EXPECT_TRUE(full);
+}
+
+// Half a command glued to the next one would be another command.
+TEST(Serial, sends_whole_lines_or_none_when_the_buffer_was_full) {
+  Pty pty;
+  auto port = open_serial(pty.path, 115200);
+  ASSERT_TRUE(port.ok());
+  const std::string line = std::string(4999, 'x') + "\r";  // more than a port takes at once: it is cut
+  const test::ByteString bytes(line.begin(), line.end());
+  std::size_t taken = 0;
+  while (taken < 10'000 && port.value()->write(bytes).ok()) ++taken;
+  ASSERT_LT(taken, 10'000U) << "never full";
+  std::string heard = pty.hear();
+  ASSERT_TRUE(port.value()->write(bytes).ok());
+  heard += pty.hear();
+  ++taken;
+  ASSERT_EQ(heard.size(), taken * line.size());
+  for (std::size_t i = 0; i < taken; ++i) ASSERT_EQ(heard.substr(i * line.size(), line.size()), line) << i;
+}
+
+/// Plays the adapter: answers each set-up command with the given text.
+void play_adapter(const Pty& pty, const std::string& to_rate, const std::string& to_open,
+                  std::string& heard) {
+  for (int i = 0; i < 40 && heard.find("O\r") == std::string::npos; ++i) {
+    const std::size_t before = heard.size();
+    heard += pty.hear(20);
+    if (heard.find("S6\r", before > 2 ? before - 2 : 0) != std::string::npos) pty.say(to_rate);
+    if (heard.find("O\r") != std::string::npos) pty.say(to_open);
+  }
+}
+
+TEST(SlcanPort, sets_up_the_adapter_and_passes_frames) {
+  Pty pty;
+  std::string heard;
+  std::thread adapter([&] { play_adapter(pty, "\r", "\r", heard); });
+  auto can = open_can("slcan:" + pty.path + "?bitrate=500000");
+  adapter.join();
+  ASSERT_TRUE(can.ok()) << can.error().text();
+  EXPECT_EQ(heard, "\r\r\rC\rS6\rO\r");
+  pty.say("t1232AABB\r");
+  pollfd state{can.value()->fd(), POLLIN, 0};
+  ASSERT_EQ(poll(&state, 1, 1000), 1);
+  const auto frames = can.value()->receive(5.0);
+  ASSERT_TRUE(frames.ok());
+  ASSERT_EQ(frames.value().size(), 1U);
+  EXPECT_EQ(frames.value()[0].id, 0x123U);
+  EXPECT_EQ(frames.value()[0].t, 5.0);  // without a baud rate no transfer time is known
+  CanFrame frame;
+  frame.id = 0x601;
+  frame.length = 1;
+  frame.data[0] = 0x40;
+  EXPECT_TRUE(can.value()->send(frame).ok());
+  EXPECT_EQ(pty.hear(), "t601140\r");
+}
+
+TEST(SlcanPort, frames_of_one_read_are_dated_by_what_came_after_them) {
+  Pty pty;
+  std::string heard;
+  std::thread adapter([&] { play_adapter(pty, "\r", "\r", heard); });
+  auto can = open_can("slcan:" + pty.path + "?bitrate=500000&baud=115200");
+  adapter.join();
+  ASSERT_TRUE(can.ok()) << can.error().text();
+  pty.say("t1232AABB\rt1240\r");  // 10 and 6 characters of 10 bits each
+  pollfd state{can.value()->fd(), POLLIN, 0};
+  ASSERT_EQ(poll(&state, 1, 1000), 1);
+  const auto frames = can.value()->receive(5.0);
+  ASSERT_TRUE(frames.ok());
+  ASSERT_EQ(frames.value().size(), 2U);
+  EXPECT_NEAR(frames.value()[0].t, 5.0 - 160.0 / 115200.0, 1e-9);
+  EXPECT_NEAR(frames.value()[1].t, 5.0 - 60.0 / 115200.0, 1e-9);
+}
+
+TEST(SlcanPort, an_adapter_that_refuses_is_named_as_such) {
+  Pty refusing;
+  std::string heard;
+  std::thread adapter([&] { play_adapter(refusing, "\r", "\a", heard); });
+  const auto can = open_can("slcan:" + refusing.path);
+  adapter.join();
+  ASSERT_FALSE(can.ok());
+  EXPECT_NE(can.error().text().find("does not open"), std::string::npos);
+  EXPECT_EQ(open_can("slcan:" + refusing.path + "?bitrate=333").error().code, ErrorCode::usage);
+  EXPECT_EQ(open_can("serial:/dev/null").error().code, ErrorCode::usage);
+}
+
+TEST(SlcanPort, an_adapter_that_acknowledges_nothing_is_used_and_told_until_it_passes_frames) {
+  Pty silent;
+  const auto can = open_can("slcan:" + silent.path);
+  ASSERT_TRUE(can.ok()) << can.error().text();
+  EXPECT_NE(can.value()->note().find("acknowledges nothing"), std::string::npos);
+  EXPECT_EQ(can.value()->counters().at("unacknowledged"), 1U);
+  silent.say("t1232AABB\r");
+  pollfd state{can.value()->fd(), POLLIN, 0};
+  ASSERT_EQ(poll(&state, 1, 1000), 1);
+  const auto frames = can.value()->receive(5.0);
+  ASSERT_TRUE(frames.ok());
+  EXPECT_EQ(frames.value().size(), 1U);
+  EXPECT_EQ(can.value()->note(), "");
+}
+
+TEST(SlcanPort, an_adapter_that_acknowledges_needs_no_note) {
+  Pty pty;
+  std::string heard;
+  std::thread adapter([&] { play_adapter(pty, "\r\n", "\r\n", heard); });
+  const auto can = open_can("slcan:" + pty.path);
+  adapter.join();
+  ASSERT_TRUE(can.ok());
+  EXPECT_EQ(can.value()->note(), "");
+  EXPECT_EQ(can.value()->counters().at("unacknowledged"), 0U);
+}
+
+TEST(SocketCan, what_is_missing_is_named_with_a_command_that_helps) {
+  const auto can = open_can("socketcan:nocan7");
+  ASSERT_FALSE(can.ok());
+  EXPECT_EQ(can.error().code, ErrorCode::device);
+  EXPECT_TRUE(can.error().text().find("AF_CAN") != std::string::npos ||
+              can.error().text().find("no such network interface") != std::string::npos);
+  EXPECT_FALSE(can.error().remedy.empty());
+}
+
+}  // namespace
+}  // namespace odomcalib::drivers

@@ -1,0 +1,158 @@
+#include "proto/calibration/calibration.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace odomcalib {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Calibration example() {
+  Calibration c;
+  c.robot = {0.154, 0.1541, 0.33, 2000.0, std::array<double, 3>{0.1, -0.2, 0.3}, "r1", "canopen:zlac8015d"};
+  c.parameters = {{"left_wheel_diameter", {0.1539999999999999, 0.0001, "m"}},
+                  {"lidar_yaw", {1e-300, -1.0, "rad"}}};
+  c.covariance_order = {"left_wheel_diameter", "lidar_yaw"};
+  c.covariance = {{1e-8, -1e-12}, {-1e-12, 0.1 + 0.2}};
+  c.linear_correction = LinearCorrection{{{{1, 2, 3}, {4, 5, 6}, {7, 8, 9.5}}}, 12.5, {0.1, 0.2, 0.3}};
+  c.methods = {{"straight", "only 1 straight run", {}, {}, 0, 0},
+               {"joint", std::nullopt, {{"track_width", {0.3, 0.001, "m"}}}, {0.1, 0.2, 0.3}, 10, 3}};
+  c.effects = {
+      {"time_offset", {{"offset", {-0.155, 0.001, "s"}}}, {1e-9, 0.25, std::nullopt}, {"slip"}, "host"}};
+  c.unexplained = Unexplained{{"speed", "load"}, 0.004, 0.3};
+  c.residual = {true, std::array<double, 3>{1, 2, 3}, std::array<double, 3>{0.1, 0.2, 0.3}, std::nullopt};
+  c.verdict = Verdict::accepted_with_warnings;
+  c.reasons = {"line 1\nwith \"quotes\" and ä"};
+  c.data = {{"a.jsonl.gz",
+             std::string(64, 'a'),
+             1.5e9,
+             12.5,
+             {{"ticks", 100}, {"scans", 20}},
+             {{"scan: cut off", 1}}}};
+  c.extensions = {{"zz_own", R"({"b":1,"a":[null,true]})"}, {"aa", "\"text\""}};
+  return c;
+}
+
+// Equal texts mean equal members: to_json writes all of them, with numbers that read back unchanged.
+TEST(CalibrationFile, read_returns_what_was_written) {
+  const auto text = to_json(example());
+  const auto back = calibration_from_json(text, "test");
+  ASSERT_TRUE(back.ok()) << back.error().text();
+  EXPECT_EQ(to_json(back.value()), text);
+  EXPECT_EQ(back.value().parameters[0].second.value, 0.1539999999999999);
+  EXPECT_EQ(back.value().covariance, example().covariance);
+  EXPECT_EQ(back.value().extensions, example().extensions);
+  EXPECT_EQ(back.value().robot.lidar_pose, example().robot.lidar_pose);
+  EXPECT_EQ(back.value().methods[0].refused, "only 1 straight run");
+  EXPECT_EQ(back.value().data[0].counts, example().data[0].counts);
+  EXPECT_EQ(back.value().verdict, Verdict::accepted_with_warnings);
+}
+
+TEST(CalibrationFile, has_the_members_of_the_format) {
+  const auto json = nlohmann::json::parse(to_json(example()));
+  EXPECT_EQ(json["format"], "odomcalib-calibration/1");
+  EXPECT_EQ(json["parameters"]["left_wheel_diameter"]["unit"], "m");
+  EXPECT_TRUE(json["parameters"]["lidar_yaw"]["std"].is_null()) << "a negative std is no estimate";
+  EXPECT_EQ(json["covariance"]["order"][1], "lidar_yaw");
+  EXPECT_EQ(json["linear_correction"]["matrix"][2][2], 9.5);
+  EXPECT_EQ(json["methods"]["straight"]["refused"], "only 1 straight run");
+  EXPECT_EQ(json["methods"]["joint"]["used"], 10);
+  EXPECT_EQ(json["effects"][0]["evidence"]["held_out_before"], 0.25);
+  EXPECT_TRUE(json["effects"][0]["evidence"]["held_out_after"].is_null());
+  EXPECT_EQ(json["unexplained"]["share"], 0.3);
+  EXPECT_EQ(json["residual"]["before"]["yaw"], 3);
+  EXPECT_TRUE(json["residual"]["noise_floor"].is_null());
+  EXPECT_EQ(json["verdict"], "accepted_with_warnings");
+  EXPECT_EQ(json["data"][0]["file"], "a.jsonl.gz");
+  EXPECT_EQ(json["data"][0]["begin"], 1.5e9);
+  EXPECT_EQ(json["zz_own"]["b"], 1);
+}
+
+TEST(CalibrationFile, writes_no_nan_and_no_infinity) {
+  auto c = example();
+  c.parameters[0].second = {kNan, HUGE_VAL, "m"};
+  c.covariance[0][0] = -HUGE_VAL;
+  c.linear_correction->condition = HUGE_VAL;
+  c.residual.after = std::array<double, 3>{kNan, kNan, kNan};
+  c.effects[0].evidence.p_value = kNan;
+  const auto text = to_json(c);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  EXPECT_EQ(text.find("inf"), std::string::npos);
+  const auto back = calibration_from_json(text, "test");
+  ASSERT_TRUE(back.ok()) << back.error().text();
+  EXPECT_TRUE(std::isnan(*back.value().parameter("left_wheel_diameter")));
+  EXPECT_EQ(to_json(back.value()), text);
+}
+
+TEST(CalibrationFile, of_an_unfinished_solve_is_refused_and_says_so) {
+  const auto back = calibration_from_json(to_json(Calibration{}), "test");
+  ASSERT_TRUE(back.ok());
+  EXPECT_EQ(back.value().verdict, Verdict::refused);
+  EXPECT_EQ(back.value().reasons.at(0), "solve was not called");
+}
+
+TEST(CalibrationFile, rejects_damage_and_names_the_member) {
+  const auto broken = [](const char* pointer, const nlohmann::json& value) {
+    auto json = nlohmann::json::parse(to_json(example()));
+    json[nlohmann::json::json_pointer(pointer)] = value;
+    const auto result = calibration_from_json(json.dump(), "cal.json");
+    return result.ok() ? std::string("accepted") : result.error().text();
+  };
+  EXPECT_NE(broken("/parameters/lidar_yaw/value", "1").find("parameters.lidar_yaw.value"), std::string::npos);
+  EXPECT_NE(broken("/robot", 3).find("\"robot\""), std::string::npos);
+  EXPECT_NE(broken("/verdict", "perhaps").find("\"verdict\""), std::string::npos);
+  EXPECT_NE(broken("/covariance/matrix/0", {1}).find("covariance"), std::string::npos);
+  EXPECT_NE(broken("/linear_correction/matrix/0", {1, 2}).find("linear_correction.matrix[0]"),
+            std::string::npos);
+  EXPECT_NE(broken("/methods/joint/used", -1).find("methods.joint.used"), std::string::npos);
+  EXPECT_NE(broken("/format", "odomcalib-calibration/2").find("format"), std::string::npos);
+  EXPECT_EQ(broken("/parameters/lidar_yaw/value", 0.5), "accepted");
+  EXPECT_EQ(broken("/new_member", 0.5), "accepted") << "changes are additive";
+}
+
+TEST(CalibrationFile, names_the_first_value_that_is_no_number) {
+  EXPECT_EQ(non_finite_value(example()), std::nullopt);
+  auto calibration = example();
+  calibration.effects.push_back({"carpet", {{"p_x", {std::nan(""), -1.0, "1"}}}, {}, {}, "host"});
+  EXPECT_EQ(non_finite_value(calibration), "effects.carpet.p_x");
+  calibration.parameters.front().second.value = INFINITY;
+  EXPECT_EQ(non_finite_value(calibration), "parameters." + calibration.parameters.front().first);
+}
+
+TEST(CalibrationFile, rejects_what_is_no_json_object) {
+  for (const std::string text : {"", "{", "[]", "null", "\xff\xfe", "{\"format\":\"other\"}"}) {
+    const auto result = calibration_from_json(text, "cal.json");
+    ASSERT_FALSE(result.ok()) << text;
+    EXPECT_EQ(result.error().code, ErrorCode::format);
+  }
+  EXPECT_FALSE(calibration_from_json(std::string(100000, '['), "deep").ok());
+}
+
+TEST(CalibrationFile, replaces_the_old_file_as_a_whole) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "calibration_replace";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  const auto path = folder / "cal.json";
+  ASSERT_TRUE(write_calibration(Calibration{}, path).ok());
+  ASSERT_TRUE(write_calibration(example(), path).ok());
+  const auto back = read_calibration(path);
+  ASSERT_TRUE(back.ok()) << back.error().text();
+  EXPECT_EQ(to_json(back.value()), to_json(example()));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "no temporary file stays";
+}
+
+TEST(CalibrationFile, that_cannot_be_written_leaves_an_io_error_and_no_file) {
+  const auto result = write_calibration(example(), "/nonexistent/cal.json");
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::io);
+  EXPECT_EQ(read_calibration("/nonexistent/cal.json").error().code, ErrorCode::io);
+}
+
+}  // namespace
+}  // namespace odomcalib

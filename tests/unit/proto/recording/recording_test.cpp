@@ -1,0 +1,409 @@
+#include "proto/recording/recording.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+
+#include "tests/unit/proto/support.hpp"
+
+namespace odomcalib {
+namespace {
+
+using test::discarded;
+using test::kRobotLine;
+using test::list_discarded;
+using test::read_text;
+
+std::string ticks_line(double t, std::int64_t left, std::int64_t right) {
+  return R"({"type":"ticks","t":)" + std::to_string(t) + R"(,"left":)" + std::to_string(left) +
+         R"(,"right":)" + std::to_string(right) + "}\n";
+}
+
+constexpr const char* kScan =
+    R"({"type":"scan","t":1,"angle_min":-1,"angle_increment":0.5,"ranges":[1,null,3]})"
+    "\n";
+
+ErrorCode code_of(const Result<Recording>& result) {
+  return result.ok() ? ErrorCode::usage : result.error().code;
+}
+
+TEST(Recording, reads_every_kind_of_line) {
+  const auto result = read_text(
+      std::string(
+          R"({"type":"robot","left_wheel_diameter":0.15,"right_wheel_diameter":0.16,"track_width":0.33,)"
+          R"("ticks_per_rev":2796.8,"lidar_pose":[0.1,-0.2,3.1],"robot_id":"r1","controller":"c"})"
+          "\n\n") +
+      ticks_line(0.5, -3, 4) +
+      R"({"type":"scan","t":0.25,"angle_min":1,"angle_increment":-0.5,"time_increment":0.001,"range_min":0.1,)"
+      R"("range_max":8,"ranges":[1.5,null,2],"angles":[1,0.4,0],"times":[0,0.002,0.003],"intensities":[9,null,7],)"
+      R"("sensor":"front","unknown":{"ranges":[[1]]}})"
+      "\r\n" +
+      R"({"t":0.1,"x":1,"y":2,"yaw":-3,"type":"pose"})"
+      "\n" +
+      R"({"type":"gyro","t":0.2,"yaw_rate":-0.25})");
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  const auto& r = result.value();
+  EXPECT_EQ(r.discarded.size(), 0U) << list_discarded(r);
+  EXPECT_EQ(r.robot.left_wheel_diameter, 0.15);
+  EXPECT_EQ(r.robot.right_wheel_diameter, 0.16);
+  EXPECT_EQ(r.robot.ticks_per_rev, 2796.8);
+  EXPECT_EQ(r.robot.lidar_pose, (std::array<double, 3>{0.1, -0.2, 3.1}));
+  EXPECT_EQ(r.robot.robot_id, "r1");
+  ASSERT_EQ(r.ticks.size(), 1U);
+  EXPECT_EQ(r.ticks[0].left, -3);
+  ASSERT_EQ(r.scans.size(), 1U);
+  const auto& scan = r.scans[0];
+  EXPECT_EQ(scan.angle_increment, -0.5);
+  EXPECT_EQ(scan.time_increment, 0.001);
+  EXPECT_EQ(scan.ranges, (std::vector<float>{1.5F, 0.0F, 2.0F}));
+  EXPECT_EQ(scan.angles, (std::vector<float>{1.0F, 0.4F, 0.0F}));
+  EXPECT_EQ(scan.times, (std::vector<float>{0.0F, 0.002F, 0.003F}));
+  EXPECT_EQ(scan.intensities, (std::vector<float>{9.0F, 0.0F, 7.0F}));
+  EXPECT_EQ(scan.sensor, "front");
+  ASSERT_EQ(r.poses.size(), 1U);
+  EXPECT_EQ(r.poses[0].yaw, -3.0);
+  ASSERT_EQ(r.gyro.size(), 1U);
+  EXPECT_EQ(r.gyro[0].yaw_rate, -0.25);
+}
+
+TEST(Recording, names_the_missing_or_impossible_unit) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {R"({"type":"robot","track_width":0.3,"ticks_per_rev":2000})", "wheel_diameter"},
+      {R"({"type":"robot","left_wheel_diameter":0.1,"track_width":0.3,"ticks_per_rev":2000})",
+       "right_wheel_diameter"},
+      {R"({"type":"robot","right_wheel_diameter":0.1,"track_width":0.3,"ticks_per_rev":2000})",
+       "left_wheel_diameter"},
+      {R"({"type":"robot","wheel_diameter":0.1,"ticks_per_rev":2000})", "track_width"},
+      {R"({"type":"robot","wheel_diameter":0.1,"track_width":0,"ticks_per_rev":2000})", "track_width"},
+      {R"({"type":"robot","wheel_diameter":0.1,"track_width":-0.3,"ticks_per_rev":2000})", "track_width"},
+      {R"({"type":"robot","wheel_diameter":0.1,"track_width":null,"ticks_per_rev":2000})", "track_width"},
+      {R"({"type":"robot","wheel_diameter":0.1,"track_width":NaN,"ticks_per_rev":2000})", "track_width"},
+      {R"({"type":"robot","wheel_diameter":0.1,"track_width":"0.3","ticks_per_rev":2000})", "track_width"},
+      {R"({"type":"robot","wheel_diameter":0.1,"track_width":0.3})", "ticks_per_rev"},
+      {R"({"type":"robot","wheel_diameter":154,"track_width":0.3,"ticks_per_rev":2000})", "wheel_diameter"},
+      {"", "wheel_diameter"}};
+  for (const auto& [line, field] : cases) {
+    const auto result = read_text(line + "\n" + ticks_line(0, 0, 0));
+    ASSERT_EQ(code_of(result), ErrorCode::missing_units) << line;
+    EXPECT_NE(result.error().what.find("\"" + field + "\""), std::string::npos) << result.error().what;
+  }
+}
+
+TEST(Recording, takes_missing_values_from_the_fallback_and_prefers_its_own) {
+  const auto fallback = test::example_robot();
+  const auto bare = read_text(ticks_line(0, 0, 0), &fallback);
+  ASSERT_TRUE(bare.ok()) << bare.error().text();
+  EXPECT_EQ(bare.value().robot.track_width, 0.33);
+  const auto own =
+      read_text(R"({"type":"robot","track_width":0.5})" + ("\n" + ticks_line(0, 0, 0)), &fallback);
+  ASSERT_TRUE(own.ok()) << own.error().text();
+  EXPECT_EQ(own.value().robot.track_width, 0.5);
+  EXPECT_EQ(own.value().robot.left_wheel_diameter, 0.154);
+  RobotDescription incomplete;
+  incomplete.track_width = 0.3;
+  EXPECT_EQ(code_of(read_text(ticks_line(0, 0, 0), &incomplete)), ErrorCode::missing_units);
+}
+
+TEST(Recording, tells_empty_files_from_unknown_ones) {
+  EXPECT_EQ(code_of(read_text("")), ErrorCode::empty);
+  EXPECT_EQ(code_of(read_text(" \n\n")), ErrorCode::empty);
+  EXPECT_EQ(code_of(read_text(kRobotLine)), ErrorCode::empty);
+  EXPECT_EQ(code_of(read_text("{\"type\":\"other\"}\n")), ErrorCode::empty);
+  EXPECT_EQ(code_of(read_text("hello\nworld\n")), ErrorCode::format);
+  EXPECT_EQ(code_of(read_text(std::string("\x7f"
+                                          "ELF\0\1\2\3",
+                                          8))),
+            ErrorCode::format);
+  EXPECT_EQ(code_of(read_text("VERTEX_SE2 0 0 0 0\n")), ErrorCode::format);
+  EXPECT_EQ(code_of(read_recording("/nonexistent/recording.jsonl")), ErrorCode::io);
+  EXPECT_EQ(code_of(read_recording(testing::TempDir())), ErrorCode::io);
+}
+
+TEST(Recording, uses_what_is_whole_of_a_file_cut_off_at_any_byte) {
+  const std::string last = kScan;
+  const std::string text = kRobotLine + ticks_line(0, 0, 0) + ticks_line(1, 10, 10) + last;
+  for (std::size_t cut = 0; cut <= last.size(); ++cut) {
+    const auto result = read_text(text.substr(0, text.size() - cut));
+    ASSERT_TRUE(result.ok()) << result.error().text();
+    const bool whole = cut <= 1;  // the line end alone is not missed
+    EXPECT_EQ(result.value().ticks.size(), 2U);
+    EXPECT_EQ(result.value().scans.size(), whole ? 1U : 0U) << cut;
+    EXPECT_EQ(discarded(result.value(), "line", "cut off"), whole || cut == last.size() ? 0U : 1U) << cut;
+  }
+}
+
+TEST(Recording, counts_damaged_lines_and_goes_on_behind_them) {
+  const auto result =
+      read_text(kRobotLine + ticks_line(0, 0, 0) + "{\"type\":\"ticks\",\"t\":1,\n\x01\x02\n[1]\n12\n" +
+                "{\"type\":\"noise\"}\n{}\n" + std::string(5000, '[') + "\n" + ticks_line(1, 10, 10));
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result.value().ticks.size(), 2U);
+  EXPECT_EQ(discarded(result.value(), "line", "not valid JSON"), 5U) << list_discarded(result.value());
+  EXPECT_EQ(discarded(result.value(), "line", "unknown type"), 1U);
+  EXPECT_EQ(discarded(result.value(), "line", "no type"), 1U);
+}
+
+TEST(Recording, rejects_samples_with_missing_or_impossible_values) {
+  const auto result = read_text(std::string(kRobotLine) + ticks_line(0, 0, 0) +
+                                R"({"type":"ticks","left":1,"right":1})"
+                                "\n"
+                                R"({"type":"ticks","t":1,"left":1})"
+                                "\n"
+                                R"({"type":"ticks","t":1,"left":1.5,"right":1})"
+                                "\n"
+                                R"({"type":"ticks","t":1,"left":1e300,"right":1})"
+                                "\n"
+                                R"({"type":"ticks","t":1,"left":9223372036854775807,"right":1})"
+                                "\n"
+                                R"({"type":"ticks","t":1,"left":18446744073709551615,"right":1})"
+                                "\n"
+                                R"({"type":"ticks","t":NaN,"left":1,"right":1})"
+                                "\n"
+                                R"({"type":"ticks","t":1e300,"left":1,"right":1})"
+                                "\n"
+                                R"({"type":"pose","t":1,"x":1,"y":null,"yaw":0})"
+                                "\n"
+                                R"({"type":"gyro","t":1,"yaw_rate":Infinity})"
+                                "\n"
+                                R"({"type":"scan","t":1,"ranges":[1,2]})"
+                                "\n"
+                                R"({"type":"scan","t":1,"angle_min":0,"angle_increment":0,"ranges":[1,2]})"
+                                "\n"
+                                R"({"type":"scan","t":1,"angle_min":0,"angle_increment":0.1,"ranges":[]})"
+                                "\n"
+                                R"({"type":"scan","t":1,"angles":[0.1],"ranges":[1,2]})"
+                                "\n"
+                                R"({"type":"scan","t":1,"angles":[0.1,null],"ranges":[1,2]})"
+                                "\n"
+                                R"({"type":"scan","t":1,"angles":[0.1,0.2],"times":[0],"ranges":[1,2]})"
+                                "\n"
+                                R"({"type":"scan","t":1,"angles":[0.1,0.2],"times":[0,1e300],"ranges":[1,2]})"
+                                "\n");
+  ASSERT_TRUE(result.ok());
+  const auto& r = result.value();
+  EXPECT_EQ(r.ticks.size(), 1U);
+  EXPECT_EQ(r.scans.size() + r.poses.size() + r.gyro.size(), 0U);
+  EXPECT_EQ(discarded(r, "ticks", "time stamp missing or impossible"), 3U) << list_discarded(r);
+  EXPECT_EQ(discarded(r, "ticks", "left or right missing or not a whole number"), 4U);
+  EXPECT_EQ(discarded(r, "ticks", "count beyond 2^53"), 1U);
+  EXPECT_EQ(discarded(r, "pose", "x, y or yaw missing or not a number"), 1U);
+  EXPECT_EQ(discarded(r, "gyro", "yaw_rate missing or not a number"), 1U);
+  EXPECT_EQ(discarded(r, "scan", "angle_min or angle_increment missing or impossible"), 2U);
+  EXPECT_EQ(discarded(r, "scan", "no ranges"), 1U);
+  EXPECT_EQ(discarded(r, "scan", "angles do not match ranges"), 1U);
+  EXPECT_EQ(discarded(r, "scan", "an angle is not a number"), 1U);
+  EXPECT_EQ(discarded(r, "scan", "times do not match ranges"), 1U);
+  EXPECT_EQ(discarded(r, "scan", "a beam time is not a number"), 1U);
+}
+
+TEST(Recording, turns_beams_that_are_no_distance_into_no_reading) {
+  const auto result =
+      read_text(std::string(kRobotLine) +
+                R"({"type":"scan","t":0,"angle_min":0,"angle_increment":0.1,"range_min":0.1,"range_max":8.2,)"
+                R"("ranges":[0.1,8.2,0.05,8.3,-1,NaN,-Infinity,null,0,"x",[1],1e300,1.0]})");
+  ASSERT_TRUE(result.ok());
+  const auto& r = result.value();
+  EXPECT_EQ(r.scans.at(0).ranges, (std::vector<float>{0.1F, 8.2F, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1.0F}));
+  EXPECT_EQ(discarded(r, "beam", "outside range_min and range_max"), 3U) << list_discarded(r);
+  EXPECT_EQ(discarded(r, "beam", "not a number"), 5U);
+}
+
+TEST(Recording, sorts_what_is_up_to_a_second_late_and_discards_what_is_later) {
+  const auto result = read_text(kRobotLine + ticks_line(2, 20, 20) + ticks_line(1, 10, 10) +
+                                ticks_line(3, 30, 30) + ticks_line(1.99, 19, 19) + kScan);
+  ASSERT_TRUE(result.ok());
+  ASSERT_EQ(result.value().ticks.size(), 3U);
+  EXPECT_EQ(result.value().ticks[0].left, 10);
+  EXPECT_EQ(result.value().ticks[2].left, 30);
+  EXPECT_EQ(result.value().scans.size(), 1U) << "each stream has its own order";
+  EXPECT_EQ(discarded(result.value(), "ticks", "out of order by more than 1 s"), 1U);
+}
+
+TEST(Recording, drops_one_wild_stamp_and_keeps_what_follows_it) {
+  const auto result = read_text(kRobotLine + ticks_line(1, 10, 10) + ticks_line(5000, 20, 20) +
+                                ticks_line(1.1, 30, 30) + ticks_line(1.2, 40, 40));
+  ASSERT_TRUE(result.ok());
+  ASSERT_EQ(result.value().ticks.size(), 3U);
+  EXPECT_EQ(result.value().ticks[1].left, 30);
+  EXPECT_EQ(discarded(result.value(), "ticks", "time stamp far ahead of its neighbours"), 1U);
+  const auto pause =
+      read_text(kRobotLine + ticks_line(1, 10, 10) + ticks_line(5000, 10, 10) + ticks_line(5000.1, 10, 10));
+  ASSERT_TRUE(pause.ok());
+  EXPECT_EQ(pause.value().ticks.size(), 3U) << "a real pause";
+}
+
+TEST(Recording, keeps_the_first_of_repeated_stamps) {
+  const auto result = read_text(kRobotLine + ticks_line(0, 0, 0) + ticks_line(0, 7, 7) + kScan + kScan);
+  ASSERT_TRUE(result.ok());
+  ASSERT_EQ(result.value().ticks.size(), 1U);
+  EXPECT_EQ(result.value().ticks[0].left, 0);
+  EXPECT_EQ(result.value().scans.size(), 1U);
+  EXPECT_EQ(discarded(result.value(), "ticks", "repeated time stamp"), 1U);
+  EXPECT_EQ(discarded(result.value(), "scan", "repeated time stamp"), 1U);
+}
+
+TEST(Recording, reads_gzip_by_content_and_hashes_the_stored_bytes) {
+  const std::string text = kRobotLine + ticks_line(0, 1, 2);
+  const auto packed = gzip(text).value();
+  const auto plain = read_text(text);
+  const auto zipped = read_text(packed);
+  ASSERT_TRUE(plain.ok() && zipped.ok());
+  EXPECT_EQ(zipped.value().ticks.at(0).right, 2);
+  EXPECT_EQ(zipped.value().sha256, sha256_hex(packed));
+  EXPECT_NE(zipped.value().sha256, plain.value().sha256);
+  EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad")
+      << "FIPS 180-2, B.1";
+  EXPECT_EQ(zipped.value().name, "odomcalib_Recording.reads_gzip_by_content_and_hashes_the_stored_bytes");
+}
+
+TEST(Recording, uses_what_can_be_unpacked_of_a_cut_off_or_damaged_gzip_file) {
+  std::string text = kRobotLine;
+  for (int i = 0; i < 2000; ++i) text += ticks_line(i * 0.05, i * i % 977, i * 3);
+  auto packed = gzip(text).value();
+  const auto cut = read_text(packed.substr(0, packed.size() / 2));
+  ASSERT_TRUE(cut.ok()) << cut.error().text();
+  EXPECT_GT(cut.value().ticks.size(), 100U);
+  EXPECT_LT(cut.value().ticks.size(), 2000U);
+  EXPECT_EQ(discarded(cut.value(), "file", "compressed data is cut off"), 1U) << list_discarded(cut.value());
+  packed[packed.size() - 6] = static_cast<char>(packed[packed.size() - 6] ^ 1);  // check sum
+  const auto damaged = read_text(packed);
+  ASSERT_TRUE(damaged.ok());
+  EXPECT_EQ(discarded(damaged.value(), "file", "compressed data is damaged"), 1U);
+  const auto two = read_text(gzip(kRobotLine).value() + gzip(ticks_line(0, 0, 0)).value());
+  EXPECT_TRUE(two.ok()) << "members that were appended one after the other";
+}
+
+TEST(Recording, survives_writing_as_json_lines) {
+  const auto seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> any(0.0, 10.0);
+  Recording r;
+  r.robot = {0.1 + 0.05, any(random), any(random), 2796.8, std::array<double, 3>{any(random), 0, -1},
+             "ä\"\\",    "c"};
+  for (int i = 0; i < 50; ++i) {
+    const double t = i + any(random) * 0.01;
+    r.ticks.push_back({t, i * 3 - 20, -i * 2, i / 25});
+    r.poses.push_back({t, any(random), any(random), any(random)});
+    r.gyro.push_back({t, any(random)});
+    Scan scan;
+    scan.t = t;
+    scan.angle_min = any(random);
+    scan.angle_increment = -any(random);
+    if (i % 2 == 0) scan.time_increment = any(random);
+    scan.range_max = 12.0;
+    for (int k = 0; k < 100; ++k) {
+      scan.ranges.push_back(k % 7 == 0 ? 0.0F : static_cast<float>(any(random)));
+      scan.angles.push_back(static_cast<float>(any(random)));
+      scan.times.push_back(static_cast<float>(any(random) * 1e-4));
+      scan.intensities.push_back(static_cast<float>(any(random) * 100));
+    }
+    r.scans.push_back(scan);
+  }
+  for (const char* name : {"survives.jsonl", "survives.jsonl.gz"}) {
+    const auto path = std::filesystem::path(testing::TempDir()) / name;
+    ASSERT_TRUE(write_recording_jsonl(r, path).ok());
+    const auto back = read_recording(path);
+    ASSERT_TRUE(back.ok()) << back.error().text();
+    const auto& b = back.value();
+    EXPECT_TRUE(b.discarded.empty()) << list_discarded(b);
+    EXPECT_EQ(b.robot.left_wheel_diameter, r.robot.left_wheel_diameter);
+    EXPECT_EQ(b.robot.right_wheel_diameter, r.robot.right_wheel_diameter);
+    EXPECT_EQ(b.robot.robot_id, r.robot.robot_id);
+    ASSERT_EQ(b.ticks.size(), r.ticks.size());
+    ASSERT_EQ(b.scans.size(), r.scans.size());
+    for (std::size_t i = 0; i < r.ticks.size(); ++i) {
+      EXPECT_EQ(b.ticks[i].t, r.ticks[i].t);
+      EXPECT_EQ(b.ticks[i].left, r.ticks[i].left);
+      EXPECT_EQ(b.ticks[i].segment, r.ticks[i].segment);
+      EXPECT_EQ(b.poses[i].yaw, r.poses[i].yaw);
+      EXPECT_EQ(b.gyro[i].yaw_rate, r.gyro[i].yaw_rate);
+      EXPECT_EQ(b.scans[i].ranges, r.scans[i].ranges);
+      EXPECT_EQ(b.scans[i].angles, r.scans[i].angles);
+      EXPECT_EQ(b.scans[i].times, r.scans[i].times);
+      EXPECT_EQ(b.scans[i].intensities, r.scans[i].intensities);
+      EXPECT_EQ(b.scans[i].angle_increment, r.scans[i].angle_increment);
+      EXPECT_EQ(b.scans[i].time_increment, r.scans[i].time_increment);
+    }
+  }
+}
+
+struct RealRecording {
+  const char* name;
+  std::size_t ticks, scans, poses, first_beams;
+};
+
+class RealRecordings : public testing::TestWithParam<RealRecording> {};
+
+TEST_P(RealRecordings, are_read_completely) {
+  ODOMCALIB_SHARED_FILE(path, GetParam().name);
+  const auto result = read_recording(path);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  const auto& r = result.value();
+  EXPECT_EQ(r.ticks.size(), GetParam().ticks);
+  EXPECT_EQ(r.scans.size(), GetParam().scans);
+  EXPECT_EQ(r.poses.size(), GetParam().poses);
+  EXPECT_EQ(r.scans.empty() ? 0U : r.scans[0].ranges.size(), GetParam().first_beams);
+  EXPECT_EQ(r.ticks.back().segment, 0) << "none of these counters was reset";
+  EXPECT_TRUE(std::is_sorted(r.ticks.begin(), r.ticks.end(), [](auto& a, auto& b) { return a.t < b.t; }));
+  for (const auto& item : r.discarded) EXPECT_TRUE(item.what == "beam" || item.what == "ticks") << item.what;
+}
+
+// Counts of lines in the files; brenner-nxt repeats 61 motor samples, the wheelchair writes NaN for "no
+// reading".
+INSTANTIATE_TEST_SUITE_P(Shared, RealRecordings,
+                         testing::Values(RealRecording{"mines-rover/exp1.jsonl.gz", 756, 756, 0, 682},
+                                         RealRecording{"mines-rover-2/exp3.jsonl.gz", 525, 525, 0, 682},
+                                         RealRecording{"mines-rover-2/test_lab2.jsonl.gz", 404, 404, 0, 682},
+                                         RealRecording{"azos-wheelchair/azos.jsonl.gz", 778, 778, 0, 361},
+                                         RealRecording{"maebot/a0.jsonl.gz", 1637, 642, 0, 254},
+                                         RealRecording{"maebot/convex.jsonl.gz", 3422, 459, 0, 295},
+                                         RealRecording{"maebot/empty.jsonl.gz", 1506, 403, 0, 290},
+                                         RealRecording{"brenner-nxt/robot4.jsonl.gz", 217, 278, 0, 660},
+                                         RealRecording{"optiodom-rawclock/square-230620202042-01.jsonl.gz",
+                                                       1814, 0, 9383, 0}));
+
+TEST(Recording, of_motion_capture_runs_are_all_read) {
+  ODOMCALIB_SHARED_FILE(folder, "optiodom");
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".gz") continue;
+    ++files;
+    const auto result = read_recording(entry.path());
+    ASSERT_TRUE(result.ok()) << result.error().text();
+    EXPECT_TRUE(result.value().discarded.empty()) << entry.path() << list_discarded(result.value());
+    EXPECT_EQ(result.value().ticks.back().segment, 0) << entry.path();
+    EXPECT_GT(result.value().poses.size(), 10U);
+  }
+  EXPECT_EQ(files, 102U);
+}
+
+TEST(Recording, of_five_minutes_loads_within_the_time_budget) {
+  std::string text = kRobotLine;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> range(0.1, 20.0);
+  std::string ranges;
+  for (int k = 0; k < 1081; ++k) ranges += (k > 0 ? "," : "") + std::to_string(range(random)).substr(0, 6);
+  for (int i = 0; i < 15000; ++i) {
+    text += ticks_line(i * 0.02, i * 10, i * 10);
+    if (i % 5 == 0)
+      text += R"({"type":"scan","t":)" + std::to_string(i * 0.02) +
+              R"(,"angle_min":-2.35,"angle_increment":0.00436,"range_max":30,"ranges":[)" + ranges + "]}\n";
+  }
+  const auto path = test::write_file("five_minutes.jsonl", text);
+  const auto start = std::clock();
+  const auto result = read_recording(path);
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  std::filesystem::remove(path);
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result.value().scans.size(), 3000U);
+  RecordProperty("cpu_seconds", std::to_string(seconds));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  EXPECT_LT(seconds, 3.0) << "usually about 1 s of processor time; the limit allows for a busy machine";
+#endif
+}
+
+}  // namespace
+}  // namespace odomcalib
