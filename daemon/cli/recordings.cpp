@@ -39,9 +39,10 @@ Result<TopicChoices> parsed(const std::vector<std::string>& topics) {
 
 void add_reading_options(CLI::App& verb, RecordingOptions& options) {
   verb.add_option("--robot", options.robot_file, "nominal values (TOML) instead of those of the recording");
-  verb.add_option("--topic", options.topics,
-                  "of a ROS recording: PART=TOPIC, or wheels=TOPIC:LEFT,RIGHT with the joints; parts are scan, "
-                  "wheels, wheel_speeds, odometry, gyro, pose; may be repeated")
+  verb.add_option(
+          "--topic", options.topics,
+          "of a ROS recording: PART=TOPIC, or wheels=TOPIC:LEFT,RIGHT with the joints; parts are scan, "
+          "wheels, wheel_speeds, odometry, gyro, pose; may be repeated")
       ->take_all()
       ->allow_extra_args(false);  // what follows may be the recording
 }

@@ -92,8 +92,9 @@ Result<void> write_results(const BuildOptions& options, const calib::slam::Recor
 }
 
 int build(const BuildOptions& options, const Session& session) {
-  if (const auto files = check_outputs({{"--out", options.out}, {"--svg", options.picture}},
-                                       {{"the recording", options.recording}, {"--robot", options.reading.robot_file}});
+  if (const auto files =
+          check_outputs({{"--out", options.out}, {"--svg", options.picture}},
+                        {{"the recording", options.recording}, {"--robot", options.reading.robot_file}});
       !files)
     return report_error(files.error(), session.json);
   const auto recordings = read_recordings({options.recording}, options.reading);

@@ -76,9 +76,10 @@ Result<std::vector<PoseSample>> predicted(const Options& options) {
 
 int predict_trajectory(const Options& options, const Session& session) {
   const std::string calibration = options.calibration == "nominal" ? "" : options.calibration;
-  if (const auto files = check_outputs(
-          {{"--trajectory", options.trajectory}},
-          {{"the recording", options.recording}, {"--calibration", calibration}, {"--robot", options.reading.robot_file}});
+  if (const auto files =
+          check_outputs({{"--trajectory", options.trajectory}}, {{"the recording", options.recording},
+                                                                 {"--calibration", calibration},
+                                                                 {"--robot", options.reading.robot_file}});
       !files)
     return report_error(files.error(), session.json);
   const auto poses = predicted(options);

@@ -39,12 +39,14 @@ Form recognise(std::string_view bytes) {
 
 Error unknown_form(const std::string& where) {
   return {ErrorCode::format, "is not a recording in a known format", where,
-          "known are JSON Lines, LCM event logs, ROS bags (2.0), rosbag2 and MCAP recordings, Censi's tuple and JSON "
+          "known are JSON Lines, LCM event logs, ROS bags (2.0), rosbag2 and MCAP recordings, Censi's tuple "
+          "and JSON "
           "logs and CARMEN logs, plain or gzip"};
 }
 
 Error has_no_topics(const std::string& where) {
-  return {ErrorCode::usage, "has no topics to choose from", where, "leave --topic out: only ROS recordings have them"};
+  return {ErrorCode::usage, "has no topics to choose from", where,
+          "leave --topic out: only ROS recordings have them"};
 }
 
 std::optional<Error> read_ros(std::string_view bytes, const std::string& where, const TopicChoices& topics,
@@ -149,7 +151,8 @@ Result<Recording> read_recording(const std::filesystem::path& path, const RobotD
   auto recording = read_recording_bytes(file.value(), path, fallback, topics);
   if (recording && has_write_ahead_log(path))
     recording.value().discarded.push_back(
-        {"file", "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'", 1});
+        {"file", "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'",
+         1});
   return recording;
 }
 

@@ -46,10 +46,11 @@ struct Recording {
   std::vector<std::string> choices;  ///< what was taken where a file held several; nothing to choose: empty
 };
 
-/// Says which topic of a ROS recording is what, e.g. scan=/scan or wheels=/joint_states:left_joint,right_joint.
+/// Says which topic of a ROS recording is what, e.g. scan=/scan or
+/// wheels=/joint_states:left_joint,right_joint.
 struct TopicChoice {
-  std::string part;   ///< scan, wheels, wheel_speeds, odometry, gyro or pose
-  std::string topic;  ///< as recorded
+  std::string part;                 ///< scan, wheels, wheel_speeds, odometry, gyro or pose
+  std::string topic;                ///< as recorded
   std::vector<std::string> joints;  ///< left and right, of wheels and wheel_speeds; empty: by their names
 };
 using TopicChoices = std::vector<TopicChoice>;
@@ -58,10 +59,10 @@ using TopicChoices = std::vector<TopicChoice>;
 Result<TopicChoice> parse_topic_choice(const std::string& text);
 
 /// Reads a recording and recognises its form by content: JSON Lines (plain or gzip), native LCM log, LCM log
-/// of the MBot/MaeBot family, ROS bag 2.0, rosbag2 (file or folder), MCAP, Censi's tuple file or raw JSON log,
-/// CARMEN log. Errors: io (cannot open), empty (no usable line), missing_units (no or incomplete robot line),
-/// format (unknown form), usage (a topic has to be chosen, or the chosen one is not there). A cut-off end is
-/// not an error: what is whole is used, `discarded` says what was not.
+/// of the MBot/MaeBot family, ROS bag 2.0, rosbag2 (file or folder), MCAP, Censi's tuple file or raw JSON
+/// log, CARMEN log. Errors: io (cannot open), empty (no usable line), missing_units (no or incomplete robot
+/// line), format (unknown form), usage (a topic has to be chosen, or the chosen one is not there). A cut-off
+/// end is not an error: what is whole is used, `discarded` says what was not.
 /// @param fallback robot description for forms that carry none; its zero fields count as missing
 /// @param topics what to take of a ROS recording; what is unique is taken without
 Result<Recording> read_recording(const std::filesystem::path& path,

@@ -32,9 +32,8 @@ class RecordingBuilder {
   /// Whether a form carries the unit-bearing values; a form that needs none may leave them at zero.
   enum class RobotNeed { required, optional };
 
-  /// Sorts, removes repeated time stamps, makes counts of the finest wheel motion that is there, unwraps counts,
-  /// checks the robot description.
-  /// Errors: empty, missing_units.
+  /// Sorts, removes repeated time stamps, makes counts of the finest wheel motion that is there, unwraps
+  /// counts, checks the robot description. Errors: empty, missing_units.
   Result<Recording> finish(const std::string& where, const RobotDescription* fallback, RobotNeed need) &&;
 
  private:

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kMostCounts = 9007199254740992.0;  // 2^53: beyond it a count is no exact double
-// Of a count. Angles that an encoder made deviate from its grid by the rounding of a double (1e-4 counts after a
-// million turns of 4096 counts) or of a text with six decimals (1e-3 counts); of angles from elsewhere every
-// second one deviates by more than a quarter.
+// Of a count. Angles that an encoder made deviate from its grid by the rounding of a double (1e-4 counts
+// after a million turns of 4096 counts) or of a text with six decimals (1e-3 counts); of angles from
+// elsewhere every second one deviates by more than a quarter.
 constexpr double kOnGrid = 0.05;
 
 std::int64_t count_of(double angle, double counts_per_rev) {
@@ -64,12 +64,11 @@ MadeTicks ticks_from_wheels(const std::vector<WheelSample>& wheels, double state
   for (const WheelSample& sample : whole) {
     // The grid of an encoder need not go through zero: what was counted are the differences.
     const WheelSample& first = whole.front();
-    made.ticks.push_back({sample.t,
-                          count_of(first.left, made.ticks_per_rev) +
-                              count_of(sample.left - first.left, made.ticks_per_rev),
-                          count_of(first.right, made.ticks_per_rev) +
-                              count_of(sample.right - first.right, made.ticks_per_rev),
-                          0});
+    made.ticks.push_back(
+        {sample.t,
+         count_of(first.left, made.ticks_per_rev) + count_of(sample.left - first.left, made.ticks_per_rev),
+         count_of(first.right, made.ticks_per_rev) + count_of(sample.right - first.right, made.ticks_per_rev),
+         0});
   }
   return made;
 }

@@ -14,8 +14,8 @@
 namespace odomcalib {
 namespace {
 
-// Of the standard deviations: what the way of telling may move a value by. Angles are the same numbers; speeds and
-// odometry round to other counts than the encoder, by less than a tenth of one.
+// Of the standard deviations: what the way of telling may move a value by. Angles are the same numbers;
+// speeds and odometry round to other counts than the encoder, by less than a tenth of one.
 constexpr double kSameAngles = 1e-6, kSameWithin = 0.5;
 
 struct Told {
@@ -44,8 +44,8 @@ std::string told_as(const Recording& recording, MotionSource as) {
                      R"(,"track_width":)" + number(robot.track_width);
   if (as == MotionSource::wheels) text += R"(,"ticks_per_rev":)" + number(robot.ticks_per_rev);
   if (robot.lidar_pose)
-    text += R"(,"lidar_pose":[)" + number((*robot.lidar_pose)[0]) + "," + number((*robot.lidar_pose)[1]) + "," +
-            number((*robot.lidar_pose)[2]) + "]";
+    text += R"(,"lidar_pose":[)" + number((*robot.lidar_pose)[0]) + "," + number((*robot.lidar_pose)[1]) +
+            "," + number((*robot.lidar_pose)[2]) + "]";
   text += "}\n";
   const double rad = 2.0 * std::numbers::pi / robot.ticks_per_rev;
   double x = 0.0, y = 0.0, yaw = 0.0;
@@ -57,7 +57,8 @@ std::string told_as(const Recording& recording, MotionSource as) {
     text += R"({"type":")" + std::string(name_of(as)) + R"(","t":)" + number(now.t);
     if (as == MotionSource::odometry) {
       text += R"(,"x":)" + number(x) + R"(,"y":)" + number(y) + R"(,"yaw":)" + number(yaw) + "}\n";
-      const double turn = (right * robot.right_wheel_diameter - left * robot.left_wheel_diameter) / 2.0 / robot.track_width;
+      const double turn =
+          (right * robot.right_wheel_diameter - left * robot.left_wheel_diameter) / 2.0 / robot.track_width;
       const double way = (right * robot.right_wheel_diameter + left * robot.left_wheel_diameter) / 4.0;
       x += way * std::cos(yaw + 0.5 * turn);
       y += way * std::sin(yaw + 0.5 * turn);
@@ -66,8 +67,8 @@ std::string told_as(const Recording& recording, MotionSource as) {
     }
     const double held = std::max(next.t - now.t, 1e-9);
     const bool angles = as == MotionSource::wheels;
-    text += R"(,"left":)" + number(angles ? rad * static_cast<double>(now.left) : left / held) + R"(,"right":)" +
-            number(angles ? rad * static_cast<double>(now.right) : right / held) + "}\n";
+    text += R"(,"left":)" + number(angles ? rad * static_cast<double>(now.left) : left / held) +
+            R"(,"right":)" + number(angles ? rad * static_cast<double>(now.right) : right / held) + "}\n";
   }
   return text;
 }
@@ -99,7 +100,8 @@ TEST_P(WheelMotionSolve, gives_the_same_calibration_and_the_same_odometry) {
     EXPECT_LT(sigmas, GetParam().sigmas) << name;
     EXPECT_NEAR(quantity.std, reference.std, 0.1 * reference.std) << name;
   }
-  const PoseSample end = calib::predict(told, expected).back(), same = calib::predict(counted, expected).back();
+  const PoseSample end = calib::predict(told, expected).back(),
+                   same = calib::predict(counted, expected).back();
   EXPECT_NEAR(end.x, same.x, 1e-3);
   EXPECT_NEAR(end.y, same.y, 1e-3);
   EXPECT_NEAR(end.yaw, same.yaw, 1e-3);

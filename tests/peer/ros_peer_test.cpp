@@ -1,6 +1,6 @@
-// ROS recordings against somebody else's programs (npm): MCAP files of their writers, encoders and compressors are read here;
-// bags and MCAP files that the tests write are read by them. What tests of our own misread and miswrite alike would
-// show here.
+// ROS recordings against somebody else's programs (npm): MCAP files of their writers, encoders and
+// compressors are read here; bags and MCAP files that the tests write are read by them. What tests of our own
+// misread and miswrite alike would show here.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -27,8 +27,8 @@ class RosPeer : public ::testing::Test {
 
   /// Runs one of the scripts in the folder of the test; its output goes to a file there.
   [[nodiscard]] std::string node(const std::string& script, const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && " + ODOMCALIB_NODE + " " + ODOMCALIB_ROS_SCRIPTS +
-                                "/" + script + " " + arguments + " > out 2> err";
+    const std::string command = "cd '" + folder_.string() + "' && " + ODOMCALIB_NODE + " " +
+                                ODOMCALIB_ROS_SCRIPTS + "/" + script + " " + arguments + " > out 2> err";
     EXPECT_EQ(system(command.c_str()), 0) << command << "\n" << test::bytes_of(folder_ / "err");
     return test::bytes_of(folder_ / "out");
   }
@@ -47,11 +47,12 @@ TEST_F(RosPeer, writes_mcap_files_that_are_read) {
         const std::string form = std::string(ros) + " " + packing + " " + layout;
         SCOPED_TRACE(form);
         (void)node("write_mcap.js", "drive.jsonl drive.mcap " + form);
-        const auto result =
-            read_recording(folder_ / "drive.mcap", &robot, {{"wheels", "/joint_states", {}}, {"pose", "/mocap", {}}});
+        const auto result = read_recording(folder_ / "drive.mcap", &robot,
+                                           {{"wheels", "/joint_states", {}}, {"pose", "/mocap", {}}});
         ASSERT_TRUE(result.ok()) << result.error().text();
         test::expect_small_drive(result.value(), MotionSource::wheels);
-        EXPECT_EQ(test::discarded_like(result.value(), "file", "") + test::discarded_like(result.value(), "chunk", ""),
+        EXPECT_EQ(test::discarded_like(result.value(), "file", "") +
+                      test::discarded_like(result.value(), "chunk", ""),
                   0U)
             << test::list_discarded(result.value());
         ASSERT_EQ(result.value().poses.size(), 20U);
@@ -73,7 +74,8 @@ TEST_F(RosPeer, reads_the_bags_and_mcap_files_of_the_tests) {
                        write_bag(test::small_log(Wire::ros1), {.packing = packing, .chunk_bytes = kChunk}));
   for (const Wire wire : {Wire::ros1, Wire::cdr_little, Wire::cdr_big})
     for (const RosPacking packing : {RosPacking::none, RosPacking::lz4, RosPacking::zstd})
-      files.emplace_back("drive.mcap", write_mcap(test::small_log(wire), {.packing = packing, .chunk_bytes = kChunk}));
+      files.emplace_back("drive.mcap",
+                         write_mcap(test::small_log(wire), {.packing = packing, .chunk_bytes = kChunk}));
   for (const auto& [name, bytes] : files) {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     const std::string lines = node("read.js", name);

@@ -30,7 +30,9 @@ std::vector<std::string> effect_names() {
 
 void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", arguments.seed, "robot, noise and random room are drawn from this number");
-  app.add_option("--out", arguments.out, "recording to write: .jsonl, .jsonl.gz, .bag (ROS 1), .mcap or .db3 (ROS 2)")->required();
+  app.add_option("--out", arguments.out,
+                 "recording to write: .jsonl, .jsonl.gz, .bag (ROS 1), .mcap or .db3 (ROS 2)")
+      ->required();
   app.add_option("--truth", arguments.truth, "file for the true parameters (JSON)");
   app.add_option("--path", arguments.path, "file for the true poses of the base (TUM)");
   app.add_option("--effect", arguments.effect, "something that the plain model lacks")
@@ -69,7 +71,8 @@ BlindAnswer add_effect(const Arguments& arguments, SimulationConfig& config) {
   return answer;
 }
 
-odomcalib::Result<void> write_recording(const odomcalib::Recording& recording, const std::filesystem::path& path) {
+odomcalib::Result<void> write_recording(const odomcalib::Recording& recording,
+                                        const std::filesystem::path& path) {
   const std::string form = path.extension();
   if (form == ".bag") {
     const RosLog log = ros_log(recording, {.wire = Wire::ros1});

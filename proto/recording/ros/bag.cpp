@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <map>
 
-#include "proto/wire/byte_reader.hpp"
 #include "proto/recording/ros/containers.hpp"
 #include "proto/recording/ros/unpack.hpp"
+#include "proto/wire/byte_reader.hpp"
 
 namespace odomcalib::ros {
 namespace {
@@ -11,7 +11,14 @@ namespace {
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-enum Op : std::uint8_t { kMessage = 2, kBagHeader = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
+enum Op : std::uint8_t {
+  kMessage = 2,
+  kBagHeader = 3,
+  kIndex = 4,
+  kChunk = 5,
+  kChunkInfo = 6,
+  kConnection = 7
+};
 
 /// "name=value" fields, each behind its length.
 class Fields {
@@ -96,9 +103,7 @@ class BagReader {
   void read_chunk(const Record& chunk) {
     const auto packing = packing_named(chunk.header.text("compression"));
     const auto size = chunk.header.number<std::uint32_t>("size");
-    if (!packing || !size)
-      return collector_.discard("chunk",
-                                "packed in a way that is not known");
+    if (!packing || !size) return collector_.discard("chunk", "packed in a way that is not known");
     if (*packing == Packing::none) return read_records(chunk.data);
     const Unpacked unpacked = collector_.unpacker()(*packing, chunk.data, *size);
     if (!unpacked.whole) collector_.discard("chunk", unpacked.problem);
@@ -136,8 +141,8 @@ class BagReader {
     const auto time = record.header.number<std::uint64_t>("time");  // seconds, then nanoseconds
     const auto topic = id ? topics_.find(*id) : topics_.end();
     if (topic == topics_.end() || !time) return collector_.discard("message", "without a topic or a time");
-    const auto received = static_cast<std::int64_t>(*time & 0xFFFFFFFFU) * kSecond +
-                          static_cast<std::int64_t>(*time >> 32U);
+    const auto received =
+        static_cast<std::int64_t>(*time & 0xFFFFFFFFU) * kSecond + static_cast<std::int64_t>(*time >> 32U);
     collector_.message(topic->second, received, record.data);
   }
 

@@ -16,7 +16,8 @@ constexpr std::size_t kLongestName = 255;
 /// Names are printed: what no ROS name has (control characters, bytes beyond ASCII) goes.
 std::string printable(std::string_view name) {
   std::string out(name.substr(0, kLongestName));
-  std::replace_if(out.begin(), out.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return out;
 }
 
@@ -101,8 +102,8 @@ bool add(Topic& topic, std::int64_t received, std::string_view bytes) {
 }  // namespace
 
 std::size_t Collector::topic(const TopicHeader& described) {
-  const TopicHeader header{printable(described.name), printable(described.type), printable(described.encoding),
-                           printable(described.md5)};
+  const TopicHeader header{printable(described.name), printable(described.type),
+                           printable(described.encoding), printable(described.md5)};
   const auto key = std::pair(header.name, header.type + '\n' + header.encoding + '\n' + header.md5);
   const auto known = by_name_.find(key);
   if (known != by_name_.end()) return known->second;

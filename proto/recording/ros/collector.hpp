@@ -1,4 +1,5 @@
-// What containers hold, by topic: every message that can be decoded, and a count of every other. Internal to proto/.
+// What containers hold, by topic: every message that can be decoded, and a count of every other. Internal to
+// proto/.
 #pragma once
 
 #include <cstdint>
@@ -39,9 +40,9 @@ struct Topic {
   TopicHeader header;
   Kind kind = Kind::none;  ///< none: cannot be read
   Encoding encoding = Encoding::cdr;
-  std::string problem;        ///< why a type that is known by name cannot be read
-  std::size_t count = 0;      ///< messages in the container
-  std::size_t malformed = 0;  ///< that did not hold what the type says
+  std::string problem;             ///< why a type that is known by name cannot be read
+  std::size_t count = 0;           ///< messages in the container
+  std::size_t malformed = 0;       ///< that did not hold what the type says
   std::string frame, child_frame;  ///< of the first message
 
   // Of its kind.
@@ -54,8 +55,8 @@ struct Topic {
 
 class Collector {
  public:
-  /// A topic as one connection of one file describes it; the same name and type are the same topic. The number
-  /// goes with the messages. kTooMany when a file has more of them than any robot.
+  /// A topic as one connection of one file describes it; the same name and type are the same topic. The
+  /// number goes with the messages. kTooMany when a file has more of them than any robot.
   std::size_t topic(const TopicHeader& header);
   static constexpr std::size_t kTooMany = SIZE_MAX;
 

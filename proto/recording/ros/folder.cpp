@@ -57,8 +57,8 @@ Result<FolderFiles> files_of(const std::filesystem::path& folder) {
   }
   if (failed) return Error{ErrorCode::io, "cannot be listed: " + failed.message(), folder.string(), ""};
   if (splits.empty())
-    return Error{ErrorCode::format, "is a folder without a rosbag2 recording (.db3 or .mcap)", folder.string(),
-                 "name a recording, or the folder that ros2 bag record made"};
+    return Error{ErrorCode::format, "is a folder without a rosbag2 recording (.db3 or .mcap)",
+                 folder.string(), "name a recording, or the folder that ros2 bag record made"};
   std::sort(splits.begin(), splits.end(), [](const Split& a, const Split& b) {
     return std::pair(a.number, a.path.filename()) < std::pair(b.number, b.path.filename());
   });

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include "proto/wire/byte_reader.hpp"
 #include "proto/recording/ros/containers.hpp"
 #include "proto/recording/ros/unpack.hpp"
+#include "proto/wire/byte_reader.hpp"
 
 namespace odomcalib::ros {
 namespace {
@@ -43,8 +43,7 @@ std::optional<Packing> packing_named(const std::string& name) {
 }
 
 std::uint32_t crc_of(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 class McapReader {

@@ -88,7 +88,8 @@ class MessageReader {
     const auto representation = reader_.big_endian<std::uint16_t>();
     reader_.take(2);  // options
     const bool xcdr2 = representation == 6 || representation == 7;
-    if (representation > 1 && !xcdr2) reader_.fail();  // parameter lists and delimited data: no message has them
+    if (representation > 1 && !xcdr2)
+      reader_.fail();  // parameter lists and delimited data: no message has them
     order_ = representation % 2 == 0 ? std::endian::big : std::endian::little;
     if (xcdr2) largest_alignment_ = 4;
   }
@@ -114,7 +115,8 @@ bool read_pose(MessageReader& reader, PoseMessage& out) {
   out.y = position[1];
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!(std::abs(norm - 1.0) <= kQuaternionTolerance)) return false;
-  out.yaw = std::atan2(2.0 * (q[3] * q[2] + q[0] * q[1]), q[3] * q[3] + q[0] * q[0] - q[1] * q[1] - q[2] * q[2]);
+  out.yaw =
+      std::atan2(2.0 * (q[3] * q[2] + q[0] * q[1]), q[3] * q[3] + q[0] * q[0] - q[1] * q[1] - q[2] * q[2]);
   return true;
 }
 

@@ -1,8 +1,8 @@
 // The ROS messages that calibration can use, decoded from their bytes. Internal to proto/.
 //
-// ROS 1: little-endian, packed, strings and sequences behind a 32-bit count (wiki.ros.org/msg). ROS 2: CDR behind
-// four bytes that name the representation (DDS-RTPS 2.5, 10.2.1.2), numbers aligned to their size (XCDR1) or to
-// at most four bytes (XCDR2), strings with their terminating zero.
+// ROS 1: little-endian, packed, strings and sequences behind a 32-bit count (wiki.ros.org/msg). ROS 2: CDR
+// behind four bytes that name the representation (DDS-RTPS 2.5, 10.2.1.2), numbers aligned to their size
+// (XCDR1) or to at most four bytes (XCDR2), strings with their terminating zero.
 #pragma once
 
 #include <cstdint>

@@ -4,14 +4,14 @@
 #include <map>
 #include <memory>
 
-#include "proto/wire/byte_reader.hpp"
 #include "proto/recording/ros/containers.hpp"
+#include "proto/wire/byte_reader.hpp"
 
 namespace odomcalib::ros {
 namespace {
 
-// Steps of SQLite's machine for each byte of the file. A row needs some fifteen and has twenty bytes at least, so a
-// sound file needs less than one; a page that refers to itself would go on for ever.
+// Steps of SQLite's machine for each byte of the file. A row needs some fifteen and has twenty bytes at
+// least, so a sound file needs less than one; a page that refers to itself would go on for ever.
 constexpr std::int64_t kStepsPerByte = 8;
 constexpr int kStepsAtATime = 1000;
 constexpr std::int64_t kStepsAtLeast = 1'000'000;
@@ -45,8 +45,8 @@ void set_number(std::string& bytes, std::size_t at, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<char>(value >> (24U - 8U * i));
 }
 
-/// A copy whose header describes what is there, for files that were cut off and for those that a writer with a
-/// write-ahead log left (SQLite cannot open these in memory).
+/// A copy whose header describes what is there, for files that were cut off and for those that a writer with
+/// a write-ahead log left (SQLite cannot open these in memory).
 std::string mended(std::string_view bytes) {
   std::string out(bytes.substr(0, whole_pages(bytes) * page_size(bytes)));
   if (out.size() < kHeaderSize) return out;
@@ -77,7 +77,8 @@ class Rosbag2Reader {
       bytes_ = mended_;
     }
     if (!open()) return no_tables("cannot be opened: " + message());
-    if (!is_table("topics") || !is_table("messages")) return no_tables("has no tables \"topics\" and \"messages\"");
+    if (!is_table("topics") || !is_table("messages"))
+      return no_tables("has no tables \"topics\" and \"messages\"");
     if (auto error = read_topics()) return error;
     read_messages();
     return std::nullopt;
@@ -100,7 +101,8 @@ class Rosbag2Reader {
     sqlite3_db_config(raw, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
     sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-    sqlite3_limit(raw, SQLITE_LIMIT_LENGTH, static_cast<int>(std::min<std::size_t>(bytes_.size(), 1'000'000'000)));
+    sqlite3_limit(raw, SQLITE_LIMIT_LENGTH,
+                  static_cast<int>(std::min<std::size_t>(bytes_.size(), 1'000'000'000)));
     patience_.rounds =
         std::max(kStepsAtLeast, kStepsPerByte * static_cast<std::int64_t>(bytes_.size())) / kStepsAtATime;
     sqlite3_progress_handler(raw, kStepsAtATime, Patience::lose, &patience_);

@@ -4,9 +4,10 @@ namespace odomcalib {
 namespace {
 
 Error not_understood(const std::string& text) {
-  return {ErrorCode::usage, "\"" + text + "\" is no choice of a topic", "--topic",
-          "write PART=TOPIC or wheels=TOPIC:LEFT,RIGHT; parts are scan, wheels, wheel_speeds, odometry, gyro and "
-          "pose"};
+  return {
+      ErrorCode::usage, "\"" + text + "\" is no choice of a topic", "--topic",
+      "write PART=TOPIC or wheels=TOPIC:LEFT,RIGHT; parts are scan, wheels, wheel_speeds, odometry, gyro and "
+      "pose"};
 }
 
 }  // namespace

@@ -7,8 +7,9 @@
 namespace odomcalib::ros {
 namespace {
 
-// Stamps and times of reception differ by the way of a message through the robot, at most as much as a recording
-// may be out of order. Topics whose differences lie farther apart are stamped by clocks that do not know each other.
+// Stamps and times of reception differ by the way of a message through the robot, at most as much as a
+// recording may be out of order. Topics whose differences lie farther apart are stamped by clocks that do not
+// know each other.
 constexpr std::int64_t kClocksApart_ns = 1'000'000'000;
 
 enum class Part { scan, wheels, wheel_speeds, odometry, gyro, pose };
@@ -63,7 +64,8 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 std::string described(const Topic& topic) {
-  std::string out = topic.header.name + " (" + topic.header.type + ", " + std::to_string(topic.count) + " messages";
+  std::string out =
+      topic.header.name + " (" + topic.header.type + ", " + std::to_string(topic.count) + " messages";
   if (!topic.problem.empty()) out += ", not read: " + topic.problem;
   return out + ")";
 }
@@ -164,7 +166,9 @@ class Choosing {
   [[nodiscard]] Error usage(const std::string& what, const std::string& remedy) const {
     return {ErrorCode::usage, what, where_, remedy};
   }
-  [[nodiscard]] std::string topics_there() const { return "topics there are: " + list_of(collector_.topics()); }
+  [[nodiscard]] std::string topics_there() const {
+    return "topics there are: " + list_of(collector_.topics());
+  }
 
   std::vector<Topic*> candidates(Part part) {
     std::vector<Topic*> out;
@@ -182,8 +186,10 @@ class Choosing {
 
   std::optional<Error> take_chosen(const TopicChoice& choice) {
     const auto part = part_named(choice.part);
-    if (!part) return usage("there is no part \"" + choice.part + "\"", "parts are scan, wheels, wheel_speeds, "
-                            "odometry, gyro and pose");
+    if (!part)
+      return usage("there is no part \"" + choice.part + "\"",
+                   "parts are scan, wheels, wheel_speeds, "
+                   "odometry, gyro and pose");
     const bool both = (*part == Part::wheels && chosen_[Part::wheel_speeds] != nullptr) ||
                       (*part == Part::wheel_speeds && chosen_[Part::wheels] != nullptr);
     if (chosen_[*part] != nullptr || both)
@@ -209,12 +215,12 @@ class Choosing {
 
   std::optional<Error> take_joints(const Topic& topic, const TopicChoice& choice) {
     const auto names = joint_names(topic);
-    const std::string remedy =
-        "name both: --topic " + choice.part + "=" + topic.header.name + ":LEFT,RIGHT; joints there are: " +
-        joined(names);
+    const std::string remedy = "name both: --topic " + choice.part + "=" + topic.header.name +
+                               ":LEFT,RIGHT; joints there are: " + joined(names);
     if (choice.joints.empty()) {
       const auto found = joints_by_name(topic);
-      if (!found) return usage("the joints of " + topic.header.name + " do not tell which are the wheels", remedy);
+      if (!found)
+        return usage("the joints of " + topic.header.name + " do not tell which are the wheels", remedy);
       chosen_.joints = *found;
       return std::nullopt;
     }
@@ -236,14 +242,16 @@ class Choosing {
       chosen_[Part::wheels] = joints.front();
       chosen_.joints = *joints_by_name(*joints.front());
       for (const Topic* topic : odometry)
-        remarks_.push_back(topic->header.name + " not taken: wheel angles are finer (take it with --topic odometry=" +
-                           topic->header.name + ")");
+        remarks_.push_back(
+            topic->header.name +
+            " not taken: wheel angles are finer (take it with --topic odometry=" + topic->header.name + ")");
       return std::nullopt;
     }
     if (odometry.size() > 1) return ambiguous(Part::odometry, odometry);
     if (odometry.empty())
-      return Error{ErrorCode::empty, "no topic tells the motion of the wheels", where_,
-                   "record " + types_for(Part::wheels) + " or " + types_for(Part::odometry) + "; " + topics_there()};
+      return Error{
+          ErrorCode::empty, "no topic tells the motion of the wheels", where_,
+          "record " + types_for(Part::wheels) + " or " + types_for(Part::odometry) + "; " + topics_there()};
     chosen_[Part::odometry] = odometry.front();
     return std::nullopt;
   }
@@ -268,7 +276,8 @@ class Choosing {
     if (chosen_[Part::scan] == nullptr && poses.size() == 1) chosen_[Part::pose] = poses.front();
     for (const Topic* topic : poses)
       if (topic != chosen_[Part::pose])
-        remarks_.push_back(topic->header.name + " not taken: the scans are the reference (poses of the robot " +
+        remarks_.push_back(topic->header.name +
+                           " not taken: the scans are the reference (poses of the robot " +
                            "replace them with --topic pose=" + topic->header.name + ")");
     if (chosen_[Part::scan] == nullptr && chosen_[Part::pose] == nullptr)
       remarks_.push_back("no topic with scans or poses; " + topics_there());
@@ -303,14 +312,18 @@ void each_time(const Topic& topic, Visit visit) {
 }
 
 /// The time that a header states; that of reception where it states none.
-std::int64_t stamp_or_reception(std::int64_t stamp, std::int64_t received) { return stamp == 0 ? received : stamp; }
+std::int64_t stamp_or_reception(std::int64_t stamp, std::int64_t received) {
+  return stamp == 0 ? received : stamp;
+}
 
-/// Upper median of reception less stamp; 0 for a topic without messages. Differences that no clock shows wrap.
+/// Upper median of reception less stamp; 0 for a topic without messages. Differences that no clock shows
+/// wrap.
 std::int64_t lag_of(const Topic& topic) {
   std::vector<std::int64_t> lags;
   each_time(topic, [&](std::int64_t stamp, std::int64_t received) {
-    lags.push_back(static_cast<std::int64_t>(static_cast<std::uint64_t>(received) -
-                                             static_cast<std::uint64_t>(stamp_or_reception(stamp, received))));
+    lags.push_back(
+        static_cast<std::int64_t>(static_cast<std::uint64_t>(received) -
+                                  static_cast<std::uint64_t>(stamp_or_reception(stamp, received))));
   });
   if (lags.empty()) return 0;
   const auto middle = lags.begin() + static_cast<std::ptrdiff_t>(lags.size() / 2);
@@ -381,15 +394,14 @@ void add_joints(RecordingBuilder& builder, const Topic& topic, const Joints& joi
 /// Some drivers publish speeds only.
 bool has_positions(const Topic& topic, const Joints& joints) {
   const auto at = places(topic, joints);
-  return std::any_of(topic.joints.begin(), topic.joints.end(), [&](const auto& one) {
-    return at[one.value.names] && !one.value.positions.empty();
-  });
+  return std::any_of(topic.joints.begin(), topic.joints.end(),
+                     [&](const auto& one) { return at[one.value.names] && !one.value.positions.empty(); });
 }
 
 void add_wheels(RecordingBuilder& builder, Chosen& chosen, const Clock& clock) {
   const auto tell = [&](const Topic& topic, const char* part) {
-    builder.choose(std::string(part) + ": joints " + chosen.joints.left + " (left) and " + chosen.joints.right +
-                   " (right) of " + described(topic));
+    builder.choose(std::string(part) + ": joints " + chosen.joints.left + " (left) and " +
+                   chosen.joints.right + " (right) of " + described(topic));
   };
   if (const Topic* topic = chosen[Part::wheels]) {
     const bool positions = has_positions(*topic, chosen.joints);
@@ -436,11 +448,11 @@ void tell_times(RecordingBuilder& builder, const Clock& clock) {
 /// What was there and is not used.
 void tell_rest(RecordingBuilder& builder, const Collector& collector, const Chosen& chosen) {
   for (const Topic& topic : collector.topics()) {
-    const bool taken =
-        std::find(chosen.topics.begin(), chosen.topics.end(), &topic) != chosen.topics.end();
+    const bool taken = std::find(chosen.topics.begin(), chosen.topics.end(), &topic) != chosen.topics.end();
     if (topic.kind == Kind::none)
-      builder.discard("message", topic.header.type + " is not read" +
-                                     (topic.problem.empty() ? "" : ": " + topic.problem), topic.count);
+      builder.discard(
+          "message", topic.header.type + " is not read" + (topic.problem.empty() ? "" : ": " + topic.problem),
+          topic.count);
     else if (!taken)
       builder.discard("message", topic.header.name + " was not taken", topic.count);
     else

@@ -69,7 +69,7 @@ Unpacked unpack_lz4(std::string_view packed, std::size_t limit) {
   if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)) != 0)
     return {{}, false, "cannot start unpacking"};
   const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> context(raw,
-                                                                            LZ4F_freeDecompressionContext);
+                                                                             LZ4F_freeDecompressionContext);
   return unpack_with(
       [&](std::string_view in, std::array<char, kStep>& out) -> Turn {
         std::size_t taken = in.size(), made = out.size();
@@ -115,8 +115,10 @@ Unpacked unpack(Packing packing, std::string_view packed, std::size_t limit) {
 
 Unpacked Unpacker::operator()(Packing packing, std::string_view packed, std::optional<std::uint64_t> stated) {
   if (stated && *stated > kLargestChunk)
-    return {{}, false, "states " + std::to_string(*stated) + " bytes, more than the limit of " +
-                           std::to_string(kLargestChunk)};
+    return {{},
+            false,
+            "states " + std::to_string(*stated) + " bytes, more than the limit of " +
+                std::to_string(kLargestChunk)};
   const std::size_t limit = stated ? static_cast<std::size_t>(*stated) : kLargestChunk;
   Unpacked piece = unpack(packing, packed, std::min(limit, left_));
   left_ -= piece.bytes.size();

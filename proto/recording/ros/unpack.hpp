@@ -18,8 +18,8 @@ inline constexpr std::size_t kLargestChunk = std::size_t{256} << 20;
 /// Of all that one recording unpacks to; the same as the limit of gzip files (gunzip).
 inline constexpr std::size_t kLargestRecording = std::size_t{4} << 30;
 
-/// Unpacks one stream (bz2; LZ4 frames; zstd frames), at most `limit` bytes. Memory grows with what really comes
-/// out, not with what a header states.
+/// Unpacks one stream (bz2; LZ4 frames; zstd frames), at most `limit` bytes. Memory grows with what really
+/// comes out, not with what a header states.
 Unpacked unpack(Packing packing, std::string_view packed, std::size_t limit);
 
 /// True when the bytes begin with the magic of a zstd frame (RFC 8878).

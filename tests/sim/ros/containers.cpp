@@ -57,8 +57,8 @@ std::string connection(const RosLog& log, std::size_t topic) {
 
 struct BagChunk {
   std::string bytes;
-  std::map<std::size_t, std::string> index;        // by topic: time and place
-  std::map<std::size_t, std::uint32_t> counts;     // by topic
+  std::map<std::size_t, std::string> index;         // by topic: time and place
+  std::map<std::size_t, std::uint32_t> counts;      // by topic
   std::int64_t begin = INT64_MAX, end = INT64_MIN;  // ns
 
   void add(const RosMessage& message) {
@@ -99,7 +99,8 @@ class BagWriter {
     static const std::map<RosPacking, std::string> kNames{
         {RosPacking::none, "none"}, {RosPacking::bz2, "bz2"}, {RosPacking::lz4, "lz4"}};
     std::string counts;
-    for (const auto& [topic, count] : chunk.counts) counts += raw(static_cast<std::uint32_t>(topic)) + raw(count);
+    for (const auto& [topic, count] : chunk.counts)
+      counts += raw(static_cast<std::uint32_t>(topic)) + raw(count);
     infos_ += record(op(6) + field("ver", raw(std::uint32_t{1})) + field("chunk_pos", raw(place())) +
                          field("start_time", bag_time(chunk.begin)) + field("end_time", bag_time(chunk.end)) +
                          field("count", raw(static_cast<std::uint32_t>(chunk.counts.size()))),
@@ -136,21 +137,22 @@ std::string mcap_channel(const RosLog& log, std::size_t topic) {
   const bool ros1 = log.wire == Wire::ros1;
   const auto id = static_cast<std::uint16_t>(topic + 1);
   return mcap_record(3, raw(id) + sized(ros1 ? about.type : ros2_type(about.type)) +
-                            sized(ros1 ? "ros1msg" : "ros2msg") + sized(definition_of(about.type, log.wire))) +
+                            sized(ros1 ? "ros1msg" : "ros2msg") +
+                            sized(definition_of(about.type, log.wire))) +
          mcap_record(4, raw(id) + raw(id) + sized(about.name) + sized(ros1 ? "ros1" : "cdr") + sized(""));
 }
 
 std::string mcap_message(const RosMessage& message, std::uint32_t sequence) {
   const auto time = static_cast<std::uint64_t>(message.received_ns);
-  return mcap_record(5, raw(static_cast<std::uint16_t>(message.topic + 1)) + raw(sequence) + raw(time) + raw(time) +
-                            message.bytes);
+  return mcap_record(5, raw(static_cast<std::uint16_t>(message.topic + 1)) + raw(sequence) + raw(time) +
+                            raw(time) + message.bytes);
 }
 
 std::string mcap_chunk(const std::string& records, RosPacking packing, std::int64_t begin, std::int64_t end) {
   const std::string name = packing == RosPacking::lz4 ? "lz4" : packing == RosPacking::zstd ? "zstd" : "";
   const std::string bytes = packed(packing, records);
-  const auto crc = static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const Bytef*>(records.data()), records.size()));
+  const auto crc =
+      static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(records.data()), records.size()));
   return mcap_record(6, raw(begin) + raw(end) + raw(static_cast<std::uint64_t>(records.size())) + raw(crc) +
                             sized(name) + raw(static_cast<std::uint64_t>(bytes.size())) + bytes);
 }
@@ -211,10 +213,13 @@ std::string packed(RosPacking packing, const std::string& bytes) {
   return out;
 }
 
-std::string write_bag(const RosLog& log, const BagOptions& options) { return BagWriter(log, options).write(); }
+std::string write_bag(const RosLog& log, const BagOptions& options) {
+  return BagWriter(log, options).write();
+}
 
 std::string write_mcap(const RosLog& log, const McapOptions& options) {
-  std::string out = std::string(kMcapMagic) + mcap_record(1, sized(log.wire == Wire::ros1 ? "ros1" : "ros2") + sized("simulated"));
+  std::string out = std::string(kMcapMagic) +
+                    mcap_record(1, sized(log.wire == Wire::ros1 ? "ros1" : "ros2") + sized("simulated"));
   std::vector<bool> described(log.topics.size());
   std::string records;
   std::int64_t begin = 0;
@@ -242,12 +247,13 @@ void write_rosbag2(const RosLog& log, const std::filesystem::path& path, const R
   std::filesystem::remove(path);
   Sqlite database(path);
   database.run(options.write_ahead_log ? "PRAGMA journal_mode=WAL" : "PRAGMA journal_mode=MEMORY");
-  database.run("PRAGMA synchronous=OFF; BEGIN;"
-               "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,"
-               "  serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);"
-               "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,"
-               "  timestamp INTEGER NOT NULL, data BLOB NOT NULL);"
-               "CREATE INDEX timestamp_idx ON messages (timestamp ASC);");
+  database.run(
+      "PRAGMA synchronous=OFF; BEGIN;"
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,"
+      "  serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);"
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,"
+      "  timestamp INTEGER NOT NULL, data BLOB NOT NULL);"
+      "CREATE INDEX timestamp_idx ON messages (timestamp ASC);");
   for (std::size_t i = 0; i < log.topics.size(); ++i)
     database.run("INSERT INTO topics VALUES(" + std::to_string(i + 1) + ", '" + log.topics[i].name + "', '" +
                  ros2_type(log.topics[i].type) + "', 'cdr', '')");

@@ -1,5 +1,5 @@
-// The files that ROS records into, written as their format pages say (wiki.ros.org/Bags/Format/2.0, mcap.dev/spec,
-// rosbag2_storage_sqlite3). Shares no code with the readers in proto/.
+// The files that ROS records into, written as their format pages say (wiki.ros.org/Bags/Format/2.0,
+// mcap.dev/spec, rosbag2_storage_sqlite3). Shares no code with the readers in proto/.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ std::string packed(RosPacking packing, const std::string& bytes);
 struct BagOptions {
   RosPacking packing = RosPacking::none;  ///< of chunks: none, bz2, lz4
   std::size_t chunk_bytes = 768 * 1024;   ///< as rosbag record
-  bool closed = true;  ///< with index; a recorder that was killed leaves a file without
+  bool closed = true;                     ///< with index; a recorder that was killed leaves a file without
 };
 std::string write_bag(const RosLog& log, const BagOptions& options = {});
 

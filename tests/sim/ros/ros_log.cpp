@@ -46,7 +46,8 @@ const std::map<std::string, std::string>& definitions() {
 }
 
 std::string own_definition(const std::string& type, Wire wire) {
-  if (wire != Wire::ros1 && type == "std_msgs/Header") return "builtin_interfaces/Time stamp\nstring frame_id\n";
+  if (wire != Wire::ros1 && type == "std_msgs/Header")
+    return "builtin_interfaces/Time stamp\nstring frame_id\n";
   if (type == "builtin_interfaces/Time") return "int32 sec\nuint32 nanosec\n";
   const auto found = definitions().find(type);
   return found == definitions().end() ? "" : found->second;
@@ -68,10 +69,10 @@ void collect_parts(const std::string& type, Wire wire, std::vector<std::string>&
 class Encoder {
  public:
   explicit Encoder(Wire wire) : wire_(wire) {
-    const char representation = wire == Wire::cdr_big       ? 0
-                                : wire == Wire::cdr_little  ? 1
-                                : wire == Wire::cdr2_big    ? 6
-                                                            : 7;
+    const char representation = wire == Wire::cdr_big      ? 0
+                                : wire == Wire::cdr_little ? 1
+                                : wire == Wire::cdr2_big   ? 6
+                                                           : 7;
     if (is_cdr()) bytes_ = {0, representation, 0, 0};
   }
 
@@ -136,9 +137,9 @@ void add_joints(RosLog& log, const Recording& recording, const RosDrive& drive) 
   for (const TickSample& sample : recording.ticks) {
     const std::int64_t stamp = stamp_of(drive, sample.t);
     log.add("/joint_states", "sensor_msgs/JointState", stamp + drive.latency_ns,
-            encode_joints(drive.wire, {stamp, ""}, {"lift_joint", "wheel_right_joint", "wheel_left_joint"},
-                          {0.1, rad * static_cast<double>(sample.right), rad * static_cast<double>(sample.left)},
-                          {}));
+            encode_joints(
+                drive.wire, {stamp, ""}, {"lift_joint", "wheel_right_joint", "wheel_left_joint"},
+                {0.1, rad * static_cast<double>(sample.right), rad * static_cast<double>(sample.left)}, {}));
   }
 }
 
@@ -150,7 +151,8 @@ void add_odometry(RosLog& log, const Recording& recording, const RosDrive& drive
     if (last != nullptr) {
       const double turn = std::numbers::pi / robot.ticks_per_rev;
       const double left = turn * robot.left_wheel_diameter * static_cast<double>(sample.left - last->left);
-      const double right = turn * robot.right_wheel_diameter * static_cast<double>(sample.right - last->right);
+      const double right =
+          turn * robot.right_wheel_diameter * static_cast<double>(sample.right - last->right);
       const double yaw = (right - left) / robot.track_width;
       pose[0] += 0.5 * (left + right) * std::cos(pose[2] + 0.5 * yaw);
       pose[1] += 0.5 * (left + right) * std::sin(pose[2] + 0.5 * yaw);
@@ -189,7 +191,8 @@ std::size_t RosLog::topic(const std::string& name, const std::string& type) {
   return topics.size() - 1;
 }
 
-void RosLog::add(const std::string& name, const std::string& type, std::int64_t received_ns, std::string bytes) {
+void RosLog::add(const std::string& name, const std::string& type, std::int64_t received_ns,
+                 std::string bytes) {
   messages.push_back({topic(name, type), received_ns, std::move(bytes)});
 }
 
@@ -250,7 +253,14 @@ std::string encode_imu(Wire wire, const RosHeader& header, double yaw_rate, doub
 
 std::string encode_odometry(Wire wire, const RosHeader& header, const std::string& child,
                             const std::array<double, 3>& pose) {
-  return Encoder(wire).header(header).text(child).pose(pose).repeated(0.0, 36).repeated(0.0, 6).repeated(0.0, 36).take();
+  return Encoder(wire)
+      .header(header)
+      .text(child)
+      .pose(pose)
+      .repeated(0.0, 36)
+      .repeated(0.0, 6)
+      .repeated(0.0, 36)
+      .take();
 }
 
 std::string encode_pose(Wire wire, const RosHeader& header, const std::array<double, 3>& pose) {

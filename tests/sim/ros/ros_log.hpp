@@ -1,5 +1,5 @@
-// A robot's drive as ROS would have recorded it: messages by topic, encoded for ROS 1 or ROS 2. Written from the
-// message definitions alone; shares no code with the readers in proto/.
+// A robot's drive as ROS would have recorded it: messages by topic, encoded for ROS 1 or ROS 2. Written from
+// the message definitions alone; shares no code with the readers in proto/.
 #pragma once
 
 #include <array>
@@ -61,8 +61,8 @@ std::string encode_pose(Wire wire, const RosHeader& header, const std::array<dou
 
 struct RosDrive {
   Wire wire = Wire::ros1;
-  bool joints = true;           ///< /joint_states, with the wheels among other joints
-  bool odometry = true;         ///< /odom, integrated from the ticks with the nominal values
+  bool joints = true;    ///< /joint_states, with the wheels among other joints
+  bool odometry = true;  ///< /odom, integrated from the ticks with the nominal values
   std::int64_t start_ns = 1'700'000'000'000'000'000;  ///< of the recording's clock
   std::int64_t latency_ns = 3'000'000;                ///< from stamp to reception
 };

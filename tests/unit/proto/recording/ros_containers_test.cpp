@@ -42,13 +42,16 @@ std::vector<Form> forms() {
   }
   for (const auto& [name, packing] :
        {std::pair("plain", RosPacking::none), {"lz4", RosPacking::lz4}, {"zstd", RosPacking::zstd}})
-    for (const auto& [wire_name, wire] :
-         {std::pair("ros1", Wire::ros1), {"cdr_little", Wire::cdr_little}, {"cdr_big", Wire::cdr_big},
-          {"cdr2_little", Wire::cdr2_little}, {"cdr2_big", Wire::cdr2_big}})
+    for (const auto& [wire_name, wire] : {std::pair("ros1", Wire::ros1),
+                                          {"cdr_little", Wire::cdr_little},
+                                          {"cdr_big", Wire::cdr_big},
+                                          {"cdr2_little", Wire::cdr2_little},
+                                          {"cdr2_big", Wire::cdr2_big}})
       out.push_back({std::string("mcap_") + name + "_" + wire_name,
                      write_mcap(small_log(wire), {.packing = packing, .chunk_bytes = kChunk})});
   out.push_back({"mcap_without_chunks", write_mcap(small_log(Wire::cdr_little), {.chunk_bytes = 0})});
-  out.push_back({"mcap_open", write_mcap(small_log(Wire::cdr_little), {.chunk_bytes = kChunk, .closed = false})});
+  out.push_back(
+      {"mcap_open", write_mcap(small_log(Wire::cdr_little), {.chunk_bytes = kChunk, .closed = false})});
   out.push_back({"rosbag2", rosbag2_bytes(Wire::cdr_little)});
   out.push_back({"rosbag2_big", rosbag2_bytes(Wire::cdr_big)});
   out.push_back({"rosbag2_packed_messages", rosbag2_bytes(Wire::cdr_little, {.packed_messages = true})});
@@ -63,7 +66,8 @@ TEST(RosContainers, hold_the_same_drive_in_every_packing_and_encoding) {
     const auto result = read_ros(form.bytes);
     ASSERT_TRUE(result.ok()) << result.error().text();
     expect_small_drive(result.value(), MotionSource::wheels);
-    EXPECT_TRUE(told(result.value(), "joints wheel_left_joint (left) and wheel_right_joint (right) of /joint_states"));
+    EXPECT_TRUE(told(result.value(),
+                     "joints wheel_left_joint (left) and wheel_right_joint (right) of /joint_states"));
     EXPECT_TRUE(told(result.value(), "scan: /scan"));
     EXPECT_TRUE(told(result.value(), "/odom not taken"));
     EXPECT_EQ(discarded_like(result.value(), "message", "std_msgs/"), 1U) << list_discarded(result.value());
@@ -76,8 +80,8 @@ TEST(RosContainers, that_are_cut_off_give_what_is_whole) {
     SCOPED_TRACE(form.name);
     std::size_t most = 0;
     for (const double share : {0.35, 0.6, 0.85}) {
-      const auto result =
-          read_ros(form.bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(form.bytes.size()))));
+      const auto result = read_ros(
+          form.bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(form.bytes.size()))));
       ASSERT_TRUE(result.ok()) << share << result.error().text();
       const Recording& r = result.value();
       const std::size_t count = r.ticks.size();
@@ -144,7 +148,8 @@ TEST(RosContainers, a_folder_without_a_recording_is_named) {
 }
 
 TEST(RosContainers, a_write_ahead_log_beside_the_file_is_told) {
-  const auto path = test::write_file("with_log.db3", rosbag2_bytes(Wire::cdr_little, {.write_ahead_log = true}));
+  const auto path =
+      test::write_file("with_log.db3", rosbag2_bytes(Wire::cdr_little, {.write_ahead_log = true}));
   const auto log = path.string() + "-wal";
   std::ofstream(log) << "rows that are not in the file yet";
   const RobotDescription robot = test::ros_robot();
@@ -170,7 +175,7 @@ TEST(RosContainers, of_an_older_form_or_encrypted_say_what_to_do) {
   std::string bag = write_bag(small_log(Wire::ros1));
   const std::string plain = "conn_count=";
   // The header has no encryptor; one of the same length stands in for the count of connections.
-  bag.replace(bag.find(plain) , 15, "encryptor=aes12");
+  bag.replace(bag.find(plain), 15, "encryptor=aes12");
   const auto result = read_ros(bag);
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.error().text().find("encrypted"), std::string::npos) << result.error().text();

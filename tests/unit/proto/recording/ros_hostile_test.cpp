@@ -1,4 +1,5 @@
-// Files that mean harm: much out of little, counts of everything, loops. An answer in bounded time and memory.
+// Files that mean harm: much out of little, counts of everything, loops. An answer in bounded time and
+// memory.
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 #include <sys/resource.h>
@@ -37,7 +38,8 @@ std::string raw64(std::uint64_t value) {
 
 std::string mcap_chunk(const std::string& name, const std::string& bytes, std::uint64_t stated) {
   const std::string content = raw64(0) + raw64(0) + raw64(stated) + raw32(0) +
-                              raw32(static_cast<std::uint32_t>(name.size())) + name + raw64(bytes.size()) + bytes;
+                              raw32(static_cast<std::uint32_t>(name.size())) + name + raw64(bytes.size()) +
+                              bytes;
   return std::string(1, '\x06') + raw64(content.size()) + content;
 }
 
@@ -74,8 +76,8 @@ TEST(HostileRos, bombs_in_chunks_cost_neither_memory_nor_the_rest_of_the_file) {
   const long before = peak_memory();
   std::string chunks;
   const std::string bomb = sim::packed(RosPacking::zstd, std::string(64 << 20, '\0'));
-  for (int i = 0; i < 20; ++i) chunks += mcap_chunk("zstd", bomb, 1000);          // more than stated
-  for (int i = 0; i < 20; ++i) chunks += mcap_chunk("zstd", bomb, 1ULL << 60U);    // states beyond all limits
+  for (int i = 0; i < 20; ++i) chunks += mcap_chunk("zstd", bomb, 1000);         // more than stated
+  for (int i = 0; i < 20; ++i) chunks += mcap_chunk("zstd", bomb, 1ULL << 60U);  // states beyond all limits
   chunks += mcap_chunk("zstd", "no zstd at all", 100) + mcap_chunk("brotli", "x", 1) + mcap_chunk("", "x", 1);
   const auto result = read_ros(mcap_with(chunks));
   ASSERT_TRUE(result.ok()) << result.error().text();
@@ -134,7 +136,8 @@ TEST(HostileRos, names_of_joints_that_always_differ_are_bounded) {
   sim::RosLog log = small_log(Wire::cdr_little);
   for (int i = 0; i < 5000; ++i)
     log.add("/joint_states", "sensor_msgs/JointState", 1'700'000'000'000'000'000 + i,
-            encode_joints(log.wire, {1'700'000'000'000'000'000 + i, ""}, {"joint" + std::to_string(i)}, {0.0}, {}));
+            encode_joints(log.wire, {1'700'000'000'000'000'000 + i, ""}, {"joint" + std::to_string(i)}, {0.0},
+                          {}));
   const auto result = read_ros(write_mcap(log));
   ASSERT_TRUE(result.ok()) << result.error().text();
   EXPECT_GE(discarded_like(result.value(), "message", "/joint_states: does not hold"), 4000U);
@@ -160,7 +163,8 @@ std::string database_of(const std::string& sql) {
   sqlite3* opened = nullptr;
   EXPECT_EQ(sqlite3_open(path.c_str(), &opened), SQLITE_OK);
   const Database database(opened, sqlite3_close);
-  EXPECT_EQ(sqlite3_exec(opened, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(opened);
+  EXPECT_EQ(sqlite3_exec(opened, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+      << sqlite3_errmsg(opened);
   std::string bytes = test::bytes_of(path);
   std::filesystem::remove(path);
   return bytes;
@@ -178,16 +182,18 @@ void expect_answer(const std::string& bytes) {
 }
 
 TEST(HostileRos, views_that_never_end_are_no_tables) {
-  expect_answer(database_of(std::string(kTopics) +
-                            "CREATE VIEW messages AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
-                            " SELECT i AS id, 1 AS topic_id, i AS timestamp, zeroblob(1000000) AS data FROM n;"));
+  expect_answer(
+      database_of(std::string(kTopics) +
+                  "CREATE VIEW messages AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
+                  " SELECT i AS id, 1 AS topic_id, i AS timestamp, zeroblob(1000000) AS data FROM n;"));
 }
 
 TEST(HostileRos, computed_columns_make_no_large_rows) {
-  expect_answer(database_of(std::string(kTopics) +
-                            "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER,"
-                            " data BLOB AS (zeroblob(900000000)));"
-                            "INSERT INTO messages(topic_id, timestamp) VALUES(1, 1), (1, 2), (1, 3);"));
+  expect_answer(
+      database_of(std::string(kTopics) +
+                  "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER,"
+                  " data BLOB AS (zeroblob(900000000)));"
+                  "INSERT INTO messages(topic_id, timestamp) VALUES(1, 1), (1, 2), (1, 3);"));
 }
 
 /// Pages of the tree of messages that name each other as children.

@@ -84,7 +84,8 @@ inline bool told(const Recording& recording, const std::string& words) {
   return false;
 }
 
-inline std::size_t discarded_like(const Recording& recording, const std::string& what, const std::string& words) {
+inline std::size_t discarded_like(const Recording& recording, const std::string& what,
+                                  const std::string& words) {
   std::size_t count = 0;
   for (const auto& item : recording.discarded)
     if (item.what == what && item.reason.find(words) != std::string::npos) count += item.count;

@@ -37,13 +37,16 @@ void add_scan(sim::RosLog& log, const std::string& topic) {
 void add_pose(sim::RosLog& log, const std::string& topic, int count = 3) {
   for (int k = 0; k < count; ++k) {
     const std::int64_t time = kStart + 100 * kMillisecond * k;
-    log.add(topic, "geometry_msgs/PoseStamped", time, encode_pose(log.wire, {time, "map"}, {0.1 * k, 0.2, 0.3}));
+    log.add(topic, "geometry_msgs/PoseStamped", time,
+            encode_pose(log.wire, {time, "map"}, {0.1 * k, 0.2, 0.3}));
   }
 }
 
 /// Two wheels of a joint state with these names.
-sim::RosLog joints_log(const std::vector<std::string>& names, bool positions = true, bool velocities = false) {
-  sim::RosLog log = sim::ros_log(small_drive(), {.wire = Wire::cdr_little, .joints = false, .odometry = false});
+sim::RosLog joints_log(const std::vector<std::string>& names, bool positions = true,
+                       bool velocities = false) {
+  sim::RosLog log =
+      sim::ros_log(small_drive(), {.wire = Wire::cdr_little, .joints = false, .odometry = false});
   for (int k = 0; k < 50; ++k) {
     const std::int64_t time = kStart + 20 * kMillisecond * k;
     const std::vector<double> values(names.size(), 0.1 * k);
@@ -63,7 +66,8 @@ TEST(TopicChoice, is_read_in_all_its_forms) {
   ASSERT_TRUE(wheels.ok());
   EXPECT_EQ(wheels.value().joints, (std::vector<std::string>{"left_joint", "right_joint"}));
   EXPECT_TRUE(parse_topic_choice("wheels=/joint_states").ok());
-  for (const char* wrong : {"", "scan", "scan=", "camera=/x", "wheels=/joint_states:left", "scan=/scan:a,b", "=/x"}) {
+  for (const char* wrong :
+       {"", "scan", "scan=", "camera=/x", "wheels=/joint_states:left", "scan=/scan:a,b", "=/x"}) {
     const auto result = parse_topic_choice(wrong);
     ASSERT_FALSE(result.ok()) << wrong;
     EXPECT_EQ(result.error().code, ErrorCode::usage);
@@ -85,8 +89,8 @@ TEST(RosTopics, two_scanners_have_to_be_chosen_between) {
   sim::RosLog log = small_log(Wire::cdr_little);
   add_scan(log, "/rear/scan");
   expect_usage(read_ros(mcap(log)),
-               {"several topics could be the scan", "/scan (sensor_msgs/msg/LaserScan, 40 messages)", "/rear/scan",
-                "--topic scan="});
+               {"several topics could be the scan", "/scan (sensor_msgs/msg/LaserScan, 40 messages)",
+                "/rear/scan", "--topic scan="});
   const auto chosen = read_ros(mcap(log), {{"scan", "/scan", {}}});
   ASSERT_TRUE(chosen.ok()) << chosen.error().text();
   expect_small_drive(chosen.value(), MotionSource::wheels);
@@ -95,12 +99,14 @@ TEST(RosTopics, two_scanners_have_to_be_chosen_between) {
 
 TEST(RosTopics, that_do_not_exist_or_do_not_fit_are_refused_with_the_list_of_those_that_do) {
   const std::string bytes = mcap(small_log(Wire::cdr_little));
-  expect_usage(read_ros(bytes, {{"scan", "/laser", {}}}),
-               {"there is no topic \"/laser\"", "/scan (sensor_msgs/msg/LaserScan", "/rosout (std_msgs/msg/String"});
+  expect_usage(
+      read_ros(bytes, {{"scan", "/laser", {}}}),
+      {"there is no topic \"/laser\"", "/scan (sensor_msgs/msg/LaserScan", "/rosout (std_msgs/msg/String"});
   expect_usage(read_ros(bytes, {{"scan", "/odom", {}}}),
                {"/odom (nav_msgs/msg/Odometry", "cannot be the scan", "sensor_msgs/LaserScan"});
   expect_usage(read_ros(bytes, {{"scan", "/rosout", {}}}), {"cannot be the scan"});
-  expect_usage(read_ros(bytes, {{"scan", "/scan", {}}, {"scan", "/scan", {}}}), {"two topics are chosen as scan"});
+  expect_usage(read_ros(bytes, {{"scan", "/scan", {}}, {"scan", "/scan", {}}}),
+               {"two topics are chosen as scan"});
   expect_usage(read_ros(bytes, {{"wheels", "/joint_states", {}}, {"wheel_speeds", "/joint_states", {}}}),
                {"two topics are chosen"});
   expect_usage(read_ros(bytes, {{"wheels", "/joint_states", {"left", "wheel_right_joint"}}}),
@@ -114,14 +120,16 @@ TEST(RosTopics, other_recordings_have_none) {
 
 TEST(RosTopics, without_wheel_motion_are_refused_with_what_there_is) {
   sim::RosLog log = sim::ros_log(small_drive(), {.wire = Wire::ros1, .joints = false, .odometry = false});
-  expect_usage(read_ros(mcap(log)), {"no topic tells the motion", "/scan (sensor_msgs/LaserScan, 40 messages)"},
-               ErrorCode::empty);
+  expect_usage(read_ros(mcap(log)),
+               {"no topic tells the motion", "/scan (sensor_msgs/LaserScan, 40 messages)"}, ErrorCode::empty);
 }
 
 TEST(RosTopics, wheels_are_recognised_by_the_names_of_their_joints) {
   for (const std::vector<std::string>& names :
-       {std::vector<std::string>{"left_wheel_joint", "right_wheel_joint"}, {"wheel_right", "wheel_left"},
-        {"LeftDrive", "RightDrive"}, {"left_arm", "right_arm", "left_wheel", "right_wheel"}}) {
+       {std::vector<std::string>{"left_wheel_joint", "right_wheel_joint"},
+        {"wheel_right", "wheel_left"},
+        {"LeftDrive", "RightDrive"},
+        {"left_arm", "right_arm", "left_wheel", "right_wheel"}}) {
     const auto result = read_ros(mcap(joints_log(names)));
     ASSERT_TRUE(result.ok()) << names.front() << result.error().text();
     EXPECT_EQ(result.value().motion, MotionSource::wheels);
@@ -131,7 +139,8 @@ TEST(RosTopics, wheels_are_recognised_by_the_names_of_their_joints) {
         {"front_left_wheel", "front_right_wheel", "rear_left_wheel", "rear_right_wheel"}}) {
     const auto refused = read_ros(mcap(joints_log(names)));
     expect_usage(refused, {"no topic tells the motion"}, ErrorCode::empty);
-    const auto chosen = read_ros(mcap(joints_log(names)), {{"wheels", "/joint_states", {names[0], names[1]}}});
+    const auto chosen =
+        read_ros(mcap(joints_log(names)), {{"wheels", "/joint_states", {names[0], names[1]}}});
     ASSERT_TRUE(chosen.ok()) << chosen.error().text();
     EXPECT_EQ(chosen.value().ticks.size(), 50U);
     expect_usage(read_ros(mcap(joints_log(names)), {{"wheels", "/joint_states", {}}}),
@@ -157,8 +166,9 @@ TEST(RosTopics, joints_are_found_by_name_in_every_message) {
     const std::int64_t time = kStart + 20 * kMillisecond * k + 5 * kMillisecond;
     log.add("/joint_states", "sensor_msgs/JointState", time,
             encode_joints(log.wire, {time, ""}, {"elbow"}, {1.0}, {}));
-    log.add("/joint_states", "sensor_msgs/JointState", time + kMillisecond,
-            encode_joints(log.wire, {time + kMillisecond, ""}, {"right", "left"}, {0.1 * k, 0.1 * k + 0.01}, {}));
+    log.add(
+        "/joint_states", "sensor_msgs/JointState", time + kMillisecond,
+        encode_joints(log.wire, {time + kMillisecond, ""}, {"right", "left"}, {0.1 * k, 0.1 * k + 0.01}, {}));
   }
   const auto result = read_ros(mcap(log));
   ASSERT_TRUE(result.ok()) << result.error().text();

@@ -127,7 +127,8 @@ TEST(WheelMotion, speeds_are_held_until_the_next_line) {
   expect_same_motion(result.value(), counted, 6e-6);
 }
 
-/// Odometry as robots compute it: x and y along the heading in the middle of the step, or along the exact arc.
+/// Odometry as robots compute it: x and y along the heading in the middle of the step, or along the exact
+/// arc.
 std::string odometry_of(const std::vector<TickSample>& ticks, bool exact) {
   std::string text;
   double x = 0.0, y = 0.0, yaw = 0.0;
@@ -198,27 +199,31 @@ TEST(WheelMotion, the_finest_decides_and_the_others_are_counted) {
 
 TEST(WheelMotion, needs_no_counts_a_turn_but_the_dimensions) {
   EXPECT_TRUE(read_text(kRobotWithoutTicks + odometry_of(drive(), true)).ok());
-  const auto result =
-      read_text(R"({"type":"robot","wheel_diameter":0.15})"
-                "\n" +
-                odometry_of(drive(), true));
+  const auto result = read_text(R"({"type":"robot","wheel_diameter":0.15})"
+                                "\n" +
+                                odometry_of(drive(), true));
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::missing_units);
   EXPECT_NE(result.error().what.find("track_width"), std::string::npos) << result.error().text();
 }
 
 TEST(WheelMotion, values_that_are_none_are_left_out_by_name) {
-  const auto result = read_text(
-      std::string(kRobotWithTicks) + line("wheels", 0, 0, 0) + line("wheels", 1, 0.5, 0.5) +
-      R"({"type":"wheels","t":2,"left":1e12,"right":0})"
-      "\n" R"({"type":"wheels","t":2,"left":null,"right":0})"
-      "\n" R"({"type":"wheel_speeds","t":0,"left":1e6,"right":0})"
-      "\n" R"({"type":"odometry","t":0,"x":NaN,"y":0,"yaw":0})"
-      "\n" R"({"type":"odometry","t":0,"x":1e12,"y":0,"yaw":0})"
-      "\n");
+  const auto result =
+      read_text(std::string(kRobotWithTicks) + line("wheels", 0, 0, 0) + line("wheels", 1, 0.5, 0.5) +
+                R"({"type":"wheels","t":2,"left":1e12,"right":0})"
+                "\n"
+                R"({"type":"wheels","t":2,"left":null,"right":0})"
+                "\n"
+                R"({"type":"wheel_speeds","t":0,"left":1e6,"right":0})"
+                "\n"
+                R"({"type":"odometry","t":0,"x":NaN,"y":0,"yaw":0})"
+                "\n"
+                R"({"type":"odometry","t":0,"x":1e12,"y":0,"yaw":0})"
+                "\n");
   ASSERT_TRUE(result.ok()) << result.error().text();
   EXPECT_EQ(discarded(result.value(), "wheels", "left or right missing or not an angle"), 2U);
-  EXPECT_EQ(discarded(result.value(), "wheel_speeds", "left or right missing or not the speed of a wheel"), 1U);
+  EXPECT_EQ(discarded(result.value(), "wheel_speeds", "left or right missing or not the speed of a wheel"),
+            1U);
   EXPECT_EQ(discarded(result.value(), "odometry", "x, y or yaw missing or impossible"), 2U);
 }
 
