@@ -2,12 +2,20 @@
 # Builds everything and runs every check and test. Works on a fresh Debian 12 as root, or as a user with sudo; installs
 # what tests/packages.txt lists and is missing. A second run builds and checks only what changed.
 #
+# With --packages the Debian packages are built and taken through install, calibration, upgrade, reboot and purge in a
+# virtual machine too, which takes some twenty minutes more.
+#
 # Environment: ODOMCALIB_SHARED  folder with the real recordings and captures (default ../shared); tests that need it
 #                                are skipped loudly without it
 #              JOBS              parallel jobs (default: number of processors)
 set -euo pipefail
 cd "$(dirname "$0")"
-jobs=${JOBS:-$(nproc)}
+jobs=${JOBS:-$(nproc)} packages=OFF
+case ${1:-} in
+  '') ;;
+  --packages) packages=ON ;;
+  *) echo "usage: ./test.sh [--packages]" >&2; exit 2 ;;
+esac
 export DEBIAN_FRONTEND=noninteractive CTEST_PARALLEL_LEVEL=$jobs
 
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
@@ -29,7 +37,7 @@ build() {
   if command -v ccache >/dev/null; then
     launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi
-  cmake --preset release "${launcher[@]}"
+  cmake --preset release -DODOMCALIB_PACKAGE_TESTS=$packages "${launcher[@]}"
   cmake --build build/release -j "$jobs"
 }
 
@@ -42,6 +50,7 @@ tests/lint build/release || failed+=("tests/lint")
 ctest --preset release -j 2 --output-junit tests.xml || failed+=("ctest")
 
 count() { tr -s '[:space:]' ' ' < build/release/tests.xml | grep -o '<testsuite [^>]*' | grep -o " $1=\"[0-9]*" | tr -dc 0-9; }
+[ $packages = ON ] || echo "not tested: packages, and the system that they are installed in (./test.sh --packages)"
 echo "tests run: $(count tests), failed: $(count failures), skipped: $(count skipped)"
 if [ ${#failed[@]} -gt 0 ]; then
   echo "FAILED: ${failed[*]}"

@@ -1,7 +1,6 @@
 #include "calib/solve.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -18,23 +17,44 @@
 #include "calib/measurement/scan_stamps.hpp"
 #include "calib/report/findings.hpp"
 #include "calib/report/report.hpp"
+#include "calib/selection/criterion.hpp"
 #include "calib/selection/held_out.hpp"
 #include "calib/selection/lidar_evidence.hpp"
 #include "calib/selection/range_trace.hpp"
 #include "calib/selection/search.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/effect_names.hpp"
 
 namespace odomcalib::calib {
 namespace {
 
-/// A time offset counts as present when its estimate is this many standard deviations from zero ...
-constexpr double kSignificance = 4.0;
-/// ... and longer than what a careful driver leaves, s.
-constexpr double kNegligibleOffset = 3e-3;
-const std::string kOffset = "time_offset", kDrift = "clock_drift";
-/// Two estimates from the same scans agree within this many standard deviations of both together.
-constexpr double kAgreement = 4.0;
+using vehicle::ClockPart;
+
+selection::Estimate estimate_of(const estimation::FitResult& fit, Eigen::Index parameter) {
+  return {fit.parameters(parameter), fit.covariance(parameter, parameter)};
+}
+
+selection::Seat seat_of(const estimation::FitResult& fit) {
+  return {estimate_of(fit, vehicle::kMountX), estimate_of(fit, vehicle::kMountY),
+          estimate_of(fit, vehicle::kMountYaw)};
+}
+
+/// Where no scan matched, the fit has nothing to say but that.
+Error cause_of(const Error& error, std::span<const measurement::PairSet> sets) {
+  std::size_t unmatched = 0;
+  for (const measurement::PairSet& set : sets) unmatched += set.unmatched;
+  if (error.code != ErrorCode::empty || unmatched == 0) return error;
+  return {ErrorCode::refused, "none of " + std::to_string(unmatched) + " pairs of scans could be matched",
+          "scan matching", "drive where the lidar sees walls on all sides, not along a corridor"};
+}
+
+bool acts_in_places(const vehicle::Effect& effect) {
+  const auto laws = effect.laws();
+  return std::any_of(laws.begin(), laws.end(), [](const vehicle::Law& law) {
+    return law.variable == vehicle::Variable::heading || law.variable == vehicle::Variable::position;
+  });
+}
 
 class Solver {
  public:
@@ -60,7 +80,7 @@ class Solver {
       joint.name = "joint";
       joint.refused = fit.error().what;
       calibration_.methods.push_back(joint);
-      return refuse(cause_of(fit.error()));
+      return refuse(cause_of(fit.error(), session_->pair_sets()));
     }
     if (automatic_ && recordings_.front().increments.empty())
       search(fit.value());
@@ -74,15 +94,6 @@ class Solver {
  private:
   void report(const std::string& phase, double fraction) const {
     if (progress_) progress_(phase, fraction);
-  }
-
-  /// Where no scan matched, the fit has nothing to say but that.
-  [[nodiscard]] Error cause_of(const Error& error) const {
-    std::size_t unmatched = 0;
-    for (const measurement::PairSet& set : session_->pair_sets()) unmatched += set.unmatched;
-    if (error.code != ErrorCode::empty || unmatched == 0) return error;
-    return {ErrorCode::refused, "none of " + std::to_string(unmatched) + " pairs of scans could be matched",
-            "scan matching", "drive where the lidar sees walls on all sides, not along a corridor"};
   }
 
   Calibration refuse(const Error& error) {
@@ -146,17 +157,17 @@ class Solver {
     const State before = state(fit.value(), lidar_.size());
     auto session = std::move(session_);
     auto better = begin_anew(sweeping);
-    if (better && has(kOffset)) {
+    if (better && has(ClockPart::offset)) {
       ingest::take_stamps_for_middles(sweeping);
       better = measure_anew(sweeping);
     }
     const auto after = better ? held_out_now(better.value()) : std::nullopt;
-    if (better && is_clearly_better(before.held_out, after)) {
+    if (better && selection::is_clearly_better(before.held_out, after)) {
       evened_ = std::move(sweeping);
       recordings_ = evened_;
       stamps_.sweep = *evened_.front().scans.front().time_increment;
       stamps_.turn = ingest::turn_of_head(evened_.front());
-      stamps_.sweep_p_value = p_value_of(*before.held_out, *after);
+      stamps_.sweep_p_value = selection::p_value_of(*before.held_out, *after);
       return better;
     }
     go_back_to(before);
@@ -183,24 +194,6 @@ class Solver {
     return settle();
   }
 
-  /// Of all three components together.
-  static bool is_clearly_better(const std::optional<selection::HeldOut>& before,
-                                const std::optional<selection::HeldOut>& after) {
-    constexpr double kClearly = 0.95;  // product of the ratios
-    if (!before || !after) return false;
-    double ratio = 1.0;
-    for (std::size_t k = 0; k < before->bounded.size(); ++k) ratio *= after->bounded[k] / before->bounded[k];
-    return ratio < kClearly;
-  }
-
-  /// By the likelihood ratio of what is left on data that were not fitted.
-  static double p_value_of(const selection::HeldOut& before, const selection::HeldOut& after) {
-    double ratio = 0.0;
-    for (std::size_t k = 0; k < before.bounded.size(); ++k)
-      ratio += 2.0 * static_cast<double>(after.pairs) * std::log(before.bounded[k] / after.bounded[k]);
-    return std::erfc(std::sqrt(std::max(0.5 * ratio, 0.0)));
-  }
-
   std::optional<Error> choose_effects() {
     if (auto wrong = terms::wrong_effects(options_.effects)) return wrong;
     automatic_ = options_.effects == std::vector<std::string>{"auto"};
@@ -218,18 +211,20 @@ class Solver {
   }
 
   /// Among the effects; as many as there are when it is none of them.
-  [[nodiscard]] std::size_t place_of(const std::string& name) const {
-    const auto place =
-        std::find_if(effects_.begin(), effects_.end(), [&](const auto& e) { return e->name() == name; });
+  [[nodiscard]] std::size_t place_of(ClockPart part) const {
+    const auto place = std::find_if(effects_.begin(), effects_.end(),
+                                    [&](const auto& e) { return e->clock_part() == part; });
     return static_cast<std::size_t>(place - effects_.begin());
   }
 
-  [[nodiscard]] bool has(const std::string& name) const { return place_of(name) < effects_.size(); }
+  [[nodiscard]] bool has(ClockPart part) const { return place_of(part) < effects_.size(); }
 
-  [[nodiscard]] double delay() const { return has(kOffset) ? parameters_(first_of(kOffset)) : 0.0; }
+  [[nodiscard]] double delay() const {
+    return has(ClockPart::offset) ? parameters_(first_of(ClockPart::offset)) : 0.0;
+  }
 
-  [[nodiscard]] Eigen::Index first_of(const std::string& name) const {
-    return selection::first_parameter(effects_, place_of(name));
+  [[nodiscard]] Eigen::Index first_of(ClockPart part) const {
+    return selection::first_parameter(effects_, place_of(part));
   }
 
   /// First matches with nominal values; then the clocks' delay, and what the recording does not state. Signs
@@ -239,20 +234,20 @@ class Solver {
     parameters_ = vehicle::to_vector(session_->nominal());
     session_->measure(parameters_, {}, measurement::PairOptions{.rough = true});
     if (automatic_ && recordings_.front().increments.empty())
-      effects_.push_back(terms::find_effect("time_offset"));
+      effects_.push_back(terms::clock_effect(ClockPart::offset));
     const estimation::ClockStart clock =
-        has(kOffset) ? estimation::search_clock(session_->data()) : estimation::ClockStart{};
+        has(ClockPart::offset) ? estimation::search_clock(session_->data()) : estimation::ClockStart{};
     if (auto error = classical::check_signs(wheel_motions(session_->data(), clock.delay), calibration_.robot,
                                             session_->reference_is_base()))
       return error;
-    if (automatic_ && clock.rate != 0.0) effects_.push_back(terms::find_effect(kDrift));
+    if (automatic_ && clock.rate != 0.0) effects_.push_back(terms::clock_effect(ClockPart::rate));
     parameters_ = vehicle::to_vector(estimation::start_values(*session_, clock.delay),
                                      vehicle::count_parameters(effects_));
     const std::vector<double> own = vehicle::start_of(effects_);
     parameters_.tail(static_cast<Eigen::Index>(own.size())) =
         Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
-    if (has(kOffset)) parameters_(first_of(kOffset)) = clock.delay;
-    if (has(kDrift)) parameters_(first_of(kDrift)) = clock.rate;
+    if (has(ClockPart::offset)) parameters_(first_of(ClockPart::offset)) = clock.delay;
+    if (has(ClockPart::rate)) parameters_(first_of(ClockPart::rate)) = clock.rate;
     return std::nullopt;
   }
 
@@ -265,7 +260,7 @@ class Solver {
     for (int pass = 0; pass < kMostPasses && fit; ++pass) {
       const double delay_before = delay();
       parameters_ = fit.value().parameters;
-      const bool clock_moves = std::abs(delay() - delay_before) > kNegligibleOffset;
+      const bool clock_moves = std::abs(delay() - delay_before) > selection::settings::kNegligibleOffset_s;
       if (pass == 0 || clock_moves) drop_idle_clocks(fit.value());
       if (is_as_measured() || (pass >= kPasses && !clock_moves)) break;
       report("matching", std::min(0.33 * (pass + 1), 1.0));
@@ -284,28 +279,10 @@ class Solver {
     const State before = state(fit.value(), lidar_.size());
     session_->let_reference_sit_anywhere(true);
     auto better = settle();
-    if (better && sits_elsewhere(better.value())) return better;
+    if (better && selection::sits_elsewhere(seat_of(better.value()))) return better;
     session_->let_reference_sit_anywhere(false);
     go_back_to(before);
     return settle();
-  }
-
-  /// Plainly, by more than anybody measures with a tape, and where the motion determines it.
-  static bool sits_elsewhere(const estimation::FitResult& fit) {
-    struct Limits {
-      vehicle::BaseIndex index;
-      double negligible, known;  // m or rad; largest deviation
-    };
-    constexpr std::array<Limits, 3> kLimits = {
-        {{vehicle::kMountX, 5e-4, 5e-3}, {vehicle::kMountY, 5e-4, 5e-3}, {vehicle::kMountYaw, 2e-3, 2e-2}}};
-    const auto deviation = [&](const Limits& of) { return std::sqrt(fit.covariance(of.index, of.index)); };
-    const auto is_known = [&](const Limits& of) { return deviation(of) < of.known; };
-    const auto is_plain = [&](const Limits& of) {
-      const double value = std::abs(fit.parameters(of.index));
-      return value > of.negligible && value > kSignificance * deviation(of);
-    };
-    return std::all_of(kLimits.begin(), kLimits.end(), is_known) &&
-           std::any_of(kLimits.begin(), kLimits.end(), is_plain);
   }
 
   void measure() {
@@ -327,26 +304,24 @@ class Solver {
   }
 
   /// Any parameter of the effect is many standard deviations from zero.
-  [[nodiscard]] bool is_plain(const std::string& name, const estimation::FitResult& fit) const {
-    const std::size_t count = effects_[place_of(name)]->parameters().size();
-    const Eigen::Index first = first_of(name);
+  [[nodiscard]] bool is_plain(ClockPart part, const estimation::FitResult& fit) const {
+    const std::size_t count = effects_[place_of(part)]->parameters().size();
+    const Eigen::Index first = first_of(part);
     for (Eigen::Index k = first; k < first + static_cast<Eigen::Index>(count); ++k)
-      if (std::abs(fit.parameters(k)) > kSignificance * std::sqrt(fit.covariance(k, k))) return true;
+      if (selection::is_plain(estimate_of(fit, k))) return true;
     return false;
   }
 
-  [[nodiscard]] bool is_idle(const std::string& name, const estimation::FitResult& fit) const {
-    const Eigen::Index k = first_of(name);
-    const double negligible = name == kOffset ? kNegligibleOffset : 0.0;
-    const double deviation = std::sqrt(fit.covariance(k, k));
-    return std::abs(fit.parameters(k)) <= std::max(kSignificance * deviation, negligible);
+  [[nodiscard]] bool is_idle(ClockPart part, const estimation::FitResult& fit) const {
+    const double negligible = part == ClockPart::offset ? selection::settings::kNegligibleOffset_s : 0.0;
+    return selection::is_idle(estimate_of(fit, first_of(part)), negligible);
   }
 
   /// Clocks that run apart need a delay to run apart from.
   void drop_idle_clocks(const estimation::FitResult& fit) {
     if (!automatic_) return;
-    if (has(kDrift) && is_idle(kDrift, fit)) drop_last();
-    if (!has(kDrift) && has(kOffset) && is_idle(kOffset, fit)) drop_last();
+    if (has(ClockPart::rate) && is_idle(ClockPart::rate, fit)) drop_last();
+    if (!has(ClockPart::rate) && has(ClockPart::offset) && is_idle(ClockPart::offset, fit)) drop_last();
   }
 
   void drop_last() {
@@ -426,7 +401,8 @@ class Solver {
   /// A correction that was not asked for and that the wheels contradict is taken back.
   Result<estimation::FitResult> unless_worse(Result<estimation::FitResult> better, const State& before) {
     const bool asked = !asked_of_lidar_.empty();
-    if (better && (asked || !is_worse(before.held_out, held_out_now(better.value())))) return better;
+    if (better && (asked || !selection::is_worse(before.held_out, held_out_now(better.value()))))
+      return better;
     go_back_to(before);
     return fit_corrected();
   }
@@ -440,15 +416,6 @@ class Solver {
   [[nodiscard]] std::optional<selection::HeldOut> held_out_now(const estimation::FitResult& fit) const {
     return selection::held_out_residual(session_->data(), effects_, fit,
                                         vehicle::fixed_with(session_->fixed(0), effects_));
-  }
-
-  static bool is_worse(const std::optional<selection::HeldOut>& before,
-                       const std::optional<selection::HeldOut>& after) {
-    constexpr double kTolerated = 1.05;
-    if (!before || !after) return !after && before;
-    for (std::size_t k = 0; k < before->rms.size(); ++k)
-      if (after->rms[k] > kTolerated * before->rms[k]) return true;
-    return false;
   }
 
   /// Measures corrected scans, well enough for a second look at what is left of their errors.
@@ -484,13 +451,12 @@ class Solver {
 
   /// Matches that slide in a loose room look like a carpet; places in the map take their part then.
   bool measure_by_places() {
-    constexpr double kSliding = 2.0;  // deviations; rooms with walls enough mostly stay below 1.5
     bool any = false;
     for (std::size_t i = 0; i < paths_.size(); ++i) {
       const auto& [model, pairs, places] = session_->data()[i];
       const vehicle::Trajectory trajectory = model->trajectory(vehicle::as_span(parameters_), effects_);
       const measurement::PathOfWheels wheels = measurement::path_of_wheels(trajectory);
-      const bool slides = drift_of_matches(pairs, paths_[i], wheels) >= kSliding;
+      const bool slides = selection::is_sliding(drift_of_matches(pairs, paths_[i], wheels));
       if (slides) session_->set_pairs(i, pairs_of_places(pairs, paths_[i], wheels));
       session_->set_places(i, paths_[i].scans);
       any = any || slides;
@@ -499,13 +465,6 @@ class Solver {
   }
 
   [[nodiscard]] math::Pose mount() const { return vehicle::to_base(vehicle::as_span(parameters_)).mount; }
-
-  static bool acts_in_places(const vehicle::Effect& effect) {
-    const auto laws = effect.laws();
-    return std::any_of(laws.begin(), laws.end(), [](const vehicle::Law& law) {
-      return law.variable == vehicle::Variable::heading || law.variable == vehicle::Variable::position;
-    });
-  }
 
   /// What is missing beyond the delay: stepwise, each step proved on held-out data.
   void search(const estimation::FitResult& fit) {
@@ -520,13 +479,13 @@ class Solver {
   /// that is plain but short stays without being told.
   void retire_idle_offset() {
     if (outcome_.findings.empty() && outcome_.curves.empty()) return;
-    if (!has(kOffset) || !is_idle(kOffset, outcome_.model.fit)) return;
-    if (is_plain(kOffset, outcome_.model.fit)) {
-      outcome_.quiet.push_back(effects_[place_of(kOffset)]);
+    if (!has(ClockPart::offset) || !is_idle(ClockPart::offset, outcome_.model.fit)) return;
+    if (is_plain(ClockPart::offset, outcome_.model.fit)) {
+      outcome_.quiet.push_back(effects_[place_of(ClockPart::offset)]);
       return;
     }
     const selection::FitTask task{session_->data(), session_->fixed(0)};
-    if (auto fewer = without_effect(task, outcome_.model, place_of(kOffset), {}))
+    if (auto fewer = without_effect(task, outcome_.model, place_of(ClockPart::offset), {}))
       outcome_.model = std::move(*fewer);
     effects_ = outcome_.model.effects;
     parameters_ = outcome_.model.fit.parameters;
@@ -585,15 +544,13 @@ class Solver {
   /// is too small to be told, as a millisecond's delay, is too small to speak against it.
   [[nodiscard]] bool improves(const estimation::PathFit& path) const {
     const std::vector<bool> quiet = quiet_parameters();
-    double gain = 0.0;  // logarithm of the ratio of variances, summed
-    for (Eigen::Index k = 0; k < parameters_.size(); ++k) {
-      const double before = outcome_.model.fit.covariance(k, k), after = path.covariance(k, k);
-      if (!(before > 0.0) || !(after > 0.0) || quiet[static_cast<std::size_t>(k)]) continue;
-      const double apart = path.parameters(k) - parameters_(k);
-      if (apart * apart > kAgreement * kAgreement * (before + after)) return false;
-      if (k < vehicle::kBaseCount) gain += std::log(before / after);
-    }
-    return gain > 0.0;
+    std::vector<selection::Comparison> compared;
+    for (Eigen::Index k = 0; k < parameters_.size(); ++k)
+      if (!quiet[static_cast<std::size_t>(k)])
+        compared.push_back({{parameters_(k), outcome_.model.fit.covariance(k, k)},
+                            {path.parameters(k), path.covariance(k, k)},
+                            k < vehicle::kBaseCount});
+    return selection::confirms_and_knows_better(compared);
   }
 
   [[nodiscard]] std::vector<bool> quiet_parameters() const {

@@ -59,6 +59,7 @@ def self_test():
         assert problems(root, ["docs/there.md", "good.hpp"]) == []
         assert len(problems(root, ["lost.md"])) == 2  # the link, and the path in it
         assert problems(root, ["bad.hpp"]) == ["bad.hpp: docs/gone.md is not there"]
+    print("4 files judged rightly")
 
 
 def main():

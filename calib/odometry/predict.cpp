@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <string_view>
 
 #include "calib/ingest/tick_stamps.hpp"
 #include "calib/odometry/drive_clock.hpp"
@@ -22,8 +21,6 @@ namespace {
 /// Samples kept for smoothing: effects see speeds, and speeds need a little history.
 constexpr std::size_t kHistory = 32;
 
-constexpr std::string_view kDrift = "drift_with_time";
-
 struct Correction {
   Eigen::VectorXd parameters;
   vehicle::EffectList effects;
@@ -33,33 +30,42 @@ double value_or(const Calibration& calibration, const std::string& name, double 
   return calibration.parameter(name).value_or(otherwise);
 }
 
-/// Wheels that changed with time begin the next drive as they ended this one.
-bool stays_with_the_wheels(const vehicle::Effect& effect) { return effect.name() == kDrift; }
-
 /// What goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
-bool stays_with_the_wheels(const selection::FittedCurve& fitted) {
+bool carries_over(const selection::FittedCurve& fitted) {
   const terms::Curve& curve = fitted.curve;
-  return curve.law.variable == vehicle::Variable::time && !is_the_lidars(curve) &&
-         (curve.period == 0.0 || fitted.law_of == kDrift);
+  if (make_curve_effect(curve)->carries_over()) return true;
+  const auto named = terms::find_effect(fitted.law_of);
+  return named && named->carries_over() && curve.law.variable == vehicle::Variable::time &&
+         !is_the_lidars(curve);
 }
 
 /// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the
 /// lidar is none of odometry.
-Place place_of(const vehicle::Effect& effect, const std::string& parameter = "") {
-  if (terms::concerns_wheels_too(effect, parameter)) return Place::odometry;
+Place place_of(const vehicle::Effect& effect) {
   if (terms::concerns_reference(effect)) return Place::reference;
-  const bool stays_behind = effect.storage() == vehicle::Storage::nowhere && !stays_with_the_wheels(effect);
+  const bool stays_behind = effect.storage() == vehicle::Storage::nowhere && !effect.carries_over();
   return stays_behind ? Place::nowhere : Place::odometry;
 }
 
+Place place_of(const vehicle::Effect& effect, const vehicle::EffectParameter& parameter) {
+  return parameter.of_wheels ? Place::odometry : place_of(effect);
+}
+
 Place place_of(const selection::FittedCurve& fitted) {
-  return stays_with_the_wheels(fitted) ? Place::odometry : place_of(*make_curve_effect(fitted.curve));
+  return carries_over(fitted) ? Place::odometry : place_of(*make_curve_effect(fitted.curve));
+}
+
+/// @param parameter name of one, as a file states it
+Place place_of(const vehicle::Effect& effect, const std::string& parameter) {
+  for (const vehicle::EffectParameter& own : effect.parameters())
+    if (own.name == parameter) return place_of(effect, own);
+  return place_of(effect);
 }
 
 bool acts_on_odometry(const vehicle::Effect& effect) {
   const auto parameters = effect.parameters();
   return std::any_of(parameters.begin(), parameters.end(), [&](const vehicle::EffectParameter& p) {
-    return place_of(effect, p.name) == Place::odometry;
+    return place_of(effect, p) == Place::odometry;
   });
 }
 

@@ -12,6 +12,7 @@
 #include "calib/selection/metre.hpp"
 #include "calib/selection/outlier_trace.hpp"
 #include "calib/selection/search_round.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/selection/tracing_json.hpp"
 #include "calib/terms/basis.hpp"
 
@@ -150,7 +151,7 @@ class Filler {
     const estimation::FitResult& fit = found_.outcome.model.fit;
     const auto windows = find_stretches(selection::StretchKind::open_loop, data, selection::folds_of(data),
                                         fit, selection::trusted_pairs(*plain_, fit));
-    if (windows.size() < selection::kFewestStretches) return evidence;
+    if (windows.size() < selection::settings::kFewestWindows) return evidence;
     evidence.held_out_before =
         stretch_errors(data, windows, {}, *plain_, found_.session.fixed(0)).rms_position();
     evidence.held_out_after = stretch_errors(data, windows, effects(), fit, fixed()).rms_position();
@@ -248,7 +249,7 @@ class Filler {
     if (!found_.was_searched || calibration_.unexplained || !calibration_.effects.empty()) return;
     const selection::Considered* best = nullptr;
     for (const selection::Considered& one : found_.outcome.considered)
-      if (!one.depends_on.empty() && one.family_p_value <= selection::kNamedLevel &&
+      if (!one.depends_on.empty() && one.family_p_value <= selection::settings::kNamedLevel &&
           (best == nullptr || one.statistic > best->statistic))
         best = &one;
     if (best != nullptr) flag(best->depends_on, best->family_p_value);

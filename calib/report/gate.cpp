@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "calib/classical/sign_check.hpp"
+#include "calib/selection/drive_error.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -58,9 +59,12 @@ std::optional<double> relative_deviation(const QuantityList& quantities, const s
   return std::nullopt;
 }
 
-bool is_off(const DriveError& error) {
-  return error.name == "open_loop_10s_position" && error.after && error.noise_floor &&
-         error.after->value > kWarnResidual * *error.noise_floor && error.after->low > *error.noise_floor;
+/// The error over ten seconds where it is more than noise explains; null otherwise.
+const DriveError* excessive(const std::vector<DriveError>& errors) {
+  const DriveError* error = selection::open_loop_position(errors);
+  if (error == nullptr || !error->after || !error->noise_floor) return nullptr;
+  const double floor = *error->noise_floor;
+  return error->after->value > kWarnResidual * floor && error->after->low > floor ? error : nullptr;
 }
 
 class Judgement {
@@ -125,11 +129,10 @@ class Judgement {
 
   /// What loses counts or slips now and then leaves most pairs clean, and adds up on the way.
   void check_drives(const std::vector<DriveError>& errors) {
-    for (const DriveError& error : errors)
-      if (is_off(error))
-        warn("odometry over ten seconds is off by " + times(error.after->value / *error.noise_floor) +
-             " the noise floor: something moves the robot that the counts do not show; look for counts that "
-             "get lost, slip, and what touches the robot");
+    if (const DriveError* error = excessive(errors))
+      warn("odometry over ten seconds is off by " + times(error->after->value / *error->noise_floor) +
+           " the noise floor: something moves the robot that the counts do not show; look for counts that "
+           "get lost, slip, and what touches the robot");
   }
 
   [[nodiscard]] GateResult result() const {
@@ -153,9 +156,7 @@ class Judgement {
 
 }  // namespace
 
-bool odometry_is_off(const std::vector<DriveError>& errors) {
-  return std::any_of(errors.begin(), errors.end(), is_off);
-}
+bool odometry_is_off(const std::vector<DriveError>& errors) { return excessive(errors) != nullptr; }
 
 GateResult judge(const Calibration& calibration, const Footing& footing) {
   Judgement judgement;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "calib/selection/settings.hpp"
 #include "calib/terms/candidate_curves.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/curve_effect.hpp"
@@ -13,10 +14,6 @@
 
 namespace odomcalib::calib::selection {
 namespace {
-
-/// Share of the error that a curve, or an effect of the place, must leave at most: less is not worth a model.
-constexpr double kWorthwhile = 0.95;
-constexpr double kUseful = 0.97;  ///< the same for any other curve that odometry uses
 
 std::string key_of(const vehicle::Effect& effect) {
   return effect.name() + "/" + effect.parameters().front().name;
@@ -97,12 +94,12 @@ bool must_be_worthwhile(const Candidate& candidate) {
 }
 
 double largest_ratio(const Candidate& candidate) {
-  if (must_be_worthwhile(candidate)) return kWorthwhile;
+  if (must_be_worthwhile(candidate)) return settings::kWorthwhile;
   // What comes back with each turn of a wheel cancels over ten seconds, however plain it is in between.
   if (candidate.curve && is_phase(candidate.curve->law.variable))
     return std::numeric_limits<double>::infinity();
   const bool will_be_used = candidate.effect->storage() == vehicle::Storage::host;
-  return candidate.curve && will_be_used ? kUseful : std::numeric_limits<double>::infinity();
+  return candidate.curve && will_be_used ? settings::kUseful : std::numeric_limits<double>::infinity();
 }
 
 bool has_textbook_shape(const std::shared_ptr<const vehicle::Effect>& effect) {

@@ -13,6 +13,8 @@
 namespace odomcalib::calib::selection {
 namespace {
 
+constexpr const char* kOpenLoopPosition = "open_loop_10s_position";
+
 constexpr std::size_t kFewest = 4;
 constexpr unsigned kSeed = 20010823;
 
@@ -148,8 +150,14 @@ std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
             {{"straight_metre_length", Part::along}, {"straight_metre_heading", Part::heading}}, errors);
   judge.add(StretchKind::turn, {{"full_turn_heading", Part::heading}}, errors);
   judge.add(StretchKind::open_loop,
-            {{"open_loop_10s_position", Part::position}, {"open_loop_10s_heading", Part::heading}}, errors);
+            {{kOpenLoopPosition, Part::position}, {"open_loop_10s_heading", Part::heading}}, errors);
   return errors;
+}
+
+const DriveError* open_loop_position(const std::vector<DriveError>& errors) {
+  const auto found = std::find_if(errors.begin(), errors.end(),
+                                  [](const DriveError& error) { return error.name == kOpenLoopPosition; });
+  return found == errors.end() ? nullptr : &*found;
 }
 
 }  // namespace odomcalib::calib::selection

@@ -30,6 +30,9 @@ std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
                                      const wheels::BaseParameters& nominal, const JudgedModel* geometry,
                                      const JudgedModel& full);
 
+/// The error of position over ten seconds open loop among these; null where the drive was too short for it.
+const DriveError* open_loop_position(const std::vector<DriveError>& errors);
+
 /// Parameters of `full` with the wheels of `base` and no effect but those of the reference: how odometry
 /// with these wheels compares with the same reference.
 Eigen::VectorXd with_wheels(const Eigen::VectorXd& full, const vehicle::EffectList& effects,

@@ -2,12 +2,9 @@
 
 #include <Eigen/Dense>
 
+#include "calib/selection/settings.hpp"
+
 namespace odomcalib::calib::selection {
-namespace {
-
-constexpr double kBlockSeconds = 20.0;
-
-}  // namespace
 
 std::vector<std::size_t> folds_of(std::span<const measurement::FitData> data) {
   std::vector<std::size_t> folds;
@@ -15,7 +12,7 @@ std::vector<std::size_t> folds_of(std::span<const measurement::FitData> data) {
   for (const measurement::FitData& d : data) {
     double begin = -1e300;
     for (const measurement::SensorPair& pair : d.pairs) {
-      if (pair.interval.begin > begin + kBlockSeconds) {
+      if (pair.interval.begin > begin + settings::kFoldBlock_s) {
         begin = pair.interval.begin;
         ++block;
       }

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "calib/estimation/joint.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 
-inline constexpr std::size_t kFolds = 5;
+inline constexpr std::size_t kFolds = settings::kFolds;
 
 /// Fold of each pair, recordings one after the other; blocks are dealt out in turn, so that every fold has
 /// early and late motion.

@@ -8,13 +8,12 @@
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/selection/score.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr int kDraws = 1999;
 constexpr unsigned kSeed = 20210602;
-constexpr double kClip = 3.5;      // robust sigma
 constexpr double kVisible = 1e-3;  // least share of a direction's signature that poses must leave
 
 /// How much farther from the first scan's line the shift puts a point, m.
@@ -56,7 +55,8 @@ void clip(Rows& rows) {
   std::vector<double> magnitudes(static_cast<std::size_t>(rows.residual.size()));
   for (Eigen::Index i = 0; i < rows.residual.size(); ++i)
     magnitudes[static_cast<std::size_t>(i)] = std::abs(rows.residual(i));
-  const double limit = kClip * std::max(1.0, math::kMadToSigma * math::median_of(std::move(magnitudes)));
+  const double limit =
+      settings::kClip * std::max(1.0, math::kMadToSigma * math::median_of(std::move(magnitudes)));
   for (Eigen::Index i = 0; i < rows.residual.size(); ++i)
     if (std::abs(rows.residual(i)) > limit) {
       rows.residual(i) = 0.0;
@@ -141,7 +141,7 @@ class SignFlips {
     std::mt19937 engine(kSeed);
     std::vector<double> sums(scores.size(), 0.0);
     std::vector<Eigen::VectorXd> draws;
-    for (int draw = 0; draw < kDraws; ++draw) {
+    for (int draw = 0; draw < settings::kSignDraws; ++draw) {
       Eigen::VectorXd signs(static_cast<Eigen::Index>(pairs));
       for (Eigen::Index g = 0; g < signs.size(); ++g) signs(g) = (engine() & 1U) != 0U ? 1.0 : -1.0;
       Eigen::VectorXd statistics = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scores.size()));
@@ -152,17 +152,18 @@ class SignFlips {
     }
     for (std::size_t c = 0; c < scores.size(); ++c)
       if (scores[c].rows() > 0)
-        inflation_ = std::min(inflation_, sums[c] / kDraws / static_cast<double>(scores[c].rows()));
+        inflation_ =
+            std::min(inflation_, sums[c] / settings::kSignDraws / static_cast<double>(scores[c].rows()));
     inflation_ = std::max(inflation_, 1.0);
     for (const Eigen::VectorXd& statistics : draws) largest_.push_back(largest(statistics, scores));
   }
 
   [[nodiscard]] double inflation() const { return inflation_; }
-  [[nodiscard]] static double smallest() { return 1.0 / (1.0 + kDraws); }
+  [[nodiscard]] static double smallest() { return 1.0 / (1.0 + settings::kSignDraws); }
   [[nodiscard]] double family_p_value(double statistic, Eigen::Index degrees) const {
     const double own = significance(statistic, degrees);
     const auto above = std::count_if(largest_.begin(), largest_.end(), [&](double v) { return v >= own; });
-    return (1.0 + static_cast<double>(above)) / (1.0 + kDraws);
+    return (1.0 + static_cast<double>(above)) / (1.0 + settings::kSignDraws);
   }
 
  private:
@@ -182,9 +183,8 @@ class SignFlips {
 
 /// Beside a large effect every draw of signs is large. Far out, Bonferroni's bound needs no draws.
 bool is_beyond_doubt(const LidarScores::Score& score, std::size_t family) {
-  constexpr double kDoubt = 1e-12;
   const double tail = chi_squared_tail(score.statistic, static_cast<std::size_t>(score.degrees));
-  return tail * static_cast<double>(family) < kDoubt;
+  return tail * static_cast<double>(family) < settings::kBeyondDoubt;
 }
 
 /// What one pair's distances would gain by these values.

@@ -175,11 +175,8 @@ std::vector<terms::LidarFinding> trace_lidar(const std::vector<measurement::Head
   std::vector<terms::LidarEffectPtr> candidates = terms::lidar_catalogue(all_round);
   for (const auto& curve : terms::lidar_curves()) candidates.push_back(curve);
   if (auto sector = terms::make_sector_error(bearings_in(pairs))) candidates.push_back(std::move(sector));
-  const auto is_judged = [](const terms::LidarEffectPtr& effect) {
-    return effect->name() == terms::make_range_bias()->name() ||
-           effect->name() == terms::make_incidence_error()->name();
-  };
-  if (ranges_are_judged) std::erase_if(candidates, is_judged);
+  if (ranges_are_judged)
+    std::erase_if(candidates, [](const terms::LidarEffectPtr& effect) { return effect->is_judged_in_map(); });
   return Trace(pairs, candidates).run();
 }
 

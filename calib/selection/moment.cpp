@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "calib/selection/law_shape.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/terms/basis.hpp"
 #include "calib/terms/curve_effect.hpp"
 #include "calib/terms/curve_on_drives.hpp"
@@ -52,7 +53,7 @@ std::optional<std::size_t> event_instead_of(const FitTask& task, const SearchRou
   const auto events = round.by_score([&](std::size_t k) {
     const auto& curve = round.candidate(k).curve;
     return curve && happens_at_once(*curve) && acts_on(*curve).size() > 1 &&
-           round.score(k).family_p_value <= kNamedLevel;
+           round.score(k).family_p_value <= settings::kNamedLevel;
   });
   if (events.empty()) return std::nullopt;
   const auto best = likeliest(task, round.basis(), *round.candidate(events.front()).curve);

@@ -6,19 +6,16 @@
 #include <vector>
 
 #include "calib/selection/law_shape.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
-/// A delay hardly shows in odometry and cannot spoil it; what changes odometry must be beyond doubt.
-constexpr double kClockLevel = 0.003;
-constexpr double kUnnamedLevel = 0.0025;
-
 double level(const Candidate& candidate, const SearchResult& found) {
   if (candidate.curve)
-    return found.owner_of(candidate.curve->law) || must_be_worthwhile(candidate) ? kNamedLevel
-                                                                                 : kUnnamedLevel;
-  return is_clock(candidate) ? kClockLevel : kNamedLevel;
+    return found.owner_of(candidate.curve->law) || must_be_worthwhile(candidate) ? settings::kNamedLevel
+                                                                                 : settings::kUnnamedLevel;
+  return is_clock(candidate) ? settings::kClockLevel : settings::kNamedLevel;
 }
 
 /// What the free curves explain of those of a name's laws that a finding has already.

@@ -38,11 +38,8 @@ std::string impossibility(const vehicle::Effect& effect, const estimation::FitRe
   return "";
 }
 
-bool is_mere_sharpening(const vehicle::Effect& effect, const estimation::FitResult& fit) {
-  if (effect.name() != "time_offset") return false;
-  const Eigen::VectorXd values = last_parameters(effect, fit);
-  return std::abs(values(0)) < vehicle::kNegligibleShare * effect.parameters().front().scale &&
-         values(1) < 0.0;
+std::string contradiction(const vehicle::Effect& effect, const estimation::FitResult& fit) {
+  return effect.contradiction(vehicle::as_span(fit.parameters).last(effect.parameters().size()));
 }
 
 bool is_held_back(const vehicle::Effect& effect, const estimation::FitResult& fit) {

@@ -11,10 +11,8 @@ namespace odomcalib::calib::selection {
 /// Which parameter of the effect, the fit's last, is outside its physical bounds; empty when none is.
 std::string impossibility(const vehicle::Effect& effect, const estimation::FitResult& fit);
 
-/// A delay next to nothing with a smoothing below zero: no filter sharpens, but what noise of coarse counts
-/// asks for, which is in the travel and in the acceleration alike. Beside a delay it may make up for the rest
-/// of its law.
-bool is_mere_sharpening(const vehicle::Effect& effect, const estimation::FitResult& fit);
+/// Why the effect's values, the fit's last, make no sense together; empty when they do.
+std::string contradiction(const vehicle::Effect& effect, const estimation::FitResult& fit);
 
 /// A size is so large for the effect that its prior must have kept it from being larger.
 bool is_held_back(const vehicle::Effect& effect, const estimation::FitResult& fit);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "calib/selection/settings.hpp"
+
 namespace odomcalib::calib::selection {
 
 HeldOutGain compared_on_held_out(const FitTask& task, const FittedModel& before, const FittedModel& after,
@@ -27,7 +29,7 @@ struct Comparison {
 std::optional<Comparison> compared(StretchKind kind, const FitTask& task, const FittedModel& before,
                                    const FittedModel& after, const std::vector<bool>& measured) {
   const auto stretches = find_stretches(kind, task.data, folds_of(task.data), before.fit, measured);
-  if (stretches.size() < kFewestStretches) return std::nullopt;
+  if (stretches.size() < settings::kFewestWindows) return std::nullopt;
   const auto error_of = [&](const FittedModel& model) {
     return stretch_errors(task.data, stretches, model.effects, model.fit, task.fixed(model.effects));
   };
@@ -67,7 +69,6 @@ std::optional<Gain> best_gain(const FitTask& task, const FittedModel& before, co
 }  // namespace
 
 DriveChange change_of_drives(const FitTask& task, const FittedModel& before, const FittedModel& after) {
-  constexpr double kTolerated = 1.05;
   const auto trusted = trusted_pairs(before.fit, after.fit);
   DriveChange change;
   for (const auto kind : {StretchKind::open_loop, StretchKind::turn, StretchKind::straight}) {
@@ -75,7 +76,7 @@ DriveChange change_of_drives(const FitTask& task, const FittedModel& before, con
     if (!errors) continue;
     const Improvement improvement = compare(errors->without, errors->with);
     if (kind == StretchKind::open_loop) change.ratio = improvement.ratio;
-    change.is_spoilt = change.is_spoilt || improvement.lower > kTolerated;
+    change.is_spoilt = change.is_spoilt || improvement.lower > settings::kTolerated;
   }
   return change;
 }

@@ -17,9 +17,6 @@ struct Proof {
   Improvement improvement;
 };
 
-/// Fewer stretches than these say nothing.
-inline constexpr std::size_t kFewestStretches = 10;
-
 /// What another model makes of held-out drives.
 struct DriveChange {
   std::optional<double> ratio;  ///< of the error over ten seconds; none where there are too few stretches

@@ -6,13 +6,13 @@
 #include <numeric>
 
 #include "calib/estimation/stack.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
 constexpr std::size_t kBins = 16;
 constexpr std::size_t kMostPoints = 300;
-constexpr double kTrustedWeight = 0.3;   ///< outliers are no part of the picture
 constexpr double kWorthDividing = 0.1;   ///< gain of the correlation ratio that a division must bring
 constexpr double kWorthChanging = 0.02;  ///< ... and a less simple variable
 constexpr double kFarBack = 20.0;        ///< rad; a reversal farther back is forgotten
@@ -149,7 +149,7 @@ Samples samples_of(std::span<const measurement::FitData> data, const vehicle::Ef
     const auto full = d.model->predict(vehicle::as_span(fit.parameters), effects, intervals);
     const auto plain = d.model->predict(vehicle::as_span(without), effects, intervals);
     for (std::size_t k = 0; k < d.pairs.size(); ++k, ++row) {
-      if (fit.weights[row] < kTrustedWeight) continue;
+      if (fit.weights[row] < settings::kTrustedWeight) continue;
       const math::Pose measured = conjugate(d.pairs[k].motion, back);
       const math::Pose with_effect = conjugate(full[k], back);
       samples.motion.push_back(measured);

@@ -9,24 +9,21 @@
 #include <random>
 
 #include "calib/selection/candidate_columns.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr double kBlockSeconds = 5.0;
-constexpr int kDraws = 1999;
 constexpr unsigned kSeed = 20210601;
-constexpr double kClip = 3.5;    ///< sigma; one bad match must not decide
 constexpr double kGauge = 1e-6;  ///< share of a signature that counts as fully absorbed
 constexpr double kRidge = 1e-9;
-constexpr double kBeyondDoubt = 1e-12;
 
 struct Blocks {
   std::vector<Eigen::Index> borders;
   std::vector<std::size_t> folds;
 };
 
-/// Blocks of kBlockSeconds, none across a recording or a fold.
+/// Blocks of kScoreBlock_s, none across a recording or a fold.
 Blocks blocks_of(std::span<const measurement::FitData> data) {
   const std::vector<std::size_t> folds = folds_of(data);
   Blocks blocks;
@@ -35,7 +32,7 @@ Blocks blocks_of(std::span<const measurement::FitData> data) {
     double begin = -1e300;
     for (const measurement::SensorPair& pair : d.pairs) {
       const bool other_fold = !blocks.folds.empty() && blocks.folds.back() != folds[k];
-      if (pair.interval.begin > begin + kBlockSeconds || other_fold) {
+      if (pair.interval.begin > begin + settings::kScoreBlock_s || other_fold) {
         blocks.borders.push_back(static_cast<Eigen::Index>(3 * k));
         blocks.folds.push_back(folds[k]);
         begin = pair.interval.begin;
@@ -73,10 +70,10 @@ Eigen::MatrixXd block_scores(const Eigen::MatrixXd& basis, const Eigen::VectorXd
 std::vector<double> largest_of_draws(const std::vector<Eigen::MatrixXd>& scores, double variance) {
   std::mt19937 engine(kSeed);
   std::vector<double> largest;
-  largest.reserve(kDraws);
+  largest.reserve(settings::kSignDraws);
   const Eigen::Index blocks = scores.empty() ? 0 : scores.front().cols();
   Eigen::VectorXd signs(blocks);
-  for (int draw = 0; draw < kDraws; ++draw) {
+  for (int draw = 0; draw < settings::kSignDraws; ++draw) {
     for (Eigen::Index b = 0; b < blocks; ++b) signs(b) = (engine() & 1U) != 0U ? 1.0 : -1.0;
     std::map<Eigen::Index, double> best_of_degrees;
     for (const Eigen::MatrixXd& s : scores) {
@@ -116,7 +113,9 @@ class Projection {
 
 }  // namespace
 
-Eigen::VectorXd clipped(const Eigen::VectorXd& whitened) { return whitened.cwiseMax(-kClip).cwiseMin(kClip); }
+Eigen::VectorXd clipped(const Eigen::VectorXd& whitened) {
+  return whitened.cwiseMax(-settings::kClip).cwiseMin(settings::kClip);
+}
 
 double chi_squared_tail(double statistic, std::size_t degrees) {
   if (degrees == 0 || !(statistic > 0.0)) return 1.0;
@@ -166,9 +165,9 @@ double ScoreTable::family_p_value(double statistic, std::size_t degrees) const {
   // effect itself hardly stands out. Bonferroni's bound on the model's tail probability, far beyond any
   // doubt, needs no draws.
   const double bound = chi_squared_tail(statistic, degrees) * static_cast<double>(block_scores_.size());
-  if (bound < kBeyondDoubt) return 1.0 / (1.0 + kDraws);
+  if (bound < settings::kBeyondDoubt) return 1.0 / (1.0 + settings::kSignDraws);
   const auto above = largest_.end() - std::lower_bound(largest_.begin(), largest_.end(), own);
-  return (1.0 + static_cast<double>(above)) / (1.0 + kDraws);
+  return (1.0 + static_cast<double>(above)) / (1.0 + settings::kSignDraws);
 }
 
 double ScoreTable::correlation(std::size_t a, std::size_t b) const {

@@ -17,6 +17,7 @@
 #include "calib/selection/retirement.hpp"
 #include "calib/selection/rolling_waves.hpp"
 #include "calib/selection/search_round.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/selection/settled_shape.hpp"
 #include "calib/selection/vain_curves.hpp"
 #include "calib/selection/wrong_name.hpp"
@@ -30,9 +31,6 @@ constexpr double kNoiseShare = 0.95;  ///< of pairs that a usual effect does not
 constexpr std::size_t kMaxFindings = 3;
 constexpr std::size_t kMaxCurves = 4;
 constexpr int kMaxSteps = 12;  ///< additions and failed proofs together
-/// Family-wise level at which the data outside a fold must point to a candidate that all data together have
-/// chosen.
-constexpr double kFoldLevel = 0.05;
 constexpr const char* kAdded = "added";
 constexpr const char* kInVain = "leaving out what it explains does as well";
 
@@ -178,7 +176,7 @@ class Search {
       return "ticks so far apart hide as much";
     if (auto reason = impossibility(effect, fit); !reason.empty()) return reason;
     if (is_negligible(effect, fit)) return "too small to matter";
-    if (is_mere_sharpening(effect, fit)) return "a filter does not sharpen";
+    if (auto reason = contradiction(effect, fit); !reason.empty()) return reason;
     const bool spoils =
         candidate.curve ? curve_spoils_base(effect, basis().fit, fit) : spoils_base(effect, basis().fit, fit);
     return spoils ? "this drive cannot tell it from the wheels" : "";
@@ -203,7 +201,7 @@ class Search {
     if (is_small) result_.doubts.push_back(change);
     if (reason.empty()) {
       reason = failure(trial, proof, settled);
-      const bool is_plain = !candidate.curve || score.family_p_value <= kNamedLevel;
+      const bool is_plain = !candidate.curve || score.family_p_value <= settings::kNamedLevel;
       if (!reason.empty() && is_plain) {
         unproved_.push_back(change);
         if (candidate.curve) unproved_.push_back(doubt_of_zero(task_, trial.model, *candidate.curve));
@@ -251,7 +249,7 @@ class Search {
     FoldFlags selected{};
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
       if (candidates_[k].key != candidates_[candidate].key) continue;
-      const FoldFlags of_shape = round_->table().selected_without(k, kFoldLevel);
+      const FoldFlags of_shape = round_->table().selected_without(k, settings::kFoldLevel);
       for (std::size_t fold = 0; fold < selected.size(); ++fold) selected[fold] |= of_shape[fold];
     }
     return selected;
@@ -299,7 +297,7 @@ class Search {
   /// round room, asks for one curve after the other: where the best is none, no other is.
   [[nodiscard]] bool may_be_chance(const Candidate& candidate, const Proof& proof) const {
     if (!odometry_uses(candidate) || result_.owner_of(candidate.curve->law)) return false;
-    return has_drives(proof) ? !proof.improvement.is_plain() : proof.family_p_value > kNamedLevel;
+    return has_drives(proof) ? !proof.improvement.is_plain() : proof.family_p_value > settings::kNamedLevel;
   }
 
   void adopt(FittedModel model) {
@@ -371,7 +369,7 @@ class Search {
     const auto proof = accept(best);
     if (!proof) return true;
     result_.findings.push_back({candidate.effect, aliases, *proof});
-    strike_what_late_beams_do(*candidate.effect);
+    strike_what_is_excluded_by(*candidate.effect);
     add_doubts(round_->doubts_of(rivals, best));
     drop_superfluous();
     return true;
@@ -407,7 +405,7 @@ class Search {
       go_back_to(before);
       return true;
     }
-    strike_what_a_mast_does();
+    strike_what_is_excluded_by(*result_.curves.back().effect);
     drop_superfluous();
     return true;
   }
@@ -420,28 +418,9 @@ class Search {
     start_again();
   }
 
-  /// Scans whose beams were sent at other times than stated are bent by turning, and matches of them find
-  /// other ways the faster the robot drives and turns: what looks like a law of turning is no more the
-  /// wheels'.
-  void strike_what_late_beams_do(const vehicle::Effect& found) {
-    if (found.name() != "scan_skew") return;
-    strike_curves([](const vehicle::Law& law) {
-      return law.variable == vehicle::Variable::lateral_acceleration ||
-             law.variable == vehicle::Variable::turn_rate;
-    });
-  }
-
-  /// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
-  void strike_what_a_mast_does() {
-    if (!concerns_sensor(result_.curves.back().curve)) return;
-    strike_curves([](const vehicle::Law& law) {
-      return law.carrier == vehicle::Carrier::turn_side || law.carrier == vehicle::Carrier::sideways;
-    });
-  }
-
-  void strike_curves(const std::function<bool(const vehicle::Law&)>& is_vain) {
+  void strike_what_is_excluded_by(const vehicle::Effect& found) {
     for (Candidate& candidate : candidates_)
-      if (candidate.curve && is_vain(candidate.curve->law)) candidate.struck = true;
+      if (candidate.curve && found.excludes(candidate.curve->law)) candidate.struck = true;
   }
 
   /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.

@@ -6,6 +6,7 @@
 #include "calib/selection/law_shape.hpp"
 #include "calib/selection/likeness.hpp"
 #include "calib/selection/plausibility.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -93,7 +94,7 @@ std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {
   for (const Trial& trial : trials_)
     if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity) rivals.push_back(trial.candidate);
   for (std::size_t k = 0; k < candidates_.size(); ++k)
-    if (is_open(k) && !candidates_[k].curve && score(k).family_p_value <= kNamedLevel &&
+    if (is_open(k) && !candidates_[k].curve && score(k).family_p_value <= settings::kNamedLevel &&
         are_too_close(table_, best.candidate, k))
       rivals.push_back(k);
   return rivals;

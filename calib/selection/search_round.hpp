@@ -12,9 +12,6 @@
 
 namespace odomcalib::calib::selection {
 
-/// Family-wise; a nominal 1 % test exceeds 1 % of robots in many campaigns.
-inline constexpr double kNamedLevel = 0.0009;
-
 struct Trial {
   std::size_t candidate = 0;
   FittedModel model;  ///< with the candidate as the last effect

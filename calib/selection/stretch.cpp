@@ -6,13 +6,12 @@
 #include <optional>
 
 #include "calib/math/vector2.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
 constexpr double kHorizonSeconds = 10.0;
-constexpr double kBlockSeconds = 30.0;
-constexpr double kTrustedWeight = 0.3;
 constexpr double kStraight = 0.15;          ///< rad/m; more is a curve
 constexpr double kOnTheSpot = 0.08;         ///< m/rad; more is an arc
 constexpr double kStanding = 0.004;         ///< m and rad; a pair at rest belongs to any kind
@@ -199,7 +198,8 @@ class Finder {
     stretch.last = last;
     stretch.fold = folds_[first];
     const double since = pairs_[first].interval.begin - pairs_.front().interval.begin;
-    stretch.block = 1000 * recording_ + static_cast<std::size_t>(std::max(0.0, since / kBlockSeconds));
+    stretch.block =
+        1000 * recording_ + static_cast<std::size_t>(std::max(0.0, since / settings::kWindowBlock_s));
     stretch.amount = amount;
     stretch.interval = {pairs_[first].interval.begin, pairs_[last].interval.end};
     stretch.chained = chain.end();
@@ -227,7 +227,7 @@ std::vector<bool> trusted_pairs(const estimation::FitResult& fit) { return trust
 std::vector<bool> trusted_pairs(const estimation::FitResult& a, const estimation::FitResult& b) {
   std::vector<bool> trusted;
   for (std::size_t k = 0; k < std::min(a.weights.size(), b.weights.size()); ++k)
-    trusted.push_back(std::max(a.weights[k], b.weights[k]) >= kTrustedWeight);
+    trusted.push_back(std::max(a.weights[k], b.weights[k]) >= settings::kTrustedWeight);
   return trusted;
 }
 

@@ -8,11 +8,11 @@
 
 #include "calib/math/bootstrap.hpp"
 #include "calib/selection/folds.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr double kBlockSeconds = 10.0;
 constexpr unsigned kSeed = 19960612;
 constexpr double kHeadingLever = 0.5;  ///< m
 
@@ -98,7 +98,7 @@ Improvement compare(const StretchErrors& before, const StretchErrors& after) {
 HeldOutGain held_out_gain(std::span<const measurement::FitData> data, const estimation::FitResult& before,
                           const std::vector<bool>& fixed_before, const estimation::FitResult& after,
                           const std::vector<bool>& fixed_after, const FoldFlags& selected) {
-  constexpr double kClipSquared = 3.5 * 3.5;
+  constexpr double kClipSquared = settings::kClip * settings::kClip;
   const auto folds = folds_of(data);
   std::vector<double> gains(folds.size(), 0.0);
   const auto add = [&](const estimation::FitResult& fit, const std::vector<bool>& fixed, double sign) {
@@ -121,7 +121,7 @@ HeldOutGain held_out_gain(std::span<const measurement::FitData> data, const esti
   for (const measurement::FitData& d : data) {
     double begin = -1e300;
     for (std::size_t k = 0; k < d.pairs.size(); ++k) {
-      if (d.pairs[k].interval.begin > begin + kBlockSeconds) {
+      if (d.pairs[k].interval.begin > begin + settings::kGainBlock_s) {
         blocks.push_back(0.0);
         begin = d.pairs[k].interval.begin;
       }

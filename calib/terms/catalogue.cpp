@@ -41,6 +41,12 @@ std::shared_ptr<const vehicle::Effect> find_effect(const std::string& name,
   return nullptr;
 }
 
+std::shared_ptr<const vehicle::Effect> clock_effect(vehicle::ClockPart part) {
+  for (const auto& effect : effect_catalogue())
+    if (effect->clock_part() == part) return effect;
+  return nullptr;
+}
+
 vehicle::EffectList find_effects(const std::string& name) {
   vehicle::EffectList found;
   std::copy_if(effect_catalogue().begin(), effect_catalogue().end(), std::back_inserter(found),

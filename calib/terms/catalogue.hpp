@@ -15,6 +15,9 @@ const vehicle::EffectList& effect_catalogue();
 std::shared_ptr<const vehicle::Effect> find_effect(const std::string& name,
                                                    const std::string& first_parameter = {});
 
+/// The effect that has this part of the sensor's clock.
+std::shared_ptr<const vehicle::Effect> clock_effect(vehicle::ClockPart part);
+
 /// All effects of that name, e.g. one per wheel.
 vehicle::EffectList find_effects(const std::string& name);
 

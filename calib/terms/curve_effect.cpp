@@ -53,6 +53,15 @@ class CurveEffect final : public StepEffect<CurveEffect> {
     if (is_the_lidars(curve_)) return vehicle::Storage::driver;
     return is_of_one_drive(curve_) ? vehicle::Storage::nowhere : vehicle::Storage::host;
   }
+  /// Wheels that changed with time begin the next drive as they ended this one.
+  [[nodiscard]] bool carries_over() const override {
+    return curve_.law.variable == vehicle::Variable::time && !is_the_lidars(curve_) && curve_.period == 0.0;
+  }
+  /// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
+  [[nodiscard]] bool excludes(const vehicle::Law& law) const override {
+    return concerns_sensor(curve_) &&
+           (law.carrier == vehicle::Carrier::turn_side || law.carrier == vehicle::Carrier::sideways);
+  }
 
   template <typename T>
   void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) const {

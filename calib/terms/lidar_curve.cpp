@@ -144,6 +144,7 @@ class OfRange final : public UnnamedError {
 class OfIncidence final : public UnnamedError {
  public:
   OfIncidence() : UnnamedError("incidence", true, 4) {}
+  [[nodiscard]] bool is_judged_in_map() const override { return true; }
   [[nodiscard]] bool is_correctable() const override { return false; }
 
  private:

@@ -42,6 +42,8 @@ class LidarEffect {
   /// Whether scans may be corrected by it. What is nearly a common scale no scan shows well enough: it is
   /// reported, and the scans stay as they are.
   [[nodiscard]] virtual bool is_correctable() const { return true; }
+  /// Whether the map of all scans judges it better than pairs of scans do.
+  [[nodiscard]] virtual bool is_judged_in_map() const { return false; }
   /// Share of the squared disagreement between scans that it may leave, at most, to be worth its freedom.
   [[nodiscard]] virtual double may_leave() const { return 0.9965; }
   /// How many deviations the mean gain on held-out pairs must lie above zero.

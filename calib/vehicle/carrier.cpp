@@ -1,33 +1,55 @@
 #include "calib/vehicle/carrier.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace odomcalib::calib::vehicle {
 
-std::string to_string(Variable variable) {
-  static constexpr const char* kNames[] = {"left_speed",
-                                           "right_speed",
-                                           "wheel_speed",
-                                           "speed",
-                                           "turn_rate",
-                                           "lateral_acceleration",
-                                           "left_acceleration",
-                                           "right_acceleration",
-                                           "acceleration",
-                                           "turn_acceleration",
-                                           "left_phase",
-                                           "right_phase",
-                                           "time",
-                                           "heading",
-                                           "position",
-                                           "distance",
-                                           "since_reversal",
-                                           "left_since_reversal",
-                                           "right_since_reversal",
-                                           "since_stop",
-                                           "previous_turn",
-                                           "previous_push"};
-  return kNames[static_cast<std::size_t>(variable)];
+namespace {
+
+struct CovariateRow {
+  const char* name;
+  const char* manoeuvre;  ///< that shows the most of what depends on it, in a small area; empty: none
+};
+
+/// In the order of Variable.
+constexpr std::array<CovariateRow, static_cast<std::size_t>(kLastVariable) + 1> kCovariates = {{
+    {"left_speed", "straights"},
+    {"right_speed", "straights"},
+    {"wheel_speed", "straights"},
+    {"speed", "straights"},
+    {"turn_rate", "turns"},
+    {"lateral_acceleration", "arcs"},
+    {"left_acceleration", "accelerations"},
+    {"right_acceleration", "accelerations"},
+    {"acceleration", "accelerations"},
+    {"turn_acceleration", ""},
+    {"left_phase", "slow_straights"},
+    {"right_phase", "slow_straights"},
+    {"time", ""},
+    {"heading", "headings"},
+    {"position", ""},
+    {"distance", ""},
+    {"since_reversal", "reversals"},
+    {"left_since_reversal", "reversals"},
+    {"right_since_reversal", "reversals"},
+    {"since_stop", "accelerations"},
+    {"previous_turn", "turns"},
+    {"previous_push", "accelerations"},
+}};
+
+}  // namespace
+
+std::string to_string(Variable variable) { return kCovariates.at(static_cast<std::size_t>(variable)).name; }
+
+std::optional<Variable> variable_from(const std::string& name) {
+  for (std::size_t k = 0; k < kCovariates.size(); ++k)
+    if (kCovariates.at(k).name == name) return static_cast<Variable>(k);
+  return std::nullopt;
+}
+
+std::string manoeuvre_for(Variable variable) {
+  return kCovariates.at(static_cast<std::size_t>(variable)).manoeuvre;
 }
 
 std::string to_string(Carrier carrier) {

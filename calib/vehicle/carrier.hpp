@@ -1,6 +1,7 @@
 // What a defect may depend on, and how it enters the motion: the words of which effects and curves are made.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "calib/vehicle/motion_step.hpp"
@@ -34,6 +35,10 @@ enum class Variable {
 };
 inline constexpr Variable kLastVariable = Variable::previous_push;
 std::string to_string(Variable variable);
+/// nullopt when there is none of that name.
+std::optional<Variable> variable_from(const std::string& name);
+/// The manoeuvre that shows the most of what depends on it, in a small area; empty: none.
+std::string manoeuvre_for(Variable variable);
 
 /// Dependence on time, heading or position is a property of the day or of the place, not of the robot.
 bool belongs_to_the_place(Variable variable);

@@ -27,6 +27,8 @@ struct EffectParameter {
   double prior =
       0.0;  ///< deviation of a normal prior about zero; 0: none. What the data do not show stays small
   bool fixed = false;  ///< a shape that is tried at several values instead of being fitted
+  /// Of an effect of the reference: the wheels have this part of it whoever looks at them.
+  bool of_wheels = false;
   /// Shapes (thresholds, lengths) start away from zero; sizes start at zero.
   [[nodiscard]] bool is_size() const { return start == 0.0 && !fixed; }
 };
@@ -37,6 +39,9 @@ inline constexpr double kNegligibleShare = 0.15;
 
 /// Where a correction can live.
 enum class Storage { controller, host, driver, nowhere };
+
+/// What an effect says of the sensor's clock against that of the encoders.
+enum class ClockPart { none, offset, rate };
 
 class Effect {
  public:
@@ -51,12 +56,30 @@ class Effect {
   /// Names that no motion can tell from this one: listed beside it whenever it is found.
   [[nodiscard]] virtual std::vector<std::string> always_alike() const { return {}; }
   [[nodiscard]] virtual std::string separating_motion() const { return {}; }
+  /// The motion that tells them apart, as a manoeuvre that can be driven in a small area; empty: none.
+  [[nodiscard]] virtual std::string manoeuvre() const { return {}; }
   /// The same effect with other shapes to start from; a search tries them all and keeps the best.
   [[nodiscard]] virtual std::vector<std::shared_ptr<const Effect>> variants() const { return {}; }
   /// Where its signature lies. A rest that depends on these variables on these carriers is the same effect
   /// with another law than the textbook's.
   [[nodiscard]] virtual std::vector<Law> laws() const { return {}; }
   [[nodiscard]] virtual Storage storage() const { return Storage::host; }
+  /// Whether it distorts the sweeps of the sensor: a comparison with the reference needs it, dead reckoning
+  /// must not have it.
+  [[nodiscard]] virtual bool bends_scans() const { return false; }
+  /// Whether the next drive begins with it as this one ended.
+  [[nodiscard]] virtual bool carries_over() const { return false; }
+  [[nodiscard]] virtual ClockPart clock_part() const { return ClockPart::none; }
+  /// Whether a free curve of that law would describe the same once more where this effect was found.
+  [[nodiscard]] virtual bool excludes(const Law& law) const {
+    (void)law;
+    return false;
+  }
+  /// Why no mechanism makes these values together, each of them possible; empty when one does.
+  [[nodiscard]] virtual std::string contradiction(std::span<const double> parameters) const {
+    (void)parameters;
+    return {};
+  }
 
   /// Whether either of two states may be the undisturbed one: nothing tells which way of turning is the
   /// normal one.

@@ -99,7 +99,7 @@ std::optional<Segment> read_segment(Bytes packet) {
   const unsigned to_port = big16(tcp);
   out.sequence = static_cast<std::uint32_t>(tcp.big_endian(4));
   out.acknowledged = static_cast<std::uint32_t>(tcp.big_endian(4));
-  const std::size_t data_at = 4U * (tcp.u8() >> 4U);
+  const std::size_t data_at = std::size_t{4} * (tcp.u8() >> 4U);
   out.flags = tcp.u8();
   if (!tcp.ok() || data_at < 20 || packet.size() < head + data_at) return std::nullopt;
   out.from = address_text(v6 ? AF_INET6 : AF_INET, from, out.from_port);

@@ -18,6 +18,7 @@ class AccelerationSlip final : public StepEffect<AccelerationSlip> {
   [[nodiscard]] std::string separating_motion() const override {
     return "equal accelerations at low and at high speed";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "accelerations"; }
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double side : {0.0, -1.0, 1.0}) all.push_back(std::make_shared<AccelerationSlip>(side));

@@ -25,6 +25,7 @@ class Backlash final : public StepEffect<Backlash> {
     return "reversals at low and high speed; spins left and right, where the wheels reverse and the robot "
            "does not";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "reversals"; }
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double spread : {0.0, 0.05, 0.15}) all.push_back(std::make_shared<Backlash>(spread));

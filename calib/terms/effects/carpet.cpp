@@ -14,6 +14,7 @@ class Carpet final : public StepEffect<Carpet> {
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"floor_slope"}; }
   [[nodiscard]] std::string separating_motion() const override { return "straight lines on four headings"; }
+  [[nodiscard]] std::string manoeuvre() const override { return "headings"; }
   [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::nowhere; }
   [[nodiscard]] std::vector<vehicle::Law> laws() const override {
     return {{vehicle::Variable::heading, vehicle::Carrier::both_path},

@@ -27,6 +27,7 @@ class CasterKick final : public StepEffect<CasterKick> {
   [[nodiscard]] std::string separating_motion() const override {
     return "reversals straight after a left and after a right arc, and long straights after a reversal";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "reversals"; }
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double length : {0.04, 0.08, 0.15}) all.push_back(std::make_shared<CasterKick>(length, 1.0));

@@ -18,6 +18,7 @@ class ClockDrift final : public vehicle::Effect {
     return "five minutes or more with accelerations spread over the whole run";
   }
   [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::driver; }
+  [[nodiscard]] vehicle::ClockPart clock_part() const override { return vehicle::ClockPart::rate; }
   [[nodiscard]] double delay(double time, std::span<const double> p) const override { return p[0] * time; }
   [[nodiscard]] vehicle::Jet delay(double time, std::span<const vehicle::Jet> p) const override {
     return p[0] * time;

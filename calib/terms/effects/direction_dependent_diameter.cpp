@@ -18,6 +18,7 @@ class DirectionDependentDiameter final : public StepEffect<DirectionDependentDia
   [[nodiscard]] std::string separating_motion() const override {
     return "straight lines forward and backward at the same speed, and spins both ways";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "straights"; }
   [[nodiscard]] std::vector<vehicle::Law> laws() const override {
     return {vehicle::kOfEachWheel,
             {vehicle::Variable::left_speed, vehicle::Carrier::left_travel},

@@ -21,6 +21,7 @@ class DriftWithTime final : public StepEffect<DriftWithTime> {
     return "the same manoeuvres at the beginning, in the middle and at the end of the run";
   }
   [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::nowhere; }
+  [[nodiscard]] bool carries_over() const override { return true; }
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double time_constant : {1e5, 120.0, 40.0})

@@ -17,6 +17,7 @@ class EncoderLag final : public StepEffect<EncoderLag> {
   [[nodiscard]] std::string separating_motion() const override {
     return "straight lines and turns on the spot with quick starts, without reversing";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "accelerations"; }
 
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {

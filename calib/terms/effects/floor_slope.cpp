@@ -16,6 +16,7 @@ class FloorSlope final : public StepEffect<FloorSlope> {
   [[nodiscard]] std::string separating_motion() const override {
     return "straight lines on four headings, forward and backward on each";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "headings"; }
   [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::nowhere; }
   [[nodiscard]] std::vector<vehicle::Law> laws() const override {
     return {{vehicle::Variable::heading, vehicle::Carrier::both_path}};

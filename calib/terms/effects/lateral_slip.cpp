@@ -19,6 +19,7 @@ class LateralSlip final : public StepEffect<LateralSlip> {
   [[nodiscard]] std::string separating_motion() const override {
     return "arcs left and right, forward and backward, at two speeds and two radii";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "arcs"; }
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all = {std::make_shared<LateralSlip>(0.0)};
     for (const double way : vehicle::kRelaxations) all.push_back(std::make_shared<LateralSlip>(way));

@@ -9,6 +9,7 @@ namespace {
 class RangeBias final : public LidarEffect {
  public:
   [[nodiscard]] std::string name() const override { return "range_bias"; }
+  [[nodiscard]] bool is_judged_in_map() const override { return true; }
   [[nodiscard]] std::string variable() const override { return "range"; }
   [[nodiscard]] std::vector<LidarParameter> parameters() const override {
     return {{"offset", "m", 0.008, 0.2}};

@@ -23,6 +23,7 @@ class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
     return "straight lines at three speeds over 1:3, and spins whose wheel speeds overlap those of the "
            "straights";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "straights"; }
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double half_speed : {0.0, 0.1, 0.2, 0.4, 0.8})

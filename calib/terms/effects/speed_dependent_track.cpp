@@ -17,6 +17,7 @@ class SpeedDependentTrack final : public StepEffect<SpeedDependentTrack> {
   [[nodiscard]] std::string separating_motion() const override {
     return "spins at three rates, and arcs at the same turn rate and different speeds";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "turns"; }
   [[nodiscard]] std::vector<vehicle::Law> laws() const override {
     return {{vehicle::Variable::turn_rate, vehicle::Carrier::track}};
   }

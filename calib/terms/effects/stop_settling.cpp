@@ -24,6 +24,7 @@ class StopSettling final : public StepEffect<StopSettling> {
   [[nodiscard]] std::string separating_motion() const override {
     return "many stops, after straights and after turns on the spot, beside reversals without one";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "reversals"; }
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const bool lasting : {false, true})

@@ -22,6 +22,7 @@ class TickLoss final : public StepEffect<TickLoss> {
   [[nodiscard]] std::string separating_motion() const override {
     return "straight lines above and below the threshold, and spins whose wheel speed stays below it";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "straights"; }
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double threshold : {0.1, 0.14, 0.19, 0.25, 0.32, 0.4, 0.5, 0.7, 1.0, 1.5})

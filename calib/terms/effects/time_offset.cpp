@@ -12,7 +12,7 @@ class TimeOffset final : public StepEffect<TimeOffset> {
   [[nodiscard]] std::string name() const override { return "time_offset"; }
   [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
     return {{"offset", "s", 0.02, -1.0, 1.0},
-            {"smoothing", "s^2", kTypicalSmoothing, -0.02, 0.02, 0.0, kTypicalSmoothing}};
+            {"smoothing", "s^2", kTypicalSmoothing, -0.02, 0.02, 0.0, kTypicalSmoothing, false, true}};
   }
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"encoder_lag", "acceleration_slip"};
@@ -23,7 +23,14 @@ class TimeOffset final : public StepEffect<TimeOffset> {
            "cannot be told "
            "apart from a late scan";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "accelerations"; }
   [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::driver; }
+  [[nodiscard]] vehicle::ClockPart clock_part() const override { return vehicle::ClockPart::offset; }
+  /// A delay next to nothing with a smoothing below zero is what noise of coarse counts makes of the wheels.
+  [[nodiscard]] std::string contradiction(std::span<const double> p) const override {
+    const bool is_late = std::abs(p[0]) >= vehicle::kNegligibleShare * parameters().front().scale;
+    return !is_late && p[1] < 0.0 ? "a filter does not sharpen" : "";
+  }
   [[nodiscard]] double delay(double /*time*/, std::span<const double> parameters) const override {
     return parameters[0];
   }

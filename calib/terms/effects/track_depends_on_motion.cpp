@@ -20,6 +20,7 @@ class TrackDependsOnMotion final : public StepEffect<TrackDependsOnMotion> {
   [[nodiscard]] std::string separating_motion() const override {
     return "spins and arcs with equal wheel speeds";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "arcs"; }
   [[nodiscard]] std::vector<std::shared_ptr<const vehicle::Effect>> variants() const override {
     std::vector<std::shared_ptr<const vehicle::Effect>> all;
     for (const double arm : {0.5, 0.25, 1.0, 2.0}) all.push_back(std::make_shared<TrackDependsOnMotion>(arm));

@@ -18,6 +18,7 @@ class TurnDirectionAsymmetry final : public StepEffect<TurnDirectionAsymmetry> {
   [[nodiscard]] std::string separating_motion() const override {
     return "turns both ways at two or more rates: skew grows with the rate, scrub does not";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "turns"; }
   [[nodiscard]] bool has_two_states() const override { return true; }
   [[nodiscard]] std::vector<vehicle::Law> laws() const override {
     return {{vehicle::Variable::turn_rate, vehicle::Carrier::track}};

@@ -22,6 +22,7 @@ class WheelEccentricity final : public StepEffect<WheelEccentricity> {
   [[nodiscard]] std::string separating_motion() const override {
     return "slow straight lines of five or more wheel turns";
   }
+  [[nodiscard]] std::string manoeuvre() const override { return "slow_straights"; }
   [[nodiscard]] std::vector<vehicle::Law> laws() const override {
     if (side_ == Side::left) return {{vehicle::Variable::left_phase, vehicle::Carrier::left_travel}};
     return {{vehicle::Variable::right_phase, vehicle::Carrier::right_travel}};

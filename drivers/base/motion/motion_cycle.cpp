@@ -9,6 +9,7 @@
 namespace odomcalib::drivers {
 
 using namespace motion;
+
 MotionCycle::MotionCycle(MotionDevice& device, Options options)
     : device_(device),
       options_(std::move(options)),

@@ -7,11 +7,8 @@
 #include "drivers/base/motion/settings.hpp"
 
 namespace odomcalib::drivers {
-namespace {
 
 using namespace motion;
-
-}  // namespace
 
 StuckWatch::StuckWatch(double ticks_per_rev) : tick_rad_(2.0 * std::numbers::pi / ticks_per_rev) {}
 

@@ -5,11 +5,8 @@
 #include "drivers/base/motion/settings.hpp"
 
 namespace odomcalib::drivers {
-namespace {
 
 using namespace motion;
-
-}  // namespace
 
 void TickPairing::forget() {
   waiting_left_.reset();

@@ -5,11 +5,8 @@
 #include "drivers/base/motion/settings.hpp"
 
 namespace odomcalib::drivers {
-namespace {
 
 using namespace motion;
-
-}  // namespace
 
 double TimerDates::date(double arrival) {
   // A frame that was lost is a whole period of lateness, to be told from a host that was held up: what comes

@@ -5,11 +5,8 @@
 #include "drivers/lidar/common/settings.hpp"
 
 namespace odomcalib::drivers {
-namespace {
 
 using namespace lidar;
-
-}  // namespace
 
 void StampLine::fit() {
   double n = 0.0, number = 0.0, stamp = 0.0;

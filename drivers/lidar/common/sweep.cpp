@@ -8,11 +8,8 @@
 #include "drivers/lidar/common/settings.hpp"
 
 namespace odomcalib::drivers {
-namespace {
 
 using namespace lidar;
-
-}  // namespace
 
 void Sweep::reset() {
   whole_ = false;

@@ -8,11 +8,8 @@
 #include "drivers/lidar/ld06/settings.hpp"
 
 namespace odomcalib::drivers {
-namespace {
 
 using namespace ld06;
-
-}  // namespace
 
 Ld06::Ld06(const LidarOptions& options, double points_per_s)
     : options_(options),

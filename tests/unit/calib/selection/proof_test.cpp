@@ -60,10 +60,10 @@ TEST(Plausibility, bounds_size_and_need_are_judged_both_ways) {
 
 TEST(Plausibility, no_filter_sharpens_but_beside_a_delay_it_may_seem_to) {
   const auto late = terms::find_effect("time_offset");
-  EXPECT_TRUE(is_mere_sharpening(*late, fit_with({1e-3, -1e-3}, 1e-4)));
-  EXPECT_FALSE(is_mere_sharpening(*late, fit_with({1e-3, 1e-3}, 1e-4)));
-  EXPECT_FALSE(is_mere_sharpening(*late, fit_with({0.02, -1e-3}, 1e-4)));
-  EXPECT_FALSE(is_mere_sharpening(*terms::find_effect("backlash"), fit_with({1e-3, -1e-3, 0.0}, 1e-4)));
+  EXPECT_EQ(contradiction(*late, fit_with({1e-3, -1e-3}, 1e-4)), "a filter does not sharpen");
+  EXPECT_EQ(contradiction(*late, fit_with({1e-3, 1e-3}, 1e-4)), "");
+  EXPECT_EQ(contradiction(*late, fit_with({0.02, -1e-3}, 1e-4)), "");
+  EXPECT_EQ(contradiction(*terms::find_effect("backlash"), fit_with({1e-3, -1e-3, 0.0}, 1e-4)), "");
 }
 
 TEST(Plausibility, the_shape_of_an_effect_is_no_size) {

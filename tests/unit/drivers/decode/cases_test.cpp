@@ -13,9 +13,11 @@ namespace {
 
 using nlohmann::json;
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration takes none
 #define SKIP_WITHOUT_CASES(folder)   \
   const auto folder = test::cases(); \
   if (folder.empty()) GTEST_SKIP() << "no cases: set ODOMCALIB_SHARED to the folder that holds cases/"
+// NOLINTEND(bugprone-macro-parentheses)
 
 std::vector<json> decoded(const std::string& driver, const std::filesystem::path& file) {
   const auto text = decode(driver, test::read_text(file), "drivers/base/profiles", file.string());

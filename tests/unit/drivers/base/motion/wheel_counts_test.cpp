@@ -68,7 +68,7 @@ template <typename Change>
 std::vector<TickSample> drive(WheelCounts& counts, int readings, Change change) {
   std::vector<TickSample> out;
   for (int i = 0; i < readings; ++i) {
-    std::array<std::int64_t, 2> raw{40 * i, -40 * i};
+    std::array<std::int64_t, 2> raw{std::int64_t{40} * i, std::int64_t{-40} * i};
     change(i, raw);
     const double t = 0.02 * i;
     (void)counts.on_count(Side::left, raw[0], t);
