@@ -145,7 +145,8 @@ bool has_write_ahead_log(const std::filesystem::path& path) {
 
 Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback,
                                  const TopicChoices& topics) {
-  if (std::filesystem::is_directory(path)) return read_folder(path, fallback, topics);
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) return read_folder(path, fallback, topics);
   const auto file = read_file_bytes(path);
   if (!file) return file.error();
   auto recording = read_recording_bytes(file.value(), path, fallback, topics);

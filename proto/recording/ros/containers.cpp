@@ -36,6 +36,10 @@ std::optional<Error> read_container(std::string_view bytes, const std::string& w
   if (!is_zstd(bytes)) return read_plain(bytes, where, collector);
   // rosbag2 with compression_mode "file"
   const Unpacked unpacked = unpack(Packing::zstd, bytes, kLargestRecording);
+  if (!unpacked.whole && unpacked.bytes.empty())
+    return Error{ErrorCode::format,
+                 "is packed with zstd, and nothing of it can be unpacked: " + unpacked.problem, where,
+                 "copy it from the robot again"};
   if (!unpacked.whole) collector.discard("file", unpacked.problem);
   return read_plain(unpacked.bytes, where, collector);
 }

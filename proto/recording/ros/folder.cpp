@@ -51,8 +51,9 @@ std::vector<std::string> missing_between(const std::vector<Split>& splits) {
 Result<FolderFiles> files_of(const std::filesystem::path& folder) {
   std::vector<Split> splits;
   std::error_code failed;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
-    Split split = split_of(entry.path());
+  std::filesystem::directory_iterator entry(folder, failed);
+  for (; !failed && entry != std::filesystem::directory_iterator(); entry.increment(failed)) {
+    Split split = split_of(entry->path());
     if (is_storage(split.ending)) splits.push_back(std::move(split));
   }
   if (failed) return Error{ErrorCode::io, "cannot be listed: " + failed.message(), folder.string(), ""};

@@ -1,7 +1,8 @@
-// Reads a bag (npm package rosbag) or an MCAP file (@mcap/core) with somebody else's readers and decoders, and prints what it
-// holds as JSON Lines: {"type":"wheels",...} of joint states, {"type":"scan",...} of scans, {"type":"gyro",...}.
+// Reads a bag (npm package rosbag), a rosbag2 database (@foxglove/rosbag2-web) or an MCAP file (@mcap/core) with somebody
+// else's readers, decoders and message definitions, and prints what it holds as JSON Lines: {"type":"wheels",...} of joint
+// states, {"type":"scan",...} of scans, {"type":"gyro",...}.
 //
-// usage: NODE_PATH=.../node_modules node read.js FILE.bag|FILE.mcap
+// usage: NODE_PATH=.../node_modules node read.js FILE.bag|FILE.db3|FILE.mcap
 'use strict';
 const fs = require('fs');
 const { execFileSync } = require('child_process');
@@ -9,7 +10,8 @@ const { McapStreamReader } = require('@mcap/core');
 const { open } = require('rosbag');
 const lz4 = require('lz4js');
 const zstd = require('@foxglove/wasm-zstd');
-const { readerFor } = require('./messages.js');
+const { md5Of, readerFor } = require('./messages.js');
+const { openRosbag2 } = require('./sqlite.js');
 
 const file = process.argv[2];
 // npm has no bz2 decompressor that runs as it is; Python's is at hand.
@@ -40,9 +42,17 @@ function tell(type, message) {
 async function readBag() {
   const bag = await open(file);
   const types = {};
-  for (const connection of Object.values(bag.connections)) types[connection.topic] = connection.type;
+  for (const { topic, type, md5sum } of Object.values(bag.connections)) {
+    types[topic] = type;
+    if (md5sum !== md5Of(type)) throw new Error(`${topic}: ${md5sum} is not the MD5 of ${type}`);
+  }
   const decompress = { lz4: (packed) => Buffer.from(lz4.decompress(packed)), bz2: bunzip2 };
   await bag.readMessages({ decompress }, ({ topic, message }) => { if (message.header) tell(types[topic], message); });
+}
+
+async function readDatabase() {
+  const bag = await openRosbag2(file);
+  for await (const { topic, value } of bag.readMessages()) if (value.header) tell(topic.type.replace('/msg/', '/'), value);
 }
 
 async function readMcap() {
@@ -66,4 +76,5 @@ async function readMcap() {
   if (!reader.done()) throw new Error('the file does not end where it should');
 }
 
-(file.endsWith('.bag') ? readBag() : readMcap()).catch((error) => { console.error(error); process.exit(1); });
+const read = { bag: readBag, db3: readDatabase, mcap: readMcap }[file.split('.').pop()];
+read().catch((error) => { console.error(error); process.exit(1); });

@@ -73,9 +73,10 @@ TEST(HostileRos, a_bomb_unpacks_to_no_more_than_it_states_or_the_limit) {
 }
 
 TEST(HostileRos, bombs_in_chunks_cost_neither_memory_nor_the_rest_of_the_file) {
+  const std::string mebibyte = sim::packed(RosPacking::zstd, std::string(1 << 20, '\0'));
+  std::string bomb, chunks;
+  for (int i = 0; i < 1024; ++i) bomb += mebibyte;
   const long before = peak_memory();
-  std::string chunks;
-  const std::string bomb = sim::packed(RosPacking::zstd, std::string(64 << 20, '\0'));
   for (int i = 0; i < 20; ++i) chunks += mcap_chunk("zstd", bomb, 1000);         // more than stated
   for (int i = 0; i < 20; ++i) chunks += mcap_chunk("zstd", bomb, 1ULL << 60U);  // states beyond all limits
   chunks += mcap_chunk("zstd", "no zstd at all", 100) + mcap_chunk("brotli", "x", 1) + mcap_chunk("", "x", 1);
@@ -84,7 +85,8 @@ TEST(HostileRos, bombs_in_chunks_cost_neither_memory_nor_the_rest_of_the_file) {
   EXPECT_EQ(result.value().ticks.size(), 200U) << list_discarded(result.value());
   EXPECT_EQ(discarded_like(result.value(), "chunk", "unpacks to more than it states"), 20U);
   EXPECT_EQ(discarded_like(result.value(), "chunk", "more than the limit of"), 20U);
-  EXPECT_EQ(discarded_like(result.value(), "chunk", "damaged"), 1U) << list_discarded(result.value());
+  EXPECT_EQ(discarded_like(result.value(), "chunk", "compressed data is damaged"), 1U)
+      << list_discarded(result.value());
   EXPECT_LT(peak_memory() - before, 100) << "MiB";
 }
 
@@ -104,7 +106,9 @@ TEST(HostileRos, counts_beyond_the_message_are_damage_and_reserve_nothing) {
       for (auto& message : log.messages)
         if (at + 4 <= message.bytes.size()) message.bytes.replace(at, 4, 4, '\xFF');
       const auto result = read_ros(write_mcap(log));
-      if (result.ok()) EXPECT_LE(result.value().ticks.size(), 200U);
+      if (result.ok()) {
+        EXPECT_LE(result.value().ticks.size(), 200U);
+      }
     }
   }
   EXPECT_LT(peak_memory() - before, 100) << "MiB";
@@ -127,9 +131,10 @@ TEST(HostileRos, lengths_beyond_the_file_are_damage) {
 TEST(HostileRos, topics_without_end_are_bounded) {
   sim::RosLog log = small_log(Wire::ros1);
   for (int i = 0; i < 70'000; ++i) log.add("/t" + std::to_string(i), "std_msgs/String", 1, "");
-  (void)read_ros(write_bag({log.wire, log.topics, {}}));  // without messages nothing is described
+  (void)read_ros(sim::write_bag({log.wire, log.topics, {}}));  // without messages nothing is described
   const auto result = read_ros(write_bag(log, {.chunk_bytes = 1 << 20}));
-  if (result.ok()) EXPECT_GE(discarded_like(result.value(), "connection", "too many topics"), 1U);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  EXPECT_GE(discarded_like(result.value(), "connection", "too many topics"), 1U);
 }
 
 TEST(HostileRos, names_of_joints_that_always_differ_are_bounded) {
@@ -220,7 +225,9 @@ TEST(HostileRos, trees_that_bite_their_tail_end) {
     ++changed;
     const auto begin = std::chrono::steady_clock::now();
     const auto result = read_ros(cyclic);
-    if (result.ok()) EXPECT_GE(discarded_like(result.value(), "file", ""), 1U);
+    if (result.ok()) {
+      EXPECT_GE(discarded_like(result.value(), "file", ""), 1U);
+    }
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
   }
   EXPECT_GT(changed, 0U) << "the drive is too small for an inner page";
@@ -236,7 +243,9 @@ TEST(HostileRos, headers_of_sqlite_that_lie_are_answered) {
       std::string changed = good;
       changed[at] = value;
       const auto result = read_ros(changed);
-      if (result.ok()) EXPECT_LE(result.value().ticks.size(), 200U);
+      if (result.ok()) {
+        EXPECT_LE(result.value().ticks.size(), 200U);
+      }
     }
 }
 

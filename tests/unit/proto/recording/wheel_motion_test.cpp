@@ -17,6 +17,7 @@ using test::read_text;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kTicksPerRev = 2000.0;
+constexpr double kFineCount = kTurn / kFineCountsPerRev;
 constexpr const char* kRobotWithoutTicks = R"({"type":"robot","wheel_diameter":0.15,"track_width":0.4})"
                                            "\n";
 constexpr const char* kRobotWithTicks =
@@ -87,14 +88,18 @@ TEST(WheelMotion, angles_on_the_encoders_grid_give_the_encoders_counts) {
 }
 
 TEST(WheelMotion, angles_off_the_grid_are_kept_finely_whatever_resolution_is_stated) {
+  constexpr double kOff = 1e-3;  // rad, a third of a count
   for (const char* robot : {kRobotWithoutTicks, kRobotWithTicks}) {
     std::string text = robot;
     for (const TickSample& s : drive())
-      text += line("wheels", s.t, angle(s.left) + 1e-4 * std::sin(s.t), angle(s.right));
+      text += line("wheels", s.t, angle(s.left) + kOff * std::sin(s.t), angle(s.right));
     const auto result = read_text(text);
     ASSERT_TRUE(result.ok()) << result.error().text();
     EXPECT_EQ(result.value().robot.ticks_per_rev, kFineCountsPerRev);
-    expect_same_motion(result.value(), drive(), 2.2e-4);
+    expect_same_motion(result.value(), drive(), kOff + kFineCount);
+    for (std::size_t i = 0; i < result.value().ticks.size(); ++i)
+      EXPECT_NEAR(angle(result.value().ticks[i].left, kFineCountsPerRev), result.value().wheels[i].left,
+                  kFineCount);
   }
 }
 

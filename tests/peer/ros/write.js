@@ -1,14 +1,18 @@
-// Writes a recording (JSON Lines) as an MCAP file with somebody else's writer, message encoders and compressors: npm
-// packages @mcap/core, @foxglove/rosmsg-serialization, @foxglove/rosmsg2-serialization, lz4js, @foxglove/wasm-zstd.
+// Writes a recording (JSON Lines) as an MCAP file or a rosbag2 database with somebody else's writers, message definitions,
+// encoders and compressors: npm packages @mcap/core, @foxglove/sql.js, @foxglove/rosmsg-msgs-common,
+// @foxglove/rosmsg-serialization, @foxglove/rosmsg2-serialization, lz4js, @foxglove/wasm-zstd.
 //
-// usage: NODE_PATH=.../node_modules node write_mcap.js DRIVE.jsonl OUT.mcap ros1|ros2 none|lz4|zstd whole|bare
+// usage: NODE_PATH=.../node_modules node write.js DRIVE.jsonl OUT.mcap ros1|ros2 none|lz4|zstd whole|bare
 //        whole: chunks, index and summary; bare: no chunks, no summary
+//        NODE_PATH=.../node_modules node write.js DRIVE.jsonl OUT.db3 ros2 none|zstd
+//        zstd: each message alone
 'use strict';
 const fs = require('fs');
 const { McapWriter } = require('@mcap/core');
 const lz4 = require('lz4js');
 const zstd = require('@foxglove/wasm-zstd');
 const { definitions, writerFor } = require('./messages.js');
+const { newDatabase } = require('./sqlite.js');
 
 const [drive, out, ros, packing, layout] = process.argv.slice(2);
 const START = 1700000000n * 1000000000n;  // ns
@@ -66,21 +70,23 @@ function messages(lines) {
   return list;
 }
 
-async function main() {
-  await zstd.isLoaded;
+const recorded = () => messages(
+  fs.readFileSync(drive, 'utf8').split('\n').filter((line) => line).map((line) => JSON.parse(line)));
+const typeName = (type) => ros === 'ros1' ? type : type.replace('/', '/msg/');
+
+async function writeMcap() {
   const whole = layout === 'whole';
   const writer = new McapWriter({
     writable: new File(out), useChunks: whole, useSummaryOffsets: whole, useStatistics: whole, useChunkIndex: whole,
     useMessageIndex: whole, repeatChannels: whole, repeatSchemas: whole, chunkSize: 20000, compressChunk: compressors[packing] });
   await writer.start({ profile: ros, library: 'peer' });
-  const lines = fs.readFileSync(drive, 'utf8').split('\n').filter((line) => line).map((line) => JSON.parse(line));
   const channels = new Map();
   let sequence = 0;
-  for (const [topic, type, time, message] of messages(lines)) {
+  for (const [topic, type, time, message] of recorded()) {
     if (!channels.has(topic)) {
       const schemaId = await writer.registerSchema({
-        name: ros === 'ros1' ? type : type.replace('/', '/msg/'), encoding: ros === 'ros1' ? 'ros1msg' : 'ros2msg',
-        data: Buffer.from(JSON.stringify(definitions(type, ros))) });
+        name: typeName(type), encoding: ros === 'ros1' ? 'ros1msg' : 'ros2msg',
+        data: Buffer.from(JSON.stringify(definitions(type, ros)[0])) });
       channels.set(topic, { encode: writerFor(type, ros), id: await writer.registerChannel({
         schemaId, topic, messageEncoding: ros === 'ros1' ? 'ros1' : 'cdr', metadata: new Map() }) });
     }
@@ -91,4 +97,31 @@ async function main() {
   await writer.end();
 }
 
-main().catch((error) => { console.error(error); process.exit(1); });
+// The tables that rosbag2_storage_sqlite3 makes.
+const TABLES = `
+  CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);
+  INSERT INTO schema VALUES(3, 'humble');
+  CREATE TABLE metadata(id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL, metadata TEXT NOT NULL);
+  CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, serialization_format TEXT NOT NULL,
+                      offered_qos_profiles TEXT NOT NULL);
+  CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, data BLOB NOT NULL);
+  CREATE INDEX timestamp_idx ON messages (timestamp ASC);`;
+
+async function writeDatabase() {
+  const database = await newDatabase();
+  database.run(TABLES);
+  const topics = new Map();
+  for (const [name, type, time, message] of recorded()) {
+    if (!topics.has(name)) {
+      topics.set(name, { id: topics.size + 1, encode: writerFor(type, ros) });
+      database.run("INSERT INTO topics VALUES(?, ?, ?, 'cdr', '')", [topics.size, name, typeName(type)]);
+    }
+    const topic = topics.get(name), bytes = topic.encode(message);
+    database.run('INSERT INTO messages(topic_id, timestamp, data) VALUES(?, CAST(? AS INTEGER), ?)',
+      [topic.id, String(time + LATENCY), packing === 'zstd' ? zstd.compress(bytes, 3) : bytes]);
+  }
+  fs.writeFileSync(out, database.export());
+}
+
+zstd.isLoaded.then(out.endsWith('.db3') ? writeDatabase : writeMcap)
+  .catch((error) => { console.error(error); process.exit(1); });
