@@ -57,7 +57,8 @@ std::string number_text(double value) {
 
 Error missing_unit(const std::string& field, double value, const char* unit, double limit,
                    const std::string& where) {
-  const std::string remedy = "state it in " + std::string(unit) + " in the robot line or with --robot";
+  const std::string remedy = "state it in " + std::string(unit) +
+                             " in the robot line or with --robot FILE; odomcalib-robot.toml(5) shows one";
   if (value == 0.0)
     return {ErrorCode::missing_units, "robot description lacks \"" + field + "\"", where, remedy};
   const std::string bound =
