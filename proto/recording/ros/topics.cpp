@@ -178,8 +178,9 @@ class Choosing {
   }
 
   [[nodiscard]] Error ambiguous(Part part, const std::vector<Topic*>& topics) const {
-    std::vector<std::string> words;
-    for (const Topic* topic : topics) words.push_back(described(*topic));
+    std::vector<std::string> words(topics.size());
+    std::transform(topics.begin(), topics.end(), words.begin(),
+                   [](const Topic* topic) { return described(*topic); });
     return usage("several topics could be the " + name_of(part) + ": " + joined(words),
                  "choose one: --topic " + name_of(part) + "=" + topics.front()->header.name);
   }
@@ -356,7 +357,8 @@ class Clock {
     std::int64_t since = 0;
     if (__builtin_sub_overflow(time, start_, &since)) return std::nan("");
     constexpr std::int64_t kSecond = 1'000'000'000;
-    return static_cast<double>(since / kSecond) + 1e-9 * static_cast<double>(since % kSecond);
+    const std::int64_t seconds = since / kSecond, rest = since % kSecond;
+    return static_cast<double>(seconds) + 1e-9 * static_cast<double>(rest);
   }
 
  private:
