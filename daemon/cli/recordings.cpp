@@ -1,5 +1,7 @@
 #include "daemon/cli/recordings.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -62,7 +64,7 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
   for (const auto& path : paths) {
     auto recording = read_recording(path, robot_file.empty() ? nullptr : &robot, topics.value());
     if (!recording) return recording.error();
-    for (const auto& choice : recording.value().choices) tell(path + ": " + choice);
+    for (const auto& choice : recording.value().choices) tell(fmt::format("{}: {}", path, choice));
     if (const Recording* one = same_drive(recordings, recording.value()))
       return Error{ErrorCode::usage, "holds the same drive as \"" + one->name + "\"", path,
                    "name every recording once"};
