@@ -54,6 +54,13 @@ struct PoseSample {
   double x = 0.0, y = 0.0, yaw = 0.0;
 };
 
+/// Both wheels at one instant, as a joint state or a motor controller tells them; positive drives forward.
+struct WheelSample {
+  double t = 0.0;     ///< s
+  double left = 0.0;  ///< rad (cumulative angle) or rad/s (speed, held until the next sample)
+  double right = 0.0;
+};
+
 struct GyroSample {
   double t = 0.0;
   double yaw_rate = 0.0;  ///< rad/s, counter-clockwise positive

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -163,6 +164,7 @@ Section data_of(const Calibration& calibration) {
       if (data.duration > 0.0) line += fmt::format(" ({:.1f}/s)", static_cast<double>(count) / data.duration);
     }
     section.lines.push_back(line);
+    for (const auto& choice : data.choices) section.lines.push_back("  " + choice);
     for (const auto& [why, count] : data.discarded)
       section.lines.push_back(fmt::format("  not used: {} {}", count, why));
     section.lines.push_back("  SHA-256 " + data.sha256);
@@ -177,9 +179,20 @@ std::string headline(Verdict verdict) {
   return verdict == Verdict::refused ? "REFUSED" : "ACCEPTED WITH WARNINGS";
 }
 
-std::string next_step(Verdict verdict) {
-  if (verdict == Verdict::accepted) return "Next: odomcalibctl apply writes these values to the controller.";
-  if (verdict == Verdict::refused) return "Next: record again as the reasons say. Nothing was written.";
+/// What the service records says by itself what is what: a choice was made in somebody else's recording.
+bool is_from_elsewhere(const Calibration& calibration) {
+  return std::any_of(calibration.data.begin(), calibration.data.end(),
+                     [](const DataUse& data) { return !data.choices.empty(); });
+}
+
+std::string next_step(const Calibration& calibration) {
+  if (calibration.verdict == Verdict::accepted)
+    return is_from_elsewhere(calibration)
+               ? "Next: odomcalibctl export --what diff_drive prints these values for ros2_control, --what "
+                 "toml for other programs."
+               : "Next: odomcalibctl apply writes these values to the controller.";
+  if (calibration.verdict == Verdict::refused)
+    return "Next: record again as the reasons say. Nothing was written.";
   return "Next: usable; read the reasons first. A longer recording with more kinds of motion may remove "
          "them.";
 }
@@ -187,7 +200,7 @@ std::string next_step(Verdict verdict) {
 Document describe(const Calibration& calibration) {
   const ReportData data = report_data_of(calibration);
   Document document{headline(calibration.verdict), {{"", calibration.reasons, {}}}};
-  document.sections.front().lines.push_back(next_step(calibration.verdict));
+  document.sections.front().lines.push_back(next_step(calibration));
   std::vector<Section> sections = {parameters_of(calibration),
                                    drive_errors_section(data),
                                    effects_of(calibration),

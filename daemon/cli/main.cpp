@@ -57,6 +57,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   odomcalib::cli::add_solve(app, session);
   odomcalib::cli::add_predict(app, session);
+  odomcalib::cli::add_convert(app, session);
   odomcalib::cli::add_decode(app, session);
   odomcalib::cli::add_match(app, session);
   odomcalib::cli::add_report(app, session);

@@ -35,6 +35,8 @@ void print_error_json(const Error& error, JsonMode mode) {
   print_json(body.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), mode);
 }
 
+void tell(const std::string& text) { std::cerr << text << '\n'; }
+
 void warn(const std::string& text) { std::cerr << "odomcalibctl: warning: " << text << '\n'; }
 
 int after_flush(int status) {

@@ -20,6 +20,9 @@ int report_error(const Error& error, JsonMode mode);
 /// The object alone, for errors that people were told of already.
 void print_error_json(const Error& error, JsonMode mode);
 
+/// One line on standard error that is no warning.
+void tell(const std::string& text);
+
 /// One line on standard error; the verb goes on.
 void warn(const std::string& text);
 

@@ -1,7 +1,11 @@
 #include "daemon/cli/recordings.hpp"
 
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "daemon/cli/output.hpp"
 #include "daemon/config/robot_file.hpp"
 
 namespace odomcalib::cli {
@@ -23,10 +27,33 @@ const Recording* same_drive(const std::vector<Recording>& recordings, const Reco
   return nullptr;
 }
 
+Result<TopicChoices> parsed(const std::vector<std::string>& topics) {
+  TopicChoices choices;
+  for (const auto& text : topics) {
+    auto choice = parse_topic_choice(text);
+    if (!choice) return choice.error();
+    choices.push_back(std::move(choice).value());
+  }
+  return choices;
+}
+
 }  // namespace
 
+void add_reading_options(CLI::App& verb, RecordingOptions& options) {
+  verb.add_option("--robot", options.robot_file, "nominal values (TOML) instead of those of the recording");
+  verb.add_option(
+          "--topic", options.topics,
+          "of a ROS recording: PART=TOPIC, or wheels=TOPIC:LEFT,RIGHT with the joints; parts are scan, "
+          "wheels, wheel_speeds, odometry, gyro, pose; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);  // what follows may be the recording
+}
+
 Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& paths,
-                                               const std::string& robot_file) {
+                                               const RecordingOptions& options) {
+  const std::string& robot_file = options.robot_file;
+  const auto topics = parsed(options.topics);
+  if (!topics) return topics.error();
   RobotDescription robot;
   if (!robot_file.empty()) {
     const auto given = read_robot_file(robot_file);
@@ -35,12 +62,16 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
   }
   std::vector<Recording> recordings;
   for (const auto& path : paths) {
-    auto recording = read_recording(path, robot_file.empty() ? nullptr : &robot);
+    auto recording = read_recording(path, robot_file.empty() ? nullptr : &robot, topics.value());
     if (!recording) return recording.error();
+    for (const auto& choice : recording.value().choices) tell(fmt::format("{}: {}", path, choice));
     if (const Recording* one = same_drive(recordings, recording.value()))
       return Error{ErrorCode::usage, "holds the same drive as \"" + one->name + "\"", path,
                    "name every recording once"};
-    recording.value().robot = overlaid(recording.value().robot, robot);
+    RobotDescription over = robot;
+    // Counts that were made of something else have the resolution that they were made with.
+    if (recording.value().motion != MotionSource::ticks) over.ticks_per_rev = 0.0;
+    recording.value().robot = overlaid(recording.value().robot, over);
     recordings.push_back(std::move(recording).value());
   }
   return recordings;

@@ -6,10 +6,22 @@
 
 #include "proto/recording/recording.hpp"
 
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's name
+class App;
+}
+
 namespace odomcalib::cli {
 
-/// @param robot_file TOML with nominal values that replace those of the recordings; empty: none
+struct RecordingOptions {
+  std::string robot_file;  ///< TOML with nominal values that replace those of the recordings; empty: none
+  std::vector<std::string> topics;  ///< PART=TOPIC[:LEFT,RIGHT]: what is what in ROS recordings
+};
+
+/// --robot and --topic, alike for every verb that reads recordings.
+void add_reading_options(CLI::App& verb, RecordingOptions& options);
+
+/// What was taken where a file held several is told on standard error, a line each.
 Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& paths,
-                                               const std::string& robot_file);
+                                               const RecordingOptions& options);
 
 }  // namespace odomcalib::cli

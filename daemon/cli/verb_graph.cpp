@@ -30,7 +30,8 @@ Result<PoseGraph> read_files(const std::vector<std::string>& files) {
 }
 
 struct BuildOptions {
-  std::string recording, robot, out, picture;
+  std::string recording, out, picture;
+  RecordingOptions reading;
   calib::slam::ScanGraphOptions graph;
 };
 
@@ -91,11 +92,12 @@ Result<void> write_results(const BuildOptions& options, const calib::slam::Recor
 }
 
 int build(const BuildOptions& options, const Session& session) {
-  if (const auto files = check_outputs({{"--out", options.out}, {"--svg", options.picture}},
-                                       {{"the recording", options.recording}, {"--robot", options.robot}});
+  if (const auto files =
+          check_outputs({{"--out", options.out}, {"--svg", options.picture}},
+                        {{"the recording", options.recording}, {"--robot", options.reading.robot_file}});
       !files)
     return report_error(files.error(), session.json);
-  const auto recordings = read_recordings({options.recording}, options.robot);
+  const auto recordings = read_recordings({options.recording}, options.reading);
   if (!recordings) return report_error(recordings.error(), session.json);
   const auto map = calib::slam::map_recording(recordings.value().front(), options.graph);
   if (!map) return report_error(map.error(), session.json);
@@ -146,7 +148,7 @@ void add_build(CLI::App& parent, Session& session) {
   verb->add_option("RECORDING", options->recording)->required();
   verb->add_option("--out", options->out, "g2o file to write: poses of the lidar at keyframes");
   verb->add_option("--svg", options->picture, "picture to write: map, trajectory before and after, loops");
-  verb->add_option("--robot", options->robot, "nominal values (TOML) instead of those of the recording");
+  add_reading_options(*verb, options->reading);
   verb->add_option("--distance", options->graph.spacing.distance, "m of travel from keyframe to keyframe")
       ->check(finite(0.01, 100.0))
       ->capture_default_str();

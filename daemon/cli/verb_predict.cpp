@@ -20,7 +20,8 @@ namespace odomcalib::cli {
 namespace {
 
 struct Options {
-  std::string recording, calibration, trajectory, robot;
+  std::string recording, calibration, trajectory;
+  RecordingOptions reading;
 };
 
 Result<Calibration> chosen_calibration(const Options& options, const RobotDescription& robot) {
@@ -61,12 +62,12 @@ std::string to_tum(const std::vector<PoseSample>& poses) {
 }
 
 Result<std::vector<PoseSample>> predicted(const Options& options) {
-  const auto recordings = read_recordings({options.recording}, options.robot);
+  const auto recordings = read_recordings({options.recording}, options.reading);
   if (!recordings) return recordings.error();
   const Recording& recording = recordings.value().front();
   if (recording.ticks.empty())
     return Error{ErrorCode::empty, "no tick samples", options.recording,
-                 "dead reckoning needs encoder counts"};
+                 "dead reckoning needs encoder counts, or wheel angles, speeds or odometry"};
   const auto calibration = chosen_calibration(options, recording.robot);
   if (!calibration) return calibration.error();
   warn_of(calibration.value(), options.calibration);
@@ -75,9 +76,10 @@ Result<std::vector<PoseSample>> predicted(const Options& options) {
 
 int predict_trajectory(const Options& options, const Session& session) {
   const std::string calibration = options.calibration == "nominal" ? "" : options.calibration;
-  if (const auto files = check_outputs(
-          {{"--trajectory", options.trajectory}},
-          {{"the recording", options.recording}, {"--calibration", calibration}, {"--robot", options.robot}});
+  if (const auto files =
+          check_outputs({{"--trajectory", options.trajectory}}, {{"the recording", options.recording},
+                                                                 {"--calibration", calibration},
+                                                                 {"--robot", options.reading.robot_file}});
       !files)
     return report_error(files.error(), session.json);
   const auto poses = predicted(options);
@@ -103,7 +105,7 @@ void add_predict(CLI::App& app, Session& session) {
   verb->add_option("RECORDING", options->recording)->required();
   verb->add_option("--calibration", options->calibration, "calibration file, or \"nominal\"")->required();
   verb->add_option("--trajectory", options->trajectory, "file to write, TUM format")->required();
-  verb->add_option("--robot", options->robot, "nominal values (TOML) instead of those of the recording");
+  add_reading_options(*verb, options->reading);
   verb->callback([&session, options] {
     session.run = [&session, options] { return predict_trajectory(*options, session); };
   });

@@ -22,7 +22,8 @@ namespace {
 struct Options {
   std::vector<std::string> recordings;
   std::vector<std::string> effects{"auto"};
-  std::string robot, out, report, note;
+  std::string out, report, note;
+  RecordingOptions reading;
 };
 
 Result<void> write_results(const Options& options, const Calibration& calibration) {
@@ -41,7 +42,7 @@ std::string settings_of(const Options& options) {
 
 Result<void> check_files(const Options& options) {
   auto inputs = named("a recording", options.recordings);
-  inputs.push_back({"--robot", options.robot});
+  inputs.push_back({"--robot", options.reading.robot_file});
   return check_outputs({{"--out", options.out}, {"--report", options.report}}, inputs);
 }
 
@@ -49,7 +50,7 @@ int solve_recordings(const Options& options, const Session& session) {
   if (const auto wrong = calib::terms::wrong_effects(options.effects))
     return report_error(*wrong, session.json);
   if (const auto files = check_files(options); !files) return report_error(files.error(), session.json);
-  const auto recordings = read_recordings(options.recordings, options.robot);
+  const auto recordings = read_recordings(options.recordings, options.reading);
   if (!recordings) return report_error(recordings.error(), session.json);
   ProgressLine line;
   const auto progress = [&line](const std::string& phase, double fraction) {
@@ -72,9 +73,10 @@ int solve_recordings(const Options& options, const Session& session) {
 void add_solve(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("solve", "Calibrate from recordings of one robot");
   auto options = std::make_shared<Options>();
-  verb->add_option("RECORDING", options->recordings, "JSON Lines, LCM log, CARMEN log, tuple file")
+  verb->add_option("RECORDING", options->recordings,
+                   "JSON Lines, LCM log, ROS bag, rosbag2, MCAP, CARMEN log, tuple file")
       ->required();
-  verb->add_option("--robot", options->robot, "nominal values (TOML) instead of those of the recordings");
+  add_reading_options(*verb, options->reading);
   verb->add_option("--effects", options->effects, "auto, none, or names of effects to fit")->delimiter(',');
   verb->add_option("--out", options->out, "calibration file to write, also when refused");
   verb->add_option("--report", options->report, "HTML report to write");

@@ -24,6 +24,7 @@ struct Session {
 // Offline: need no daemon.
 void add_solve(CLI::App& app, Session& session);
 void add_predict(CLI::App& app, Session& session);
+void add_convert(CLI::App& app, Session& session);
 void add_decode(CLI::App& app, Session& session);
 void add_match(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);

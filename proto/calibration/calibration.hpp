@@ -73,6 +73,7 @@ struct DataUse {
   double duration = 0.0;                                       ///< s
   std::vector<std::pair<std::string, std::size_t>> counts;     ///< e.g. ticks, scans, pairs
   std::vector<std::pair<std::string, std::size_t>> discarded;  ///< reason -> count
+  std::vector<std::string> choices;  ///< what was taken where the file held several, e.g. topics
 };
 
 enum class Verdict { accepted, accepted_with_warnings, refused };

@@ -197,7 +197,7 @@ std::vector<DataUse> data(const Node& node) {
   node.each([&](const Node& value) {
     out.push_back({value["file"].text(), value["sha256"].text(), value["begin"].optional_number(),
                    value["duration"].optional_number().value_or(0.0), counts(value["counts"]),
-                   counts(value["discarded"])});
+                   counts(value["discarded"]), texts(value["choices"])});
   });
   return out;
 }

@@ -123,13 +123,15 @@ Json counts(const std::vector<std::pair<std::string, std::size_t>>& list) {
 
 Json data(const std::vector<DataUse>& uses) {
   Json out = Json::array();
-  for (const auto& use : uses)
+  for (const auto& use : uses) {
     out.push_back({{"file", use.name},
                    {"sha256", use.sha256},
                    {"begin", number(use.begin)},
                    {"duration", number(use.duration)},
                    {"counts", counts(use.counts)},
                    {"discarded", counts(use.discarded)}});
+    if (!use.choices.empty()) out.back()["choices"] = use.choices;
+  }
   return out;
 }
 

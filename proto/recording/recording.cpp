@@ -2,12 +2,15 @@
 
 #include "proto/file_bytes.hpp"
 #include "proto/recording/recording_readers.hpp"
+#include "proto/recording/ros/containers.hpp"
+#include "proto/recording/ros/folder.hpp"
+#include "proto/recording/ros/topics.hpp"
 #include "proto/wire/event_log.hpp"
 
 namespace odomcalib {
 namespace {
 
-enum class Form { unknown, nothing, event_log, jsonl, tuples, carmen, pose_graph };
+enum class Form { unknown, nothing, event_log, jsonl, tuples, carmen, pose_graph, ros };
 
 Form recognise_json(std::string_view text) {
   const auto begin = text.substr(0, 4096);
@@ -23,6 +26,7 @@ bool has_json_line(std::string_view bytes) {
 }
 
 Form recognise(std::string_view bytes) {
+  if (ros::looks_like_container(bytes)) return Form::ros;
   const std::size_t start = bytes.find_first_not_of(" \t\r\n");
   if (start == std::string_view::npos) return Form::nothing;
   const auto text = bytes.substr(start);
@@ -35,14 +39,33 @@ Form recognise(std::string_view bytes) {
 
 Error unknown_form(const std::string& where) {
   return {ErrorCode::format, "is not a recording in a known format", where,
-          "known are JSON Lines, LCM event logs, Censi's tuple and JSON logs and CARMEN logs, plain or gzip"};
+          "known are JSON Lines, LCM event logs, ROS bags (2.0), rosbag2 and MCAP recordings, Censi's tuple "
+          "and JSON "
+          "logs and CARMEN logs, plain or gzip"};
+}
+
+Error has_no_topics(const std::string& where) {
+  return {ErrorCode::usage, "has no topics to choose from", where,
+          "leave --topic out: only ROS recordings have them"};
+}
+
+std::optional<Error> read_ros(std::string_view bytes, const std::string& where, const TopicChoices& topics,
+                              RecordingBuilder& builder) {
+  ros::Collector collector;
+  if (auto error = ros::read_container(bytes, where, collector)) return error;
+  return ros::fill(builder, collector, topics, where);
 }
 
 Result<Recording> read_content(std::string_view bytes, const std::string& where, RecordingBuilder builder,
-                               const RobotDescription* fallback) {
+                               const RobotDescription* fallback, const TopicChoices& topics) {
   using Need = RecordingBuilder::RobotNeed;
   Need need = Need::required;
-  switch (recognise(bytes)) {
+  const Form form = recognise(bytes);
+  if (form != Form::ros && !topics.empty()) return has_no_topics(where);
+  switch (form) {
+    case Form::ros:
+      if (auto error = read_ros(bytes, where, topics, builder)) return *error;
+      break;
     case Form::nothing:
       return Error{ErrorCode::empty, "holds no data", where, "record again"};
     case Form::pose_graph:
@@ -71,23 +94,67 @@ Result<Recording> read_content(std::string_view bytes, const std::string& where,
 }  // namespace
 
 Result<Recording> read_recording_bytes(const std::string& bytes, const std::filesystem::path& name,
-                                       const RobotDescription* fallback) {
+                                       const RobotDescription* fallback, const TopicChoices& topics) {
   RecordingBuilder builder;
   Unpacked unpacked;
   const bool packed = is_gzip(bytes);
   if (packed) unpacked = gunzip(bytes);
   if (!unpacked.whole) builder.discard("file", unpacked.problem);
-  auto recording = read_content(packed ? unpacked.bytes : bytes, name.string(), std::move(builder), fallback);
+  auto recording =
+      read_content(packed ? unpacked.bytes : bytes, name.string(), std::move(builder), fallback, topics);
   if (!recording) return recording;
   recording.value().name = name.filename().string();
   recording.value().sha256 = sha256_hex(bytes);
   return recording;
 }
 
-Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback) {
+namespace {
+
+/// All files of a rosbag2 folder as one recording; its hash is that of the hashes of its files, one a line.
+Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDescription* fallback,
+                              const TopicChoices& topics) {
+  const auto found = ros::files_of(folder);
+  if (!found) return found.error();
+  RecordingBuilder builder;
+  for (const auto& name : found.value().missing) builder.discard("file", name + " is missing");
+  ros::Collector collector;
+  std::string hashes;
+  for (const auto& path : found.value().files) {
+    const auto file = read_file_bytes(path);
+    if (!file) return file.error();
+    hashes += sha256_hex(file.value()) + "\n";
+    if (auto error = ros::read_container(file.value(), path.string(), collector)) return *error;
+  }
+  if (auto error = ros::fill(builder, collector, topics, folder.string())) return *error;
+  auto recording =
+      std::move(builder).finish(folder.string(), fallback, RecordingBuilder::RobotNeed::required);
+  if (!recording) return recording;
+  const auto name = folder.has_filename() ? folder : folder.parent_path();
+  recording.value().name = name.filename().string();
+  recording.value().sha256 = sha256_hex(hashes);
+  return recording;
+}
+
+/// What SQLite has not moved into the file yet: a recorder that was killed leaves it beside.
+bool has_write_ahead_log(const std::filesystem::path& path) {
+  std::error_code none;
+  return std::filesystem::file_size(path.string() + "-wal", none) > 0 && !none;
+}
+
+}  // namespace
+
+Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback,
+                                 const TopicChoices& topics) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) return read_folder(path, fallback, topics);
   const auto file = read_file_bytes(path);
   if (!file) return file.error();
-  return read_recording_bytes(file.value(), path, fallback);
+  auto recording = read_recording_bytes(file.value(), path, fallback, topics);
+  if (recording && has_write_ahead_log(path))
+    recording.value().discarded.push_back(
+        {"file", "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'",
+         1});
+  return recording;
 }
 
 }  // namespace odomcalib

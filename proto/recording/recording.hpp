@@ -20,35 +20,62 @@ struct Discarded {
 /// Reason of beams that are no distance this lidar can measure.
 inline constexpr const char* kOutsideLimits = "outside range_min and range_max";
 
+/// What a recording tells the motion of the wheels with, the finest first. One of them decides.
+enum class MotionSource { ticks, wheels, wheel_speeds, odometry };
+
+/// The name of its lines in JSON Lines, and of its part in TopicChoice.
+const char* name_of(MotionSource source);
+
 struct Recording {
   std::string name;  ///< file name without folder
   std::string
       sha256;  ///< of the file's bytes as stored (compressed files: of the compressed bytes), lower-case hex
   RobotDescription robot;
   // Each stream is sorted by time when reading is done.
-  std::vector<TickSample> ticks;
+  std::vector<TickSample> ticks;  ///< counted, or made of what `motion` names (ticks_per_rev is theirs then)
   std::vector<Scan> scans;
   std::vector<PoseSample> poses;
   std::vector<GyroSample> gyro;
   std::vector<IncrementSample> increments;  ///< tuple files only
+  MotionSource motion = MotionSource::ticks;
+  // What `ticks` were made of, as recorded; empty but for the one that `motion` names.
+  std::vector<WheelSample> wheels;        ///< rad
+  std::vector<WheelSample> wheel_speeds;  ///< rad/s
+  std::vector<PoseSample> odometry;       ///< computed by the robot with the nominal values
   std::vector<Discarded> discarded;
+  std::vector<std::string> choices;  ///< what was taken where a file held several; nothing to choose: empty
 };
 
+/// Says which topic of a ROS recording is what, e.g. scan=/scan or
+/// wheels=/joint_states:left_joint,right_joint.
+struct TopicChoice {
+  std::string part;                 ///< scan, wheels, wheel_speeds, odometry, gyro or pose
+  std::string topic;                ///< as recorded
+  std::vector<std::string> joints;  ///< left and right, of wheels and wheel_speeds; empty: by their names
+};
+using TopicChoices = std::vector<TopicChoice>;
+
+/// Reads "PART=TOPIC" or "PART=TOPIC:LEFT,RIGHT". Error: usage.
+Result<TopicChoice> parse_topic_choice(const std::string& text);
+
 /// Reads a recording and recognises its form by content: JSON Lines (plain or gzip), native LCM log, LCM log
-/// of the MBot/MaeBot family, Censi's tuple file or raw JSON log, CARMEN log. Errors: io (cannot open), empty
-/// (no usable line), missing_units (no or incomplete robot line), format (unknown form). A cut-off end is not
-/// an error: what is whole is used, `discarded` says what was not.
+/// of the MBot/MaeBot family, ROS bag 2.0, rosbag2 (file or folder), MCAP, Censi's tuple file or raw JSON
+/// log, CARMEN log. Errors: io (cannot open), empty (no usable line), missing_units (no or incomplete robot
+/// line), format (unknown form), usage (a topic has to be chosen, or the chosen one is not there). A cut-off
+/// end is not an error: what is whole is used, `discarded` says what was not.
 /// @param fallback robot description for forms that carry none; its zero fields count as missing
+/// @param topics what to take of a ROS recording; what is unique is taken without
 Result<Recording> read_recording(const std::filesystem::path& path,
-                                 const RobotDescription* fallback = nullptr);
+                                 const RobotDescription* fallback = nullptr, const TopicChoices& topics = {});
 
 /// The same for content that is in memory already.
 /// @param name file name, for messages and Recording::name
 Result<Recording> read_recording_bytes(const std::string& bytes, const std::filesystem::path& name,
-                                       const RobotDescription* fallback = nullptr);
+                                       const RobotDescription* fallback = nullptr,
+                                       const TopicChoices& topics = {});
 
-/// Writes JSON Lines (gzip when the name ends in .gz). Counterpart of read_recording: numbers survive
-/// unchanged.
+/// Writes JSON Lines (gzip when the name ends in .gz), as write_output does. Counterpart of read_recording:
+/// numbers survive unchanged, and wheel motion is written as it was recorded.
 Result<void> write_recording_jsonl(const Recording& recording, const std::filesystem::path& path);
 
 }  // namespace odomcalib

@@ -8,6 +8,7 @@
 
 #include "proto/recording/scan_checks.hpp"
 #include "proto/recording/tick_counts.hpp"
+#include "proto/recording/wheel_motion.hpp"
 
 namespace odomcalib {
 namespace {
@@ -18,6 +19,18 @@ constexpr double kLatestTime =
     9e9;  // s; as nanoseconds it still fits 64 bits, and is later than any clock shows
 constexpr std::int64_t kLargestCount = std::int64_t{1} << 53;
 constexpr double kNone = -std::numeric_limits<double>::infinity();
+
+// rad; as a count of 2^20 a turn it still is an exact double.
+constexpr double kLargestAngle = 1e9;
+// rad/s; a wheel of 1 cm at 10 m/s turns at 2000 rad/s.
+constexpr double kLargestWheelSpeed = 1e4;
+
+// m; UTM coordinates stay below.
+constexpr double kFarthestPosition = 1e7;
+
+bool is_angle(double value) { return std::abs(value) <= kLargestAngle; }
+bool is_wheel_speed(double value) { return std::abs(value) <= kLargestWheelSpeed; }
+bool is_position(double value) { return std::abs(value) <= kFarthestPosition; }
 
 bool sane_time(double t) { return std::isfinite(t) && std::abs(t) <= kLatestTime; }
 
@@ -44,7 +57,8 @@ std::string number_text(double value) {
 
 Error missing_unit(const std::string& field, double value, const char* unit, double limit,
                    const std::string& where) {
-  const std::string remedy = "state it in " + std::string(unit) + " in the robot line or with --robot";
+  const std::string remedy = "state it in " + std::string(unit) +
+                             " in the robot line or with --robot FILE; odomcalib-robot.toml(5) shows one";
   if (value == 0.0)
     return {ErrorCode::missing_units, "robot description lacks \"" + field + "\"", where, remedy};
   const std::string bound =
@@ -135,6 +149,27 @@ void RecordingBuilder::add_ticks(TickSample sample) {
     recording_.ticks.push_back(sample);
 }
 
+void RecordingBuilder::add_wheels(WheelSample sample) {
+  if (!is_angle(sample.left) || !is_angle(sample.right))
+    discard("wheels", "left or right missing or not an angle");
+  else if (in_time("wheels", sample, wheels_clock_, recording_.wheels))
+    recording_.wheels.push_back(sample);
+}
+
+void RecordingBuilder::add_wheel_speeds(WheelSample sample) {
+  if (!is_wheel_speed(sample.left) || !is_wheel_speed(sample.right))
+    discard("wheel_speeds", "left or right missing or not the speed of a wheel");
+  else if (in_time("wheel_speeds", sample, wheel_speeds_clock_, recording_.wheel_speeds))
+    recording_.wheel_speeds.push_back(sample);
+}
+
+void RecordingBuilder::add_odometry(PoseSample sample) {
+  if (!is_position(sample.x) || !is_position(sample.y) || !is_angle(sample.yaw))
+    discard("odometry", "x, y or yaw missing or impossible");
+  else if (in_time("odometry", sample, odometry_clock_, recording_.odometry))
+    recording_.odometry.push_back(sample);
+}
+
 void RecordingBuilder::add_scan(Scan scan) {
   if (!sane_time(scan.t)) return discard("scan", "time stamp missing or impossible");
   if (const char* problem = scan_problem(scan)) return discard("scan", problem);
@@ -170,7 +205,8 @@ void RecordingBuilder::add_increment(IncrementSample sample) {
 }
 
 bool RecordingBuilder::has_data() const {
-  return !recording_.ticks.empty() || !recording_.scans.empty() || !recording_.poses.empty() ||
+  return !recording_.ticks.empty() || !recording_.wheels.empty() || !recording_.wheel_speeds.empty() ||
+         !recording_.odometry.empty() || !recording_.scans.empty() || !recording_.poses.empty() ||
          !recording_.gyro.empty() || !recording_.increments.empty();
 }
 
@@ -191,26 +227,84 @@ void RecordingBuilder::merge_robot(const RobotDescription* fallback) {
 
 void RecordingBuilder::sort_streams() {
   sort_by_time(recording_.ticks);
+  sort_by_time(recording_.wheels);
+  sort_by_time(recording_.wheel_speeds);
+  sort_by_time(recording_.odometry);
   sort_by_time(recording_.scans);
   sort_by_time(recording_.poses);
   sort_by_time(recording_.gyro);
   const auto same = [](const auto& a, const auto& b) { return a.t == b.t; };
   const auto same_scan = [](const Scan& a, const Scan& b) { return a.t == b.t && a.sensor == b.sensor; };
   discard("ticks", "repeated time stamp", drop_repeated(recording_.ticks, same));
+  discard("wheels", "repeated time stamp", drop_repeated(recording_.wheels, same));
+  discard("wheel_speeds", "repeated time stamp", drop_repeated(recording_.wheel_speeds, same));
+  discard("odometry", "repeated time stamp", drop_repeated(recording_.odometry, same));
   discard("scan", "repeated time stamp", drop_repeated(recording_.scans, same_scan));
   discard("pose", "repeated time stamp", drop_repeated(recording_.poses, same));
   discard("gyro", "repeated time stamp", drop_repeated(recording_.gyro, same));
 }
 
+/// The finest that is there decides; what is coarser is left out, and counted.
+void RecordingBuilder::decide_motion() {
+  bool decided = !recording_.ticks.empty();
+  const auto weigh = [&](MotionSource source, auto& samples) {
+    if (samples.empty()) return;
+    if (!decided) {
+      recording_.motion = source;
+      decided = true;
+    } else {
+      discard(name_of(source), std::string(name_of(recording_.motion)) + " are finer and decide",
+              samples.size());
+      samples.clear();
+    }
+  };
+  weigh(MotionSource::wheels, recording_.wheels);
+  weigh(MotionSource::wheel_speeds, recording_.wheel_speeds);
+  weigh(MotionSource::odometry, recording_.odometry);
+  // Not counted: a resolution is no unit that has to be known.
+  if (recording_.motion != MotionSource::ticks && recording_.robot.ticks_per_rev == 0.0)
+    recording_.robot.ticks_per_rev = kFineCountsPerRev;
+}
+
+void RecordingBuilder::make_ticks() {
+  const RobotDescription& robot = recording_.robot;
+  MadeTicks made;
+  if (recording_.motion == MotionSource::wheels)
+    made = ticks_from_wheels(recording_.wheels, robot.ticks_per_rev);
+  else if (recording_.motion == MotionSource::wheel_speeds)
+    made = ticks_from_wheel_speeds(recording_.wheel_speeds);
+  else
+    made = ticks_from_odometry(recording_.odometry, robot);
+  recording_.ticks = std::move(made.ticks);
+  recording_.robot.ticks_per_rev = made.ticks_per_rev;
+  choose("wheel motion from " + std::string(name_of(recording_.motion)));
+}
+
+const char* name_of(MotionSource source) {
+  switch (source) {
+    case MotionSource::wheels:
+      return "wheels";
+    case MotionSource::wheel_speeds:
+      return "wheel_speeds";
+    case MotionSource::odometry:
+      return "odometry";
+    case MotionSource::ticks:
+      break;
+  }
+  return "ticks";
+}
+
 Result<Recording> RecordingBuilder::finish(const std::string& where, const RobotDescription* fallback,
                                            RobotNeed need) && {
   if (!has_data())
-    return Error{ErrorCode::empty, "no usable ticks, scans, poses or increments", where,
+    return Error{ErrorCode::empty, "no usable wheel motion, scans, poses or increments", where,
                  "check that the recording was running while the robot moved"};
   merge_robot(fallback);
+  decide_motion();
   if (need == RobotNeed::required)
     if (auto problem = check_robot(recording_.robot, where)) return *problem;
   sort_streams();
+  if (recording_.motion != MotionSource::ticks) make_ticks();
   const ContinuedCounts counts = continue_counts(recording_.ticks, recording_.robot);
   discard("ticks", "count read wrong once", counts.misread);
   for (const auto& [key, count] : discarded_) recording_.discarded.push_back({key.first, key.second, count});

@@ -18,17 +18,22 @@ class RecordingBuilder {
   /// The first description stays in force; a later, different one is counted as discarded.
   void add_robot(RobotDescription robot);
   void add_ticks(TickSample sample);
+  void add_wheels(WheelSample sample);
+  void add_wheel_speeds(WheelSample sample);
+  void add_odometry(PoseSample sample);
   void add_scan(Scan scan);
   void add_pose(PoseSample sample);
   void add_gyro(GyroSample sample);
   void add_increment(IncrementSample sample);
   void discard(const std::string& what, const std::string& reason, std::size_t count = 1);
+  /// Something was taken where the file held several.
+  void choose(const std::string& choice) { recording_.choices.push_back(choice); }
 
   /// Whether a form carries the unit-bearing values; a form that needs none may leave them at zero.
   enum class RobotNeed { required, optional };
 
-  /// Sorts, removes repeated time stamps, unwraps counts, checks the robot description.
-  /// Errors: empty, missing_units.
+  /// Sorts, removes repeated time stamps, makes counts of the finest wheel motion that is there, unwraps
+  /// counts, checks the robot description. Errors: empty, missing_units.
   Result<Recording> finish(const std::string& where, const RobotDescription* fallback, RobotNeed need) &&;
 
  private:
@@ -46,10 +51,12 @@ class RecordingBuilder {
   [[nodiscard]] bool has_data() const;
   void merge_robot(const RobotDescription* fallback);
   void sort_streams();
+  void decide_motion();
+  void make_ticks();
 
   Recording recording_;
   bool have_robot_ = false;
-  StreamClock ticks_clock_, pose_clock_, gyro_clock_;
+  StreamClock ticks_clock_, wheels_clock_, wheel_speeds_clock_, odometry_clock_, pose_clock_, gyro_clock_;
   std::map<std::string, StreamClock> scan_clocks_;  // by sensor
   std::map<std::pair<std::string, std::string>, std::size_t> discarded_;
 };

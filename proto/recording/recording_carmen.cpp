@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "proto/recording/recording_readers.hpp"
+#include "proto/recording/wheel_motion.hpp"
 
 namespace odomcalib {
 namespace {
@@ -219,12 +220,9 @@ class Counts {
 
  private:
   void add(const std::array<double, 3>& from, const std::array<double, 3>& to) {
-    const double turn = std::remainder(to[2] - from[2], 2.0 * std::numbers::pi);
-    const double heading = from[2] + turn / 2.0;
-    const double chord = std::cos(heading) * (to[0] - from[0]) + std::sin(heading) * (to[1] - from[1]);
-    const double arc = turn == 0.0 ? chord : chord * (turn / 2.0) / std::sin(turn / 2.0);
-    left_ += arc - turn * robot_.track_width / 2.0;
-    right_ += arc + turn * robot_.track_width / 2.0;
+    const auto ways = wheel_ways(from, to, robot_.track_width);
+    left_ += ways[0];
+    right_ += ways[1];
   }
   [[nodiscard]] std::int64_t count(double path, double diameter) const {
     const double counts = path / (std::numbers::pi * diameter) * robot_.ticks_per_rev;

@@ -101,6 +101,12 @@ void add_line(const JsonFields& fields, RecordingBuilder& builder) {
     add_ticks(fields, time_of(fields), builder);
   } else if (type == "pose") {
     builder.add_pose({time_of(fields), fields[Scalar::x], fields[Scalar::y], fields[Scalar::yaw]});
+  } else if (type == "wheels") {
+    builder.add_wheels({time_of(fields), fields[Scalar::left], fields[Scalar::right]});
+  } else if (type == "wheel_speeds") {
+    builder.add_wheel_speeds({time_of(fields), fields[Scalar::left], fields[Scalar::right]});
+  } else if (type == "odometry") {
+    builder.add_odometry({time_of(fields), fields[Scalar::x], fields[Scalar::y], fields[Scalar::yaw]});
   } else if (type == "gyro") {
     builder.add_gyro({time_of(fields), fields[Scalar::yaw_rate]});
   } else if (type == "robot") {

@@ -124,8 +124,16 @@ void append_line(std::string& out, const Scan& scan) {
   out += "}\n";
 }
 
-void append_line(std::string& out, const PoseSample& sample) {
-  out += R"({"type":"pose")";
+void append_wheels(std::string& out, const char* type, const WheelSample& sample) {
+  out += std::string("{\"type\":\"") + type + '"';
+  append_member(out, "t", sample.t);
+  append_member(out, "left", sample.left);
+  append_member(out, "right", sample.right);
+  out += "}\n";
+}
+
+void append_pose(std::string& out, const char* type, const PoseSample& sample) {
+  out += std::string("{\"type\":\"") + type + '"';
   append_member(out, "t", sample.t);
   append_member(out, "x", sample.x);
   append_member(out, "y", sample.y);
@@ -159,16 +167,43 @@ class Merge {
     return index < samples.size() ? samples[index].t : HUGE_VAL;
   }
   bool next(std::string& out) {
-    const std::array<double, 4> times{time_at(recording_.ticks, at_[0]), time_at(recording_.scans, at_[1]),
+    const std::array<double, 4> times{motion_time(at_[0]), time_at(recording_.scans, at_[1]),
                                       time_at(recording_.poses, at_[2]), time_at(recording_.gyro, at_[3])};
     const auto first = static_cast<std::size_t>(std::min_element(times.begin(), times.end()) - times.begin());
     if (times.at(first) == HUGE_VAL) return false;
     const std::size_t index = at_.at(first)++;
-    if (first == 0) append_line(out, recording_.ticks[index]);
+    if (first == 0) append_motion(out, index);
     if (first == 1) append_line(out, recording_.scans[index]);
-    if (first == 2) append_line(out, recording_.poses[index]);
+    if (first == 2) append_pose(out, "pose", recording_.poses[index]);
     if (first == 3) append_line(out, recording_.gyro[index]);
     return true;
+  }
+  /// Written as recorded, not as the ticks that were made of it.
+  [[nodiscard]] double motion_time(std::size_t index) const {
+    switch (recording_.motion) {
+      case MotionSource::wheels:
+        return time_at(recording_.wheels, index);
+      case MotionSource::wheel_speeds:
+        return time_at(recording_.wheel_speeds, index);
+      case MotionSource::odometry:
+        return time_at(recording_.odometry, index);
+      case MotionSource::ticks:
+        break;
+    }
+    return time_at(recording_.ticks, index);
+  }
+  void append_motion(std::string& out, std::size_t index) const {
+    const char* type = name_of(recording_.motion);
+    switch (recording_.motion) {
+      case MotionSource::wheels:
+        return append_wheels(out, type, recording_.wheels[index]);
+      case MotionSource::wheel_speeds:
+        return append_wheels(out, type, recording_.wheel_speeds[index]);
+      case MotionSource::odometry:
+        return append_pose(out, type, recording_.odometry[index]);
+      case MotionSource::ticks:
+        return append_line(out, recording_.ticks[index]);
+    }
   }
 
   const Recording& recording_;
@@ -184,7 +219,7 @@ Result<void> write_recording_jsonl(const Recording& recording, const std::filesy
     if (!packed) return packed.error();
     text = std::move(packed).value();
   }
-  return replace_file(path, text);
+  return write_output(path, text);
 }
 
 }  // namespace odomcalib

@@ -1,4 +1,4 @@
-// Big-endian reading that cannot leave its bytes.
+// Reading of numbers, in either byte order, that cannot leave its bytes.
 #pragma once
 
 #include <bit>
@@ -32,15 +32,26 @@ class ByteReader {
 
   template <typename Number>
   Number big_endian() {
+    return number<Number>(std::endian::big);
+  }
+  template <typename Number>
+  Number little_endian() {
+    return number<Number>(std::endian::little);
+  }
+  template <typename Number>
+  Number number(std::endian order) {
     if constexpr (std::is_floating_point_v<Number>) {
       using Bits = std::conditional_t<sizeof(Number) == 4, std::uint32_t, std::uint64_t>;
-      return std::bit_cast<Number>(big_endian<Bits>());
+      return std::bit_cast<Number>(number<Bits>(order));
     } else {
-      std::make_unsigned_t<Number> value = 0;
-      for (const char byte : take(sizeof(Number)))
-        value = static_cast<std::make_unsigned_t<Number>>(static_cast<std::uint64_t>(value) << 8U |
-                                                          static_cast<unsigned char>(byte));
-      return static_cast<Number>(value);
+      std::uint64_t value = 0;
+      unsigned shift = 0;
+      for (const char byte : take(sizeof(Number))) {
+        const std::uint64_t digit = static_cast<unsigned char>(byte);
+        value = order == std::endian::big ? value << 8U | digit : value | digit << shift;
+        shift += 8;
+      }
+      return static_cast<Number>(static_cast<std::make_unsigned_t<Number>>(value));
     }
   }
 

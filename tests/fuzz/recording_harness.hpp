@@ -24,6 +24,9 @@ inline void check(const Recording& recording) {
   check_times(recording.scans);
   check_times(recording.poses);
   check_times(recording.gyro);
+  check_times(recording.wheels);
+  check_times(recording.wheel_speeds);
+  check_times(recording.odometry);
   for (const auto& scan : recording.scans) {
     require(scan.angles.empty() || scan.angles.size() == scan.ranges.size());
     require(scan.times.empty() || scan.times.size() == scan.ranges.size());

@@ -2,10 +2,13 @@
 """Writes the seeds of the corpora that are made by rule: one for each branch that mutation alone finds late, because
 a checksum or a length guards it. Usage: tests/fuzz/seeds.py (from anywhere); the files seed_* are replaced."""
 
+import bz2
 import gzip
 import json
 import pathlib
+import sqlite3
 import struct
+import tempfile
 import zlib
 
 CORPUS = pathlib.Path(__file__).resolve().parent / "corpus"
@@ -407,6 +410,149 @@ def recordings():
     for name, change in {"no_track": {"track_width": 0}, "negative": {"track_width": -1}, "huge": {"ticks_per_rev": 1e30},
                          "wide": {"wheel_diameter": 1e9}, "zero_ticks": {"ticks_per_rev": -5}}.items():
         seed("recording", "robot_" + name, json.dumps({**robot, **change}) + "\n" + ticks)
+    for kind in ("wheels", "wheel_speeds", "odometry"):
+        lines = "".join(json.dumps({"type": kind, "t": 0.1 * i, "left": 0.1 * i, "right": 0.2 * i, "x": 0.1 * i, "y": 0.0,
+                                    "yaw": 0.01 * i}) + "\n" for i in range(9))
+        seed("recording", kind, json.dumps(robot) + "\n" + lines)
+
+
+# ROS recordings ---------------------------------------------------------------------------------------------------------
+
+
+def ros_text(text, cdr):
+    return struct.pack("<I", len(text) + cdr) + text.encode() + b"\0" * cdr
+
+
+def ros_message(kind, k, cdr):
+    """Message number k as ROS 1 or CDR has it. All fields are multiples of four bytes up to the first number of eight."""
+    time = struct.pack("<II", 1000, 20_000_000 * k)
+    head = (b"\0\1\0\0" + time if cdr else struct.pack("<I", k) + time) + ros_text("abc", cdr)
+
+    def numbers(*values):
+        start = len(head) - 4 if cdr else 0
+        return b"\0" * (-start % 8 if cdr else 0) + struct.pack("<%dd" % len(values), *values)
+
+    if kind == "scan":
+        return head + struct.pack("<7fI3fI", 0, 1, 0.5, 0.001, 0, 0.1, 9, 3, 1, float("inf"), 2, 0)
+    if kind == "joints":
+        names = struct.pack("<I", 2) + ros_text("left", cdr) + b"\0" * (3 * cdr) + ros_text("right", cdr)
+        body = head + names
+        pad = b"\0" * (-len(body) % 4 if cdr else 0)
+        body += pad + struct.pack("<I", 2)
+        body += b"\0" * (-(len(body) - 4) % 8 if cdr else 0)
+        return body + struct.pack("<2dII", 0.1 * k, 0.2 * k, 0, 0)
+    if kind == "imu":
+        return head + numbers(*[0.0] * 15, 0.5, *[0.0] * 21)
+    if kind == "odometry":
+        child = ros_text("bas", cdr)
+        start = len(head) + len(child) - 4
+        return head + child + b"\0" * (-start % 8 if cdr else 0) + struct.pack("<85d", 0.1 * k, 0, 0, 0, 0, 0, 1, *[0.0] * 78)
+    return head + numbers(0.1 * k, 0, 0, 0, 0, 0, 1)
+
+
+ROS_TYPES = {"scan": "sensor_msgs/LaserScan", "joints": "sensor_msgs/JointState", "imu": "sensor_msgs/Imu",
+             "odometry": "nav_msgs/Odometry", "pose": "geometry_msgs/PoseStamped"}
+
+
+def lz4_frame(data):
+    """One block that is not compressed; 0x82 is the checksum of these two descriptor bytes."""
+    return b"\x04\x22\x4d\x18\x60\x40\x82" + struct.pack("<I", len(data) | 1 << 31) + data + bytes(4)
+
+
+def zstd_frame(data):
+    """One block that is not compressed, behind a header with the size in four bytes."""
+    return b"\x28\xb5\x2f\xfd\xa0" + struct.pack("<I", len(data)) + struct.pack("<I", len(data) << 3 | 1)[:3] + data
+
+
+def rosbag():
+    def sized(data):
+        return struct.pack("<I", len(data)) + data
+
+    def record(data, **fields):
+        return sized(b"".join(sized(k.encode() + b"=" + v) for k, v in fields.items())) + sized(data)
+
+    def number(value):
+        return struct.pack("<I", value)
+
+    records = b""
+    for conn, (kind, name) in enumerate(ROS_TYPES.items()):
+        about = b"".join(sized(f) for f in (b"topic=/" + kind.encode(), b"type=" + name.encode(), b"md5sum=*"))
+        records += record(about, op=b"\7", conn=number(conn), topic=b"/" + kind.encode())
+        for k in range(3):
+            records += record(ros_message(kind, k, 0), op=b"\2", conn=number(conn), time=struct.pack("<II", 1000, k))
+    size = number(len(records))
+    begin = record(b"  ", op=b"\3", index_pos=bytes(8), conn_count=number(5), chunk_count=number(1))
+    index = record(bytes(12), op=b"\4", ver=number(1), conn=number(0), count=number(1))
+    for name, packed in (("none", records), ("bz2", bz2.compress(records)), ("lz4", lz4_frame(records))):
+        chunk = record(packed, op=b"\5", compression=name.encode(), size=size)
+        seed("rosbag", name, begin + chunk + index)
+    seed("rosbag", "no_chunk", begin + records)
+    seed("rosbag", "packing", begin + record(records, op=b"\5", compression=b"zip", size=size))
+    seed("rosbag", "encrypted", record(b"", op=b"\3", encryptor=b"x"))
+    seed("rosbag", "no_op", begin + record(b"x"))
+    seed("rosbag", "strangers", begin + record(b"", op=b"\2", conn=number(9), time=bytes(8)) + record(b"", op=b"\7"))
+
+
+def mcap():
+    def text(value):
+        return struct.pack("<I", len(value)) + value.encode()
+
+    def record(op, data):
+        return bytes([op]) + struct.pack("<Q", len(data)) + data
+
+    def records(cdr):
+        out = b""
+        for i, (kind, name) in enumerate(ROS_TYPES.items(), 1):
+            schema = name.replace("/", "/msg/") if cdr else name
+            out += record(3, struct.pack("<H", i) + text(schema) + text("ros2msg") + text(""))
+            out += record(4, struct.pack("<HH", i, i) + text("/" + kind) + text("cdr" if cdr else "ros1") + text(""))
+            for k in range(3):
+                out += record(5, struct.pack("<HIQQ", i, k, 10**12 + k, 0) + ros_message(kind, k, cdr))
+        return out
+
+    def chunk(name, packed, whole, crc=0):
+        return record(6, struct.pack("<QQQI", 0, 9, len(whole), crc) + text(name) + struct.pack("<Q", len(packed)) + packed)
+
+    end = record(15, bytes(4)) + record(2, bytes(20)) + b"\x89MCAP0\r\n"
+    begin = record(1, text("ros2") + text("seed"))
+    plain = records(1)
+    seed("mcap", "no_chunk", begin + plain + end)
+    seed("mcap", "ros1", begin + chunk("", records(0), records(0), zlib.crc32(records(0))) + end)
+    seed("mcap", "lz4", begin + chunk("lz4", lz4_frame(plain), plain) + end)
+    seed("mcap", "zstd", begin + chunk("zstd", zstd_frame(plain), plain) + end)
+    seed("mcap", "crc", begin + chunk("", plain, plain, 1) + end)
+    seed("mcap", "packing", begin + chunk("zip", plain, plain) + end)
+    seed("mcap", "strangers", begin + record(5, struct.pack("<HIQQ", 9, 0, 0, 0)) + record(4, b"x") + record(5, b"x"))
+
+
+def rosbag2():
+    def database(sql, rows=()):
+        with tempfile.NamedTemporaryFile(suffix=".db3") as file:
+            with sqlite3.connect(file.name) as connection:
+                connection.executescript("PRAGMA page_size=512;" + sql)
+                if rows:
+                    connection.executemany("INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)", rows)
+            connection.close()
+            return pathlib.Path(file.name).read_bytes()[16:]  # the harness puts the magic in front
+
+    kinds = list(ROS_TYPES)
+    tables = "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT);" \
+        "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB);"
+    topics = "".join("INSERT INTO topics VALUES(%d, '/%s', '%s', 'cdr');" % (i, kind, ROS_TYPES[kind].replace("/", "/msg/"))
+                     for i, kind in enumerate(kinds, 1))
+    rows = [(i, k, ros_message(kind, k, 1)) for kind, i in (("scan", 1), ("joints", 2), ("imu", 3), ("pose", 5)) for k in range(2)]
+    seed("rosbag2", "plain", database(tables + topics, rows))
+    seed("rosbag2", "packed", database(tables + topics, [(i, k, zstd_frame(data)) for i, k, data in rows]))
+    seed("rosbag2", "cut", database(tables + topics, rows)[:-700])
+    seed("rosbag2", "strangers", database(tables, [(9, 1, b"x"), (1, None, None)]))
+    view = "CREATE TABLE n(topic_id, timestamp, data); CREATE VIEW messages AS SELECT * FROM n;"
+    seed("rosbag2", "view", database(tables.split(";")[0] + ";" + view))
+
+
+def ros_messages():
+    for number, kind in enumerate(ROS_TYPES):
+        for cdr in (0, 1):
+            seed("ros_messages", kind + ("_cdr" if cdr else "_ros1"), bytes([2 * number + cdr]) + ros_message(kind, 3, cdr))
 
 
 def profiles():
@@ -495,5 +641,5 @@ def network_captures():
 
 if __name__ == "__main__":
     for make in (candump, slcan, sdo, speed_can, speed_serial, ld06, rplidar, cola, scip, xv11, ydlidar, control, lcm_log,
-                 pose_graph, recordings, profiles, network_captures):
+                 pose_graph, recordings, rosbag, mcap, rosbag2, ros_messages, profiles, network_captures):
         make()

@@ -5,9 +5,11 @@
 #include <fstream>
 #include <iomanip>
 
+#include "proto/file_bytes.hpp"
 #include "proto/recording/recording.hpp"
 #include "tests/sim/effects/blind_case.hpp"
 #include "tests/sim/effects/effect.hpp"
+#include "tests/sim/ros/containers.hpp"
 #include "tests/sim/world/rooms.hpp"
 
 namespace {
@@ -28,7 +30,9 @@ std::vector<std::string> effect_names() {
 
 void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", arguments.seed, "robot, noise and random room are drawn from this number");
-  app.add_option("--out", arguments.out, "recording to write (.jsonl or .jsonl.gz)")->required();
+  app.add_option("--out", arguments.out,
+                 "recording to write: .jsonl, .jsonl.gz, .bag (ROS 1), .mcap or .db3 (ROS 2)")
+      ->required();
   app.add_option("--truth", arguments.truth, "file for the true parameters (JSON)");
   app.add_option("--path", arguments.path, "file for the true poses of the base (TUM)");
   app.add_option("--effect", arguments.effect, "something that the plain model lacks")
@@ -67,6 +71,20 @@ BlindAnswer add_effect(const Arguments& arguments, SimulationConfig& config) {
   return answer;
 }
 
+odomcalib::Result<void> write_recording(const odomcalib::Recording& recording,
+                                        const std::filesystem::path& path) {
+  const std::string form = path.extension();
+  if (form == ".bag") {
+    const RosLog log = ros_log(recording, {.wire = Wire::ros1});
+    return odomcalib::replace_file(path, write_bag(log, {.packing = RosPacking::lz4}));
+  }
+  const RosLog log = ros_log(recording, {.wire = Wire::cdr_little});
+  if (form == ".mcap") return odomcalib::replace_file(path, write_mcap(log, {.packing = RosPacking::zstd}));
+  if (form != ".db3") return odomcalib::write_recording_jsonl(recording, path);
+  write_rosbag2(log, path);
+  return {};
+}
+
 void write_path(const SimulatedRun& run, const std::string& file) {
   std::ofstream out(file);
   out << std::fixed << std::setprecision(9);
@@ -90,7 +108,7 @@ int main(int argc, char** argv) {
   answer.truth = config.truth;
   answer.drive = arguments.drive;
   answer.least_clearance = run.least_clearance;
-  if (const auto written = odomcalib::write_recording_jsonl(run.recording, arguments.out); !written) {
+  if (const auto written = write_recording(run.recording, arguments.out); !written) {
     std::fprintf(stderr, "odomcalib-sim-record: %s\n", written.error().text().c_str());
     return 1;
   }

@@ -146,6 +146,15 @@ TEST(Report, a_length_that_nobody_stated_has_no_nominal_value) {
   EXPECT_THAT(to_text(describe(calibration)), HasSubstr("147.000"));
 }
 
+TEST(Report, next_is_the_controller_or_for_a_recording_from_elsewhere_the_export) {
+  auto calibration = example();
+  calibration.data = {{"drive.lcmlog", "", std::nullopt, 60.0, {}, {}, {}}};
+  EXPECT_THAT(to_text(describe(calibration)), HasSubstr("odomcalibctl apply"));
+  calibration.data.push_back({"drive.bag", "", std::nullopt, 60.0, {}, {}, {"scan: /scan"}});
+  EXPECT_THAT(to_text(describe(calibration)), Not(HasSubstr("odomcalibctl apply")));
+  EXPECT_THAT(to_text(describe(calibration)), HasSubstr("odomcalibctl export --what diff_drive"));
+}
+
 TEST(WriteBack, a_dry_run_says_what_would_be_written_in_place_of_what) {
   const auto result = nlohmann::ordered_json::parse(R"({"outcome":"dry_run",
     "before":{"left_wheel_diameter":0.15,"right_wheel_diameter":0.15,"track_width":0.4},

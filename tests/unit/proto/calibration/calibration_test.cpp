@@ -34,7 +34,8 @@ Calibration example() {
              1.5e9,
              12.5,
              {{"ticks", 100}, {"scans", 20}},
-             {{"scan: cut off", 1}}}};
+             {{"scan: cut off", 1}},
+             {"scan: /scan"}}};
   c.extensions = {{"zz_own", R"({"b":1,"a":[null,true]})"}, {"aa", "\"text\""}};
   return c;
 }
@@ -51,6 +52,7 @@ TEST(CalibrationFile, read_returns_what_was_written) {
   EXPECT_EQ(back.value().robot.lidar_pose, example().robot.lidar_pose);
   EXPECT_EQ(back.value().methods[0].refused, "only 1 straight run");
   EXPECT_EQ(back.value().data[0].counts, example().data[0].counts);
+  EXPECT_EQ(back.value().data[0].choices, example().data[0].choices);
   EXPECT_EQ(back.value().verdict, Verdict::accepted_with_warnings);
 }
 

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/recordings.hpp"
+#include "daemon/cli/verbs.hpp"
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+struct Options {
+  std::string recording, out;
+  RecordingOptions reading;
+};
+
+nlohmann::ordered_json counts_of(const Recording& recording) {
+  nlohmann::ordered_json counts = {{"motion", name_of(recording.motion)},
+                                   {"samples", recording.ticks.size()},
+                                   {"scans", recording.scans.size()},
+                                   {"poses", recording.poses.size()},
+                                   {"gyro", recording.gyro.size()}};
+  for (const Discarded& one : recording.discarded)
+    counts["discarded"][one.what + ": " + one.reason] = one.count;
+  return counts;
+}
+
+void print_summary(const Recording& recording, const std::string& out) {
+  std::cout << fmt::format("{}: {} {}, {} scans, {} poses, {} gyro readings\n", out, recording.ticks.size(),
+                           name_of(recording.motion), recording.scans.size(), recording.poses.size(),
+                           recording.gyro.size());
+  for (const Discarded& one : recording.discarded)
+    std::cout << fmt::format("  not used: {} {}: {}\n", one.count, one.what, one.reason);
+}
+
+int convert_recording(const Options& options, const Session& session) {
+  if (const auto files = check_outputs({{"--out", options.out}}, {{"the recording", options.recording},
+                                                                  {"--robot", options.reading.robot_file}});
+      !files)
+    return report_error(files.error(), session.json);
+  const auto recordings = read_recordings({options.recording}, options.reading);
+  if (!recordings) return report_error(recordings.error(), session.json);
+  const Recording& recording = recordings.value().front();
+  if (!recording.increments.empty())
+    return report_error({ErrorCode::format, "holds means over intervals, not samples", options.recording,
+                         "solve reads it as it is"},
+                        session.json);
+  if (const auto written = write_recording_jsonl(recording, options.out); !written)
+    return report_error(written.error(), session.json);
+  if (session.json == JsonMode::off)
+    print_summary(recording, options.out);
+  else
+    print_json(counts_of(recording).dump(), session.json);
+  return kDone;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Session& session) {
+  auto* verb = app.add_subcommand("convert", "Write any recording as JSON Lines");
+  auto options = std::make_shared<Options>();
+  verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
+  verb->add_option("--out", options->out, "file to write: .jsonl, or .jsonl.gz to pack it")->required();
+  add_reading_options(*verb, options->reading);
+  verb->callback([&session, options] {
+    session.run = [&session, options] { return convert_recording(*options, session); };
+  });
+}
+
+}  // namespace odomcalib::cli

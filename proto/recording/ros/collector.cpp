@@ -1,0 +1,140 @@
+#include "proto/recording/ros/collector.hpp"
+
+#include <algorithm>
+
+namespace odomcalib::ros {
+namespace {
+
+// MCAP's own limit: its channels have 16-bit numbers.
+constexpr std::size_t kMostTopics = 65'536;
+// Lists of joint names on one topic: one a publisher, each with its own joints.
+constexpr std::size_t kMostNameLists = 256;
+
+// Characters of a name; ROS allows 255 in all.
+constexpr std::size_t kLongestName = 255;
+
+/// Names are printed: what no ROS name has (control characters, bytes beyond ASCII) goes.
+std::string printable(std::string_view name) {
+  std::string out(name.substr(0, kLongestName));
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return out;
+}
+
+std::string problem_of(const TopicHeader& header, Kind kind) {
+  if (header.encoding != "ros1" && header.encoding != "cdr")
+    return "in the encoding \"" + header.encoding + "\"";
+  if (header.md5.empty() || header.md5 == "*" || header.md5 == md5_of(kind)) return {};
+  return "of another definition (MD5 " + header.md5 + ")";
+}
+
+void note_frames(Topic& topic, const std::string& frame, const std::string& child = {}) {
+  if (topic.frame.empty()) topic.frame = printable(frame);
+  if (topic.child_frame.empty()) topic.child_frame = printable(child);
+}
+
+/// SIZE_MAX when the topic has too many lists already.
+std::size_t index_of_names(Topic& topic, std::vector<std::string> names) {
+  const auto known = std::find(topic.joint_names.begin(), topic.joint_names.end(), names);
+  if (known != topic.joint_names.end()) return static_cast<std::size_t>(known - topic.joint_names.begin());
+  if (topic.joint_names.size() >= kMostNameLists) return SIZE_MAX;
+  topic.joint_names.push_back(std::move(names));
+  return topic.joint_names.size() - 1;
+}
+
+// Each adds one message to its topic; false when the bytes do not hold it.
+
+bool add_scan(Topic& topic, std::int64_t received, std::string_view bytes) {
+  auto scan = decode_scan(bytes, topic.encoding);
+  if (!scan) return false;
+  note_frames(topic, scan->header.frame);
+  topic.scans.push_back({scan->header.stamp_ns, received, std::move(scan->scan)});
+  return true;
+}
+
+bool add_joints(Topic& topic, std::int64_t received, std::string_view bytes) {
+  auto joints = decode_joints(bytes, topic.encoding);
+  if (!joints) return false;
+  for (auto& name : joints->names) name = printable(name);
+  const std::size_t names = index_of_names(topic, std::move(joints->names));
+  if (names == SIZE_MAX) return false;
+  note_frames(topic, joints->header.frame);
+  topic.joints.push_back({joints->header.stamp_ns,
+                          received,
+                          {names, std::move(joints->positions), std::move(joints->velocities)}});
+  return true;
+}
+
+bool add_imu(Topic& topic, std::int64_t received, std::string_view bytes) {
+  const auto imu = decode_imu(bytes, topic.encoding);
+  if (!imu || !imu->yaw_rate) return false;
+  note_frames(topic, imu->header.frame);
+  topic.yaw_rates.push_back({imu->header.stamp_ns, received, *imu->yaw_rate});
+  return true;
+}
+
+bool add_pose(Topic& topic, std::int64_t received, std::string_view bytes) {
+  const auto pose = topic.kind == Kind::odometry ? decode_odometry(bytes, topic.encoding)
+                                                 : decode_pose(bytes, topic.encoding);
+  if (!pose) return false;
+  note_frames(topic, pose->header.frame, pose->child_frame);
+  topic.poses.push_back({pose->header.stamp_ns, received, {0.0, pose->x, pose->y, pose->yaw}});
+  return true;
+}
+
+bool add(Topic& topic, std::int64_t received, std::string_view bytes) {
+  switch (topic.kind) {
+    case Kind::scan:
+      return add_scan(topic, received, bytes);
+    case Kind::joints:
+      return add_joints(topic, received, bytes);
+    case Kind::imu:
+      return add_imu(topic, received, bytes);
+    case Kind::odometry:
+    case Kind::pose:
+      return add_pose(topic, received, bytes);
+    case Kind::none:
+      break;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::size_t Collector::topic(const TopicHeader& described) {
+  const TopicHeader header{printable(described.name), printable(described.type),
+                           printable(described.encoding), printable(described.md5)};
+  const auto key = std::pair(header.name, header.type + '\n' + header.encoding + '\n' + header.md5);
+  const auto known = by_name_.find(key);
+  if (known != by_name_.end()) return known->second;
+  if (topics_.size() >= kMostTopics) return kTooMany;
+  Topic topic;
+  topic.header = header;
+  topic.encoding = header.encoding == "ros1" ? Encoding::ros1 : Encoding::cdr;
+  topic.kind = kind_of(header.type);
+  if (topic.kind != Kind::none) topic.problem = problem_of(header, topic.kind);
+  if (!topic.problem.empty()) topic.kind = Kind::none;
+  topics_.push_back(std::move(topic));
+  by_name_[key] = topics_.size() - 1;
+  return topics_.size() - 1;
+}
+
+void Collector::message(std::size_t index, std::int64_t received_ns, std::string_view bytes) {
+  if (index >= topics_.size()) return discard("message", "of a topic that the file does not describe");
+  Topic& topic = topics_[index];
+  ++topic.count;
+  if (topic.kind == Kind::none) return;
+  // rosbag2 may pack each message alone; only its metadata.yaml says so, but CDR never begins like zstd.
+  if (topic.encoding == Encoding::cdr && is_zstd(bytes)) {
+    const Unpacked whole = unpacker_(Packing::zstd, bytes, std::nullopt);
+    if (!whole.whole || !add(topic, received_ns, whole.bytes)) ++topic.malformed;
+  } else if (!add(topic, received_ns, bytes)) {
+    ++topic.malformed;
+  }
+}
+
+void Collector::discard(const std::string& what, const std::string& reason, std::size_t count) {
+  discarded_[{what, reason}] += count;
+}
+
+}  // namespace odomcalib::ros

@@ -1,0 +1,83 @@
+// What containers hold, by topic: every message that can be decoded, and a count of every other. Internal to
+// proto/.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "proto/measurements.hpp"
+#include "proto/recording/ros/messages.hpp"
+#include "proto/recording/ros/unpack.hpp"
+
+namespace odomcalib::ros {
+
+/// A message with the two times that it has.
+template <typename Value>
+struct Stamped {
+  std::int64_t stamp_ns = 0;     ///< of its header; 0: not set
+  std::int64_t received_ns = 0;  ///< when the recorder had it
+  Value value{};
+};
+
+/// The joints of one message: values in the order of one of the topic's lists of names.
+struct JointValues {
+  std::size_t names = 0;
+  std::vector<double> positions, velocities;
+};
+
+/// How a container describes a topic.
+struct TopicHeader {
+  std::string name, type;
+  std::string encoding;  ///< ros1 or cdr; any other is told and not read
+  std::string md5;       ///< of the ROS 1 definition; empty or * where it is not known
+};
+
+struct Topic {
+  TopicHeader header;
+  Kind kind = Kind::none;  ///< none: cannot be read
+  Encoding encoding = Encoding::cdr;
+  std::string problem;             ///< why a type that is known by name cannot be read
+  std::size_t count = 0;           ///< messages in the container
+  std::size_t malformed = 0;       ///< that did not hold what the type says
+  std::string frame, child_frame;  ///< of the first message
+
+  // Of its kind.
+  std::vector<Stamped<Scan>> scans;
+  std::vector<std::vector<std::string>> joint_names;  ///< every list that a message had
+  std::vector<Stamped<JointValues>> joints;
+  std::vector<Stamped<double>> yaw_rates;
+  std::vector<Stamped<PoseSample>> poses;  ///< t is not set; odometry and pose
+};
+
+class Collector {
+ public:
+  /// A topic as one connection of one file describes it; the same name and type are the same topic. The
+  /// number goes with the messages. kTooMany when a file has more of them than any robot.
+  std::size_t topic(const TopicHeader& header);
+  static constexpr std::size_t kTooMany = SIZE_MAX;
+
+  /// What unpacks the recording's pieces: they have one limit together.
+  Unpacker& unpacker() { return unpacker_; }
+
+  void message(std::size_t topic, std::int64_t received_ns, std::string_view bytes);
+  /// Something that was not used, and why.
+  void discard(const std::string& what, const std::string& reason, std::size_t count = 1);
+
+  [[nodiscard]] const std::vector<Topic>& topics() const { return topics_; }
+  [[nodiscard]] std::vector<Topic>& topics() { return topics_; }
+  [[nodiscard]] const std::map<std::pair<std::string, std::string>, std::size_t>& discarded() const {
+    return discarded_;
+  }
+
+ private:
+  std::vector<Topic> topics_;
+  Unpacker unpacker_;
+  std::map<std::pair<std::string, std::string>, std::size_t> by_name_;
+  std::map<std::pair<std::string, std::string>, std::size_t> discarded_;
+};
+
+}  // namespace odomcalib::ros

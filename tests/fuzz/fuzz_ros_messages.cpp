@@ -1,0 +1,41 @@
+// ROS messages: the first byte says which type and encoding, the rest is the message.
+#include <cmath>
+#include <string_view>
+
+#include "proto/recording/ros/messages.hpp"
+#include "tests/fuzz/share.hpp"
+
+using odomcalib::fuzz::require;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace odomcalib::ros;
+  if (size == 0) return 0;
+  const std::string_view bytes(reinterpret_cast<const char*>(data + 1), size - 1);
+  const Encoding encoding = (data[0] & 1U) == 0 ? Encoding::ros1 : Encoding::cdr;
+  switch (data[0] / 2 % 5) {
+    case 0:
+      if (const auto scan = decode_scan(bytes, encoding)) {
+        require(scan->scan.ranges.size() <= size / sizeof(float));
+        for (const float range : scan->scan.ranges) require(std::isfinite(range));
+        require(scan->scan.intensities.empty() || scan->scan.intensities.size() == scan->scan.ranges.size());
+      }
+      break;
+    case 1:
+      if (const auto joints = decode_joints(bytes, encoding)) {
+        require(joints->names.size() <= size / 4);
+        require(joints->positions.empty() || joints->positions.size() == joints->names.size());
+        require(joints->velocities.empty() || joints->velocities.size() == joints->names.size());
+      }
+      break;
+    case 2:
+      (void)decode_imu(bytes, encoding);
+      break;
+    case 3:
+      if (const auto pose = decode_odometry(bytes, encoding)) require(std::isfinite(pose->yaw));
+      break;
+    default:
+      if (const auto pose = decode_pose(bytes, encoding)) require(std::isfinite(pose->yaw));
+      break;
+  }
+  return 0;
+}

@@ -1,0 +1,205 @@
+// ROS bags, rosbag2 and MCAP, in every packing and encoding, whole and cut off.
+#include <gtest/gtest.h>
+
+#include "tests/unit/proto/recording/ros_support.hpp"
+
+namespace odomcalib {
+namespace {
+
+using sim::RosPacking;
+using sim::Wire;
+using test::bytes_of;
+using test::discarded_like;
+using test::expect_small_drive;
+using test::list_discarded;
+using test::read_ros;
+using test::small_log;
+using test::told;
+
+struct Form {
+  std::string name;
+  std::string bytes;
+};
+
+std::string rosbag2_bytes(Wire wire, const sim::Rosbag2Options& options = {}) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "odomcalib_rosbag2.db3";
+  sim::write_rosbag2(small_log(wire), path, options);
+  std::string bytes = bytes_of(path);
+  std::filesystem::remove(path);
+  return bytes;
+}
+
+/// As several frames, one after the other, so that what was cut off can be unpacked up to there: in one frame
+/// of so small a file nothing could.
+std::string packed_in_frames(const std::string& bytes) {
+  constexpr std::size_t kFrame = 8192;
+  std::string out;
+  for (std::size_t at = 0; at < bytes.size(); at += kFrame)
+    out += sim::packed(RosPacking::zstd, bytes.substr(at, kFrame));
+  return out;
+}
+
+/// Small chunks, so that there are many.
+std::vector<Form> forms() {
+  constexpr std::size_t kChunk = 5000;
+  std::vector<Form> out;
+  for (const auto& [name, packing] :
+       {std::pair("plain", RosPacking::none), {"bz2", RosPacking::bz2}, {"lz4", RosPacking::lz4}}) {
+    const std::string bag = std::string("bag_") + name;
+    out.push_back({bag, write_bag(small_log(Wire::ros1), {.packing = packing, .chunk_bytes = kChunk})});
+    out.push_back({bag + "_open", write_bag(small_log(Wire::ros1),
+                                            {.packing = packing, .chunk_bytes = kChunk, .closed = false})});
+  }
+  for (const auto& [name, packing] :
+       {std::pair("plain", RosPacking::none), {"lz4", RosPacking::lz4}, {"zstd", RosPacking::zstd}})
+    for (const auto& [wire_name, wire] : {std::pair("ros1", Wire::ros1),
+                                          {"cdr_little", Wire::cdr_little},
+                                          {"cdr_big", Wire::cdr_big},
+                                          {"cdr2_little", Wire::cdr2_little},
+                                          {"cdr2_big", Wire::cdr2_big}})
+      out.push_back({std::string("mcap_") + name + "_" + wire_name,
+                     write_mcap(small_log(wire), {.packing = packing, .chunk_bytes = kChunk})});
+  out.push_back({"mcap_without_chunks", write_mcap(small_log(Wire::cdr_little), {.chunk_bytes = 0})});
+  out.push_back(
+      {"mcap_open", write_mcap(small_log(Wire::cdr_little), {.chunk_bytes = kChunk, .closed = false})});
+  out.push_back({"rosbag2", rosbag2_bytes(Wire::cdr_little)});
+  out.push_back({"rosbag2_big", rosbag2_bytes(Wire::cdr_big)});
+  out.push_back({"rosbag2_packed_messages", rosbag2_bytes(Wire::cdr_little, {.packed_messages = true})});
+  out.push_back({"rosbag2_with_log", rosbag2_bytes(Wire::cdr_little, {.write_ahead_log = true})});
+  out.push_back({"rosbag2_packed", packed_in_frames(rosbag2_bytes(Wire::cdr_little))});
+  return out;
+}
+
+TEST(RosContainers, hold_the_same_drive_in_every_packing_and_encoding) {
+  for (const Form& form : forms()) {
+    SCOPED_TRACE(form.name);
+    const auto result = read_ros(form.bytes);
+    ASSERT_TRUE(result.ok()) << result.error().text();
+    expect_small_drive(result.value(), MotionSource::wheels);
+    EXPECT_TRUE(told(result.value(),
+                     "joints wheel_left_joint (left) and wheel_right_joint (right) of /joint_states"));
+    EXPECT_TRUE(told(result.value(), "scan: /scan"));
+    EXPECT_TRUE(told(result.value(), "/odom not taken"));
+    EXPECT_EQ(discarded_like(result.value(), "message", "std_msgs/"), 1U) << list_discarded(result.value());
+  }
+}
+
+/// What is whole is used, and a file that was cut says so.
+TEST(RosContainers, that_are_cut_off_give_what_is_whole) {
+  for (const Form& form : forms()) {
+    SCOPED_TRACE(form.name);
+    std::size_t most = 0;
+    for (const double share : {0.35, 0.6, 0.85}) {
+      const auto result = read_ros(
+          form.bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(form.bytes.size()))));
+      ASSERT_TRUE(result.ok()) << share << result.error().text();
+      const Recording& r = result.value();
+      const std::size_t count = r.ticks.size();
+      EXPECT_GT(count, most) << share << list_discarded(r);
+      EXPECT_LT(count, 200U);
+      EXPECT_GE(discarded_like(r, "file", "") + discarded_like(r, "chunk", ""), 1U) << list_discarded(r);
+      most = count;
+    }
+  }
+}
+
+TEST(RosContainers, that_are_packed_and_cut_off_before_anything_is_whole_say_so) {
+  const std::string whole = sim::packed(RosPacking::zstd, rosbag2_bytes(Wire::cdr_little));
+  const auto complete = read_ros(whole);
+  ASSERT_TRUE(complete.ok()) << complete.error().text();
+  expect_small_drive(complete.value(), MotionSource::wheels);
+  const auto cut = read_ros(whole.substr(0, 1000));
+  ASSERT_FALSE(cut.ok());
+  EXPECT_EQ(cut.error().code, ErrorCode::format);
+  EXPECT_NE(cut.error().text().find("nothing of it can be unpacked"), std::string::npos)
+      << cut.error().text();
+}
+
+TEST(RosContainers, that_are_whole_report_no_damage) {
+  for (const Form& form : forms()) {
+    const auto result = read_ros(form.bytes);
+    ASSERT_TRUE(result.ok());
+    EXPECT_EQ(discarded_like(result.value(), "chunk", ""), 0U) << form.name;
+    const bool open = form.name == "mcap_open";
+    EXPECT_EQ(discarded_like(result.value(), "file", ""), open ? 1U : 0U)
+        << form.name << list_discarded(result.value());
+  }
+}
+
+TEST(RosContainers, a_folder_is_read_with_all_its_splits_and_misses_those_that_are_not_there) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "odomcalib_split_bag";
+  fs::remove_all(folder);
+  fs::create_directory(folder);
+  const sim::RosLog whole = small_log(Wire::cdr_little);
+  // Eleven splits: by name the eleventh comes before the third.
+  constexpr std::size_t kSplits = 11;
+  for (std::size_t k = 0; k < kSplits; ++k) {
+    sim::RosLog part{whole.wire, whole.topics, {}};
+    const std::size_t n = whole.messages.size();
+    part.messages.assign(whole.messages.begin() + static_cast<std::ptrdiff_t>(n * k / kSplits),
+                         whole.messages.begin() + static_cast<std::ptrdiff_t>(n * (k + 1) / kSplits));
+    write_rosbag2(part, folder / ("drive_" + std::to_string(k) + ".db3"));
+  }
+  std::ofstream(folder / "metadata.yaml") << "rosbag2_bagfile_information: {}\n";
+  const RobotDescription robot = test::ros_robot();
+  auto result = read_recording(folder, &robot);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  expect_small_drive(result.value(), MotionSource::wheels);
+  EXPECT_EQ(result.value().name, "odomcalib_split_bag");
+  EXPECT_EQ(result.value().sha256.size(), 64U);
+  EXPECT_EQ(discarded_like(result.value(), "file", ""), 0U);
+  fs::remove(folder / "drive_4.db3");
+  result = read_recording(folder, &robot);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  EXPECT_EQ(discarded_like(result.value(), "file", "drive_4.db3 is missing"), 1U);
+  EXPECT_LT(result.value().ticks.size(), 200U);
+  fs::remove_all(folder);
+}
+
+TEST(RosContainers, a_folder_without_a_recording_is_named) {
+  const auto empty = std::filesystem::path(testing::TempDir()) / "odomcalib_no_bag";
+  std::filesystem::create_directory(empty);
+  const auto none = read_recording(empty);
+  std::filesystem::remove(empty);
+  ASSERT_FALSE(none.ok());
+  EXPECT_EQ(none.error().code, ErrorCode::format);
+  EXPECT_NE(none.error().text().find(".db3 or .mcap"), std::string::npos);
+}
+
+TEST(RosContainers, a_write_ahead_log_beside_the_file_is_told) {
+  const auto path =
+      test::write_file("with_log.db3", rosbag2_bytes(Wire::cdr_little, {.write_ahead_log = true}));
+  const auto log = path.string() + "-wal";
+  std::ofstream(log) << "rows that are not in the file yet";
+  const RobotDescription robot = test::ros_robot();
+  const auto result = read_recording(path, &robot);
+  std::filesystem::remove(path);
+  std::filesystem::remove(log);
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  EXPECT_EQ(discarded_like(result.value(), "file", "wal_checkpoint"), 1U) << list_discarded(result.value());
+}
+
+TEST(RosContainers, of_an_older_form_or_encrypted_say_what_to_do) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"#ROSBAG V1.2\n", "rosbag fix"},
+      {sim::packed(RosPacking::zstd, "something else"), "zstd -d"},
+      {"SQLite format 3" + std::string(200, '\0'), "integrity_check"},
+  };
+  for (const auto& [bytes, words] : cases) {
+    const auto result = read_ros(bytes);
+    ASSERT_FALSE(result.ok()) << words;
+    EXPECT_EQ(result.error().code, ErrorCode::format);
+    EXPECT_NE(result.error().text().find(words), std::string::npos) << result.error().text();
+  }
+  std::string bag = write_bag(small_log(Wire::ros1));
+  const std::string plain = "conn_count=";
+  // The header has no encryptor; one of the same length stands in for the count of connections.
+  bag.replace(bag.find(plain), 15, "encryptor=aes12");
+  const auto result = read_ros(bag);
+  ASSERT_FALSE(result.ok());
+  EXPECT_NE(result.error().text().find("encrypted"), std::string::npos) << result.error().text();
+}
+
+}  // namespace
+}  // namespace odomcalib

@@ -1,0 +1,253 @@
+// Files that mean harm: much out of little, counts of everything, loops. An answer in bounded time and
+// memory.
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <functional>
+
+#include "proto/recording/ros/unpack.hpp"
+#include "tests/unit/proto/recording/ros_support.hpp"
+
+namespace odomcalib {
+namespace {
+
+using sim::RosPacking;
+using sim::Wire;
+using test::discarded_like;
+using test::list_discarded;
+using test::read_ros;
+using test::small_log;
+
+/// Largest memory of this process so far, in MiB.
+long peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss / 1024;
+}
+
+std::string raw32(std::uint32_t value) {
+  std::string out;
+  for (unsigned i = 0; i < 4; ++i) out += static_cast<char>(value >> (8 * i));
+  return out;
+}
+std::string raw64(std::uint64_t value) {
+  return raw32(static_cast<std::uint32_t>(value)) + raw32(static_cast<std::uint32_t>(value >> 32U));
+}
+
+std::string mcap_chunk(const std::string& name, const std::string& bytes, std::uint64_t stated) {
+  const std::string content = raw64(0) + raw64(0) + raw64(stated) + raw32(0) +
+                              raw32(static_cast<std::uint32_t>(name.size())) + name + raw64(bytes.size()) +
+                              bytes;
+  return std::string(1, '\x06') + raw64(content.size()) + content;
+}
+
+/// The drive of the other tests, with something in front of its first record.
+std::string mcap_with(const std::string& records) {
+  std::string file = write_mcap(small_log(Wire::cdr_little));
+  return file.insert(8, records);
+}
+
+TEST(HostileRos, a_bomb_unpacks_to_no_more_than_it_states_or_the_limit) {
+  constexpr std::size_t kBomb = 64 << 20;
+  const std::string zeros(kBomb, '\0');
+  for (const auto& [packing, as] : {std::pair(RosPacking::bz2, ros::Packing::bz2),
+                                    {RosPacking::lz4, ros::Packing::lz4},
+                                    {RosPacking::zstd, ros::Packing::zstd}}) {
+    const std::string bomb = sim::packed(packing, zeros);
+    constexpr std::size_t kLimit = 1000;
+    const Unpacked cut = ros::unpack(as, bomb, kLimit);
+    EXPECT_FALSE(cut.whole);
+    EXPECT_LE(cut.bytes.size(), kLimit);
+    const Unpacked whole = ros::unpack(as, bomb, kBomb);
+    EXPECT_TRUE(whole.whole) << whole.problem;
+    EXPECT_EQ(whole.bytes.size(), kBomb);
+    ros::Unpacker unpacker(kBomb + kLimit);
+    EXPECT_TRUE(unpacker(as, bomb, kBomb).whole);
+    EXPECT_FALSE(unpacker(as, bomb, kBomb).whole) << "all pieces together have one limit";
+    EXPECT_FALSE(ros::Unpacker()(as, bomb, kBomb - 1).whole) << "more than it states";
+    EXPECT_FALSE(ros::Unpacker()(as, bomb, kBomb + 1).whole) << "less than it states";
+    EXPECT_FALSE(ros::Unpacker()(as, bomb, UINT64_MAX).whole);
+  }
+}
+
+TEST(HostileRos, bombs_in_chunks_cost_neither_memory_nor_the_rest_of_the_file) {
+  const std::string mebibyte = sim::packed(RosPacking::zstd, std::string(1 << 20, '\0'));
+  std::string bomb, chunks;
+  for (int i = 0; i < 1024; ++i) bomb += mebibyte;
+  const long before = peak_memory();
+  for (int i = 0; i < 20; ++i) chunks += mcap_chunk("zstd", bomb, 1000);         // more than stated
+  for (int i = 0; i < 20; ++i) chunks += mcap_chunk("zstd", bomb, 1ULL << 60U);  // states beyond all limits
+  chunks += mcap_chunk("zstd", "no zstd at all", 100) + mcap_chunk("brotli", "x", 1) + mcap_chunk("", "x", 1);
+  const auto result = read_ros(mcap_with(chunks));
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  EXPECT_EQ(result.value().ticks.size(), 200U) << list_discarded(result.value());
+  EXPECT_EQ(discarded_like(result.value(), "chunk", "unpacks to more than it states"), 20U);
+  EXPECT_EQ(discarded_like(result.value(), "chunk", "more than the limit of"), 20U);
+  EXPECT_EQ(discarded_like(result.value(), "chunk", "compressed data is damaged"), 1U)
+      << list_discarded(result.value());
+  EXPECT_LT(peak_memory() - before, 100) << "MiB";
+}
+
+TEST(HostileRos, a_packed_recording_is_bounded_too) {
+  const auto result = read_ros(sim::packed(RosPacking::zstd, std::string(1 << 20, '\0')));
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::format);
+}
+
+/// Every 32-bit number of a message set to the largest there is: counts, lengths, alignments.
+TEST(HostileRos, counts_beyond_the_message_are_damage_and_reserve_nothing) {
+  const long before = peak_memory();
+  for (const Wire wire : {Wire::ros1, Wire::cdr_little, Wire::cdr_big}) {
+    const sim::RosLog good = small_log(wire);
+    for (std::size_t at = 0; at + 4 <= 200; at += 4) {
+      sim::RosLog log = good;
+      for (auto& message : log.messages)
+        if (at + 4 <= message.bytes.size()) message.bytes.replace(at, 4, 4, '\xFF');
+      const auto result = read_ros(write_mcap(log));
+      if (result.ok()) {
+        EXPECT_LE(result.value().ticks.size(), 200U);
+      }
+    }
+  }
+  EXPECT_LT(peak_memory() - before, 100) << "MiB";
+}
+
+/// Every 32-bit number of a container set to the largest there is.
+TEST(HostileRos, lengths_beyond_the_file_are_damage) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string bag = write_bag(small_log(Wire::ros1), {.chunk_bytes = 3000});
+  const std::string mcap = write_mcap(small_log(Wire::cdr_little), {.chunk_bytes = 3000});
+  for (const std::string* file : {&bag, &mcap})
+    for (std::size_t at = 13; at + 4 < 6000; ++at) {
+      std::string changed = *file;
+      changed.replace(at, 4, 4, '\xFF');
+      (void)read_ros(changed);
+    }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+}
+
+TEST(HostileRos, topics_without_end_are_bounded) {
+  sim::RosLog log = small_log(Wire::ros1);
+  for (int i = 0; i < 70'000; ++i) log.add("/t" + std::to_string(i), "std_msgs/String", 1, "");
+  (void)read_ros(sim::write_bag({log.wire, log.topics, {}}));  // without messages nothing is described
+  const auto result = read_ros(write_bag(log, {.chunk_bytes = 1 << 20}));
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  EXPECT_GE(discarded_like(result.value(), "connection", "too many topics"), 1U);
+}
+
+TEST(HostileRos, names_of_joints_that_always_differ_are_bounded) {
+  sim::RosLog log = small_log(Wire::cdr_little);
+  for (int i = 0; i < 5000; ++i)
+    log.add("/joint_states", "sensor_msgs/JointState", 1'700'000'000'000'000'000 + i,
+            encode_joints(log.wire, {1'700'000'000'000'000'000 + i, ""}, {"joint" + std::to_string(i)}, {0.0},
+                          {}));
+  const auto result = read_ros(write_mcap(log));
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  EXPECT_GE(discarded_like(result.value(), "message", "/joint_states: does not hold"), 4000U);
+  EXPECT_EQ(result.value().ticks.size(), 200U);
+}
+
+TEST(HostileRos, names_reach_no_terminal_unchanged) {
+  sim::RosLog log = small_log(Wire::cdr_little);
+  log.add("/evil\x1b[2J\n", "sensor_msgs/LaserScan", 1,
+          encode_scan(log.wire, {1, "x"}, test::small_drive().scans.front()));
+  const auto result = read_ros(write_mcap(log));
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().text().find('\x1b'), std::string::npos);
+  EXPECT_NE(result.error().text().find("/evil?[2J?"), std::string::npos) << result.error().text();
+}
+
+// ---- SQLite
+
+using Database = std::unique_ptr<sqlite3, int (*)(sqlite3*)>;
+
+std::string database_of(const std::string& sql) {
+  const auto path = test::write_file("hostile.db3", "");
+  sqlite3* opened = nullptr;
+  EXPECT_EQ(sqlite3_open(path.c_str(), &opened), SQLITE_OK);
+  const Database database(opened, sqlite3_close);
+  EXPECT_EQ(sqlite3_exec(opened, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+      << sqlite3_errmsg(opened);
+  std::string bytes = test::bytes_of(path);
+  std::filesystem::remove(path);
+  return bytes;
+}
+
+constexpr const char* kTopics =
+    "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT);"
+    "INSERT INTO topics VALUES(1, '/odom', 'nav_msgs/msg/Odometry', 'cdr');";
+
+void expect_answer(const std::string& bytes) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto result = read_ros(bytes);
+  EXPECT_FALSE(result.ok());
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+TEST(HostileRos, views_that_never_end_are_no_tables) {
+  expect_answer(
+      database_of(std::string(kTopics) +
+                  "CREATE VIEW messages AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
+                  " SELECT i AS id, 1 AS topic_id, i AS timestamp, zeroblob(1000000) AS data FROM n;"));
+}
+
+TEST(HostileRos, computed_columns_make_no_large_rows) {
+  expect_answer(
+      database_of(std::string(kTopics) +
+                  "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER,"
+                  " data BLOB AS (zeroblob(900000000)));"
+                  "INSERT INTO messages(topic_id, timestamp) VALUES(1, 1), (1, 2), (1, 3);"));
+}
+
+/// Pages of the tree of messages that name each other as children.
+TEST(HostileRos, trees_that_bite_their_tail_end) {
+  const auto path = test::write_file("cycle.db3", "");
+  write_rosbag2(small_log(Wire::cdr_little), path);
+  const std::string good = test::bytes_of(path);
+  std::filesystem::remove(path);
+  constexpr std::size_t kPage = 4096;
+  constexpr char kInteriorTable = 5;
+  std::size_t changed = 0;
+  for (std::size_t page = 1; (page + 1) * kPage <= good.size(); ++page) {
+    if (good[page * kPage] != kInteriorTable) continue;
+    std::string cyclic = good;
+    const std::size_t cells = static_cast<unsigned char>(good[page * kPage + 3]) * 256U +
+                              static_cast<unsigned char>(good[page * kPage + 4]);
+    const std::string itself{'\0', '\0', static_cast<char>((page + 1) >> 8U), static_cast<char>(page + 1)};
+    for (std::size_t k = 0; k < cells; ++k) {
+      const std::size_t pointer = page * kPage + 12 + 2 * k;
+      const std::size_t cell = page * kPage + static_cast<unsigned char>(good[pointer]) * 256U +
+                               static_cast<unsigned char>(good[pointer + 1]);
+      cyclic.replace(cell, 4, itself);
+    }
+    ++changed;
+    const auto begin = std::chrono::steady_clock::now();
+    const auto result = read_ros(cyclic);
+    if (result.ok()) {
+      EXPECT_GE(discarded_like(result.value(), "file", ""), 1U);
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  }
+  EXPECT_GT(changed, 0U) << "the drive is too small for an inner page";
+}
+
+TEST(HostileRos, headers_of_sqlite_that_lie_are_answered) {
+  const auto path = test::write_file("header.db3", "");
+  write_rosbag2(small_log(Wire::cdr_little), path);
+  const std::string good = test::bytes_of(path);
+  std::filesystem::remove(path);
+  for (std::size_t at = 16; at < 100; ++at)
+    for (const char value : {'\0', '\x01', '\x7F', '\xFF'}) {
+      std::string changed = good;
+      changed[at] = value;
+      const auto result = read_ros(changed);
+      if (result.ok()) {
+        EXPECT_LE(result.value().ticks.size(), 200U);
+      }
+    }
+}
+
+}  // namespace
+}  // namespace odomcalib
