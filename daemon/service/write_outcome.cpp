@@ -24,13 +24,16 @@ void note_in_history(Bench& bench, const WriteReport& report) {
   entry.device = report.device;
   if (report.outcome == WriteOutcome::committed)
     entry.calibration = bench.applied.file.announced(report.calibration);
-  const auto all = bench.write_back.history.entries();
+  History& history = bench.write_back.history;
+  const auto& all = history.entries();
   const bool known = !all.empty() && report.outcome == WriteOutcome::unknown &&
                      all.front().outcome == entry.outcome && all.front().action == entry.action &&
                      all.front().before == entry.before && all.front().after == entry.after;
   if (known) return;
-  if (const auto added = bench.write_back.history.add(entry); !added)
-    bench.outbox.event(messages::Severity::warning, "history", added.error().text());
+  entry = history.numbered(std::move(entry));
+  if (const auto written = history.write(entry); !written)
+    return bench.outbox.event(messages::Severity::warning, "history", written.error().text());
+  history.keep(std::move(entry));
 }
 
 }  // namespace
