@@ -20,9 +20,11 @@ using nlohmann::json;
 
 class VirtualClock : public Clock {
  public:
-  double time = 100.0, slept = 0.0;
+  mutable double time = 100.0;
+  double slept = 0.0;
+  double each_look = 0.0;  ///< s that pass from one look at the clock to the next
   [[nodiscard]] double suspended() const override { return slept; }
-  [[nodiscard]] double now() const override { return time; }
+  [[nodiscard]] double now() const override { return time += each_look; }
   [[nodiscard]] std::int64_t wall_us() const override {
     return static_cast<std::int64_t>(1.7e15 + time * 1e6);
   }

@@ -28,6 +28,11 @@ class ControlClient {
   ControlClient(const ControlClient&) = delete;
   ControlClient& operator=(const ControlClient&) = delete;
 
+  /// @return bytes that the socket took
+  std::size_t put(const std::string& bytes) const {
+    const ssize_t written = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    return written > 0 ? static_cast<std::size_t>(written) : 0;
+  }
   /// The same call so many times, in one write. @return bytes that the socket took
   std::size_t send(int times, const std::string& method) {
     const std::string one = control::encode_call({.method = std::string(control::kInterface) + "." + method});
@@ -47,10 +52,6 @@ class ControlClient {
   }
 
  private:
-  std::size_t put(const std::string& bytes) const {
-    const ssize_t written = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    return written > 0 ? static_cast<std::size_t>(written) : 0;
-  }
   int fd_;
   control::FrameDecoder decoder_;
 };
