@@ -20,18 +20,19 @@ constexpr double kCallTime = 0.004;
 }  // namespace
 
 Loop::Loop(const Config& configuration, Clock& clock, Calibrator functions, BaseLink base, LidarLink lidar,
-           ControlServer server, Journal journal)
+           ControlServer server, Journal journal, std::unique_ptr<Background> disk)
     : bench_(configuration, clock, std::move(functions), std::move(base), std::move(lidar), std::move(server),
-             std::move(journal)) {
+             std::move(journal), std::move(disk)) {
   // The end of a write-back may have been written down and nothing after it.
-  const auto& last = bench_.write_back.journal.last();
+  const auto& last = bench_.write_back.transaction.journal().last();
   const bool committed = last && last->state == JournalState::commit;
-  (void)settle_calibration(bench_, committed ? last->calibration : "");
+  settle_calibration(bench_, committed ? last->calibration : "");
 }
 
 void Loop::wait(int timeout_ms) {
   polled_ = {{bench_.drive.link.fd(), POLLIN, 0},
-             {bench_.surroundings.link.fd(), POLLIN, 0}};  // one that is absent is -1: poll passes it over
+             {bench_.surroundings.link.fd(), POLLIN, 0},
+             {bench_.disk->fd(), POLLIN, 0}};  // one that is absent is -1: poll passes it over
   const auto clients = static_cast<std::ptrdiff_t>(polled_.size());
   bench_.outbox.server.watch(polled_);
   const int most = task_ && task_->moves() ? std::min(timeout_ms, kMovingTimeout) : timeout_ms;
@@ -55,7 +56,7 @@ void Loop::turn() {
   static constexpr std::array<Part, 7> kParts = {{{"base", &Loop::serve_drive},
                                                   {"lidar", &Loop::serve_lidar},
                                                   {"clients", &Loop::serve_clients},
-                                                  {"recording", &Loop::serve_recordings},
+                                                  {"disk", &Loop::serve_disk},
                                                   {"write-back", &Loop::serve_write_back},
                                                   {nullptr, &Loop::serve_task},
                                                   {"telemetry", &Loop::serve_telemetry}}};
@@ -117,7 +118,10 @@ void Loop::forget(ClientId gone) {
   if (task_ && task_->caller.client == gone) task_->abandoned(bench_);
 }
 
-void Loop::serve_recordings() { bench_.outbox.telemetry.recorder.serve(); }
+void Loop::serve_disk() {
+  bench_.outbox.telemetry.recorder.serve();
+  bench_.disk->serve();
+}
 
 void Loop::serve_write_back() {
   Drive& drive = bench_.drive;

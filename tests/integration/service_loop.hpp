@@ -93,6 +93,8 @@ class ServiceLoop : public testing::Test {
   }
 
   virtual Calibrator calibrator() { return {}; }
+  /// One that takes no time, virtual time or other.
+  virtual std::unique_ptr<Background> disk() { return std::make_unique<Foreground>(); }
   virtual void adjust(sim::SimRobotOptions& /*options*/) {}
   virtual void adjust(Config& /*config*/) {}
 
@@ -112,7 +114,7 @@ class ServiceLoop : public testing::Test {
     config.state_dir = folder_ / "state";
     config.socket = folder_ / "control";
     adjust(config);
-    auto service = Service::create(config, clock_, calibrator());
+    auto service = Service::create(config, clock_, calibrator(), disk());
     ASSERT_TRUE(service.ok()) << service.error().text();
     service_ = std::move(service).value();
   }

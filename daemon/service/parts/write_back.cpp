@@ -14,11 +14,11 @@ std::string name_of(WriteOutcome outcome) {
   return outcome == WriteOutcome::rolled_back ? "rolled_back" : "unknown";
 }
 
-WriteBack::WriteBack(Journal write_journal, const std::filesystem::path& state_dir)
-    : journal(std::move(write_journal)),
-      transaction(journal),
+WriteBack::WriteBack(Journal write_journal, const std::filesystem::path& state_dir, Background& disk)
+    : journal_(std::move(write_journal)),
+      transaction(journal_, disk),
       history(state_dir / "history"),
-      operator_needed(journal.unfinished().has_value()) {}
+      operator_needed(unfinished()) {}
 
 std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, bool& values_known,
                                             bool may_begin, double now, std::int64_t wall_us) {
@@ -45,6 +45,7 @@ void WriteBack::begin_reading(const drivers::Controller& controller, bool values
 
 Result<void> WriteBack::write(const std::string& label, const ParameterMap& values,
                               const std::string& calibration) {
+  if (settling) return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
   ended.reset();
   return transaction.write(label, values, calibration);
 }
@@ -52,7 +53,7 @@ Result<void> WriteBack::write(const std::string& label, const ParameterMap& valu
 void WriteBack::learn(const WriteReport& report) {
   const bool unknown = report.outcome == WriteOutcome::unknown;
   recovery_tried_ = recovery_tried_ || unknown;
-  operator_needed = unknown || (report.outcome == WriteOutcome::read && journal.unfinished());
+  operator_needed = unknown || (report.outcome == WriteOutcome::read && unfinished());
   if (operator_needed && report.error) problem = report.error->text();
 }
 
@@ -62,15 +63,16 @@ void WriteBack::end() {
 }
 
 std::string WriteBack::journaled_calibration() const {
-  return journal.last() ? journal.last()->calibration : "";
+  const auto& last = transaction.journal().last();
+  return last ? last->calibration : "";
 }
 
 // One that was rolled back or ended unknown has put nothing in force that could be taken back.
 std::optional<FormerValues> WriteBack::former_values(const std::string& id,
                                                      const std::optional<std::string>& in_force) const {
-  const auto unfinished = journal.unfinished();
-  if (id.empty() && unfinished && !unfinished->before.empty())
-    return FormerValues{unfinished->before, in_force};
+  const auto interrupted = transaction.journal().unfinished();
+  if (id.empty() && interrupted && !interrupted->before.empty())
+    return FormerValues{interrupted->before, in_force};
   const auto entry = id.empty() ? history.newest_committed() : history.find(id);
   if (!entry) return std::nullopt;
   FormerValues former{entry->before, std::nullopt};
