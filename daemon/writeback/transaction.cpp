@@ -10,6 +10,9 @@ namespace {
 
 // s: after a reset of the node its rest is known only when counts have come for a while
 constexpr double kWaitForRest = 2.0;
+// s for a controller that is configured anew, on the way back to the old values: boot and configuration take
+// one
+constexpr double kWaitForController = 5.0;
 
 const drivers::StoredParameter* find(const std::vector<drivers::StoredParameter>& stored,
                                      const std::string& name) {
@@ -226,7 +229,18 @@ void Transaction::start(Phase phase, drivers::Controller& controller, double now
   start_when_at_rest(controller, now);
 }
 
+/// On the way back it is waited for: what it holds is read before motion is forbidden. On the way forth a
+/// controller that has left has lost the new values, or will.
+bool Transaction::controller_there(const drivers::Controller& controller) const {
+  const bool way_back =
+      phase_ == Phase::write_old || phase_ == Phase::store_old || phase_ == Phase::verify_old;
+  const auto state = controller.state();
+  return !way_back ||
+         (state != drivers::ControllerState::absent && state != drivers::ControllerState::configuring);
+}
+
 void Transaction::start_when_at_rest(drivers::Controller& controller, double now) {
+  if (!controller_there(controller) && now - entered_ < kWaitForController) return;
   const bool needs_rest = kind() != Job::Kind::read;
   if (needs_rest && !controller.at_rest() && now - entered_ < kWaitForRest) return;
   started_ = true;

@@ -70,6 +70,7 @@ class Transaction {
 
   Result<void> begin(Task task, const std::string& label);
   void start(Phase phase, drivers::Controller& controller, double now);
+  [[nodiscard]] bool controller_there(const drivers::Controller& controller) const;
   void start_when_at_rest(drivers::Controller& controller, double now);
   Result<void> start_job(drivers::Controller& controller, double now) const;
   [[nodiscard]] Job::Kind kind() const;

@@ -62,7 +62,10 @@ class WriteBack {
 
   [[nodiscard]] bool unfinished() const { return transaction.journal().unfinished().has_value(); }
 
-  bool recovery_tried_ = false;  // on this connection to the controller
+  bool was_away_ = false;        // the controller, since its values were last asked for
+  bool recovery_tried_ = false;  // since the controller was configured
+  double next_recovery_ = 0.0;   // s
+  double recovery_pause_;        // s
   bool ending_ = false;
   double next_read_ = 0.0;
 };
