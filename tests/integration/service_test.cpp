@@ -515,7 +515,7 @@ class EndlessSolve : public ServiceLoop {
  protected:
   Calibrator calibrator() override {
     Calibrator functions;
-    functions.solve = [this](const std::vector<Recording>& /*recordings*/,
+    functions.solve = [this](const std::vector<std::filesystem::path>& /*recordings*/,
                              const std::vector<std::string>& /*effects*/,
                              const Calibrator::Progress& progress) {
       using Clock = std::chrono::steady_clock;
