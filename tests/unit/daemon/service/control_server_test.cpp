@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <functional>
 
 #include "tests/unit/daemon/service/control_client.hpp"
 
@@ -167,6 +172,73 @@ TEST_F(Burst, a_client_that_does_not_read_is_dropped) {
   EXPECT_FALSE(server_->connected(1));
   EXPECT_TRUE(server_->connected(2));
   EXPECT_EQ(server_->counters().too_slow, 1U);
+}
+
+constexpr uid_t kNobody = 65534;  // of Debian: in no group of importance
+
+TEST(Permission, is_for_root_the_own_user_and_the_group_alone) {
+  const std::string ours = "root";  // group 0 exists everywhere
+  EXPECT_TRUE(may_connect(0, 0, "nobody-has-this-group"));
+  EXPECT_TRUE(may_connect(geteuid(), kNobody, "nobody-has-this-group"));
+  EXPECT_TRUE(may_connect(kNobody, 0, ours));
+  EXPECT_FALSE(may_connect(kNobody, kNobody, ours));
+  EXPECT_FALSE(may_connect(kNobody, 0, "nobody-has-this-group"));
+  EXPECT_FALSE(may_connect(4'000'000, kNobody, ours)) << "a user who is not in the system";
+}
+
+/// What a process of another user is told: the first answer, or nothing.
+std::string told_to(uid_t user, const std::filesystem::path& socket, const std::function<void()>& serve) {
+  std::array<int, 2> ends{};
+  EXPECT_EQ(pipe(ends.data()), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (setgid(user) != 0 || setuid(user) != 0) _exit(1);
+    ControlClient client(socket);
+    client.send(1, "Stop");
+    for (int i = 0; i < 500; ++i) {
+      usleep(10'000);
+      for (const auto& answer : client.answers()) {
+        (void)!write(ends[1], answer.error.data(), answer.error.size());
+        _exit(0);
+      }
+    }
+    _exit(0);
+  }
+  close(ends[1]);
+  while (waitpid(child, nullptr, WNOHANG) == 0) {
+    serve();
+    usleep(1000);
+  }
+  std::array<char, 200> text{};
+  const ssize_t got = read(ends[0], text.data(), text.size());
+  close(ends[0]);
+  return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))};
+}
+
+// The file's mode is opened for all: who calls is still asked.
+TEST_F(Burst, of_a_user_outside_the_group_is_refused) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+  std::filesystem::permissions(folder_, std::filesystem::perms::all);
+  std::filesystem::permissions(folder_ / "control", std::filesystem::perms::all);
+  EXPECT_EQ(told_to(kNobody, folder_ / "control", [this] { step(); }),
+            "org.odomcalib.Calibration.NotPermitted");
+  EXPECT_FALSE(server_->take_stop());
+  EXPECT_EQ(server_->counters().not_permitted, 1U);
+}
+
+TEST_F(Burst, of_more_than_eight_clients_is_for_a_stop_alone) {
+  std::vector<std::unique_ptr<ControlClient>> all;
+  for (int i = 0; i < 9; ++i) all.push_back(client());
+  all.back()->send(1, "GetStatus");
+  EXPECT_TRUE(turn().empty());
+  step();
+  const auto refused = all.back()->answers();
+  ASSERT_EQ(refused.size(), 1U);
+  EXPECT_EQ(refused[0].error, "org.odomcalib.Calibration.Refused");
+  all.back()->send(1, "Stop");
+  EXPECT_EQ(turn().size(), 1U);
+  all[7]->send(1, "GetStatus");
+  EXPECT_EQ(turn(), (std::vector<std::string>{"GetStatus8"}));
 }
 
 }  // namespace
