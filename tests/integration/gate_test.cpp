@@ -82,6 +82,22 @@ TEST_F(Gate, of_a_calibration_that_was_refused) {
   expect_refused(call("Apply", calibration("refused")), "Refused", "quality gate");
 }
 
+class Named : public Gate {
+ protected:
+  void adjust(Config& config) override { config.robot.robot_id = "robot-A"; }
+  static json calibration_of(const char* robot) {
+    json made = calibration("accepted");
+    if (robot != nullptr) made["calibration"]["robot"] = {{"robot_id", robot}};
+    return made;
+  }
+};
+
+TEST_F(Named, a_calibration_of_another_robot_or_of_none_is_refused) {
+  expect_refused(call("Apply", calibration_of("robot-B")), "Refused", "robot-B");
+  expect_refused(call("Apply", calibration_of(nullptr)), "Refused", "without a name");
+  EXPECT_EQ(call("Apply", calibration_of("robot-A")).error, "");
+}
+
 TEST_F(Gate, of_values_for_a_controller_in_fault) {
   robot_->emergency(0x2310);
   ASSERT_TRUE(run_until([this] { return status()["controller"]["state"] == "fault"; }, 2.0));

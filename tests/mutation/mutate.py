@@ -8,13 +8,14 @@ Usage: mutate.py --check                     every mutant of mutants.toml fits i
                                              whose file differs from the git revision REF
        mutate.py --table                     that table
 
-Works in the source tree that DIR was configured for: each file gets its own bytes back, also after Ctrl-C.
+Works in the source tree that DIR was configured for: each file gets its own bytes back, also after Ctrl-C or SIGTERM.
 Exit status 1 when a mutant survives, does not build, or when its tests fail without it.
 """
 
 import argparse
 import collections
 import pathlib
+import signal
 import subprocess
 import sys
 import time
@@ -119,6 +120,7 @@ def main():
     parser.add_argument("--changed")
     parser.add_argument("--jobs", type=int, default=2)
     asked = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # a file that is changed gets its bytes back
     chosen = [one for one in mutants() if asked.only in f'{one["rule"]} {one["what"]} {one["file"]}']
     if asked.table:
         print(table(chosen))
