@@ -3,7 +3,7 @@
 
 Usage: mutate.py --check                     every mutant of mutants.toml fits its file and is in the table of
                                              docs/evidence/safety-rules.md (nothing is built)
-       mutate.py --build DIR [--only TEXT] [--changed REF] [--jobs N]
+       mutate.py --build DIR [--only TEXT] [--program NAME] [--changed REF] [--jobs N]
                                              builds and runs them; TEXT in rule, what or file; --changed: only those
                                              whose file differs from the git revision REF
        mutate.py --table                     that table
@@ -117,11 +117,13 @@ def main():
     parser.add_argument("--table", action="store_true")
     parser.add_argument("--build", type=pathlib.Path)
     parser.add_argument("--only", default="")
+    parser.add_argument("--program", default="", help="those whose tests are in programs with this in their name")
     parser.add_argument("--changed")
     parser.add_argument("--jobs", type=int, default=2)
     asked = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # a file that is changed gets its bytes back
-    chosen = [one for one in mutants() if asked.only in f'{one["rule"]} {one["what"]} {one["file"]}']
+    chosen = [one for one in mutants()
+              if asked.only in f'{one["rule"]} {one["what"]} {one["file"]}' and asked.program in one["with"]]
     if asked.table:
         print(table(chosen))
         return 0
