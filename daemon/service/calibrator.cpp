@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "calib/match.hpp"
 #include "calib/odometry/predict.hpp"
@@ -45,6 +46,18 @@ std::optional<Pose> match(const Scan& from, const Scan& to, const Pose& guess,
   return composed(composed(lidar, {best.pose[0], best.pose[1], best.pose[2]}), inverse(lidar));
 }
 
+Result<Calibration> read_and_solve(const std::vector<std::filesystem::path>& paths,
+                                   const std::vector<std::string>& effects,
+                                   const Calibrator::Progress& progress) {
+  std::vector<Recording> recordings;
+  for (const auto& path : paths) {
+    auto recording = read_recording(path);
+    if (!recording) return recording.error();
+    recordings.push_back(std::move(recording).value());
+  }
+  return calib::solve(recordings, {.effects = effects}, progress);
+}
+
 std::string applied_in(calib::odometry::Place place) {
   if (place == calib::odometry::Place::odometry) return "corrected odometry on the host";
   if (place == calib::odometry::Place::reference)
@@ -69,10 +82,7 @@ std::optional<NextManoeuvre> next_manoeuvre(const Calibration& calibration) {
 
 Calibrator make_calibrator() {
   Calibrator calibrator;
-  calibrator.solve = [](const std::vector<Recording>& recordings, const std::vector<std::string>& effects,
-                        const Calibrator::Progress& progress) {
-    return calib::solve(recordings, {.effects = effects}, progress);
-  };
+  calibrator.solve = read_and_solve;
   calibrator.wrong_effects = calib::terms::wrong_effects;
   calibrator.odometry = [](const Calibration& calibration) {
     auto state = std::make_shared<calib::odometry::Odometry>(calibration);

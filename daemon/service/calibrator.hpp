@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "daemon/routines/motion.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/recording/recording.hpp"
+#include "proto/result.hpp"
 
 namespace odomcalib {
 
@@ -30,10 +32,12 @@ struct Calibrator {
   using Progress = std::function<void(const std::string& phase, double fraction)>;
   using Odometry = std::function<PoseSample(const TickSample&)>;
 
-  /// Runs in a thread of its own.
-  std::function<Calibration(const std::vector<Recording>&, const std::vector<std::string>& effects,
-                            const Progress&)>
-      solve;
+  using Solve = std::function<Result<Calibration>(const std::vector<std::filesystem::path>& recordings,
+                                                  const std::vector<std::string>& effects, const Progress&)>;
+
+  /// Of the recordings of one robot, jointly. Runs in a thread of its own. What its progress report throws
+  /// ends it.
+  Solve solve;
   /// Why effects of these names cannot be fitted. May be empty: any name is taken then.
   std::function<std::optional<Error>(const std::vector<std::string>&)> wrong_effects;
   std::function<Odometry(const Calibration&)> odometry;

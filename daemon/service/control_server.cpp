@@ -12,19 +12,40 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 
 #include "odomcalib_version.hpp"
 
 namespace odomcalib {
 namespace {
 
+// A frame that has not had its turn.
+struct Waiting {
+  std::string frame;
+  double arrived = 0.0;
+  bool stopped_since = false;
+};
+
 struct Client {
   int fd = -1;
   control::FrameDecoder decoder;
+  std::deque<Waiting> waiting;
+  std::size_t waiting_bytes = 0;
+  std::size_t served = 0;  // calls in this turn
   std::string output;
   bool spare = false;  // came when all places were taken
   bool gone = false;
 };
+
+const std::string kStop = std::string(control::kInterface) + ".Stop";
+
+// Many frames may have to be looked through: only one that contains the name is decoded. A client that spells
+// it with escapes is obeyed when its turn comes.
+bool is_stop(const std::string& frame) {
+  if (frame.find(kStop + '"') == std::string::npos) return false;
+  const auto call = control::decode_call(frame);
+  return call && call.value().method == kStop;
+}
 
 Error failed(const std::string& what, const std::filesystem::path& path) {
   return {ErrorCode::io, what + ": " + std::strerror(errno), path.string(),
@@ -97,7 +118,9 @@ struct ControlServer::State {
   std::string group;
   std::map<ClientId, Client> clients;
   ClientId next = 1;
-  std::vector<IncomingCall> calls;
+  ClientId served_last = 0;
+  double now = 0.0;  // s, of this turn
+  bool stop = false;
   std::vector<ClientId> gone;
   Counters counters;
 
@@ -105,8 +128,14 @@ struct ControlServer::State {
   void accept_one(int fd);
   [[nodiscard]] std::size_t count(bool spare) const;
   void drop_oldest_spare();
-  void read_from(ClientId id, Client& client);
-  void take_frames(ClientId id, Client& client);
+  void read_from(Client& client);
+  void take_frames(Client& client);
+  void stopped();
+  [[nodiscard]] bool may_be_served(const Client& client) const;
+  /// The client whose turn it is, the clients one after the other; end: none has a call for this turn.
+  std::map<ClientId, Client>::iterator next_client();
+  std::optional<control::Call> decode(Client& client, const std::string& frame);
+  std::optional<control::Call> answer_some(Client& client, control::Call call) const;
   void write_to(Client& client);
   void drop_gone();
 };
@@ -140,7 +169,8 @@ void ControlServer::State::accept_one(int fd) {
   client.fd = fd;
   client.spare = spare;
   // What it came with counts at once: it may be a stop.
-  read_from(next++, client);
+  read_from(client);
+  ++next;
 }
 
 std::size_t ControlServer::State::count(bool spare) const {
@@ -158,37 +188,72 @@ void ControlServer::State::drop_oldest_spare() {
   clients.erase(oldest);
 }
 
-void ControlServer::State::take_frames(ClientId id, Client& client) {
-  while (const auto frame = client.decoder.next()) {
-    const auto call = control::decode_call(*frame);
-    if (!call) {
-      // What is no call is counted and ends the connection; it is not answered.
-      ++counters.malformed;
-      client.gone = true;
-      return;
-    }
-    const control::ServiceInfo info{.version = kVersion};
-    if (const auto answer = control::answer_introspection(call.value(), info))
-      client.output += *answer;
-    else if (client.spare && call.value().name() != "Stop")
-      client.output += control::encode_error({ErrorCode::refused, "too many clients are connected",
-                                              path.string(), "end one of them; stopping works all the same"});
-    else
-      calls.push_back({id, call.value()});
+// What was asked for before a stop must not begin after it.
+void ControlServer::State::stopped() {
+  stop = true;
+  for (auto& [id, client] : clients)
+    for (Waiting& one : client.waiting) one.stopped_since = true;
+}
+
+void ControlServer::State::take_frames(Client& client) {
+  while (auto frame = client.decoder.next()) {
+    const bool stops = is_stop(*frame);
+    client.waiting_bytes += frame->size();
+    client.waiting.push_back({std::move(*frame), now, false});
+    if (stops) stopped();
   }
 }
 
-void ControlServer::State::read_from(ClientId id, Client& client) {
+void ControlServer::State::read_from(Client& client) {
   std::array<char, 65536> buffer;
   const ssize_t got = read(client.fd, buffer.data(), buffer.size());
   if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) client.gone = true;
   if (got <= 0) return;
   client.decoder.feed({buffer.data(), static_cast<std::size_t>(got)});
-  take_frames(id, client);
+  take_frames(client);
   if (client.decoder.counters().oversized > 0) {
     ++counters.malformed;
     client.gone = true;
   }
+  if (client.waiting_bytes > kMostWaiting) {
+    ++counters.flooded;
+    client.gone = true;
+  }
+}
+
+bool ControlServer::State::may_be_served(const Client& client) const {
+  return !client.gone && !client.waiting.empty() && client.served < kCallsPerTurn;
+}
+
+std::map<ClientId, Client>::iterator ControlServer::State::next_client() {
+  const auto ready = [this](const auto& entry) { return may_be_served(entry.second); };
+  const auto behind = clients.upper_bound(served_last);
+  const auto found = std::find_if(behind, clients.end(), ready);
+  if (found != clients.end()) return found;
+  const auto wrapped = std::find_if(clients.begin(), behind, ready);
+  return wrapped == behind ? clients.end() : wrapped;
+}
+
+// What is no call is counted and ends the connection; it is not answered.
+std::optional<control::Call> ControlServer::State::decode(Client& client, const std::string& frame) {
+  auto call = control::decode_call(frame);
+  if (call) return answer_some(client, std::move(call).value());
+  ++counters.malformed;
+  client.gone = true;
+  return std::nullopt;
+}
+
+/// The call, unless the socket itself has the answer.
+std::optional<control::Call> ControlServer::State::answer_some(Client& client, control::Call call) const {
+  const control::ServiceInfo info{.version = kVersion};
+  if (const auto answer = control::answer_introspection(call, info)) {
+    client.output += *answer;
+    return std::nullopt;
+  }
+  if (!client.spare || call.name() == "Stop") return call;
+  client.output += control::encode_error({ErrorCode::refused, "too many clients are connected", path.string(),
+                                          "end one of them; stopping works all the same"});
+  return std::nullopt;
 }
 
 void ControlServer::State::write_to(Client& client) {
@@ -196,10 +261,10 @@ void ControlServer::State::write_to(Client& client) {
   const ssize_t put = send(client.fd, client.output.data(), client.output.size(), MSG_NOSIGNAL);
   if (put > 0) client.output.erase(0, static_cast<std::size_t>(put));
   if (put < 0 && errno != EAGAIN && errno != EINTR) client.gone = true;
-  if (client.output.size() > kMostOutput) {
-    ++counters.too_slow;
-    client.gone = true;
-  }
+  if (client.output.size() <= kMostOutput) return;
+  if (!client.gone) ++counters.too_slow;
+  client.gone = true;
+  client.output.clear();
 }
 
 void ControlServer::State::drop_gone() {
@@ -242,16 +307,38 @@ void ControlServer::watch(std::vector<pollfd>& polled) const {
     polled.push_back({client.fd, static_cast<short>(client.output.empty() ? POLLIN : POLLIN | POLLOUT), 0});
 }
 
-void ControlServer::step() {
+void ControlServer::step(double now) {
+  state_->now = now;
   for (auto& [id, client] : state_->clients) {
-    state_->read_from(id, client);
+    client.served = 0;
+    state_->read_from(client);
     state_->write_to(client);
   }
   state_->drop_gone();  // first: their places are free for those who come
   state_->accept_all();
 }
 
-std::vector<IncomingCall> ControlServer::take_calls() { return std::exchange(state_->calls, {}); }
+bool ControlServer::take_stop() { return std::exchange(state_->stop, false); }
+
+bool ControlServer::calls_wait() const {
+  return std::any_of(state_->clients.begin(), state_->clients.end(),
+                     [](const auto& entry) { return !entry.second.waiting.empty(); });
+}
+
+std::optional<IncomingCall> ControlServer::next_call() {
+  for (auto it = state_->next_client(); it != state_->clients.end(); it = state_->next_client()) {
+    auto& [id, client] = *it;
+    const Waiting taken = std::move(client.waiting.front());
+    client.waiting.pop_front();
+    client.waiting_bytes -= taken.frame.size();
+    ++client.served;
+    state_->served_last = id;
+    if (auto call = state_->decode(client, taken.frame))
+      return IncomingCall{id, std::move(*call), taken.arrived, taken.stopped_since};
+  }
+  return std::nullopt;
+}
+
 std::vector<ClientId> ControlServer::take_gone() { return std::exchange(state_->gone, {}); }
 
 void ControlServer::reply(ClientId client, const std::string& frame) {

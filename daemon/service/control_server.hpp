@@ -22,6 +22,9 @@ using ClientId = std::uint64_t;
 struct IncomingCall {
   ClientId client = 0;
   control::Call call;
+  double arrived = 0.0;  ///< s, when it was read
+  /// The robot was stopped since, at the request of whoever; a Stop itself has been carried out already.
+  bool stopped_since = false;
 };
 
 class ControlServer {
@@ -31,10 +34,16 @@ class ControlServer {
   /// takes the place of the oldest.
   static constexpr std::size_t kSpareClients = 2;
   static constexpr std::size_t kMostOutput = std::size_t{8} << 20;  ///< bytes waiting for one slow client
+  /// Bytes of calls that one client has sent without waiting for answers. Chosen: the largest frame, 16 times
+  /// what a client sends at once (64 KiB). More ends the connection, and with it what the client does.
+  static constexpr std::size_t kMostWaiting = control::kLargestFrame;
+  /// Calls of one client a turn. Chosen: a client waits for answers and has one call at a time; 16 let one
+  /// that does not get on, and leave eight others their place in the same turn.
+  static constexpr std::size_t kCallsPerTurn = 16;
 
   struct Counters {
     std::uint64_t accepted = 0, too_many = 0 /* beyond kMostClients */, not_permitted = 0, malformed = 0,
-                  too_slow = 0;
+                  too_slow = 0, flooded = 0 /* beyond kMostWaiting */;
   };
 
   /// Binds the socket (mode 0660, of the group where it exists). An orphaned socket is replaced; a live one
@@ -46,11 +55,17 @@ class ControlServer {
 
   /// Appends what to poll: the listener and each client.
   void watch(std::vector<pollfd>& polled) const;
-  /// Accepts, reads, writes; call after each poll.
-  void step();
+  /// Accepts, reads, writes; call after each poll. Begins a turn. @param now s, when what is read arrived
+  void step(double now);
 
-  /// Calls that arrived, in order for each client; introspection is answered already.
-  std::vector<IncomingCall> take_calls();
+  /// Whether a Stop arrived since the last call of this: it is to be obeyed before anything that waits. Its
+  /// answer is given in its place, when next_call() comes to it.
+  [[nodiscard]] bool take_stop();
+  /// The next call of this turn, in order for each client, the clients in turn, kCallsPerTurn of each at
+  /// most; introspection is answered on the way. The others wait for the next turn.
+  std::optional<IncomingCall> next_call();
+  /// Calls wait: there is something to do without new input.
+  [[nodiscard]] bool calls_wait() const;
   /// Clients that have gone since the last call.
   std::vector<ClientId> take_gone();
   /// Queues a frame for a client; nothing happens when it has gone.

@@ -15,7 +15,7 @@ namespace odomcalib {
 class Loop {
  public:
   Loop(const Config& configuration, Clock& clock, Calibrator functions, BaseLink base, LidarLink lidar,
-       ControlServer server, Journal journal);
+       ControlServer server, Journal journal, std::unique_ptr<Background> disk);
 
   /// Waits at most so long for input.
   void wait(int timeout_ms);
@@ -32,7 +32,7 @@ class Loop {
   void serve_drive();
   void serve_lidar();
   void serve_clients();
-  void serve_recordings();
+  void serve_disk();
   void serve_write_back();
   void serve_task();
   void serve_telemetry();
@@ -41,7 +41,7 @@ class Loop {
 
   Bench bench_;
   std::unique_ptr<Task> task_;  // after the bench: its end may stop the drive
-  std::vector<pollfd> polled_;  // what the last wait was for: drive, lidar, then the control socket
+  std::vector<pollfd> polled_;  // what the last wait was for: drive, lidar, disk, then the control socket
   bool lidar_woke_ = false, clients_woke_ = false;
   double next_lidar_ = 0.0, next_clients_ = 0.0;
 };

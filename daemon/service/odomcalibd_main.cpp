@@ -7,11 +7,15 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "daemon/service/base_link.hpp"
 #include "daemon/service/lidar_link.hpp"
 #include "daemon/service/quick_stop.hpp"
 #include "daemon/service/service.hpp"
+#include "daemon/service/solver_process.hpp"
 #include "odomcalib_paths.hpp"
 #include "odomcalib_version.hpp"
 
@@ -103,7 +107,9 @@ int serve(const std::string& path) {
   if (!config) return refuse(config.error(), path);
   if (const auto devices = check_devices(config.value()); !devices) return refuse(devices.error(), path);
   odomcalib::SystemClock clock;
-  auto service = Service::create(config.value(), clock, odomcalib::make_calibrator());
+  auto calibrator = odomcalib::make_calibrator();
+  calibrator.solve = odomcalib::solve_in_process({});
+  auto service = Service::create(config.value(), clock, calibrator);
   if (!service) {
     spdlog::error("{}", service.error().text());
     return kFailure;
@@ -132,6 +138,13 @@ int run(int argc, char** argv) {
   bool only_stop = false;
   app.add_flag("--quick-stop", only_stop,
                "stop the wheels and end: for the time after a daemon that has ended");
+  // For this program itself: solver_process.hpp.
+  std::vector<std::filesystem::path> recordings;
+  std::vector<std::string> effects;
+  odomcalib::SolverProcess solver;
+  app.add_option("--solve", recordings)->group("");
+  app.add_option("--effect", effects)->group("");
+  app.add_option("--solver-memory", solver.memory)->group("");
   app.set_version_flag("--version", odomcalib::kVersion);
   try {
     app.parse(argc, argv);
@@ -139,6 +152,9 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : kUsage;
   }
   spdlog::set_pattern("%l: %v");
+  if (!recordings.empty())
+    return odomcalib::answer_with_solution(odomcalib::make_calibrator().solve, recordings, effects,
+                                           solver.memory);
   catch_signals();
   return only_stop ? stop_only(config) : serve(config);
 }
@@ -152,7 +168,7 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
   }
-  // A solve that still runs in its thread ends with the process.
+  // A thread that still waits for the solver ends with the process, and the solver with the thread.
   std::fflush(nullptr);
   _exit(status);
 }

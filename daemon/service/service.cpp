@@ -1,5 +1,6 @@
 #include "daemon/service/service.hpp"
 
+#include "daemon/service/disk_worker.hpp"
 #include "daemon/service/json_text.hpp"
 #include "daemon/service/loop.hpp"
 #include "daemon/service/status_report.hpp"
@@ -9,7 +10,8 @@ namespace odomcalib {
 Service::Service(std::unique_ptr<Loop> loop) : loop_(std::move(loop)) {}
 Service::~Service() { stop_all("the daemon ends"); }
 
-Result<std::unique_ptr<Service>> Service::create(const Config& config, Clock& clock, Calibrator calibrator) {
+Result<std::unique_ptr<Service>> Service::create(const Config& config, Clock& clock, Calibrator calibrator,
+                                                 std::unique_ptr<Background> disk) {
   auto base = BaseLink::create(config.controller_device, config.controller_profile);
   if (!base) return base.error();
   auto lidar = LidarLink::create(config.lidar_device, config.lidar_type);
@@ -18,9 +20,10 @@ Result<std::unique_ptr<Service>> Service::create(const Config& config, Clock& cl
   if (!journal) return journal.error();
   auto server = ControlServer::create(config.socket, config.group);
   if (!server) return server.error();
-  auto loop =
-      std::make_unique<Loop>(config, clock, std::move(calibrator), std::move(base).value(),
-                             std::move(lidar).value(), std::move(server).value(), std::move(journal).value());
+  if (!disk) disk = std::make_unique<DiskWorker>();
+  auto loop = std::make_unique<Loop>(config, clock, std::move(calibrator), std::move(base).value(),
+                                     std::move(lidar).value(), std::move(server).value(),
+                                     std::move(journal).value(), std::move(disk));
   return std::unique_ptr<Service>(new Service(std::move(loop)));
 }
 

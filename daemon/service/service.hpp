@@ -7,6 +7,7 @@
 #include "daemon/config/config.hpp"
 #include "daemon/service/calibrator.hpp"
 #include "daemon/service/clock.hpp"
+#include "daemon/writeback/background.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {
@@ -17,7 +18,9 @@ class Service {
  public:
   /// Opens the control socket and the journal; devices may be absent and are opened by the loop.
   /// Errors: io, usage, format (configuration, profile).
-  static Result<std::unique_ptr<Service>> create(const Config& config, Clock& clock, Calibrator calibrator);
+  /// @param disk null: a thread of its own
+  static Result<std::unique_ptr<Service>> create(const Config& config, Clock& clock, Calibrator calibrator,
+                                                 std::unique_ptr<Background> disk = nullptr);
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;

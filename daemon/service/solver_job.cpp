@@ -28,24 +28,11 @@ struct SolverJob::State {
 
 namespace {
 
-Result<Calibration> read_and_solve(const Calibrator& calibrator,
-                                   const std::vector<std::filesystem::path>& paths,
-                                   const std::vector<std::string>& effects,
-                                   const Calibrator::Progress& progress) {
-  std::vector<Recording> recordings;
-  for (const auto& path : paths) {
-    auto recording = read_recording(path);
-    if (!recording) return recording.error();
-    recordings.push_back(std::move(recording).value());
-  }
-  return calibrator.solve(recordings, effects, progress);
-}
-
 // Nothing may leave the thread as an exception, not even that there is no memory for the recording.
 Result<Calibration> solve(const Calibrator& calibrator, const std::vector<std::filesystem::path>& paths,
                           const std::vector<std::string>& effects, const Calibrator::Progress& progress) {
   try {
-    return read_and_solve(calibrator, paths, effects, progress);
+    return calibrator.solve(paths, effects, progress);
   } catch (const std::exception& error) {
     return Error{ErrorCode::format, error.what(), paths.front().string(), "report this recording"};
   }

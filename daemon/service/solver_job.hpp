@@ -1,4 +1,4 @@
-// Solving recordings in a thread of its own, so that the loop never waits for it.
+// Waiting for a solver in a thread of its own, so that the loop never does.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,7 @@
 #include "daemon/service/write_outcome.hpp"
 
+#include <memory>
+
 namespace odomcalib {
 namespace {
 
@@ -14,7 +16,16 @@ void learn(Bench& bench, const WriteReport& report) {
 
 // A recovery that fails in the same way at every start tells nothing new, and must not push out what could be
 // rolled back to.
-void note_in_history(Bench& bench, const WriteReport& report) {
+bool known_already(const History& history, const HistoryEntry& entry) {
+  if (entry.outcome != name_of(WriteOutcome::unknown) || history.entries().empty()) return false;
+  const HistoryEntry& newest = history.entries().front();
+  return newest.outcome == entry.outcome && newest.action == entry.action && newest.before == entry.before &&
+         newest.after == entry.after;
+}
+
+/// What the history gets; nullopt: nothing was touched, or it says so already.
+std::optional<HistoryEntry> entry_of(const Bench& bench, const WriteReport& report) {
+  if (report.steps.empty()) return std::nullopt;
   HistoryEntry entry;
   entry.time = bench.clock.wall_us();
   entry.action = report.label;
@@ -22,15 +33,43 @@ void note_in_history(Bench& bench, const WriteReport& report) {
   entry.before = report.before;
   entry.after = report.after;
   entry.device = report.device;
-  if (report.outcome == WriteOutcome::committed)
-    entry.calibration = bench.applied.file.announced(report.calibration);
-  const auto all = bench.write_back.history.entries();
-  const bool known = !all.empty() && report.outcome == WriteOutcome::unknown &&
-                     all.front().outcome == entry.outcome && all.front().action == entry.action &&
-                     all.front().before == entry.before && all.front().after == entry.after;
-  if (known) return;
-  if (const auto added = bench.write_back.history.add(entry); !added)
-    bench.outbox.event(messages::Severity::warning, "history", added.error().text());
+  const History& history = bench.write_back.history;
+  return known_already(history, entry) ? std::nullopt : std::optional(history.numbered(std::move(entry)));
+}
+
+/// What an end leaves on the disk, filled in beside the loop.
+struct Settlement {
+  std::string calibration;  // id, see CalibrationInForce
+  std::optional<HistoryEntry> entry;
+  Result<void> noted, settled;
+  Result<std::optional<Calibration>> in_force = std::optional<Calibration>();
+};
+
+void settle_on_disk(const History& history, const AppliedCalibration& applied, Settlement& end) {
+  if (end.entry) {
+    if (!end.calibration.empty()) end.entry->calibration = applied.file.announced(end.calibration);
+    end.noted = history.write(*end.entry);
+  }
+  end.settled = applied.file.settle(end.calibration);
+  end.in_force = applied.read();
+}
+
+/// @return why the host goes on with the former calibration although the controller has the values of this
+/// one
+std::optional<Error> take_over(Bench& bench, const Settlement& end) {
+  Outbox& outbox = bench.outbox;
+  if (end.entry && end.noted) bench.write_back.history.keep(*end.entry);
+  if (!end.noted) outbox.event(messages::Severity::warning, "history", end.noted.error().text());
+  bench.applied.take(end.in_force);
+  if (!end.in_force) outbox.event(messages::Severity::warning, "active", end.in_force.error().text());
+  if (end.settled) return std::nullopt;
+  const Error& why = end.settled.error();
+  outbox.event(messages::Severity::fault, "active", why.text());
+  return Error{
+      why.code,
+      "the values are in the controller, but corrected odometry goes on with the former calibration (" +
+          why.what + ")",
+      why.where, why.remedy + "; then apply again"};
 }
 
 }  // namespace
@@ -39,24 +78,25 @@ void settle_write(Bench& bench, const WriteReport& report) {
   learn(bench, report);
   if (report.outcome == WriteOutcome::read) return;
   const bool committed = report.outcome == WriteOutcome::committed;
-  if (!report.steps.empty()) note_in_history(bench, report);
   bench.outbox.event(committed ? messages::Severity::info : messages::Severity::fault, "write_back",
                      name_of(report.outcome) + (report.error ? ": " + report.error->text() : ""));
-  auto unsettled = settle_calibration(bench, committed ? report.calibration : "");
-  bench.write_back.ended = WriteEnd{report, std::move(unsettled)};
+  const auto end = std::make_shared<Settlement>();
+  end->calibration = committed ? report.calibration : "";
+  end->entry = entry_of(bench, report);
+  bench.write_back.settling = true;
+  bench.disk->post([&history = bench.write_back.history, &applied = bench.applied,
+                    end] { settle_on_disk(history, applied, *end); },
+                   [&bench, report, end] {
+                     bench.write_back.settling = false;
+                     bench.write_back.ended = WriteEnd{report, take_over(bench, *end)};
+                   });
 }
 
-std::optional<Error> settle_calibration(Bench& bench, const std::string& id) {
-  const auto settled = bench.applied.file.settle(id);
-  if (const auto problem = bench.applied.load())
-    bench.outbox.event(messages::Severity::warning, "active", problem->text());
-  if (settled) return std::nullopt;
-  bench.outbox.event(messages::Severity::fault, "active", settled.error().text());
-  return Error{
-      settled.error().code,
-      "the values are in the controller, but corrected odometry goes on with the former calibration (" +
-          settled.error().what + ")",
-      settled.error().where, settled.error().remedy + "; then apply again"};
+void settle_calibration(Bench& bench, const std::string& id) {
+  Settlement end;
+  end.calibration = id;
+  settle_on_disk(bench.write_back.history, bench.applied, end);
+  (void)take_over(bench, end);
 }
 
 }  // namespace odomcalib

@@ -5,14 +5,12 @@
 
 namespace odomcalib {
 
-/// Takes over what the controller holds now; a write-back goes into the history too, is reported to clients,
-/// brings its calibration into force where it was committed, and forbids motion where it ended unknown
-/// (WriteBack::operator_needed).
+/// Takes over what the controller holds now, and forbids motion where a write-back ended unknown
+/// (WriteBack::operator_needed). What belongs on the disk goes there beside the loop: the history, and the
+/// calibration that comes into force with a commit. WriteBack::ended says when that is done.
 void settle_write(Bench& bench, const WriteReport& report);
 
-/// Puts the calibration of this id in force; see CalibrationInForce::settle.
-/// @return why the host goes on with the former calibration although the controller has the values of this
-/// one
-std::optional<Error> settle_calibration(Bench& bench, const std::string& id);
+/// Puts the calibration of this id in force at once, at the start; see CalibrationInForce::settle.
+void settle_calibration(Bench& bench, const std::string& id);
 
 }  // namespace odomcalib

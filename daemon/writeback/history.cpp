@@ -62,34 +62,44 @@ std::vector<std::filesystem::path> History::files() const {
   return found;
 }
 
-Result<std::string> History::add(HistoryEntry entry) {
-  const auto present = files();
-  entry.id = fmt::format("{:04}", present.empty() ? 1 : number_of(present.front()) + 1);
+History::History(std::filesystem::path folder) : folder_(std::move(folder)) {
+  for (const auto& path : files()) {
+    newest_ = std::max(newest_, number_of(path));
+    if (auto entry = entry_from(path)) entries_.push_back(std::move(*entry));
+  }
+}
+
+HistoryEntry History::numbered(HistoryEntry entry) const {
+  entry.id = fmt::format("{:04}", newest_ + 1);
+  return entry;
+}
+
+Result<void> History::write(const HistoryEntry& entry) const {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (auto written = replace_file(folder_ / (entry.id + ".json"), to_json(entry, true)); !written)
-    return written.error();
-  for (std::size_t i = kKept - 1; i < present.size(); ++i) std::filesystem::remove(present[i], error);
-  return entry.id;
+    return written;
+  const auto present = files();
+  for (std::size_t i = kKept; i < present.size(); ++i) std::filesystem::remove(present[i], error);
+  return {};
 }
 
-std::vector<HistoryEntry> History::entries() const {
-  std::vector<HistoryEntry> all;
-  for (const auto& path : files())
-    if (auto entry = entry_from(path)) all.push_back(std::move(*entry));
-  return all;
+void History::keep(HistoryEntry entry) {
+  newest_ = std::max(newest_, number_of(entry.id));
+  entries_.insert(entries_.begin(), std::move(entry));
+  if (entries_.size() > kKept) entries_.resize(kKept);
 }
 
 std::optional<HistoryEntry> History::find(const std::string& id) const {
-  for (auto& entry : entries())
-    if (entry.id == id) return entry;
-  return std::nullopt;
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const HistoryEntry& entry) { return entry.id == id; });
+  return found == entries_.end() ? std::nullopt : std::optional(*found);
 }
 
 std::optional<HistoryEntry> History::newest_committed() const {
-  for (auto& entry : entries())
-    if (entry.outcome == "committed") return entry;
-  return std::nullopt;
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [](const HistoryEntry& entry) { return entry.outcome == "committed"; });
+  return found == entries_.end() ? std::nullopt : std::optional(*found);
 }
 
 }  // namespace odomcalib

@@ -1,5 +1,5 @@
-// What was written to the controller, when, and what was in force before: one file an entry, and the
-// calibration in force.
+// What was written to the controller, when, and what was in force before: one file an entry. The entries are
+// read once: who asks for them does not wait for a disk.
 #pragma once
 
 #include <cstdint>
@@ -29,18 +29,29 @@ class History {
  public:
   static constexpr std::size_t kKept = 50;
 
+  /// Reads what is there; entries that cannot be read are left out.
   /// @param folder of the state directory; made on the first entry
-  explicit History(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  /// Oldest entries beyond kKept are removed. Error: io.
-  Result<std::string> add(HistoryEntry entry);
-  /// Newest first; entries that cannot be read are left out.
-  [[nodiscard]] std::vector<HistoryEntry> entries() const;
+  explicit History(std::filesystem::path folder);
+
+  /// The entry with the id that it gets.
+  [[nodiscard]] HistoryEntry numbered(HistoryEntry entry) const;
+  /// Puts a numbered entry on the disk and removes the oldest ones beyond kKept there. Changes nothing else:
+  /// may run beside the loop. Error: io.
+  [[nodiscard]] Result<void> write(const HistoryEntry& entry) const;
+  /// Takes over a numbered entry that is on the disk.
+  void keep(HistoryEntry entry);
+
+  /// Newest first.
+  [[nodiscard]] const std::vector<HistoryEntry>& entries() const { return entries_; }
   [[nodiscard]] std::optional<HistoryEntry> find(const std::string& id) const;
   [[nodiscard]] std::optional<HistoryEntry> newest_committed() const;
 
  private:
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
+
   std::filesystem::path folder_;
+  std::vector<HistoryEntry> entries_;
+  unsigned newest_ = 0;  // number, also of an entry that cannot be read
 };
 
 }  // namespace odomcalib

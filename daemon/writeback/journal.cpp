@@ -167,10 +167,10 @@ Result<void> Journal::append(JournalRecord record) {
   return {};
 }
 
-std::optional<JournalRecord> Journal::unfinished() const {
-  if (!last_) return std::nullopt;
-  const bool ended = last_->state == JournalState::commit || last_->state == JournalState::rolled_back;
-  return ended ? std::nullopt : last_;
+std::optional<JournalRecord> unfinished_of(const std::optional<JournalRecord>& last) {
+  if (!last) return std::nullopt;
+  const bool ended = last->state == JournalState::commit || last->state == JournalState::rolled_back;
+  return ended ? std::nullopt : last;
 }
 
 }  // namespace odomcalib

@@ -45,6 +45,9 @@ std::string to_line(const JournalRecord& record);
 /// nullopt: torn or damaged.
 std::optional<JournalRecord> from_line(const std::string& line);
 
+/// The record when its write-back was not brought to an end.
+std::optional<JournalRecord> unfinished_of(const std::optional<JournalRecord>& last);
+
 class Journal {
  public:
   static constexpr std::uintmax_t kRotateAt = std::uintmax_t{1} << 20;
@@ -61,7 +64,7 @@ class Journal {
   /// The newest record, if any.
   [[nodiscard]] const std::optional<JournalRecord>& last() const { return last_; }
   /// The newest record when its write-back was not brought to an end.
-  [[nodiscard]] std::optional<JournalRecord> unfinished() const;
+  [[nodiscard]] std::optional<JournalRecord> unfinished() const { return unfinished_of(last_); }
 
  private:
   Journal(std::filesystem::path path, int fd) : path_(std::move(path)), fd_(fd) {}

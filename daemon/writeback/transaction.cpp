@@ -10,6 +10,9 @@ namespace {
 
 // s: after a reset of the node its rest is known only when counts have come for a while
 constexpr double kWaitForRest = 2.0;
+// s for a controller that is configured anew, on the way back to the old values: boot and configuration take
+// one
+constexpr double kWaitForController = 5.0;
 
 const drivers::StoredParameter* find(const std::vector<drivers::StoredParameter>& stored,
                                      const std::string& name) {
@@ -75,6 +78,12 @@ Error nothing_to_compare() {
           "see odomcalibctl params get, then apply a calibration or roll back to an entry of the history"};
 }
 
+/// The others tell of what has happened: where they are missing, the comparison at the next start finds out.
+bool must_be_written(JournalState state) {
+  return state == JournalState::begin || state == JournalState::write || state == JournalState::readback_ok ||
+         state == JournalState::store_begin;
+}
+
 Error mismatch(const char* when) {
   return {ErrorCode::write_failed, fmt::format("the controller holds other values than written ({})", when),
           "controller parameters", "try again; check the parameter map of the profile"};
@@ -127,19 +136,64 @@ Result<void> Transaction::write(const std::string& label, const ParameterMap& va
   return {};
 }
 
-Result<void> Transaction::announce(JournalState state) {
-  auto written = journal_.append({.seq = 0,
-                                  .monotonic = now_,
-                                  .wall_us = wall_us_,
-                                  .state = state,
-                                  .label = report_.label,
-                                  .before = report_.before,
-                                  .after = report_.after,
-                                  .device = report_.device,
-                                  .calibration = report_.calibration,
-                                  .store_begun = store_begun_ || state == JournalState::store_begin});
-  if (written) report_.steps.push_back(name_of(state));
-  return written;
+JournalRecord Transaction::record_of(JournalState state) const {
+  return {.seq = 0,
+          .monotonic = now_,
+          .wall_us = wall_us_,
+          .state = state,
+          .label = report_.label,
+          .before = report_.before,
+          .after = report_.after,
+          .device = report_.device,
+          .calibration = report_.calibration,
+          .store_begun = store_begun_ || state == JournalState::store_begin};
+}
+
+void Transaction::announce(std::deque<JournalState> states, After after, drivers::Controller& controller,
+                           double now) {
+  announced_ = std::move(states);
+  after_ = after;
+  announcing_ = true;
+  if (!announced_.empty()) journal_.append(record_of(announced_.front()));
+  go_on_announcing(controller, now);
+}
+
+void Transaction::go_on_announcing(drivers::Controller& controller, double now) {
+  while (!announced_.empty()) {
+    const auto written = journal_.take_result();
+    if (!written) return;  // the disk takes its time
+    const JournalState state = announced_.front();
+    announced_.pop_front();
+    if (*written) report_.steps.push_back(name_of(state));
+    if (!*written && must_be_written(state)) return not_announced(written->error(), controller, now);
+    if (!announced_.empty()) journal_.append(record_of(announced_.front()));
+  }
+  announcing_ = false;
+  proceed(after_, controller, now);
+}
+
+/// What it announces must not happen: nothing has been touched yet, or everything goes back.
+void Transaction::not_announced(const Error& why, drivers::Controller& controller, double now) {
+  announced_.clear();
+  announcing_ = false;
+  const bool touched = phase_ == Phase::write_new;
+  return touched ? go_back(why, controller, now) : not_begun(why, controller, now);
+}
+
+void Transaction::proceed(After after, drivers::Controller& controller, double now) {
+  switch (after) {
+    case After::write_new:
+      return start(Phase::write_new, controller, now);
+    case After::store_new:
+      store_begun_ = true;
+      return start(Phase::store_new, controller, now);
+    case After::commit:
+      return finish(WriteOutcome::committed, controller, now);
+    case After::write_old:
+      return start(Phase::write_old, controller, now);
+    case After::report:
+      return report();
+  }
 }
 
 drivers::ParameterJobResult::Kind Transaction::kind() const {
@@ -175,7 +229,18 @@ void Transaction::start(Phase phase, drivers::Controller& controller, double now
   start_when_at_rest(controller, now);
 }
 
+/// On the way back it is waited for: what it holds is read before motion is forbidden. On the way forth a
+/// controller that has left has lost the new values, or will.
+bool Transaction::controller_there(const drivers::Controller& controller) const {
+  const bool way_back =
+      phase_ == Phase::write_old || phase_ == Phase::store_old || phase_ == Phase::verify_old;
+  const auto state = controller.state();
+  return !way_back ||
+         (state != drivers::ControllerState::absent && state != drivers::ControllerState::configuring);
+}
+
 void Transaction::start_when_at_rest(drivers::Controller& controller, double now) {
+  if (!controller_there(controller) && now - entered_ < kWaitForController) return;
   const bool needs_rest = kind() != Job::Kind::read;
   if (needs_rest && !controller.at_rest() && now - entered_ < kWaitForRest) return;
   started_ = true;
@@ -190,6 +255,7 @@ void Transaction::step(drivers::Controller& controller, double now, std::int64_t
   now_ = now;
   wall_us_ = wall_us;
   if (phase_ == Phase::idle) return;
+  if (announcing_) return go_on_announcing(controller, now);
   if (!started_) return start_when_at_rest(controller, now);
   // The driver bounds the time of its jobs: it knows how long a store may take.
   const auto result = controller.take_job_result();
@@ -212,29 +278,29 @@ void Transaction::on_result(const Job& job, drivers::Controller& controller, dou
     case Phase::store_old:
       if (!job.error) return start(Phase::verify_old, controller, now);
       report_.error = *job.error;
-      return finish(WriteOutcome::unknown);
+      return finish(WriteOutcome::unknown, controller, now);
     case Phase::verify_old:
-      return on_old_verified(job);
+      return on_old_verified(job, controller, now);
     case Phase::idle:
       return;
   }
 }
 
 void Transaction::on_read(const Job& job, drivers::Controller& controller, double now) {
-  if (job.error) return not_begun(*job.error);
+  if (job.error) return not_begun(*job.error, controller, now);
   report_.in_force = job.parameters;
   report_.device = device_of(controller);
-  if (task_ == Task::read) return finish(WriteOutcome::read);
+  if (task_ == Task::read) return finish(WriteOutcome::read, controller, now);
   if (task_ == Task::recover) return decide_recovery(controller, now);
   plan_write(controller, now);
 }
 
 /// Nothing was touched: what was in force still is. After an interrupted write-back nobody knows what that
 /// is.
-void Transaction::not_begun(const Error& why) {
+void Transaction::not_begun(const Error& why, drivers::Controller& controller, double now) {
   report_.error = why;
-  if (task_ != Task::write) return finish(WriteOutcome::read);
-  finish(interrupted_ ? WriteOutcome::unknown : WriteOutcome::rolled_back);
+  if (task_ != Task::write) return finish(WriteOutcome::read, controller, now);
+  finish(interrupted_ ? WriteOutcome::unknown : WriteOutcome::rolled_back, controller, now);
 }
 
 bool Transaction::about_this_device() const {
@@ -247,7 +313,7 @@ void Transaction::plan_write(drivers::Controller& controller, double now) {
   report_.after = common(report_.after, report_.before);
   if (about_this_device()) {
     const ParameterMap& doubtful = interrupted_->before.empty() ? present : interrupted_->before;
-    if (!names_all(report_.after, doubtful)) return not_begun(mixture(*interrupted_));
+    if (!names_all(report_.after, doubtful)) return not_begun(mixture(*interrupted_), controller, now);
     take_old_from_journal();
   }
   begin_writing(controller, now);
@@ -264,23 +330,17 @@ void Transaction::take_old_from_journal() {
 
 void Transaction::begin_writing(drivers::Controller& controller, double now) {
   // What a controller has no place for is kept on the host: nothing that a crash could leave half done.
-  if (report_.after.empty()) return finish(WriteOutcome::committed);
-  for (const auto state : {JournalState::begin, JournalState::write})
-    if (auto written = announce(state); !written) return not_begun(written.error());
-  start(Phase::write_new, controller, now);
+  if (report_.after.empty()) return finish(WriteOutcome::committed, controller, now);
+  announce({JournalState::begin, JournalState::write}, After::write_new, controller, now);
 }
 
 void Transaction::on_written(const Job& job, drivers::Controller& controller, double now) {
   if (job.error) return go_back(*job.error, controller, now);
   if (!holds(job.parameters, report_.after)) return go_back(mismatch("read back"), controller, now);
   report_.in_force = job.parameters;
-  if (auto written = announce(JournalState::readback_ok); !written)
-    return go_back(written.error(), controller, now);
-  if (!stores_any(controller, report_.after)) return finish(WriteOutcome::committed);
-  if (auto written = announce(JournalState::store_begin); !written)
-    return go_back(written.error(), controller, now);
-  store_begun_ = true;
-  start(Phase::store_new, controller, now);
+  if (!stores_any(controller, report_.after))
+    return announce({JournalState::readback_ok}, After::commit, controller, now);
+  announce({JournalState::readback_ok, JournalState::store_begin}, After::store_new, controller, now);
 }
 
 void Transaction::on_verified(const Job& job, drivers::Controller& controller, double now) {
@@ -288,37 +348,36 @@ void Transaction::on_verified(const Job& job, drivers::Controller& controller, d
   if (!holds(job.parameters, report_.after)) return go_back(mismatch("after the store"), controller, now);
   report_.in_force = job.parameters;
   // The store is done: a journal that cannot be written now is repaired by the comparison at the next start.
-  (void)announce(JournalState::store_ok);
-  finish(WriteOutcome::committed);
+  announce({JournalState::store_ok}, After::commit, controller, now);
 }
 
 void Transaction::go_back(const Error& why, drivers::Controller& controller, double now) {
   if (!report_.error) report_.error = Error{ErrorCode::write_failed, why.what, why.where, why.remedy};
-  (void)announce(JournalState::rollback);
-  start(Phase::write_old, controller, now);
+  announce({JournalState::rollback}, After::write_old, controller, now);
 }
 
 void Transaction::on_old_written(const Job& job, drivers::Controller& controller, double now) {
   const bool restored = !job.error && holds(job.parameters, report_.before);
   // What refuses its old value may never have lost it: that is seen, not concluded.
   if (!restored && !store_begun_) return start(Phase::verify_old, controller, now);
-  if (!restored) return finish(WriteOutcome::unknown);
+  if (!restored) return finish(WriteOutcome::unknown, controller, now);
   report_.in_force = job.parameters;
   const bool stored = store_begun_ && stores_any(controller, report_.before);
   if (stored) return start(Phase::store_old, controller, now);
-  finish(WriteOutcome::rolled_back);
+  finish(WriteOutcome::rolled_back, controller, now);
 }
 
-void Transaction::on_old_verified(const Job& job) {
+void Transaction::on_old_verified(const Job& job, drivers::Controller& controller, double now) {
   const bool good = !job.error && holds(job.parameters, report_.before);
   if (good) report_.in_force = job.parameters;
-  finish(good ? WriteOutcome::rolled_back : WriteOutcome::unknown);
+  finish(good ? WriteOutcome::rolled_back : WriteOutcome::unknown, controller, now);
 }
 
 // By comparison, not by memory: the journal says only which two sets to compare with, and whose they are.
 void Transaction::decide_recovery(drivers::Controller& controller, double now) {
-  if (!interrupted_) return finish(WriteOutcome::read);
-  if (!about_this_device()) return leave_alone(other_device(interrupted_->device, report_.device));
+  if (!interrupted_) return finish(WriteOutcome::read, controller, now);
+  if (!about_this_device())
+    return leave_alone(other_device(interrupted_->device, report_.device), controller, now);
   report_.label = interrupted_->label;
   report_.before = interrupted_->before;
   report_.after = interrupted_->after;
@@ -326,37 +385,40 @@ void Transaction::decide_recovery(drivers::Controller& controller, double now) {
   store_begun_ = interrupted_->store_begun;
   const bool forward = interrupted_->state != JournalState::rollback;
   if (forward && holds(report_.in_force, report_.after)) return store_again(controller, now);
-  if (report_.before.empty()) return leave_alone(nothing_to_compare());
-  if (holds(report_.in_force, report_.before) && !store_begun_) return finish(WriteOutcome::rolled_back);
+  if (report_.before.empty()) return leave_alone(nothing_to_compare(), controller, now);
+  if (holds(report_.in_force, report_.before) && !store_begun_)
+    return finish(WriteOutcome::rolled_back, controller, now);
   go_back({ErrorCode::write_failed, "an interrupted write-back was undone", "recovery", "apply again"},
           controller, now);
 }
 
 /// RAM holds the new set; whether it was stored cannot be seen, storing again is harmless.
 void Transaction::store_again(drivers::Controller& controller, double now) {
-  if (!stores_any(controller, report_.after)) return finish(WriteOutcome::committed);
-  if (auto written = announce(JournalState::store_begin); !written) return not_begun(written.error());
-  store_begun_ = true;
-  start(Phase::store_new, controller, now);
+  if (!stores_any(controller, report_.after)) return finish(WriteOutcome::committed, controller, now);
+  announce({JournalState::store_begin}, After::store_new, controller, now);
 }
 
-void Transaction::leave_alone(const Error& why) {
+void Transaction::leave_alone(const Error& why, drivers::Controller& controller, double now) {
   report_.error = why;
-  finish(WriteOutcome::unknown);
+  finish(WriteOutcome::unknown, controller, now);
 }
 
-void Transaction::finish(WriteOutcome outcome) {
+void Transaction::finish(WriteOutcome outcome, drivers::Controller& controller, double now) {
   if (outcome == WriteOutcome::rolled_back && !old_known_) outcome = WriteOutcome::unknown;
-  if (outcome == WriteOutcome::committed) (void)announce(JournalState::commit);
-  if (outcome == WriteOutcome::rolled_back && !report_.before.empty())
-    (void)announce(JournalState::rolled_back);
+  report_.outcome = outcome;
+  std::deque<JournalState> last;
+  if (outcome == WriteOutcome::committed) last = {JournalState::commit};
+  if (outcome == WriteOutcome::rolled_back && !report_.before.empty()) last = {JournalState::rolled_back};
   if (outcome == WriteOutcome::unknown) {
     // The journal goes on saying what it said unless there was something new to say.
-    if (!report_.steps.empty()) (void)announce(JournalState::needs_operator);
+    if (!report_.steps.empty()) last = {JournalState::needs_operator};
     if (!report_.error) report_.error = mismatch("after restoring");
     report_.error->code = ErrorCode::write_unknown;
   }
-  report_.outcome = outcome;
+  announce(std::move(last), After::report, controller, now);
+}
+
+void Transaction::report() {
   finished_ = report_;
   phase_ = Phase::idle;
   started_ = false;

@@ -2,12 +2,13 @@
 // read, journal, write RAM, compare, journal, store once, compare, commit; otherwise everything back.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "daemon/writeback/journal.hpp"
+#include "daemon/writeback/journal_writer.hpp"
 #include "drivers/base/controller.hpp"
 
 namespace odomcalib {
@@ -35,8 +36,10 @@ struct WriteReport {
 /// Drives one controller through one transaction at a time. Holds no clock and no descriptor.
 class Transaction {
  public:
-  /// @param journal outlives the transaction
-  explicit Transaction(Journal& journal) : journal_(journal) {}
+  /// @param journal, background outlive the transaction; a record is on the disk before the action that it
+  /// announces begins, and the controller's bus is served meanwhile
+  explicit Transaction(Journal& journal, Background& background = foreground())
+      : journal_(journal, background) {}
 
   // One of these starts; refused (error refused) while another one runs.
   Result<void> read();
@@ -56,14 +59,18 @@ class Transaction {
   [[nodiscard]] bool busy() const { return phase_ != Phase::idle; }
   /// Once, when it has ended.
   std::optional<WriteReport> take_report();
+  /// What is on the disk.
+  [[nodiscard]] const JournalWriter& journal() const { return journal_; }
 
  private:
   enum class Task { read, recover, write };
   enum class Phase { idle, read_first, write_new, store_new, verify_new, write_old, store_old, verify_old };
+  enum class After { write_new, store_new, commit, write_old, report };  // what records announce
   using Job = drivers::ParameterJobResult;
 
   Result<void> begin(Task task, const std::string& label);
   void start(Phase phase, drivers::Controller& controller, double now);
+  [[nodiscard]] bool controller_there(const drivers::Controller& controller) const;
   void start_when_at_rest(drivers::Controller& controller, double now);
   Result<void> start_job(drivers::Controller& controller, double now) const;
   [[nodiscard]] Job::Kind kind() const;
@@ -73,23 +80,31 @@ class Transaction {
   void on_written(const Job& job, drivers::Controller& controller, double now);
   void on_verified(const Job& job, drivers::Controller& controller, double now);
   void on_old_written(const Job& job, drivers::Controller& controller, double now);
-  void on_old_verified(const Job& job);
+  void on_old_verified(const Job& job, drivers::Controller& controller, double now);
   void decide_recovery(drivers::Controller& controller, double now);
   void store_again(drivers::Controller& controller, double now);
-  void not_begun(const Error& why);
+  void not_begun(const Error& why, drivers::Controller& controller, double now);
   void plan_write(drivers::Controller& controller, double now);
   void take_old_from_journal();
   void begin_writing(drivers::Controller& controller, double now);
   void go_back(const Error& why, drivers::Controller& controller, double now);
-  /// False: the journal cannot be written, and the transaction has ended or turned back.
-  Result<void> announce(JournalState state);
-  void leave_alone(const Error& why);
-  void finish(WriteOutcome outcome);
+  /// `after` follows when all of the records are on the disk.
+  void announce(std::deque<JournalState> states, After after, drivers::Controller& controller, double now);
+  void go_on_announcing(drivers::Controller& controller, double now);
+  void not_announced(const Error& why, drivers::Controller& controller, double now);
+  void proceed(After after, drivers::Controller& controller, double now);
+  [[nodiscard]] JournalRecord record_of(JournalState state) const;
+  void leave_alone(const Error& why, drivers::Controller& controller, double now);
+  void finish(WriteOutcome outcome, drivers::Controller& controller, double now);
+  void report();
 
-  Journal& journal_;
+  JournalWriter journal_;
   Phase phase_ = Phase::idle;
   Task task_ = Task::read;
-  bool started_ = false;      // the job of this phase runs
+  bool started_ = false;                // the job of this phase runs
+  std::deque<JournalState> announced_;  // records that are not on the disk yet, the first is on its way
+  bool announcing_ = false;             // `after_` waits for them
+  After after_ = After::report;
   bool store_begun_ = false;  // permanent memory may hold other values than the old ones
   bool old_known_ = true;     // the old values are a whole set, not what was read of a mixture
   double entered_ = 0.0, now_ = 0.0;

@@ -3,72 +3,16 @@
 // docs/evidence/faults.md.
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <numbers>
 
-#include "tests/integration/service_loop.hpp"
+#include "tests/integration/fault_loop.hpp"
+#include "tests/integration/stopping_faults.hpp"
 
 namespace odomcalib {
 namespace {
 
 using sim::make_frame;
 using sim::SimRobot;
-
-// A fault of content shows with the first whole turn that has it: 0.1 s later than one that breaks the flow.
-constexpr double kTurn = 0.100;
-// Detection plus 100 ms until the zero command has reached the drive.
-constexpr double kEncoder = 0.100 + 0.100, kLidar = 0.250 + 0.100;
-constexpr double kOwnWatchdog = 0.200 + 0.100;  // no command passes: the drive's watch of our heartbeat
-
-struct Fault {
-  const char* name;
-  void (*begin)(SimRobot& robot);
-  void (*end)(SimRobot& robot);
-  const char* said;                ///< part of the reason that is reported
-  double limit;                    ///< s until the drive is no longer told to turn
-  double ready = 5.0;              ///< s after the fault has gone until the robot may be started again
-  const char* state = "disabled";  ///< of the controller then
-};
-
-std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
-
-class FaultLoop : public ServiceLoop {
- protected:
-  using ServiceLoop::adjust;
-  void adjust(sim::SimRobotOptions& options) override { options.link_dir = folder_; }
-  Calibrator calibrator() override { return make_calibrator(); }
-  bool drive_turns() {
-    const auto order = robot_->node().order();
-    return order.torque && (order.rate[0] != 0.0 || order.rate[1] != 0.0);
-  }
-  /// s from now until the drive is no longer told to turn; NaN when that takes more than `seconds`.
-  double time_to_zero(double seconds) {
-    const double begin = clock_.time;
-    return run_until([this] { return !drive_turns(); }, seconds) ? clock_.time - begin
-                                                                 : std::numeric_limits<double>::quiet_NaN();
-  }
-  json end_of(TestClient& mover, double seconds) {
-    std::optional<control::Reply> got;
-    run_until([&] { return (got = mover.reply()).has_value(); }, seconds);
-    if (!got) return {{"error", "no reply"}};
-    return {{"error", got->error}, {"parameters", json::parse(got->parameters, nullptr, false)}};
-  }
-  static bool stopped(const json& end) {
-    return end["error"] == "org.odomcalib.Calibration.ProtectiveStop" ||
-           end["error"] == "org.odomcalib.Calibration.Device" ||
-           end["error"] == "org.odomcalib.Calibration.DeviceUnavailable";
-  }
-  bool usable(const std::string& state) {
-    if (++steps_ % 25 != 0) return false;
-    const json now = status();
-    return now["state"] == "idle" && now["controller"]["state"] == state &&
-           now["controller"]["stale"] == "" && now["lidar"]["stale"] == "";
-  }
-  void expect_no_restart(double seconds) {
-    run_until([this] { return robot_->fastest_rim() < 1e-3; }, 3.0);
-    EXPECT_FALSE(run_until([this] { return robot_->fastest_rim() > 5e-3 || drive_turns(); }, seconds));
-  }
-};
 
 class StoppingFault : public FaultLoop, public testing::WithParamInterface<Fault> {};
 
@@ -94,61 +38,7 @@ TEST_P(StoppingFault, ends_in_a_named_state_in_time_and_nothing_restarts) {
   start_straight(mover);  // by hand
 }
 
-void nothing(SimRobot& /*robot*/) {}
-
-const Fault kStopping[] = {
-    {"F1_cable_out", [](SimRobot& r) { r.cut_can(true); }, [](SimRobot& r) { r.cut_can(false); },
-     "heartbeat_lost", kOwnWatchdog},
-    {"F1_adapter_out", [](SimRobot& r) { r.unplug_can(); },
-     [](SimRobot& r) { ASSERT_TRUE(r.plug_can().ok()); }, "", kOwnWatchdog},
-    {"F2_bus_off", [](SimRobot& r) { r.inject_can_bytes("sb255000\r"); }, nothing, "bus_off", 0.1},
-    {"F3_error_passive_storm",
-     [](SimRobot& r) {
-       for (int i = 0; i < 300; ++i) r.inject_can_bytes("sp130010\r");
-     },
-     nothing, "error_passive", 0.1},
-    {"F5_twin_with_other_counts",
-     [](SimRobot& r) {
-       r.inject(make_frame(0x181, {0x39, 0x30, 0x10, 0, 0x39, 0x30, 0x10, 0}));
-     },
-     nothing, "tick_jump", 0.1},
-    {"F5_twin_that_is_not_started", [](SimRobot& r) { r.inject(make_frame(0x701, {0x7F})); }, nothing,
-     "left_operational", 0.1},
-    {"F6_controller_reset", [](SimRobot& r) { r.reset_drive(); }, nothing, "", kEncoder},
-    {"F7_heartbeat_lost", [](SimRobot& r) { r.node().faults.heartbeat_stopped = true; },
-     [](SimRobot& r) { r.node().faults.heartbeat_stopped = false; }, "heartbeat_lost", kEncoder},
-    {"F8_emergency", [](SimRobot& r) { r.emergency(0x2310); }, nothing, "emcy", 0.1, 5.0, "fault"},
-    {"F12_no_process_data", [](SimRobot& r) { r.node().faults.pdo_silent = true; },
-     [](SimRobot& r) { r.node().faults.pdo_silent = false; }, "pdo_frozen", kEncoder},
-    {"F12_frozen_process_data", [](SimRobot& r) { r.node().faults.pdo_frozen = true; },
-     [](SimRobot& r) { r.node().faults.pdo_frozen = false; }, "encoder_stuck", kEncoder},
-    {"F13_process_data_late_by_200_ms", [](SimRobot& r) { r.node().faults.pdo_delay = 0.2; },
-     [](SimRobot& r) { r.node().faults.pdo_delay = 0.0; }, "pdo_frozen", kEncoder},
-    {"F17_counts_jump", [](SimRobot& r) { r.shift_counts(1'000'000, 0); }, nothing, "tick_jump", kEncoder},
-    {"F18_left_encoder_stuck", [](SimRobot& r) { r.hold_encoder(sim::kLeft, true); },
-     [](SimRobot& r) { r.hold_encoder(sim::kLeft, false); }, "left count stands still", kEncoder},
-    {"F18_right_encoder_stuck", [](SimRobot& r) { r.hold_encoder(sim::kRight, true); },
-     [](SimRobot& r) { r.hold_encoder(sim::kRight, false); }, "right count stands still", kEncoder},
-    {"F22_lidar_out", [](SimRobot& r) { r.unplug_lidar(); },
-     [](SimRobot& r) { ASSERT_TRUE(r.plug_lidar().ok()); }, "no scan", kLidar, 2.0},
-    {"F23_half_frames", [](SimRobot& r) { r.lidar_faults().half_packets = true; },
-     [](SimRobot& r) { r.lidar_faults().half_packets = false; }, "no scan", kLidar + kTurn},
-    {"F24_same_scan_again_and_again", [](SimRobot& r) { r.lidar_faults().frozen = true; },
-     [](SimRobot& r) { r.lidar_faults().frozen = false; }, "repeats the same scan", kLidar + kTurn},
-    {"F25_empty_scans", [](SimRobot& r) { r.lidar_faults().blind = true; },
-     [](SimRobot& r) { r.lidar_faults().blind = false; }, "sees nothing", kLidar + kTurn},
-    {"F26_30_percent_of_the_packets_lost", [](SimRobot& r) { r.lidar_faults().share_lost = 0.3; },
-     [](SimRobot& r) { r.lidar_faults().share_lost = 0.0; }, "no scan", kLidar + kTurn},
-    {"F27_scans_late_by_half_a_second", [](SimRobot& r) { r.lidar_faults().extra_delay = 0.5; },
-     [](SimRobot& r) { r.lidar_faults().extra_delay = 0.0; }, "no scan", kLidar},
-    {"F29_somebody_steps_into_the_way",
-     [](SimRobot& r) {
-       r.room().add_pillar({r.pose().x + 0.55, r.pose().y}, 0.08);
-     },
-     [](SimRobot& r) { r.room() = sim::furnished_room(); }, "in the way", kLidar},
-};
-
-INSTANTIATE_TEST_SUITE_P(Faults, StoppingFault, testing::ValuesIn(kStopping),
+INSTANTIATE_TEST_SUITE_P(Faults, StoppingFault, testing::ValuesIn(stopping_faults()),
                          [](const auto& one) { return std::string(one.param.name); });
 
 // What is wrong from the start shows in motion only: odometry and lidar must agree after 0.2 m or 30 degrees.

@@ -194,6 +194,20 @@ double RobotAndDaemon::rim() {
   return speeds.empty() ? 0.0 : speeds.back().rim;
 }
 
+std::optional<double> RobotAndDaemon::time_to_slow(double clock, double rim) {
+  std::optional<double> time;
+  const auto slow = [&] {
+    double begin = 0.0;
+    for (const WheelSpeed& speed : wheels_->read()) {
+      if (speed.clock <= clock) begin = speed.simulated;
+      if (speed.clock > clock && speed.rim < rim && !time) time = speed.simulated - begin;
+    }
+    return time.has_value();
+  };
+  (void)wait_until(slow, kPatience, 0.05);
+  return time;
+}
+
 std::optional<double> RobotAndDaemon::time_to_rest(double clock) {
   std::optional<double> rest;
   double begin = 0.0;

@@ -77,6 +77,8 @@ class RobotAndDaemon {
 
   /// From `clock` until the rim is below 5 mm/s and stays there for 0.3 s, in simulated s. Waits for it.
   std::optional<double> time_to_rest(double clock);
+  /// From `clock` until the rim is slower than this, in simulated s. Waits for it.
+  std::optional<double> time_to_slow(double clock, double rim);
   [[nodiscard]] double rim();  ///< m/s, now
 
   std::unique_ptr<Process> robot, daemon;

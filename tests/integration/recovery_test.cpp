@@ -176,6 +176,68 @@ TEST_F(Restarted, values_are_read_again_when_the_controller_was_away) {
   EXPECT_NEAR(status()["robot"]["track_width"].get<double>(), 0.40, 1e-9);
 }
 
+/// The daemon falls silent for so long that the drive leaves operational, so many seconds after a write-back
+/// was asked for.
+class SilentInBetween : public Restarted, public testing::WithParamInterface<double> {
+ protected:
+  void fall_silent() {
+    for (double left = 0.3; left > 0.0; left -= 0.002) {
+      robot_->step(0.002);
+      clock_.time += 0.002;
+    }
+    ASSERT_EQ(node().nmt_state(), sim::NmtState::pre_operational);
+  }
+};
+
+TEST_P(SilentInBetween, whatever_it_has_written_by_then_ends_wholly_old_or_wholly_new) {
+  acquire();
+  renewing_ = false;
+  TestClient writer(folder_ / "control");
+  writer.call("SetParameters", {{"lease", lease_}, {"values", kNew}});
+  run(GetParam());
+  fall_silent();
+  const auto reply = wait_reply(writer, 20.0);
+  const bool fresh = reply.error.empty();
+  EXPECT_NE(reply.error, "org.odomcalib.Calibration.WriteUnknown") << reply.parameters;
+  ASSERT_TRUE(settled(false)) << service_->status_json();
+  EXPECT_EQ(node().geometry_in_ram(), fresh ? kNewRaw : kOldRaw);
+  EXPECT_EQ(node().geometry_stored(), fresh ? kNewRaw : kOldRaw);
+  EXPECT_FALSE(Journal::open(journal_path()).value().unfinished());
+}
+
+INSTANTIATE_TEST_SUITE_P(Service, SilentInBetween,
+                         testing::Values(0.0, 0.004, 0.008, 0.012, 0.016, 0.020, 0.024, 0.028, 0.032, 0.036,
+                                         0.040, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.12, 0.14));
+
+TEST_F(Restarted, a_recovery_is_tried_again_whenever_the_drive_was_configured_anew) {
+  die(record_of(JournalState::needs_operator), kMixed);
+  node().faults.store_fails = true;
+  restart();
+  run(5.0);
+  ASSERT_EQ(status()["operator_needed"], true);
+  node().faults.store_fails = false;
+  run(5.0);
+  ASSERT_EQ(status()["operator_needed"], true) << "one that stays configured is only read";
+  robot_->inject(sim::make_frame(0x701, {0x7F}));  // out of operational, never silent
+  ASSERT_TRUE(settled(false)) << service_->status_json();
+  EXPECT_EQ(node().geometry_stored(), kOldRaw);
+}
+
+TEST_F(Restarted, a_recovery_that_goes_on_failing_is_tried_less_and_less_often) {
+  die(record_of(JournalState::needs_operator), kMixed);
+  node().faults.store_fails = true;
+  restart();
+  for (int i = 0; i < 60; ++i) {
+    run(1.0);
+    robot_->inject(sim::make_frame(0x701, {0x7F}));
+  }
+  const auto records = journaled();
+  const auto tries = std::count(records.begin(), records.end(), "rollback");
+  EXPECT_GE(tries, 3);
+  EXPECT_LE(tries, 6) << "60 s are 2 + 4 + 8 + 16 + 30";
+  EXPECT_EQ(history().size(), 1U);
+}
+
 class Applied : public Restarted {
  protected:
   static json calibration(const Values& values) {

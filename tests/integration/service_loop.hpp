@@ -20,9 +20,11 @@ using nlohmann::json;
 
 class VirtualClock : public Clock {
  public:
-  double time = 100.0, slept = 0.0;
+  mutable double time = 100.0;
+  double slept = 0.0;
+  double each_look = 0.0;  ///< s that pass from one look at the clock to the next
   [[nodiscard]] double suspended() const override { return slept; }
-  [[nodiscard]] double now() const override { return time; }
+  [[nodiscard]] double now() const override { return time += each_look; }
   [[nodiscard]] std::int64_t wall_us() const override {
     return static_cast<std::int64_t>(1.7e15 + time * 1e6);
   }
@@ -91,6 +93,8 @@ class ServiceLoop : public testing::Test {
   }
 
   virtual Calibrator calibrator() { return {}; }
+  /// One that takes no time, virtual time or other.
+  virtual std::unique_ptr<Background> disk() { return std::make_unique<Foreground>(); }
   virtual void adjust(sim::SimRobotOptions& /*options*/) {}
   virtual void adjust(Config& /*config*/) {}
 
@@ -110,7 +114,7 @@ class ServiceLoop : public testing::Test {
     config.state_dir = folder_ / "state";
     config.socket = folder_ / "control";
     adjust(config);
-    auto service = Service::create(config, clock_, calibrator());
+    auto service = Service::create(config, clock_, calibrator(), disk());
     ASSERT_TRUE(service.ok()) << service.error().text();
     service_ = std::move(service).value();
   }

@@ -181,6 +181,32 @@ TEST_F(ServiceLoop, stop_needs_no_lease) {
   EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
 }
 
+TEST_F(ServiceLoop, a_motion_that_was_asked_for_before_a_stop_does_not_begin_after_it) {
+  acquire();
+  TestClient mover(folder_ / "control"), other(folder_ / "control");
+  mover.call("Straight", {{"lease", lease_}, {"distance", 1.0}});
+  mover.call("Stop", json::object());
+  EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
+  EXPECT_EQ(wait_reply(mover, 1.0).error, "");
+  run(1.0);
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+  mover.call("Stop", json::object());
+  start_straight(mover);
+}
+
+TEST_F(ServiceLoop, calls_get_a_few_milliseconds_of_a_turn_and_the_rest_later) {
+  TestClient client(folder_ / "control");
+  for (int i = 0; i < 10; ++i) client.call("GetStatus", json::object());
+  clock_.each_look = 0.001;
+  service_->poll_once(0);
+  clock_.each_look = 0.0;
+  int answered = 0;
+  while (client.reply()) ++answered;
+  EXPECT_GE(answered, 1);
+  EXPECT_LE(answered, 4);
+  EXPECT_TRUE(run_until([&] { return (answered += client.reply() ? 1 : 0) == 10; }, 0.1)) << answered;
+}
+
 TEST_F(ServiceLoop, stop_is_heard_however_many_clients_are_connected) {
   acquire();
   TestClient mover(folder_ / "control");
@@ -489,7 +515,7 @@ class EndlessSolve : public ServiceLoop {
  protected:
   Calibrator calibrator() override {
     Calibrator functions;
-    functions.solve = [this](const std::vector<Recording>& /*recordings*/,
+    functions.solve = [this](const std::vector<std::filesystem::path>& /*recordings*/,
                              const std::vector<std::string>& /*effects*/,
                              const Calibrator::Progress& progress) {
       using Clock = std::chrono::steady_clock;

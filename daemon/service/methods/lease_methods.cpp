@@ -1,4 +1,5 @@
 // Who may move the robot, and the stop, which everybody may ask for.
+#include <algorithm>
 #include <cmath>
 
 #include "daemon/service/call_parameters.hpp"
@@ -21,9 +22,10 @@ Reading renew(Context& context, const Call& call) {
   CallParameters given(call.parameters);
   const double now = context.bench.now;
   const std::string lease = given.text("lease", "");
-  const double sent = given.number("sent", now);
+  const double sent = given.number("sent", call.arrived);
   if (given.wrong()) return WrongParameter{*given.wrong()};
-  const auto renewed = context.bench.lease.renew(lease, now, sent);
+  // One that has waited behind other calls says that the client was there when it arrived.
+  const auto renewed = context.bench.lease.renew(lease, now, std::min(sent, call.arrived));
   if (!renewed) return renewed.error();
   return Answer{{{"ttl_ms", kTtl_ms}}};
 }
@@ -33,10 +35,15 @@ Reading release(Context& context, const Call& call) {
   return Answer{ordered_json::object()};
 }
 
-Reading stop(Context& context, const Call& /*call*/) {
+void stop_robot(Context context) {
   stop_drive(context.bench);
   if (context.task != nullptr) context.task->stop(context.bench);
   context.bench.outbox.event(messages::Severity::stop, "stop", "stopped on request of a client");
+}
+
+// One that was found on its arrival has been obeyed then: what has begun since was asked for after it.
+Reading stop(Context& context, const Call& call) {
+  if (!call.stopped_since) stop_robot(context);
   return Answer{ordered_json::object()};
 }
 

@@ -19,6 +19,8 @@ struct Context {
 struct Call {
   Caller caller;
   const ordered_json& parameters;  ///< an object
+  double arrived = 0.0;            ///< s
+  bool stopped_since = false;      ///< see IncomingCall
 };
 
 struct Answer {

@@ -44,13 +44,15 @@ const Method& method_of(const std::string& name, const ordered_json& parameters)
   return found == kMethods.end() ? kUnknown : *found;
 }
 
-std::optional<Error> not_now(const Method& method, const Context& context) {
+std::optional<Error> not_now(const Method& method, const Context& context, bool stopped_since) {
   if (context.bench.ending && method.when != When::always)
     return Error{ErrorCode::refused, "the daemon is ending", "odomcalibd",
                  "start it again: systemctl start odomcalib"};
   if (context.task != nullptr && method.when == When::when_idle)
     return Error{ErrorCode::refused, "busy: " + activity(context.bench, context.task), "",
                  "wait for its end, or stop it"};
+  if (stopped_since && method.when == When::when_idle)
+    return Error{ErrorCode::cancelled, "stopped on request before it began", method.name, "start again"};
   return std::nullopt;
 }
 
@@ -87,12 +89,14 @@ std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming)
         Error{ErrorCode::usage, "parameters are no object", "parameters", "see odomcalibctl(1)"}, client,
         outbox);
   const Method& method = method_of(incoming.call.name(), parameters);
-  if (auto refused = not_now(method, context)) return reply_with(*refused, client, outbox);
+  if (auto refused = not_now(method, context, incoming.stopped_since))
+    return reply_with(*refused, client, outbox);
   if (method.handle == nullptr) {
     outbox.server.reply(client, control::encode_method_not_implemented(incoming.call.method));
     return nullptr;
   }
-  return reply_with(outcome_of(method, context, {{client, incoming.call.more}, parameters}), client, outbox);
+  const Call call{{client, incoming.call.more}, parameters, incoming.arrived, incoming.stopped_since};
+  return reply_with(outcome_of(method, context, call), client, outbox);
 }
 
 }  // namespace odomcalib

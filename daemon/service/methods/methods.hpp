@@ -8,6 +8,9 @@ namespace odomcalib {
 /// Answers the call or begins what it asks for. @return the task that it began, or null
 std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming);
 
+/// Obeys a stop at once; the call is answered in its place.
+void stop_robot(Context context);
+
 // status_methods.cpp
 Reading get_status(Context& context, const Call& call);
 Reading describe(Context& context, const Call& call);

@@ -52,11 +52,21 @@ Outcome begin_write(Bench& bench, const Caller& caller, const Wish& wish, bool d
   return std::move(task).value();
 }
 
+/// Where the configuration names this robot, a calibration names the same one.
+std::optional<Error> of_another_robot(const Calibration& calibration, const std::string& ours) {
+  const std::string& theirs = calibration.robot.robot_id;
+  if (ours.empty() || theirs == ours) return std::nullopt;
+  const std::string whose = theirs.empty() ? "a robot without a name" : "\"" + theirs + "\"";
+  return Error{ErrorCode::refused, "this calibration is of " + whose + ", this robot is \"" + ours + "\"",
+               "calibration", "solve a recording of this robot; its file or robot file names robot_id"};
+}
+
 /// The values of a calibration that a controller may hold.
-Result<Wish> wish_of(const Calibration& calibration) {
+Result<Wish> wish_of(const Calibration& calibration, const std::string& robot) {
   if (calibration.verdict == Verdict::refused)
     return Error{ErrorCode::refused, "this calibration was refused by its quality gate", "calibration",
                  "record again and solve"};
+  if (auto wrong = of_another_robot(calibration, robot)) return *wrong;
   if (const auto member = non_finite_value(calibration))
     return Error{ErrorCode::format, "\"" + *member + "\" has no finite value", "calibration",
                  "solve the recording again"};
@@ -90,10 +100,10 @@ Reading apply(Context& context, const Call& call) {
   const ordered_json& wanted = given.member("calibration");
   if (!wanted.is_object()) given.reject("calibration");
   if (given.wrong()) return WrongParameter{*given.wrong()};
-  return write_request(context, call, [&wanted]() -> Result<Wish> {
+  return write_request(context, call, [&bench = context.bench, &wanted]() -> Result<Wish> {
     const auto calibration = calibration_from_json(json_text(wanted), "calibration");
     if (!calibration) return calibration.error();
-    return wish_of(calibration.value());
+    return wish_of(calibration.value(), bench.drive.robot().robot_id);
   });
 }
 

@@ -2,15 +2,17 @@
 
 namespace odomcalib {
 
-std::optional<Error> AppliedCalibration::load() {
-  calibration_.reset();
-  odometry_.reset();
-  if (!std::filesystem::exists(file.path())) return std::nullopt;
+Result<std::optional<Calibration>> AppliedCalibration::read() const {
+  if (!std::filesystem::exists(file.path())) return std::optional<Calibration>();
   auto read = read_calibration(file.path());
   if (!read) return read.error();
-  calibration_ = std::move(read).value();
-  if (calibrator_.odometry) odometry_ = calibrator_.odometry(*calibration_);
-  return std::nullopt;
+  return std::optional(std::move(read).value());
+}
+
+void AppliedCalibration::take(const Result<std::optional<Calibration>>& read) {
+  calibration_ = read ? read.value() : std::nullopt;
+  odometry_.reset();
+  if (calibration_ && calibrator_.odometry) odometry_ = calibrator_.odometry(*calibration_);
 }
 
 std::optional<PoseSample> AppliedCalibration::corrected(const TickSample& sample) {

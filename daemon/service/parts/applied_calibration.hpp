@@ -14,8 +14,10 @@ class AppliedCalibration {
   AppliedCalibration(const std::filesystem::path& state_dir, const Calibrator& functions)
       : file(state_dir), calibrator_(functions) {}
 
-  /// Reads what is in force now. @return why that could not be read; then none is in force
-  std::optional<Error> load();
+  /// Reads what is in force now. Changes nothing: may run beside the loop. nullopt: none is.
+  [[nodiscard]] Result<std::optional<Calibration>> read() const;
+  /// Goes on with what was read; with none where that failed.
+  void take(const Result<std::optional<Calibration>>& read);
   [[nodiscard]] const std::optional<Calibration>& get() const { return calibration_; }
   /// Where the corrected odometry is after this sample; nullopt: there is none.
   std::optional<PoseSample> corrected(const TickSample& sample);

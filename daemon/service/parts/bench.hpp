@@ -1,6 +1,7 @@
 // The parts that are always there, whatever the robot does.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "daemon/safety/lease.hpp"
@@ -16,16 +17,18 @@ namespace odomcalib {
 
 struct Bench {
   Bench(const Config& configuration, Clock& time, Calibrator functions, BaseLink base_link,
-        LidarLink lidar_link, ControlServer control_server, Journal write_journal);
+        LidarLink lidar_link, ControlServer control_server, Journal write_journal,
+        std::unique_ptr<Background> disk_worker);
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
-  ~Bench() = default;
+  ~Bench() { disk->finish(); }  // while everything is there that its work may use
 
   Config config;
   Clock& clock;
   Calibrator calibrator;
   double now = 0.0;  ///< s, begin of this turn
   LoopWatch loop;
+  std::unique_ptr<Background> disk;  ///< waits for the disk
 
   Outbox outbox;
   Drive drive;

@@ -1,11 +1,19 @@
 #include "daemon/service/parts/write_back.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace odomcalib {
 namespace {
 
 constexpr double kReadAgain = 2.0;  // s, after a reading that may have failed
+// s until a recovery may follow on one that failed, each time twice as long. A recovery may store; permanent
+// memory is good for 100 000 stores, at one each ten minutes for two years.
+constexpr double kRecoverAgain = 2.0, kLongestRecoverAgain = 600.0;
+
+bool away(drivers::ControllerState state) {
+  return state == drivers::ControllerState::absent || state == drivers::ControllerState::configuring;
+}
 
 }  // namespace
 
@@ -14,18 +22,20 @@ std::string name_of(WriteOutcome outcome) {
   return outcome == WriteOutcome::rolled_back ? "rolled_back" : "unknown";
 }
 
-WriteBack::WriteBack(Journal write_journal, const std::filesystem::path& state_dir)
-    : journal(std::move(write_journal)),
-      transaction(journal),
+WriteBack::WriteBack(Journal write_journal, const std::filesystem::path& state_dir, Background& disk)
+    : journal_(std::move(write_journal)),
+      transaction(journal_, disk),
       history(state_dir / "history"),
-      operator_needed(journal.unfinished().has_value()) {}
+      operator_needed(unfinished()),
+      recovery_pause_(kRecoverAgain) {}
 
 std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, bool& values_known,
                                             bool may_begin, double now, std::int64_t wall_us) {
   const auto state = controller.state();
+  was_away_ = was_away_ || away(state);
   // What is there when it comes back, and what it holds, is to be seen, at once: nothing moves before.
-  if (state == drivers::ControllerState::absent && !busy()) {
-    values_known = recovery_tried_ = false;
+  if (was_away_ && !busy()) {
+    was_away_ = values_known = recovery_tried_ = false;
     if (!ending_) next_read_ = now;
   }
   if (state == drivers::ControllerState::disabled && !busy() && may_begin && now >= next_read_)
@@ -34,17 +44,22 @@ std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, boo
   return transaction.take_report();
 }
 
-// One recovery a connection: each may store once, and permanent memory wears out. After it only reads are
-// repeated. It waits for rest (B6 step 2), reading alone does not.
+// One recovery each time the controller was configured: each may store once, and permanent memory wears out.
+// After it only reads are repeated. It waits for rest (B6 step 2), reading alone does not.
 void WriteBack::begin_reading(const drivers::Controller& controller, bool values_known, double now) {
-  const bool recover = operator_needed && !recovery_tried_;
+  const bool recover = operator_needed && !recovery_tried_ && now >= next_recovery_;
   if (recover ? !controller.at_rest() : values_known) return;
   next_read_ = now + kReadAgain;
+  if (recover) {
+    next_recovery_ = now + recovery_pause_;
+    recovery_pause_ = std::min(2.0 * recovery_pause_, kLongestRecoverAgain);
+  }
   (void)(recover ? transaction.recover() : transaction.read());
 }
 
 Result<void> WriteBack::write(const std::string& label, const ParameterMap& values,
                               const std::string& calibration) {
+  if (settling) return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
   ended.reset();
   return transaction.write(label, values, calibration);
 }
@@ -52,7 +67,11 @@ Result<void> WriteBack::write(const std::string& label, const ParameterMap& valu
 void WriteBack::learn(const WriteReport& report) {
   const bool unknown = report.outcome == WriteOutcome::unknown;
   recovery_tried_ = recovery_tried_ || unknown;
-  operator_needed = unknown || (report.outcome == WriteOutcome::read && journal.unfinished());
+  if (report.outcome == WriteOutcome::committed || report.outcome == WriteOutcome::rolled_back) {
+    next_recovery_ = 0.0;
+    recovery_pause_ = kRecoverAgain;
+  }
+  operator_needed = unknown || (report.outcome == WriteOutcome::read && unfinished());
   if (operator_needed && report.error) problem = report.error->text();
 }
 
@@ -62,15 +81,16 @@ void WriteBack::end() {
 }
 
 std::string WriteBack::journaled_calibration() const {
-  return journal.last() ? journal.last()->calibration : "";
+  const auto& last = transaction.journal().last();
+  return last ? last->calibration : "";
 }
 
 // One that was rolled back or ended unknown has put nothing in force that could be taken back.
 std::optional<FormerValues> WriteBack::former_values(const std::string& id,
                                                      const std::optional<std::string>& in_force) const {
-  const auto unfinished = journal.unfinished();
-  if (id.empty() && unfinished && !unfinished->before.empty())
-    return FormerValues{unfinished->before, in_force};
+  const auto interrupted = transaction.journal().unfinished();
+  if (id.empty() && interrupted && !interrupted->before.empty())
+    return FormerValues{interrupted->before, in_force};
   const auto entry = id.empty() ? history.newest_committed() : history.find(id);
   if (!entry) return std::nullopt;
   FormerValues former{entry->before, std::nullopt};

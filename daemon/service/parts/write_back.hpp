@@ -24,8 +24,11 @@ struct WriteEnd {
 };
 
 class WriteBack {
+  Journal journal_;  // first: the transaction writes to it
+
  public:
-  WriteBack(Journal write_journal, const std::filesystem::path& state_dir);
+  /// @param disk outlives this
+  WriteBack(Journal write_journal, const std::filesystem::path& state_dir, Background& disk);
 
   /// Reads and recovers when it is time for it, and goes on with what runs.
   /// @param may_begin the robot does not move. @return the end of a transaction
@@ -37,7 +40,8 @@ class WriteBack {
   void learn(const WriteReport& report);
   /// From now on nothing is read or recovered any more.
   void end();
-  [[nodiscard]] bool busy() const { return transaction.busy(); }
+  /// Until what it came to is in the history, too.
+  [[nodiscard]] bool busy() const { return transaction.busy() || settling; }
   /// Without an id: what an unfinished write-back is to be taken back to, else what the newest committed one
   /// replaced. @param in_force JSON text of the calibration in force. nullopt: there is nothing to go back to
   [[nodiscard]] std::optional<FormerValues> former_values(const std::string& id,
@@ -46,17 +50,22 @@ class WriteBack {
   [[nodiscard]] std::string journaled_calibration() const;
   [[nodiscard]] std::optional<WriteEnd> take_end() { return std::exchange(ended, std::nullopt); }
 
-  Journal journal;
   Transaction transaction;
   History history;
   bool operator_needed = false;
   std::string problem = "an interrupted write-back waits for the controller";  ///< operator_needed: why
+  bool settling = false;  ///< its end is on the way to the disk
   std::optional<WriteEnd> ended;
 
  private:
   void begin_reading(const drivers::Controller& controller, bool values_known, double now);
 
-  bool recovery_tried_ = false;  // on this connection to the controller
+  [[nodiscard]] bool unfinished() const { return transaction.journal().unfinished().has_value(); }
+
+  bool was_away_ = false;        // the controller, since its values were last asked for
+  bool recovery_tried_ = false;  // since the controller was configured
+  double next_recovery_ = 0.0;   // s
+  double recovery_pause_;        // s
   bool ending_ = false;
   double next_read_ = 0.0;
 };

@@ -9,17 +9,35 @@ ordered_json to_json(const RoundingError& error) {
 }
 
 Result<std::unique_ptr<Task>> WriteTask::begin(Bench& bench, const Caller& caller, const Order& order) {
-  const auto calibration =
-      order.replaces_calibration
-          ? bench.applied.file.announce(order.calibration, bench.write_back.journaled_calibration())
-          : Result<std::string>(std::string());
-  if (!calibration) return calibration.error();
-  const auto begun = bench.write_back.write(order.label, order.rounded.values, calibration.value());
-  if (!begun) return begun.error();
-  return std::unique_ptr<Task>(new WriteTask(caller, order.rounded.remaining));
+  if (bench.write_back.busy())
+    return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
+  std::unique_ptr<WriteTask> task(new WriteTask(caller, order));
+  task->announce(bench);
+  return std::unique_ptr<Task>(std::move(task));
+}
+
+// The task may be gone when the disk is done.
+void WriteTask::announce(Bench& bench) {
+  announced_->done = !order_.replaces_calibration;
+  if (announced_->done) return;
+  bench.disk->post([&file = bench.applied.file, text = order_.calibration,
+                    journaled = bench.write_back.journaled_calibration(),
+                    announced = announced_] { announced->id = file.announce(text, journaled); },
+                   [announced = announced_] { announced->done = true; });
+}
+
+TaskTurn WriteTask::begin_writing(Bench& bench) {
+  if (bench.ending) return Failed{{ErrorCode::cancelled, "the daemon ends", "write-back", "start again"}};
+  if (!announced_->done || bench.write_back.busy()) return Running{};
+  if (!announced_->id) return Failed{announced_->id.error()};
+  const auto begun = bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value());
+  if (!begun) return Failed{begun.error()};
+  begun_ = true;
+  return Running{};
 }
 
 TaskTurn WriteTask::turn(Bench& bench) {
+  if (!begun_) return begin_writing(bench);
   const auto end = bench.write_back.take_end();
   if (!end) return Running{};
   const WriteReport& report = end->report;
@@ -31,7 +49,7 @@ TaskTurn WriteTask::turn(Bench& bench) {
                  {"steps", report.steps},
                  {"before", report.before},
                  {"after", report.after},
-                 {"rounding_error", to_json(rounding_)},
+                 {"rounding_error", to_json(order_.rounded.remaining)},
                  {"parameters", parameter_report(bench, bench.applied.get())}}}}};
 }
 

@@ -18,7 +18,8 @@ class WriteTask final : public Task {
     std::optional<std::string> calibration = {};  ///< JSON text that comes into force with them
     bool replaces_calibration = true;             ///< false: the one in force stays
   };
-  /// Errors: of announcing the calibration (io), of Transaction::write.
+  /// Error: refused while another write-back runs. Errors of announcing the calibration (io) and of
+  /// Transaction::write end the task.
   static Result<std::unique_ptr<Task>> begin(Bench& bench, const Caller& caller, const Order& order);
 
   [[nodiscard]] const char* part() const override { return "write-back"; }
@@ -31,9 +32,17 @@ class WriteTask final : public Task {
   void abandoned(Bench& /*bench*/) override {}
 
  private:
-  WriteTask(const Caller& waits, const RoundingError& rounding) : Task(waits), rounding_(rounding) {}
+  WriteTask(const Caller& waits, Order order) : Task(waits), order_(std::move(order)) {}
+  void announce(Bench& bench);
+  TaskTurn begin_writing(Bench& bench);
 
-  RoundingError rounding_;
+  struct Announcement {
+    Result<std::string> id = std::string();  // of the calibration; belongs to the disk until it is done
+    bool done = false;
+  };
+  Order order_;
+  std::shared_ptr<Announcement> announced_ = std::make_shared<Announcement>();
+  bool begun_ = false;  // the transaction
 };
 
 ordered_json to_json(const RoundingError& error);

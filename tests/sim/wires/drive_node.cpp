@@ -167,6 +167,13 @@ void DriveNode::watch_master(double now) {
 void DriveNode::lost_connection(std::uint16_t code, double now) {
   connection_lost_ = true;
   report_error(code, kCommunicationError, now);
+  abort_connection();
+  const std::uint32_t behaviour = dictionary_.value({0x1029, 1});
+  if (behaviour == 0 && nmt_ == NmtState::operational) enter(NmtState::pre_operational, now);
+  if (behaviour == 2) enter(NmtState::stopped, now);
+}
+
+void DriveNode::abort_connection() {
   switch (dictionary_.value({0x6007, 0}) & 0xFFFFU) {
     case 1:
       return machine_.fault();

@@ -2,10 +2,10 @@
 // memory.
 //
 // What differs from the real ZLAC8015D: heartbeat and event timers count in milliseconds; it watches the
-// master's heartbeat (1016h); targets (60FFh) are in 0.01 rpm; the right side is not mirrored; objects
-// 2100:01..03 hold left and right wheel diameter and track width in micrometres. The diameters are storage
-// only: wheel speeds do not depend on them. Ramp times (6083h to 6085h) are those from rest to the rated
-// speed of 200 rpm.
+// master's heartbeat (1016h) and leaves operational when it is lost (1029h); targets (60FFh) are in 0.01 rpm;
+// the right side is not mirrored; objects 2100:01..03 hold left and right wheel diameter and track width in
+// micrometres. The diameters are storage only: wheel speeds do not depend on them. Ramp times (6083h to
+// 6085h) are those from rest to the rated speed of 200 rpm.
 #pragma once
 
 #include <array>
@@ -123,6 +123,7 @@ class DriveNode {
   void enter(NmtState state, double now);
   void watch_master(double now);
   void lost_connection(std::uint16_t code, double now);
+  void abort_connection();
   void send_life_sign(double now);
   void send_tpdos(double now);
   void send_tpdo(const Frame& frame, double now);

@@ -64,6 +64,11 @@ void DriveNode::add_life_signs() {
     return (value >> 24U) == 0 && (value >> 16U) < 128 ? abort_code::kNone : abort_code::kRange;
   };
   dictionary_.add_value({0x1017, 0}, 2, 0, Access::read_write);
+  // CiA 301, 7.5.2.29: by default a communication error takes the node out of operational.
+  dictionary_.add_value({0x1029, 0}, 1, 1);
+  dictionary_.add_value({0x1029, 1}, 1, 0, Access::read_write).before_write = [](std::uint32_t value) {
+    return one_of(value, {0, 1, 2});
+  };
   dictionary_.add_value({0x6007, 0}, 2, 1, Access::read_write).before_write = [](std::uint32_t value) {
     return one_of(value, {0, 1, 2, 3});
   };

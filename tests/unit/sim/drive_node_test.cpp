@@ -154,6 +154,7 @@ TEST_F(Drive, reacts_to_a_silent_master_as_6007_says) {
     node.reset(now);
     run(0.5);
     write({0x6007, 0}, option);
+    write({0x1029, 1}, 1);           // and it stays operational
     write({0x1016, 1}, 0x007F00C8);  // node 127, 200 ms
     enable();
     run(1.0);
@@ -172,6 +173,22 @@ TEST_F(Drive, reacts_to_a_silent_master_as_6007_says) {
     EXPECT_EQ(all(0x081)[0].second.data[0], 0x30);
     EXPECT_EQ(all(0x081)[0].second.data[1], 0x81);
     EXPECT_EQ(node.drive_state(), state) << "6007h = " << option;
+  }
+}
+
+TEST_F(Drive, leaves_operational_when_the_master_falls_silent_as_1029_says) {
+  for (const auto& [behaviour, state] :
+       {std::pair{0, NmtState::pre_operational}, {1, NmtState::operational}, {2, NmtState::stopped}}) {
+    write({0x1029, 1}, static_cast<std::uint32_t>(behaviour));
+    write({0x1016, 1}, 0x007F0064);
+    start();
+    send(0x77F, {5});
+    run(0.09);
+    EXPECT_EQ(node.nmt_state(), NmtState::operational);
+    run(0.02);
+    EXPECT_EQ(node.nmt_state(), state) << behaviour;
+    node.reset(now);
+    run(0.5);
   }
 }
 

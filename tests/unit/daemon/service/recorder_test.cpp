@@ -1,6 +1,8 @@
 // Recordings and a disk that takes its time: nothing waits for it, nothing is lost, what fails is told.
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -11,6 +13,21 @@
 
 #include "daemon/service/telemetry.hpp"
 #include "proto/recording/recording.hpp"
+
+namespace {
+
+constexpr std::uint64_t kPlenty = std::uint64_t{1} << 40U;
+std::uint64_t bytes_free = kPlenty;
+
+}  // namespace
+
+// In this program it comes before the function of the C library.
+extern "C" int statvfs(const char* path, struct statvfs* space) noexcept {
+  *space = {};
+  space->f_frsize = space->f_bsize = 1;
+  space->f_bavail = space->f_bfree = bytes_free;
+  return access(path, F_OK);
+}
 
 namespace odomcalib {
 namespace {
@@ -128,6 +145,17 @@ TEST_F(RecordingOnDisk, begins_anew_while_the_one_before_is_still_being_written)
   }
   recorder_->finish({});
   EXPECT_EQ(recorder_->start("same").error().code, ErrorCode::io) << "bounded";
+}
+
+TEST_F(RecordingOnDisk, does_not_begin_with_less_than_64_MiB_of_free_space) {
+  on_slow_disk();
+  bytes_free = (std::uint64_t{64} << 20U) - 1;
+  const auto refused = recorder_->start("full");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().text().find("64 MiB"), std::string::npos) << refused.error().text();
+  bytes_free += 1;
+  EXPECT_TRUE(recorder_->start("just_enough").ok());
+  bytes_free = kPlenty;
 }
 
 TEST_F(RecordingOnDisk, tells_a_queue_that_is_full) {

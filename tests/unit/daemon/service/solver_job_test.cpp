@@ -27,12 +27,15 @@ std::filesystem::path recording() {
 /// Tells a thousand steps and waits until it may end.
 Calibrator slow(const std::shared_ptr<std::atomic<bool>>& may_end) {
   Calibrator calibrator;
-  calibrator.solve = [may_end](const std::vector<Recording>& recordings, const std::vector<std::string>&,
-                               const Calibrator::Progress& progress) {
+  calibrator.solve = [may_end](const std::vector<std::filesystem::path>& recordings,
+                               const std::vector<std::string>&,
+                               const Calibrator::Progress& progress) -> Result<Calibration> {
     for (int i = 0; i < 1000; ++i) progress("step " + std::to_string(i), 1e-3 * i);
     while (!*may_end) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    const auto recording = read_recording(recordings.at(0));
+    if (!recording) return recording.error();
     Calibration calibration;
-    calibration.robot = recordings.at(0).robot;
+    calibration.robot = recording.value().robot;
     return calibration;
   };
   return calibrator;
@@ -81,9 +84,9 @@ TEST(SolverJob, keeps_a_copy_and_tells_when_it_cannot) {
   std::filesystem::remove(path);
 }
 
-TEST(SolverJob, that_throws_or_finds_no_file_is_an_error) {
+TEST(SolverJob, that_throws_is_an_error_and_so_is_one_that_tells_an_error) {
   Calibrator calibrator;
-  calibrator.solve = [](const auto&, const auto&, const auto&) -> Calibration {
+  calibrator.solve = [](const auto&, const auto&, const auto&) -> Result<Calibration> {
     throw std::runtime_error("no solution");
   };
   const auto path = recording();
@@ -92,7 +95,7 @@ TEST(SolverJob, that_throws_or_finds_no_file_is_an_error) {
   ASSERT_TRUE(thrown && !thrown->ok());
   EXPECT_NE(thrown->error().text().find("no solution"), std::string::npos);
   std::filesystem::remove(path);
-  SolverJob absent(calibrator, {"/nonexistent"}, {});
+  SolverJob absent(slow(std::make_shared<std::atomic<bool>>(true)), {"/nonexistent"}, {});
   const auto missed = wait_for(absent);
   ASSERT_TRUE(missed && !missed->ok());
 }

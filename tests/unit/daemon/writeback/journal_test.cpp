@@ -166,6 +166,12 @@ TEST(CalibrationInForce, a_damaged_announcement_is_not_put_in_force) {
   EXPECT_FALSE(std::filesystem::exists(calibrations.path()));
 }
 
+void add(History& history, HistoryEntry entry) {
+  entry = history.numbered(std::move(entry));
+  ASSERT_TRUE(history.write(entry).ok());
+  history.keep(std::move(entry));
+}
+
 TEST(History, finds_the_newest_that_was_committed_and_remembers_the_device) {
   const Folder folder;
   History history(folder.path / "history");
@@ -174,30 +180,53 @@ TEST(History, finds_the_newest_that_was_committed_and_remembers_the_device) {
     HistoryEntry entry;
     entry.outcome = outcome;
     entry.device = "0xfee/0xd15/1";
-    ASSERT_TRUE(history.add(entry).ok());
+    add(history, entry);
   }
   ASSERT_TRUE(history.newest_committed());
   EXPECT_EQ(history.newest_committed()->id, "0002");
   EXPECT_EQ(history.newest_committed()->device, "0xfee/0xd15/1");
 }
 
-TEST(History, keeps_the_newest_fifty_newest_first) {
-  const Folder folder;
-  History history(folder.path / "history");
-  for (int i = 0; i < 60; ++i) {
-    HistoryEntry entry;
-    entry.time = i;
-    entry.action = "apply";
-    entry.calibration = R"({"format":"x"})";
-    ASSERT_TRUE(history.add(entry).ok());
+class FullHistory : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (int i = 0; i < 60; ++i) {
+      HistoryEntry entry;
+      entry.time = i;
+      entry.action = "apply";
+      entry.calibration = R"({"format":"x"})";
+      add(history_, entry);
+    }
   }
-  const auto entries = history.entries();
-  ASSERT_EQ(entries.size(), History::kKept);
-  EXPECT_EQ(entries.front().time, 59);
-  EXPECT_EQ(entries.front().id, "0060");
-  ASSERT_TRUE(history.find("0060").has_value());
-  EXPECT_EQ(*history.find("0060")->calibration, R"({"format":"x"})");
-  EXPECT_FALSE(history.find("0001").has_value());
+  static void expect_newest_fifty(const History& history) {
+    const auto& entries = history.entries();
+    ASSERT_EQ(entries.size(), History::kKept);
+    EXPECT_EQ(entries.front().time, 59);
+    EXPECT_EQ(entries.front().id, "0060");
+    EXPECT_EQ(entries.back().id, "0011");
+    ASSERT_TRUE(history.find("0060").has_value());
+    EXPECT_EQ(*history.find("0060")->calibration, R"({"format":"x"})");
+    EXPECT_FALSE(history.find("0001").has_value());
+  }
+  const Folder folder_;
+  History history_{folder_.path / "history"};
+};
+
+TEST_F(FullHistory, keeps_the_newest_fifty_newest_first) {
+  expect_newest_fifty(history_);
+  expect_newest_fifty(History(folder_.path / "history"));  // what the disk has
+}
+
+TEST_F(FullHistory, goes_on_counting_behind_an_entry_that_cannot_be_read) {
+  std::ofstream(folder_.path / "history" / "0061.json") << "{";
+  const History again(folder_.path / "history");
+  EXPECT_EQ(again.entries().front().id, "0060");
+  EXPECT_EQ(again.numbered({}).id, "0062");
+}
+
+TEST_F(FullHistory, answers_without_its_disk) {
+  std::filesystem::remove_all(folder_.path);
+  expect_newest_fifty(history_);
 }
 
 }  // namespace

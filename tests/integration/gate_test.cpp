@@ -1,0 +1,163 @@
+// What must be true before the robot moves or values are written, each condition alone: nothing happens, and
+// the client is told why.
+#include "tests/integration/service_loop.hpp"
+
+namespace odomcalib {
+namespace {
+
+class Gate : public ServiceLoop {
+ protected:
+  control::Reply call(const std::string& method, json parameters) {
+    if (lease_.empty()) acquire();
+    if (!parameters.contains("lease")) parameters["lease"] = lease_;
+    TestClient caller(folder_ / "control");
+    caller.call(method, parameters);
+    return wait_reply(caller, 20.0);
+  }
+  void expect_refused(const control::Reply& reply, const std::string& error, const std::string& said) {
+    EXPECT_EQ(reply.error, "org.odomcalib.Calibration." + error) << reply.parameters;
+    EXPECT_NE(reply.parameters.find(said), std::string::npos) << reply.parameters;
+    run(1.0);
+    EXPECT_LT(robot_->fastest_rim(), 1e-6);
+    EXPECT_EQ(robot_->node().store_count(), 0U);
+    EXPECT_EQ(robot_->node().geometry_in_ram(), (std::array<std::uint32_t, 3>{150000, 150000, 400000}));
+  }
+  static json straight() { return {{"distance", 0.5}}; }
+  static json track(double metres) { return {{"values", {{"track_width", metres}}}}; }
+  static json calibration(const std::string& verdict) {
+    return {{"calibration",
+             {{"format", "odomcalib-calibration/1"},
+              {"verdict", verdict},
+              {"parameters", {{"track_width", {{"value", 0.4033}, {"std", 1e-5}, {"unit", "m"}}}}}}}};
+  }
+};
+
+TEST_F(Gate, lets_pass_what_is_as_it_should_be) {
+  EXPECT_EQ(call("Apply", calibration("accepted")).error, "");
+  EXPECT_EQ(robot_->node().store_count(), 1U);
+  EXPECT_EQ(call("Straight", straight()).error, "");
+}
+
+TEST_F(Gate, of_a_way_that_is_not_clear) {
+  robot_->room().add_pillar({robot_->pose().x + 0.9, robot_->pose().y}, 0.08);
+  run(1.0);
+  expect_refused(call("Straight", straight()), "Refused", "nearer than");
+}
+
+TEST_F(Gate, of_a_lidar_that_says_nothing) {
+  robot_->lidar_faults().frozen = true;
+  run(1.0);
+  expect_refused(call("Straight", straight()), "Device", "repeats the same scan");
+}
+
+// The driver refuses to enable its axes too, later: who asks is told at once.
+TEST_F(Gate, of_a_controller_that_would_not_stop_by_itself) {
+  robot_->node().sdo_faults().abort_on_write[{0x1016, 1}] = 0x06090030;
+  robot_->reset_drive();
+  run(1.0);
+  ASSERT_TRUE(run_until([this] { return ready(); }, 10.0)) << service_->status_json();
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
+  expect_refused(wait_reply(mover, 0.1), "Device", "would not stop by itself");
+}
+
+TEST_F(Gate, of_values_without_a_lease) {
+  json parameters = track(0.4033);
+  parameters["lease"] = "none";
+  expect_refused(call("SetParameters", parameters), "NotPermitted", "lease");
+  parameters = calibration("accepted");
+  parameters["lease"] = "none";
+  expect_refused(call("Apply", parameters), "NotPermitted", "lease");
+  expect_refused(call("Rollback", {{"lease", "none"}}), "NotPermitted", "lease");
+}
+
+TEST_F(Gate, of_values_that_are_more_than_15_percent_away) {
+  expect_refused(call("SetParameters", track(0.4 * 1.16)), "Refused", "15 %");
+  expect_refused(call("SetParameters", track(0.4 * 0.84)), "Refused", "15 %");
+  EXPECT_EQ(call("SetParameters", track(0.4 * 1.14)).error, "");
+}
+
+TEST_F(Gate, of_a_calibration_that_was_refused) {
+  expect_refused(call("Apply", calibration("refused")), "Refused", "quality gate");
+}
+
+class Named : public Gate {
+ protected:
+  void adjust(Config& config) override { config.robot.robot_id = "robot-A"; }
+  static json calibration_of(const char* robot) {
+    json made = calibration("accepted");
+    if (robot != nullptr) made["calibration"]["robot"] = {{"robot_id", robot}};
+    return made;
+  }
+};
+
+TEST_F(Named, a_calibration_of_another_robot_or_of_none_is_refused) {
+  expect_refused(call("Apply", calibration_of("robot-B")), "Refused", "robot-B");
+  expect_refused(call("Apply", calibration_of(nullptr)), "Refused", "without a name");
+  EXPECT_EQ(call("Apply", calibration_of("robot-A")).error, "");
+}
+
+TEST_F(Gate, of_values_for_a_controller_in_fault) {
+  robot_->emergency(0x2310);
+  ASSERT_TRUE(run_until([this] { return status()["controller"]["state"] == "fault"; }, 2.0));
+  expect_refused(call("SetParameters", track(0.4033)), "Device", "fault");
+}
+
+TEST_F(Gate, of_values_while_the_robot_moves) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  TestClient writer(folder_ / "control");
+  json parameters = track(0.4033);
+  parameters["lease"] = lease_;
+  writer.call("SetParameters", parameters);
+  EXPECT_EQ(wait_reply(writer, 0.5).error, "org.odomcalib.Calibration.Refused");
+  EXPECT_EQ(robot_->node().geometry_in_ram()[2], 400000U);
+}
+
+// Somebody pushes the robot: what the wheels have turned belongs to the values with which it was measured.
+TEST_F(Gate, of_values_waits_for_wheels_that_turn) {
+  acquire();
+  TestClient writer(folder_ / "control");
+  json parameters = track(0.4033);
+  parameters["lease"] = lease_;
+  writer.call("SetParameters", parameters);
+  std::optional<control::Reply> reply;
+  std::int64_t pushed = 0;
+  run_until(
+      [&] {
+        robot_->shift_counts(++pushed % 2 == 0 ? 3 : 2, 2);
+        return (reply = writer.reply()).has_value();
+      },
+      1.5);
+  EXPECT_FALSE(reply && reply->error.empty()) << "written while the wheels turned";
+  EXPECT_EQ(robot_->node().geometry_in_ram()[2], 400000U);
+}
+
+TEST_F(Gate, of_a_robot_whose_values_nobody_knows_lets_nothing_move) {
+  robot_->node().faults.store_fails = true;
+  EXPECT_EQ(call("SetParameters", track(0.4033)).error, "org.odomcalib.Calibration.WriteUnknown");
+  ASSERT_EQ(status()["operator_needed"], true);
+  ASSERT_TRUE(run_until([this] { return ready(); }, 10.0)) << service_->status_json();
+  const auto reply = call("Straight", straight());
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.WriteUnknown") << reply.parameters;
+  run(1.0);
+  EXPECT_LT(robot_->fastest_rim(), 1e-6);
+}
+
+class CountedDown : public Gate {
+ protected:
+  void adjust(Config& config) override { config.countdown = 3.0; }
+};
+
+TEST_F(CountedDown, a_motion_begins_three_seconds_after_it_was_asked_for) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
+  EXPECT_FALSE(run_until([this] { return robot_->fastest_rim() > 1e-3; }, 2.9));
+  EXPECT_TRUE(run_until([this] { return robot_->fastest_rim() > 0.1; }, 5.0)) << service_->status_json();
+}
+
+}  // namespace
+}  // namespace odomcalib

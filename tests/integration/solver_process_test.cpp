@@ -1,0 +1,99 @@
+// The solver that the service starts, as a whole program.
+#include "daemon/service/solver_process.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <stdlib.h>
+
+#include <chrono>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/sim/world/simulate.hpp"
+
+namespace odomcalib {
+namespace {
+
+class SolverOnItsOwn : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = "/tmp/odomcalib-solver-XXXXXX";
+    folder_ = mkdtemp(name.data());
+    recording_ = folder_ / "recording.jsonl";
+    ASSERT_TRUE(write_recording_jsonl(sim::standard_run(7).recording, recording_).ok());
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  Result<Calibration> solve(const Calibrator::Progress& progress, std::uint32_t memory = 768) {
+    return solve_in_process({.program = ODOMCALIB_DAEMON, .memory = memory})({recording_}, {"none"},
+                                                                             progress);
+  }
+
+  std::filesystem::path folder_, recording_;
+};
+
+/// Process ids of the children of this one.
+std::vector<pid_t> children() {
+  std::vector<pid_t> all;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream file(task.path() / "children");
+    for (pid_t pid = 0; file >> pid;) all.push_back(pid);
+  }
+  return all;
+}
+
+TEST_F(SolverOnItsOwn, gives_the_very_calibration_that_the_same_solver_gives_here) {
+  std::vector<std::string> phases;
+  const auto there = solve([&](const std::string& phase, double) { phases.push_back(phase); });
+  ASSERT_TRUE(there.ok()) << there.error().text();
+  const auto here = make_calibrator().solve({recording_}, {"none"}, {});
+  ASSERT_TRUE(here.ok());
+  EXPECT_EQ(to_json(there.value()), to_json(here.value()));
+  EXPECT_GT(std::set<std::string>(phases.begin(), phases.end()).size(), 1U) << "it tells how far it is";
+}
+
+TEST_F(SolverOnItsOwn, is_gone_as_soon_as_its_progress_report_throws) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto stop = [](const std::string&, double) { throw std::runtime_error("stopped on request"); };
+  EXPECT_THROW((void)solve(stop), std::runtime_error);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  EXPECT_TRUE(children().empty());
+}
+
+TEST_F(SolverOnItsOwn, that_is_killed_is_an_error_that_says_so) {
+  const auto kill_it = [](const std::string&, double) {
+    for (const pid_t pid : children()) kill(pid, SIGKILL);
+  };
+  const auto result = solve(kill_it);
+  ASSERT_FALSE(result.ok());
+  EXPECT_NE(result.error().what.find("signal 9"), std::string::npos) << result.error().text();
+}
+
+TEST_F(SolverOnItsOwn, tells_what_the_solver_tells_of_a_recording_that_is_not_there) {
+  recording_ = folder_ / "absent.jsonl";
+  const auto result = solve({});
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::io);
+  EXPECT_NE(result.error().text().find("absent.jsonl"), std::string::npos) << result.error().text();
+}
+
+TEST_F(SolverOnItsOwn, that_would_need_more_memory_than_it_may_have_says_what_to_do) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers take the memory themselves";
+#endif
+  const auto result = solve({}, 8);
+  ASSERT_FALSE(result.ok());
+  EXPECT_NE(result.error().text().find("8 MiB"), std::string::npos) << result.error().text();
+  EXPECT_NE(result.error().remedy.find("odomcalibctl solve"), std::string::npos) << result.error().text();
+}
+
+TEST(SolverProcess, that_cannot_be_started_is_an_error) {
+  const auto result = solve_in_process({.program = "/nonexistent"})({"recording"}, {}, {});
+  ASSERT_FALSE(result.ok());
+  EXPECT_NE(result.error().what.find("cannot start"), std::string::npos) << result.error().text();
+}
+
+}  // namespace
+}  // namespace odomcalib
