@@ -30,7 +30,7 @@ TEST(ClosedForm, recovers_the_truth_from_noise_free_motions) {
   expect_parameters(result.value().parameters, kTruth, 1e-9);
 }
 
-TEST(ClosedForm, swapped_wheels_swap_the_named_parameters) {
+TEST(ClosedForm, S3_15_swapped_wheels_swap_the_named_parameters) {
   auto motions = random_motions(kTruth, 200, kSeed);
   for (wheels::WheelMotion& m : motions) {
     std::swap(m.left, m.right);
@@ -43,7 +43,7 @@ TEST(ClosedForm, swapped_wheels_swap_the_named_parameters) {
   EXPECT_NEAR(result.value().parameters.right_radius, kTruth.left_radius, 1e-9);
 }
 
-TEST(ClosedForm, scaling_all_lengths_scales_the_answer) {
+TEST(ClosedForm, SD_03_scaling_all_lengths_scales_the_answer) {
   // The eigenvector must be chosen by index, not by the size of its eigenvalue.
   auto motions = random_motions(kTruth, 200, kSeed);
   for (wheels::WheelMotion& m : motions) {
@@ -66,7 +66,7 @@ TEST(ClosedForm, slipping_samples_change_the_answer_by_less_than_a_sigma) {
   EXPECT_LT(std::abs(change), std::sqrt(clean.value().covariance(0, 0)));
 }
 
-TEST(ClosedForm, predicted_deviations_agree_with_the_scatter) {
+TEST(ClosedForm, S3_13_predicted_deviations_agree_with_the_scatter) {
   constexpr int kRuns = 200;
   Eigen::Matrix<double, 6, 1> squares = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 1> predicted = Eigen::Matrix<double, 6, 1>::Zero();
@@ -106,7 +106,7 @@ struct Published {
 class CensiTuples : public ::testing::TestWithParam<Published> {};
 
 // Censi et al., T-RO 2013; reference output of the authors, six digits.
-TEST_P(CensiTuples, give_the_published_values) {
+TEST_P(CensiTuples, S3_09_give_the_published_values) {
   const Published& expected = GetParam();
   ODOMCALIB_NEEDS_SHARED("khepera-censi");
   RobotDescription unknown;

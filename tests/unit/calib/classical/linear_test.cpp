@@ -30,14 +30,14 @@ Eigen::Matrix3d some_matrix() {
   return x;
 }
 
-TEST(Linear, recovers_the_matrix_from_noise_free_data) {
+TEST(Linear, S0_01_recovers_the_matrix_from_noise_free_data) {
   const auto result = solve_linear(generic_pairs(some_matrix(), 1000));
   ASSERT_TRUE(result.ok());
   EXPECT_LT((result.value().matrix - some_matrix()).norm(), 1e-9);
   EXPECT_LE(result.value().orthogonality, 1e-10);
 }
 
-TEST(Linear, three_generic_samples_are_exact_and_two_are_refused) {
+TEST(Linear, S0_05_S0_15_three_generic_samples_are_exact_and_two_are_refused) {
   const auto exact = solve_linear(generic_pairs(some_matrix(), 3));
   ASSERT_TRUE(exact.ok());
   EXPECT_LT((exact.value().matrix - some_matrix()).norm(), 1e-9);
@@ -46,7 +46,7 @@ TEST(Linear, three_generic_samples_are_exact_and_two_are_refused) {
   EXPECT_NE(refused.error().what.find("underdetermined"), std::string::npos);
 }
 
-TEST(Linear, straight_lines_alone_are_refused_and_name_what_is_missing) {
+TEST(Linear, S0_05_straight_lines_alone_are_refused_and_name_what_is_missing) {
   std::vector<IncrementPair> pairs(1000);
   for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].odometry.x = pairs[i].observed.x = 0.1;
   const auto result = solve_linear(pairs);
@@ -54,7 +54,7 @@ TEST(Linear, straight_lines_alone_are_refused_and_name_what_is_missing) {
   EXPECT_NE(result.error().what.find("rotation"), std::string::npos);
 }
 
-TEST(Linear, refuses_values_that_are_not_finite) {
+TEST(Linear, S0_14_refuses_values_that_are_not_finite) {
   auto pairs = generic_pairs(some_matrix(), 10);
   pairs[3].observed.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(solve_linear(pairs).ok());
@@ -72,7 +72,7 @@ class LinearOnCensiTuples : public ::testing::TestWithParam<Printed> {};
 
 // Reference values computed independently on the same tuples with nominal radius 20.5 mm and track
 // width 88.41 mm.
-TEST_P(LinearOnCensiTuples, agrees_to_the_printed_digits) {
+TEST_P(LinearOnCensiTuples, S1_08_agrees_to_the_printed_digits) {
   const Printed& expected = GetParam();
   ODOMCALIB_NEEDS_SHARED("khepera-censi");
   RobotDescription unknown;

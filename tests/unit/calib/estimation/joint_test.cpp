@@ -74,7 +74,7 @@ TEST(Joint, ten_percent_gross_errors_move_the_answer_by_less_than_two_sigma) {
   EXPECT_GT(fit.value().discarded, f.pairs.size() / 20);
 }
 
-TEST(Joint, finds_a_delay_of_fifty_milliseconds_within_two) {
+TEST(Joint, S1_13_finds_a_delay_of_fifty_milliseconds_within_two) {
   Fixture f(1e-3, kSeed, 0.05);
   const std::vector<measurement::FitData> data = {{&f.model, f.pairs}};
   const vehicle::EffectList effects = {terms::find_effect("time_offset")};

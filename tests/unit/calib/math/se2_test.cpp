@@ -24,7 +24,7 @@ class Se2 : public ::testing::Test {
   std::uniform_real_distribution<double> angle_{-4.0, 4.0};
 };
 
-TEST_F(Se2, composes_associatively) {
+TEST_F(Se2, S3_03_composes_associatively) {
   for (int i = 0; i < 1000; ++i) {
     const Pose a = random_pose();
     const Pose b = random_pose();
@@ -51,7 +51,7 @@ TEST_F(Se2, S2_26_poses_and_homogeneous_matrices_say_the_same) {
   }
 }
 
-TEST_F(Se2, inverse_cancels_on_both_sides) {
+TEST_F(Se2, S3_04_inverse_cancels_on_both_sides) {
   for (int i = 0; i < 1000; ++i) {
     const Pose a = random_pose();
     expect_same(compose(a, inverse(a)), Pose{}, 1e-12);
@@ -67,7 +67,7 @@ TEST_F(Se2, between_undoes_compose) {
   }
 }
 
-TEST_F(Se2, conjugation_equals_the_three_motion_form) {
+TEST_F(Se2, S3_02_conjugation_equals_the_three_motion_form) {
   for (int i = 0; i < 1000; ++i) {
     const Pose motion = random_pose();
     const Pose mount = random_pose();
