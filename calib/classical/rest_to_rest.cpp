@@ -27,6 +27,25 @@ double arc_length(double chord, double yaw) {
   return std::abs(half) < 1e-6 ? chord : chord * half / std::sin(half);
 }
 
+/// @param error of the mean that repetitions do not show
+math::Repeated with_reference(math::Repeated values, double error) {
+  if (values.std >= 0.0) values.std = std::hypot(values.std, error);
+  return values;
+}
+
+math::Repeated times(math::Repeated values, double factor) {
+  values.mean *= factor;
+  values.spread *= factor;
+  if (values.std > 0.0) values.std *= factor;
+  return values;
+}
+
+double mean_distance(std::span<const StraightMove> moves) {
+  double sum = 0.0;
+  for (const StraightMove& move : moves) sum += move.distance;
+  return sum / static_cast<double>(moves.size());
+}
+
 std::optional<Error> unfit(const StraightMove& move) {
   if (!(move.distance >= kLeastDistance))
     return refused("a move of less than 0.2 m", "straight method", "drive farther, better a metre");
@@ -115,7 +134,7 @@ bool is_square(const SquareRun& run, const wheels::BaseParameters& used, double 
 }  // namespace
 
 Result<StraightProposal> propose_radii(std::span<const StraightMove> moves,
-                                       const wheels::BaseParameters& used) {
+                                       const wheels::BaseParameters& used, const ReferenceError& reference) {
   if (moves.empty())
     return Error{ErrorCode::empty, "no straight move", "straight method", "odomcalibctl straight"};
   std::vector<double> scale, left, right, ratio;
@@ -133,25 +152,25 @@ Result<StraightProposal> propose_radii(std::span<const StraightMove> moves,
     right.push_back((way + ahead) / turn_right);
     ratio.push_back(right.back() / left.back());
   }
-  StraightProposal proposal{math::repeated(scale), math::repeated(left), math::repeated(right), std::nullopt};
-  if (headings) {
-    proposal.diameters = math::repeated(ratio);
+  // Relative to the mean way: of the distance, and of half the difference of both wheels' ways.
+  const double way = mean_distance(moves);
+  const double of_scale = reference.position / way;
+  const double of_half_difference = used.track_width * reference.yaw / (2.0 * way);
+  StraightProposal proposal{with_reference(math::repeated(scale), of_scale), {}, {}, std::nullopt};
+  if (!headings) {
+    proposal.left = times(proposal.scale, used.left_radius);
+    proposal.right = times(proposal.scale, used.right_radius);
     return proposal;
   }
-  const auto scaled = [&](double radius) {
-    math::Repeated out = proposal.scale;
-    out.mean *= radius;
-    out.spread *= radius;
-    if (out.std > 0.0) out.std *= radius;
-    return out;
-  };
-  proposal.left = scaled(used.left_radius);
-  proposal.right = scaled(used.right_radius);
+  const double of_wheel = std::hypot(of_scale, of_half_difference);
+  proposal.left = with_reference(math::repeated(left), of_wheel * used.left_radius);
+  proposal.right = with_reference(math::repeated(right), of_wheel * used.right_radius);
+  proposal.diameters = with_reference(math::repeated(ratio), 2.0 * of_half_difference);
   return proposal;
 }
 
-Result<SpinProposal> propose_track_width(std::span<const SpinMove> moves,
-                                         const wheels::BaseParameters& used) {
+Result<SpinProposal> propose_track_width(std::span<const SpinMove> moves, const wheels::BaseParameters& used,
+                                         const ReferenceError& reference) {
   if (moves.empty())
     return Error{ErrorCode::empty, "no turn on the spot", "spin method", "odomcalibctl spin"};
   std::vector<double> factor, width;
@@ -165,7 +184,11 @@ Result<SpinProposal> propose_track_width(std::span<const SpinMove> moves,
       return refused("a turn against that of the wheels", "spin method", "odomcalibctl check --nudge");
     factor.push_back(width.back() / used.track_width);
   }
-  return SpinProposal{math::repeated(factor), math::repeated(width)};
+  double turned = 0.0;
+  for (const SpinMove& move : moves) turned += std::abs(move.turn) / static_cast<double>(moves.size());
+  const double of_turn = reference.yaw / turned;
+  return SpinProposal{with_reference(math::repeated(factor), of_turn),
+                      with_reference(math::repeated(width), of_turn * used.track_width)};
 }
 
 Result<SquareProposal> propose_from_squares(std::span<const SquarePair> pairs,

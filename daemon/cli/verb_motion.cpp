@@ -17,7 +17,6 @@
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/motion_call.hpp"
-#include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/verbs.hpp"
@@ -33,31 +32,16 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct Options {
   Consent consent;
-  double distance = 1.0, turns = 1.0;
-  std::string direction = "both", file, id;
+  std::string file, id;
   bool quick = false, one_drive = false, nudge = false;
   std::vector<std::string> assignments;
 };
-
-std::string describe_move(const ordered_json& move) {
-  const auto& told = move["odometry"];
-  std::string text = fmt::format("{}: odometry {:.4f} m, {:.3f} deg", move.value("move", ""),
-                                 std::hypot(told[0].get<double>(), told[1].get<double>()),
-                                 told[2].get<double>() * 180.0 / std::numbers::pi);
-  if (!move["error"].is_object()) return text + "; no lidar reference";
-  return text + fmt::format("; error {:+.1f} mm, {:+.3f} deg",
-                            1000.0 * move["error"]["distance"].get<double>(),
-                            move["error"]["yaw"].get<double>() * 180.0 / std::numbers::pi);
-}
 
 int print_result(const Session& session, const Result<ordered_json>& result) {
   if (!result) return report_error(result.error(), session.json);
   const ordered_json& body = result.value();
   if (session.json != JsonMode::off) {
     print_json(body.dump(), session.json);
-  } else if (body.contains("moves") && body["moves"].is_array()) {
-    for (const auto& move : body["moves"]) std::cout << describe_move(move) << '\n';
-    std::cout << "recording " << body.value("recording", "") << '\n';
   } else if (body.contains("steps") || body.contains("parameters")) {
     std::cout << to_text(describe_write_back(body), session.legend);
   } else {
@@ -197,21 +181,6 @@ void add_motions(CLI::App& app, Session& session) {
   add_action(app, session, options, "check", "Whether everything needed for a calibration is there", check)
       ->add_flag("--nudge", options->nudge,
                  "move by 5 cm and 15 degrees and back: are wheels, counts and lidar wired as configured?");
-  add_action(app, session, options, "straight", "Drive straight and back, odometry against lidar",
-             [](const Session& s, const Options& o) {
-               return print_result(s, run_method(s, o.consent, "Straight", {{"distance", o.distance}}));
-             })
-      ->add_option("--distance", options->distance, "m, negative: backwards")
-      ->check(finite())
-      ->capture_default_str();
-  auto* spin =
-      add_action(app, session, options, "spin", "Turn on the spot, odometry against lidar",
-                 [](const Session& s, const Options& o) {
-                   return print_result(
-                       s, run_method(s, o.consent, "Spin", {{"turns", o.turns}, {"direction", o.direction}}));
-                 });
-  spin->add_option("--turns", options->turns, "full turns")->check(finite())->capture_default_str();
-  spin->add_option("--direction", options->direction)->check(CLI::IsMember({"ccw", "cw", "both"}));
   auto* all =
       add_action(app, session, options, "calibrate", "Straight, spin and pattern, then solve", calibrate);
   all->add_flag("--quick", options->quick, "a shorter pattern");

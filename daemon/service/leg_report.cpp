@@ -1,5 +1,6 @@
 #include "daemon/service/leg_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,27 +15,45 @@ std::array<double, 3> lidar_pose(const std::optional<Calibration>& applied, cons
           applied->parameter("lidar_yaw").value_or(0.0)};
 }
 
+/// Base motion from rest to rest by the lidar, the mean over pairs of scans; nullopt when no pair matches.
+std::optional<routines::Pose> seen_motion(const Bench& bench, const Leg& from, const Leg& to,
+                                          const routines::Pose& told) {
+  const auto mount = lidar_pose(bench.applied.get(), bench.config);
+  const std::size_t pairs = std::min(from.scans_before.size(), to.scans_after.size());
+  routines::Pose sum;
+  double count = 0.0;
+  for (std::size_t k = 0; k < pairs; ++k) {
+    const auto seen = bench.calibrator.match(from.scans_before[k], to.scans_after[k], told, mount);
+    if (!seen) continue;
+    // The lidar cannot count full turns: the nearest to what the odometry says.
+    sum = {sum.x + seen->x, sum.y + seen->y, sum.yaw + told.yaw + routines::wrapped(seen->yaw - told.yaw)};
+    ++count;
+  }
+  if (count == 0.0) return std::nullopt;
+  return routines::Pose{sum.x / count, sum.y / count, sum.yaw / count};
+}
+
 // Base motion between two moments at rest, in the frame of the first.
 void add_motion(const Bench& bench, const Leg& from, const Leg& to, ordered_json& body) {
   const auto told = relative(from.before, to.after);
   body["odometry"] = json_of(told);
   body["lidar"] = nullptr;
   body["error"] = nullptr;
-  if (!bench.calibrator.match || !from.scan_before || !to.scan_after) return;
-  auto seen = bench.calibrator.match(*from.scan_before, *to.scan_after, told,
-                                     lidar_pose(bench.applied.get(), bench.config));
+  if (!bench.calibrator.match) return;
+  const auto seen = seen_motion(bench, from, to, told);
   if (!seen) return;
-  // The lidar cannot count full turns: the nearest to what the odometry says.
-  const double difference = routines::wrapped(seen->yaw - told.yaw);
-  seen->yaw = told.yaw + difference;
   body["lidar"] = json_of(*seen);
   body["error"] = {{"distance", std::hypot(told.x, told.y) - std::hypot(seen->x, seen->y)},
-                   {"yaw", -difference}};
+                   {"yaw", told.yaw - seen->yaw}};
 }
 
-ordered_json leg_report(const Bench& bench, const Leg& leg) {
-  ordered_json body = {{"move", leg.move.name}, {"begin", leg.begin}, {"end", leg.end}};
-  add_motion(bench, leg, leg, body);
+/// @param is_matched false where nobody needs the lidar's view of single moves, which takes the loop some 50
+/// ms each
+ordered_json leg_report(const Bench& bench, const Leg& leg, bool is_matched) {
+  ordered_json body = {{"move", leg.move.name}, {"begin", leg.begin},
+                       {"end", leg.end},        {"odometry", json_of(relative(leg.before, leg.after))},
+                       {"lidar", nullptr},      {"error", nullptr}};
+  if (is_matched) add_motion(bench, leg, leg, body);
   body["wheels"] = wheel_turns(leg, bench.drive.robot().ticks_per_rev);
   return body;
 }
@@ -57,7 +76,7 @@ std::array<double, 2> wheel_turns(const Leg& leg, double ticks_per_rev) {
 
 ordered_json moves_report(const Bench& bench, const std::vector<Leg>& legs, std::size_t moves_in_round) {
   ordered_json body = {{"moves", ordered_json::array()}, {"robot", lengths(bench.drive.robot())}};
-  for (const Leg& leg : legs) body["moves"].push_back(leg_report(bench, leg));
+  for (const Leg& leg : legs) body["moves"].push_back(leg_report(bench, leg, moves_in_round == 0));
   if (moves_in_round == 0) return body;
   body["rounds"] = ordered_json::array();
   for (std::size_t k = 0; k + moves_in_round <= legs.size(); k += moves_in_round) {

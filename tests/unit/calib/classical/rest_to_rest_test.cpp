@@ -100,7 +100,7 @@ TEST(StraightMoves, S1_05_the_stated_deviation_holds_however_few_repetitions) {
       std::vector<StraightMove> moves(static_cast<std::size_t>(repetitions),
                                       {{10.0, 10.0}, 0.75, std::nullopt});
       for (StraightMove& move : moves) move.distance += noise(engine);
-      const math::Repeated scale = propose_radii(moves, kNominal).value().scale;
+      const math::Repeated scale = propose_radii(moves, kNominal, {}).value().scale;
       if (std::abs(scale.mean - 1.0) < 1.96 * scale.std) ++inside;
     }
     EXPECT_NEAR(inside / static_cast<double>(kTrials), 0.95, 0.015) << repetitions << " repetitions";
