@@ -206,8 +206,13 @@ Result<SquareProposal> propose_from_squares(std::span<const SquarePair> pairs,
     diameters.push_back(errors(0));
     track.push_back(errors(1));
   }
-  SquareProposal proposal{math::repeated(diameters), math::repeated(track), by_formula(pairs, used, side),
-                          0.0, 0.0};
+  // An error of the heading at the end is one of eight quarter turns and of the bend of eight sides; one of
+  // the position is about as much over a side.
+  const double at_end = std::hypot(kLidarAtRest.yaw, kLidarAtRest.position / side);
+  SquareProposal proposal;
+  proposal.diameters = with_reference(math::repeated(diameters), used.track_width * at_end / (4.0 * side));
+  proposal.track = with_reference(math::repeated(track), at_end / (2.0 * math::kPi));
+  proposal.formula = by_formula(pairs, used, side);
   proposal.farthest_before = farthest(pairs, used);
   proposal.farthest_after =
       farthest(pairs, with_errors(used, {1.0, proposal.diameters.mean, proposal.track.mean}));
