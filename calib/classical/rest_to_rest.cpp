@@ -15,7 +15,10 @@ constexpr double kFarEnd = 0.5;  ///< of a side: a drive that ends farther from 
 constexpr int kMostSteps = 20;   ///< Gauss-Newton from E_d = E_b = 1 takes three or four
 constexpr double kSmallStep = 1e-12;
 
-using Unknowns = Eigen::Vector2d;  ///< E_d, E_b
+/// E_d, E_b, and by how much the lidar sits elsewhere than stated: m, m, rad in the frame of the base.
+using Unknowns = Eigen::Matrix<double, 5, 1>;
+/// Of each whitened value; two ends and what is known of the lidar's place.
+using Misses = Eigen::Matrix<double, 9, 1>;
 
 Error refused(const std::string& what, const std::string& where, const std::string& remedy) {
   return {ErrorCode::refused, what, where, remedy};
@@ -65,43 +68,57 @@ math::Pose end_of(const SquareRun& run, const wheels::BaseParameters& base) {
   return pose;
 }
 
-/// Where the robot ended, seen from where the wheels say: m, m, and the heading as m at the end of a side.
-Eigen::Vector3d miss(const SquareRun& run, const wheels::BaseParameters& base, double side) {
-  const math::Pose claimed = end_of(run, base);
-  return {run.end.x - claimed.x, run.end.y - claimed.y, side * math::wrap_angle(run.end.yaw - claimed.yaw)};
+/// Where the robot was seen to end, from where the wheels say that it would be seen, over the lidar's error.
+Eigen::Vector3d miss(const SquareRun& run, const wheels::BaseParameters& base,
+                     const math::Pose& moved_lidar) {
+  const math::Pose claimed = conjugate(end_of(run, base), moved_lidar);
+  return {(run.end.x - claimed.x) / kLidarAtRest.position, (run.end.y - claimed.y) / kLidarAtRest.position,
+          math::wrap_angle(run.end.yaw - claimed.yaw) / kLidarAtRest.yaw};
 }
 
-Eigen::Matrix<double, 6, 1> miss(const SquarePair& pair, const wheels::BaseParameters& used,
-                                 const Unknowns& errors, double side) {
-  const wheels::BaseParameters base = with_errors(used, {1.0, errors(0), errors(1)});
-  Eigen::Matrix<double, 6, 1> out;
-  out << miss(pair.ccw, base, side), miss(pair.cw, base, side);
+Misses misses(const SquarePair& pair, const wheels::BaseParameters& used, const Unknowns& x) {
+  const wheels::BaseParameters base = with_errors(used, {1.0, x(0), x(1)});
+  const math::Pose moved_lidar{x(2), x(3), x(4)};
+  Misses out;
+  out << miss(pair.ccw, base, moved_lidar), miss(pair.cw, base, moved_lidar),
+      x.segment<2>(2) / kLidarByRuler.position, x(4) / kLidarByRuler.yaw;
   return out;
 }
 
-/// Gauss-Newton with central differences: two unknowns, and nearly linear.
-Unknowns solve_exactly(const SquarePair& pair, const wheels::BaseParameters& used, double side) {
+struct ExactErrors {
+  Unknowns values = Unknowns::Zero();
+  Unknowns std =
+      Unknowns::Zero();  ///< by the lidar's error at rest and its place, none of which repetitions show
+};
+
+/// Gauss-Newton with central differences: few unknowns, and nearly linear.
+ExactErrors solve_exactly(const SquarePair& pair, const wheels::BaseParameters& used) {
   constexpr double kStep = 1e-6;
-  Unknowns errors(used.right_radius / used.left_radius, 1.0);
+  Unknowns x = Unknowns::Zero();
+  x.head<2>() << used.right_radius / used.left_radius, 1.0;
+  Eigen::Matrix<double, 9, 5> jacobian;
   for (int k = 0; k < kMostSteps; ++k) {
-    Eigen::Matrix<double, 6, 2> jacobian;
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < x.size(); ++i) {
       const Unknowns step = kStep * Unknowns::Unit(i);
-      jacobian.col(i) =
-          (miss(pair, used, errors + step, side) - miss(pair, used, errors - step, side)) / (2.0 * kStep);
+      jacobian.col(i) = (misses(pair, used, x + step) - misses(pair, used, x - step)) / (2.0 * kStep);
     }
-    const Unknowns change = jacobian.householderQr().solve(-miss(pair, used, errors, side));
-    errors += change;
+    const Unknowns change = jacobian.householderQr().solve(-misses(pair, used, x));
+    x += change;
     if (change.norm() < kSmallStep) break;
   }
-  return errors;
+  const Eigen::Matrix<double, 5, 5> information = jacobian.transpose() * jacobian;
+  return {x, information.inverse().diagonal().cwiseSqrt()};
 }
 
 /// Mean displacement of the true end from the claimed one.
 Eigen::Vector2d mean_miss(std::span<const SquarePair> pairs, SquareRun SquarePair::*way,
                           const wheels::BaseParameters& base) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const SquarePair& pair : pairs) sum += miss(pair.*way, base, 0.0).head<2>();
+  for (const SquarePair& pair : pairs) {
+    const SquareRun& run = pair.*way;
+    const math::Pose claimed = end_of(run, base);
+    sum += Eigen::Vector2d(run.end.x - claimed.x, run.end.y - claimed.y);
+  }
   return sum / static_cast<double>(pairs.size());
 }
 
@@ -186,9 +203,9 @@ Result<SpinProposal> propose_track_width(std::span<const SpinMove> moves, const 
   }
   double turned = 0.0;
   for (const SpinMove& move : moves) turned += std::abs(move.turn) / static_cast<double>(moves.size());
-  const double of_turn = reference.yaw / turned;
-  return SpinProposal{with_reference(math::repeated(factor), of_turn),
-                      with_reference(math::repeated(width), of_turn * used.track_width)};
+  const double unseen = std::hypot(reference.yaw / turned, kDiametersOfStraight);
+  return SpinProposal{with_reference(math::repeated(factor), unseen),
+                      with_reference(math::repeated(width), unseen * used.track_width)};
 }
 
 Result<SquareProposal> propose_from_squares(std::span<const SquarePair> pairs,
@@ -197,21 +214,19 @@ Result<SquareProposal> propose_from_squares(std::span<const SquarePair> pairs,
     return Error{ErrorCode::empty, "no square in both directions", "square method",
                  "odomcalibctl straight --square"};
   std::vector<double> diameters, track;
+  ExactErrors errors;
   for (const SquarePair& pair : pairs) {
     if (!is_square(pair.ccw, used, side) || !is_square(pair.cw, used, side))
       return refused("a drive that does not end near its start after four sides and four turns",
                      "square method",
                      "drive straight and spin first: the square needs lengths that are about right");
-    const Unknowns errors = solve_exactly(pair, used, side);
-    diameters.push_back(errors(0));
-    track.push_back(errors(1));
+    errors = solve_exactly(pair, used);
+    diameters.push_back(errors.values(0));
+    track.push_back(errors.values(1));
   }
-  // An error of the heading at the end is one of eight quarter turns and of the bend of eight sides; one of
-  // the position is about as much over a side.
-  const double at_end = std::hypot(kLidarAtRest.yaw, kLidarAtRest.position / side);
   SquareProposal proposal;
-  proposal.diameters = with_reference(math::repeated(diameters), used.track_width * at_end / (4.0 * side));
-  proposal.track = with_reference(math::repeated(track), at_end / (2.0 * math::kPi));
+  proposal.diameters = with_reference(math::repeated(diameters), errors.std(0));
+  proposal.track = with_reference(math::repeated(track), std::hypot(errors.std(1), kDiametersOfStraight));
   proposal.formula = by_formula(pairs, used, side);
   proposal.farthest_before = farthest(pairs, used);
   proposal.farthest_after =

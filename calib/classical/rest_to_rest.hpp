@@ -23,6 +23,10 @@ struct ReferenceError {
 inline constexpr ReferenceError kLidarAtRest{3e-4, 2e-4};
 /// A tape read to a millimetre, a mark on the floor read to a quarter of a degree (uniform within it).
 inline constexpr ReferenceError kTapeAndMark{3e-4, 1.3e-3};
+/// Where the lidar sits, as a ruler and the eye tell before a calibration does.
+inline constexpr ReferenceError kLidarByRuler{0.02, 0.05};
+/// Of the common scale of diameters that a straight metre gave, by either reference: relative.
+inline constexpr double kDiametersOfStraight = 3e-4;
 
 /// Wheel rotations of one move from rest to rest, rad, forward positive.
 struct WheelTurns {
@@ -62,7 +66,8 @@ struct SpinProposal {
 };
 
 /// Corrected track width: what the rims rolled against each other over the true angle.
-/// @param used diameters that are right already: the track width inherits their error
+/// @param used diameters that are right already, as a straight metre leaves them: the track width inherits
+/// their error, and its deviation holds that of kDiametersOfStraight
 /// Errors: refused when a turn is less than a quarter of one.
 Result<SpinProposal> propose_track_width(std::span<const SpinMove> moves, const wheels::BaseParameters& used,
                                          const ReferenceError& reference = kLidarAtRest);
@@ -88,9 +93,10 @@ struct SquareProposal {
 
 /// UMBmark: E_d and E_b from where squares driven both ways end, each pair of drives by itself. E_s does not
 /// show in a closed figure; the scale of `used` stands.
-/// Exact: E_d and E_b with which dead reckoning ends where the robot did, least squares over position and
-/// heading (headings count as a displacement at the end of a side). Formula: eq. 11 to 17 of the paper, mean
-/// of its x and y forms.
+/// Exact: E_d and E_b with which dead reckoning ends where the lidar saw the robot end, least squares over
+/// positions and headings, each by its deviation. The lidar may sit elsewhere than stated (kLidarByRuler):
+/// ends a decimetre away are seen turned and shifted by millimetres then. Formula: eq. 11 to 17 of the paper,
+/// mean of its x and y forms.
 /// @param side nominal length of a side, m
 /// Errors: refused without a pair, or when a run is no square.
 Result<SquareProposal> propose_from_squares(std::span<const SquarePair> pairs,

@@ -245,6 +245,9 @@ Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<doub
   proposal.used = turns.size();
   proposal.left_out = driven.moves.size() - turns.size();
   proposal.settled = is_settled(track.value().track);
+  proposal.remarks.push_back(
+      fmt::format("the diameters in force are taken as right to {:.2f} %, as straight leaves them",
+                  100.0 * calib::classical::kDiametersOfStraight));
   remark_few(proposal);
   return proposal;
 }
