@@ -15,6 +15,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kSlowest = 150.0;     // s that a motion of three repetitions may take
+constexpr double kTyping = 1.0;        // s that a person takes at least for the next command
 constexpr double kTruthWritten = 1.5;  // s after which the simulator's file tells where it stands
 
 class LengthsInRealTime : public ::testing::Test {
@@ -27,6 +28,7 @@ class LengthsInRealTime : public ::testing::Test {
   /// What the command prints; it must succeed. The axes are off by then, as they are when a person types.
   std::string call(const std::vector<std::string>& arguments) {
     EXPECT_TRUE(wait_until([this] { return both_.ready(); }, 20.0)) << both_.status();
+    (void)wait_until([] { return false; }, kTyping, 0.1);
     const auto client = both_.run(arguments);
     EXPECT_EQ(client->wait(kSlowest), 0) << arguments[0] << ": " << both_.output();
     return both_.output();

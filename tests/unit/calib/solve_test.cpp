@@ -35,7 +35,7 @@ void expect_agreement(const Quantity& ours, double reference, double reference_s
       << reference_std;
 }
 
-TEST(Solve, a_recording_without_scans_is_refused_with_the_cause) {
+TEST(Solve, SD_11_a_recording_without_scans_is_refused_with_the_cause) {
   Recording recording;
   recording.name = "no-lidar";
   recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};

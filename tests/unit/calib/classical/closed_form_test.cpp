@@ -156,6 +156,18 @@ TEST(ClosedForm, S3_05_the_laser_moves_as_the_conjugate_of_the_base) {
   }
 }
 
+TEST(ClosedForm, SD_13_a_drive_backwards_calibrates_as_one_forwards) {
+  auto motions = random_motions(kTruth, 200, kSeed);
+  for (wheels::WheelMotion& m : motions) {
+    m.left = -std::abs(m.left);
+    m.right = -std::abs(m.right);
+    m.sensor_motion = odomcalib::testing::sensor_motion_by_hand(kTruth, m.left, m.right);
+  }
+  const auto result = solve_closed_form(motions, {0, 0.01});
+  ASSERT_TRUE(result.ok()) << result.error().text();
+  expect_parameters(result.value().parameters, kTruth, 1e-9);
+}
+
 TEST(ClosedForm, SD_07_the_first_and_the_last_sample_count) {
   auto motions = random_motions(kTruth, 100, kSeed);
   const auto whole = solve_closed_form(motions, {0, 0.01}).value().parameters;
@@ -175,7 +187,7 @@ struct Published {
 class CensiTuples : public ::testing::TestWithParam<Published> {};
 
 // Censi et al., T-RO 2013; reference output of the authors, six digits.
-TEST_P(CensiTuples, S3_09_give_the_published_values) {
+TEST_P(CensiTuples, S1_15_S3_08_S3_09_give_the_published_values) {
   const Published& expected = GetParam();
   ODOMCALIB_NEEDS_SHARED("khepera-censi");
   RobotDescription unknown;

@@ -64,6 +64,29 @@ TEST(GeometryErrors, S1_01_factors_and_lengths_say_the_same) {
   }
 }
 
+/// What wheels that are commanded a metre, or a turn, do on a robot with these errors.
+math::Pose commanded_metre(const wheels::BaseParameters& nominal, const GeometryErrors& errors) {
+  const double turn = 1.0 / nominal.left_radius;
+  return sensor_motion_by_hand(with_errors(nominal, errors), turn, turn);
+}
+double commanded_turn(const wheels::BaseParameters& nominal, const GeometryErrors& errors) {
+  const double wheel = math::kPi * nominal.track_width / nominal.left_radius;
+  return sensor_motion_by_hand(with_errors(nominal, errors), -wheel, wheel).yaw / (2.0 * math::kPi);
+}
+
+TEST(GeometryErrors, S1_02_each_has_its_own_effect_on_a_metre_and_on_a_turn) {
+  const wheels::BaseParameters nominal{0.075, 0.075, 0.3, {}};
+  EXPECT_NEAR(commanded_metre(nominal, {1.01, 1.0, 1.0}).x, 1.01, 1e-12);
+  EXPECT_NEAR(commanded_turn(nominal, {1.01, 1.0, 1.0}), 1.01, 1e-12);
+  EXPECT_NEAR(commanded_metre(nominal, {1.0, 1.0, 1.01}).x, 1.0, 1e-12);
+  EXPECT_NEAR(commanded_metre(nominal, {1.0, 1.0, 1.01}).yaw, 0.0, 1e-12);
+  EXPECT_NEAR(commanded_turn(nominal, {1.0, 1.0, 1.01}), 1.0 / 1.01, 1e-12);
+  const double bent = 2.0 * (1.01 - 1.0) / ((1.01 + 1.0) * 0.3);
+  EXPECT_NEAR(commanded_metre(nominal, {1.0, 1.01, 1.0}).yaw / bent, 1.0, 1e-12);
+  EXPECT_NEAR(bent, 0.0332, 5e-5);
+  EXPECT_NEAR(commanded_turn(nominal, {1.0, 1.01, 1.0}), 1.0, 1e-12);
+}
+
 TEST(StraightMoves, S1_03_one_repetition_gives_both_radii) {
   for (const double way : {13.0, -13.0}) {
     const std::vector<StraightMove> moves = {straight_move(way, way)};
@@ -159,6 +182,22 @@ TEST(Squares, S1_07_both_ways_separate_unequal_wheels_from_the_track) {
       EXPECT_LT(proposal.value().farthest_after, 0.1 * proposal.value().farthest_before);
     }
   }
+}
+
+// A lidar that is turned and shifted from where it is said to be sees ends that lie apart somewhere else.
+TEST(Squares, a_lidar_that_sits_elsewhere_spoils_nothing) {
+  const wheels::BaseParameters truth = with_errors(kNominal, {1.0, 0.993, 1.03});
+  SquarePair pair = square_pair(truth, 1.0);
+  const math::Pose moved{0.015, -0.01, 0.04};
+  for (SquareRun* run : {&pair.ccw, &pair.cw}) {
+    const double yaw = run->end.yaw;
+    run->end = conjugate(run->end, moved);
+    run->end.yaw = yaw;
+  }
+  const auto proposal = propose_from_squares(std::vector{pair}, kNominal, 1.0);
+  ASSERT_TRUE(proposal.ok()) << proposal.error().text();
+  EXPECT_NEAR(proposal.value().diameters.mean, 0.993, 2e-6);
+  EXPECT_NEAR(proposal.value().track.mean, 1.03, 2e-6);
 }
 
 TEST(Squares, what_does_not_end_near_its_start_is_refused) {
