@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Checks docs/evidence/source-rows.md: every row has a test whose name holds its id, or a stated reason.
 
-Usage: check_rows.py PROJECT_ROOT              the table against the tests of the project
-       check_rows.py PROJECT_ROOT SOURCES.md   also: every row of the list is in the table; exit status 77 when the list is not there
-       check_rows.py --self-test               shows that each rule accepts what is right and rejects what is wrong
+Usage: check_rows.py PROJECT_ROOT          the table against the tests of the project
+       check_rows.py --list PROJECT_ROOT   also: every row of SOURCES.md in $ODOMCALIB_SHARED (default ../shared beside the project) is in
+                                           the table; exit status 77 when that file is not there
+       check_rows.py --self-test           shows that each rule accepts what is right and rejects what is wrong
 """
 
+import os
 import pathlib
 import re
 import sys
@@ -106,10 +108,10 @@ def main():
     if "--self-test" in sys.argv:
         self_test()
         return 0
-    root = pathlib.Path(sys.argv[1]).resolve()
+    root = pathlib.Path(sys.argv[-1]).resolve()
     wanted = []
-    if len(sys.argv) > 2:
-        rows = pathlib.Path(sys.argv[2])
+    if "--list" in sys.argv:
+        rows = pathlib.Path(os.environ.get("ODOMCALIB_SHARED", root.parent / "shared")) / "SOURCES.md"
         if not rows.is_file():
             print(f"SKIPPED: no list of the source documents at {rows}; ODOMCALIB_SHARED is the folder that holds it")
             return SKIPPED

@@ -88,7 +88,7 @@ TEST(ClosedForm, S3_13_predicted_deviations_agree_with_the_scatter) {
   }
   // The closed form is unweighted in x, y, so that it may scatter a little more than the bound.
   for (int k = 0; k < 6; ++k)
-    EXPECT_NEAR(std::sqrt(squares(k) / predicted(k)), 1.0, 0.3) << "parameter " << k;
+    EXPECT_NEAR(std::sqrt(squares(k) / predicted(k)), 1.0, 0.2) << "parameter " << k;
 }
 
 /// Wheels that always turn in one proportion: 1 straight, -1 on the spot.
