@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -93,6 +94,25 @@ Section methods_of(const Calibration& calibration) {
     if (!method.refused) used.push_back(fmt::format("{} of {}", method.used, method.used + method.discarded));
   if (used.size() > 1) section.table.rows.push_back(used);
   if (section.table.head.size() < 2) section.table = {};
+  return section;
+}
+
+/// The matrix that takes an increment of odometry to the sensor's, both in the frame of the base.
+Section linear_of(const std::optional<LinearCorrection>& linear) {
+  if (!linear) return {"", {}, {}};
+  Section section{"Linear correction of an increment of odometry", {}, {{"", "x", "y", "yaw"}, {}}};
+  const Display length = display_of("m"), angle = display_of("rad");
+  section.lines = {
+      fmt::format("leaves {:.2f} {}, {:.2f} {}, {:.3f} {} (RMS); condition of its normal matrix {:.0f}",
+                  linear->rms[0] * length.factor, length.unit, linear->rms[1] * length.factor, length.unit,
+                  linear->rms[2] * angle.factor, angle.unit, linear->condition),
+      "wheels hardly move sideways: the column of y is badly determined, and no length comes from it"};
+  const std::array<const char*, 3> names{"x", "y", "yaw"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::vector<std::string> row{names.at(i)};
+    for (const double element : linear->matrix.at(i)) row.push_back(fmt::format("{:.5f}", element));
+    section.table.rows.push_back(row);
+  }
   return section;
 }
 
@@ -209,6 +229,7 @@ Document describe(const Calibration& calibration) {
                                    path_section(data),
                                    residual_of(calibration.residual),
                                    methods_of(calibration),
+                                   linear_of(calibration.linear_correction),
                                    determination_section(calibration),
                                    repeatability_section(calibration, data),
                                    residual_shape_section(data),

@@ -16,7 +16,7 @@
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
-#include "daemon/cli/numbers.hpp"
+#include "daemon/cli/motion_call.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/verbs.hpp"
@@ -31,99 +31,17 @@ using nlohmann::ordered_json;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct Options {
-  bool yes = false;
-  ordered_json parameters = ordered_json::object();
-  double distance = 1.0, turns = 1.0;
-  std::string direction = "both", file, id;
-  bool dry_run = false, quick = false, one_drive = false, nudge = false;
+  Consent consent;
+  std::string file, id;
+  bool quick = false, one_drive = false, nudge = false;
   std::vector<std::string> assignments;
 };
-
-// Rule M11: somebody has looked at the robot.
-Result<void> consent(const Options& options, const std::string& what, const std::string& besides) {
-  if (options.dry_run) return {};
-  if (options.yes) {
-    if (!besides.empty()) std::cerr << "odomcalibctl: " << besides << '\n';
-    return {};
-  }
-  if (isatty(STDIN_FILENO) != 1)
-    return Error{ErrorCode::usage, "moving or writing needs consent", what, "add --yes"};
-  std::cerr
-      << what
-      << ": is the area clear and an emergency stop at hand? This program's obstacle stop replaces neither"
-      << " a safety scanner nor an emergency stop. " << besides << "Type yes to go on: " << std::flush;
-  std::string answer;
-  std::getline(std::cin, answer);
-  if (answer == "yes") return {};
-  return Error{ErrorCode::cancelled, "no consent", what, ""};
-}
-
-bool moves(const std::string& method) {
-  return method == "Straight" || method == "Spin" || method == "Calibrate" || method == "Check";
-}
-
-// What the motion would be, and what of it the lidar would not see (rule M10). Empty: the lidar sees it all.
-Result<std::string> unseen_question(const Session& session, const std::string& method,
-                                    ordered_json parameters) {
-  auto client = Client::connect(session.socket);
-  if (!client) return client.error();
-  parameters["dry_run"] = true;
-  const auto answer = client.value().call(method, parameters.dump());
-  if (!answer) return answer.error();
-  const auto plan =
-      ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
-  const auto unseen = plan.value("unseen_moves", std::vector<std::string>());
-  if (unseen.empty()) return std::string();
-  std::string where;
-  for (const auto& sector : plan.value("blind_sectors", std::vector<std::array<double, 2>>()))
-    where += fmt::format("{}{:.0f} to {:.0f}", where.empty() ? "" : ", ", sector[0] * kDegrees,
-                         sector[1] * kDegrees);
-  return fmt::format(
-      "The lidar does not see {} deg around the robot (0 is ahead, 90 left), and \"{}\" goes there: nothing "
-      "but you stops the robot for what is or comes there. ",
-      where, fmt::join(unseen, "\", \""));
-}
-
-Result<ordered_json> run_method(const Session& session, const Options& options, const std::string& method,
-                                ordered_json parameters) {
-  std::string unseen;
-  if (moves(method) && !options.dry_run) {
-    auto asked = unseen_question(session, method, parameters);
-    if (!asked) return asked.error();
-    unseen = asked.value();
-  }
-  if (auto given = consent(options, method, unseen); !given) return given.error();
-  if (options.dry_run) parameters["dry_run"] = true;
-  ProgressLine line;
-  const auto progress = [&line](const std::string& text) {
-    const auto body = ordered_json::parse(text, nullptr, false);
-    line.show(fmt::format("{} {:3.0f} %   Ctrl-C stops the robot", body.value("phase", ""),
-                          100.0 * body.value("fraction", 0.0)));
-  };
-  const auto answer = call_with_lease(session.socket, method, parameters.dump(), progress);
-  if (!answer) return answer.error();
-  return ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
-}
-
-std::string describe_move(const ordered_json& move) {
-  const auto& told = move["odometry"];
-  std::string text = fmt::format("{}: odometry {:.4f} m, {:.3f} deg", move.value("move", ""),
-                                 std::hypot(told[0].get<double>(), told[1].get<double>()),
-                                 told[2].get<double>() * 180.0 / std::numbers::pi);
-  if (!move["error"].is_object()) return text + "; no lidar reference";
-  return text + fmt::format("; error {:+.1f} mm, {:+.3f} deg",
-                            1000.0 * move["error"]["distance"].get<double>(),
-                            move["error"]["yaw"].get<double>() * 180.0 / std::numbers::pi);
-}
 
 int print_result(const Session& session, const Result<ordered_json>& result) {
   if (!result) return report_error(result.error(), session.json);
   const ordered_json& body = result.value();
   if (session.json != JsonMode::off) {
     print_json(body.dump(), session.json);
-  } else if (body.contains("moves") && body["moves"].is_array()) {
-    for (const auto& move : body["moves"]) std::cout << describe_move(move) << '\n';
-    std::cout << "recording " << body.value("recording", "") << '\n';
   } else if (body.contains("steps") || body.contains("parameters")) {
     std::cout << to_text(describe_write_back(body), session.legend);
   } else {
@@ -139,7 +57,7 @@ struct Solved {
 
 // Drives, records and solves.
 Result<Solved> drive_and_solve(const Session& session, const Options& options, const ordered_json& wanted) {
-  const auto result = run_method(session, options, "Calibrate", {{"options", wanted}});
+  const auto result = run_method(session, options.consent, "Calibrate", {{"options", wanted}});
   if (!result) return result.error();
   const std::string text = result.value().value("calibration", ordered_json::object()).dump();
   auto calibration = calibration_from_json(text, "odomcalibd");
@@ -179,8 +97,8 @@ int calibrate(const Session& session, const Options& options) {
   if (const auto files = check_outputs({{"--out", options.file}}, {}); !files)
     return report_error(files.error(), session.json);
   const ordered_json wanted = {{"quick", options.quick}};
-  if (options.dry_run)
-    return print_result(session, run_method(session, options, "Calibrate", {{"options", wanted}}));
+  if (options.consent.dry_run)
+    return print_result(session, run_method(session, options.consent, "Calibrate", {{"options", wanted}}));
   auto solved = drive_and_solve(session, options, wanted);
   if (!solved) return report_error(solved.error(), session.json);
   const Solved best = second_drive(session, options, std::move(solved).value());
@@ -200,14 +118,14 @@ int apply(const Session& session, const Options& options) {
   const auto body = ordered_json::parse(bytes.value(), nullptr, false);
   if (!body.is_object())
     return report_error({ErrorCode::format, "no calibration file", options.file, ""}, session.json);
-  return print_result(session, run_method(session, options, "Apply", {{"calibration", body}}));
+  return print_result(session, run_method(session, options.consent, "Apply", {{"calibration", body}}));
 }
 
 // A wire in the wrong place is a failure, one that could not be told is none.
 int check(const Session& session, const Options& options) {
   if (!options.nudge) return show_checks(session);
-  const auto result = run_method(session, options, "Check", {{"nudge", true}});
-  if (!result || options.dry_run) return print_result(session, result);
+  const auto result = run_method(session, options.consent, "Check", {{"nudge", true}});
+  if (!result || options.consent.dry_run) return print_result(session, result);
   const ordered_json& checks = result.value().value("checks", ordered_json::array());
   if (session.json != JsonMode::off)
     print_json(result.value().dump(), session.json);
@@ -235,21 +153,21 @@ Result<ordered_json> parsed_values(const std::vector<std::string>& assignments) 
 int set_parameters(const Session& session, const Options& options) {
   const auto values = parsed_values(options.assignments);
   if (!values) return report_error(values.error(), session.json);
-  return print_result(session, run_method(session, options, "SetParameters", {{"values", values.value()}}));
+  return print_result(session,
+                      run_method(session, options.consent, "SetParameters", {{"values", values.value()}}));
 }
 
 int rollback(const Session& session, const Options& options) {
   ordered_json parameters = ordered_json::object();
   if (!options.id.empty()) parameters["id"] = options.id;
-  return print_result(session, run_method(session, options, "Rollback", parameters));
+  return print_result(session, run_method(session, options.consent, "Rollback", parameters));
 }
 
 template <typename Action>
 CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<Options>& options,
                      const char* verb, const char* help, Action action) {
   auto* added = app.add_subcommand(verb, help);
-  added->add_flag("--yes", options->yes, "consent: the area is clear, somebody can stop the robot");
-  added->add_flag("--dry-run", options->dry_run, "check and say what would be done");
+  add_consent(*added, options->consent);
   added->callback([&session, options, action] {
     session.run = [&session, options, action] { return action(session, *options); };
   });
@@ -263,20 +181,6 @@ void add_motions(CLI::App& app, Session& session) {
   add_action(app, session, options, "check", "Whether everything needed for a calibration is there", check)
       ->add_flag("--nudge", options->nudge,
                  "move by 5 cm and 15 degrees and back: are wheels, counts and lidar wired as configured?");
-  add_action(app, session, options, "straight", "Drive straight and back, odometry against lidar",
-             [](const Session& s, const Options& o) {
-               return print_result(s, run_method(s, o, "Straight", {{"distance", o.distance}}));
-             })
-      ->add_option("--distance", options->distance, "m, negative: backwards")
-      ->check(finite())
-      ->capture_default_str();
-  auto* spin = add_action(
-      app, session, options, "spin", "Turn on the spot, odometry against lidar",
-      [](const Session& s, const Options& o) {
-        return print_result(s, run_method(s, o, "Spin", {{"turns", o.turns}, {"direction", o.direction}}));
-      });
-  spin->add_option("--turns", options->turns, "full turns")->check(finite())->capture_default_str();
-  spin->add_option("--direction", options->direction)->check(CLI::IsMember({"ccw", "cw", "both"}));
   auto* all =
       add_action(app, session, options, "calibrate", "Straight, spin and pattern, then solve", calibrate);
   all->add_flag("--quick", options->quick, "a shorter pattern");

@@ -37,6 +37,7 @@ int show_checks(const Session& session);
 void add_questions(CLI::App& app, Session& session);
 void add_monitor(CLI::App& app, Session& session);
 void add_record(CLI::App& app, Session& session);
+void add_manual(CLI::App& app, Session& session);
 void add_motions(CLI::App& app, Session& session);
 
 }  // namespace odomcalib::cli

@@ -8,7 +8,7 @@ Plan straight_plan(const StraightOptions& options) {
   Plan plan{.name = "straight", .moves = {}, .limits = options.limits};
   for (int i = 0; i < options.repeat; ++i) {
     plan.moves.push_back(straight(options.distance, options.speed, 1.0));
-    plan.moves.push_back(straight(-options.distance, options.speed, 1.0));
+    if (!options.one_way) plan.moves.push_back(straight(-options.distance, options.speed, 1.0));
   }
   return plan;
 }
@@ -20,6 +20,16 @@ Plan spin_plan(const SpinOptions& options) {
     if (options.left) plan.moves.push_back(spin(angle, options.rate, 1.0));
     if (options.right) plan.moves.push_back(spin(-angle, options.rate, 1.0));
   }
+  return plan;
+}
+
+Plan square_plan(const SquareOptions& options) {
+  Plan plan{.name = "square", .moves = {}, .limits = options.limits};
+  for (int i = 0; i < 2 * options.repeat; ++i)
+    for (int side = 0; side < 4; ++side) {
+      plan.moves.push_back(straight(options.side, options.speed, 1.0));
+      plan.moves.push_back(spin((i % 2 == 0 ? 0.5 : -0.5) * std::numbers::pi, options.rate, 1.0));
+    }
   return plan;
 }
 

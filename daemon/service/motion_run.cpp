@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kEnableTimeout = 3.0;  // s
 constexpr double kStanding = 0.6;       // s at rest before and after: several scans without motion
+constexpr double kComeToRest = 0.35;  // s from the last command until a whole scan is one of a robot at rest
+constexpr std::size_t kMostAtRest = 5;  // scans whose mean is taken; more of them hardly add to it
 
 Error protective(const std::string& what) {
   return {ErrorCode::protective_stop, what, "motion", "remove the cause, then start again by hand"};
@@ -37,6 +39,13 @@ MotionRun::MotionRun(Options options, drivers::Controller& controller)
         controller_.disable(now_);
         if (options_.flush) options_.flush();
       }) {}
+
+void MotionRun::seen(const Scan& scan) {
+  scan_ = scan;
+  if (now_ - moved_at_ < kComeToRest) return;
+  if (at_rest_.size() == kMostAtRest) at_rest_.erase(at_rest_.begin());
+  at_rest_.push_back(scan);
+}
 
 void MotionRun::enter(Phase phase, double now) {
   phase_ = phase;
@@ -92,6 +101,7 @@ void MotionRun::note_legs(const routines::RunState& before, const Situation& sit
     leg.before = situation.odometry;
     leg.ticks_before = situation.ticks;
     leg.scan_before = scan_;
+    leg.scans_before = at_rest_;
     legs_.push_back(std::move(leg));
   }
   const bool ends = before.phase == routines::Phase::settling && after.phase != routines::Phase::settling;
@@ -100,6 +110,7 @@ void MotionRun::note_legs(const routines::RunState& before, const Situation& sit
     legs_.back().after = situation.odometry;
     legs_.back().ticks_after = situation.ticks;
     legs_.back().scan_after = scan_;
+    legs_.back().scans_after = at_rest_;
   }
 }
 
@@ -110,6 +121,10 @@ void MotionRun::drive(const Situation& situation) {
   twist_ = runner_.step(situation.now, relative(start_, situation.odometry));
   note_legs(before, situation);
   command(twist_, situation.now);
+  if (twist_.v != 0.0 || twist_.w != 0.0) {
+    moved_at_ = situation.now;
+    at_rest_.clear();
+  }
   if (runner_.done() && !ended()) enter(Phase::resting, situation.now);
 }
 

@@ -21,6 +21,7 @@ struct Leg {
   routines::Pose before, after;   ///< in the odometry frame
   TickSample ticks_before, ticks_after;
   std::optional<Scan> scan_before, scan_after;
+  std::vector<Scan> scans_before, scans_after;  ///< a few, all of them taken at rest, oldest first
 };
 
 /// What the world looks like at one control step.
@@ -48,7 +49,7 @@ class MotionRun {
 
   MotionRun(Options options, drivers::Controller& controller);
   /// The newest scan; used as the picture at rest.
-  void seen(const Scan& scan) { scan_ = scan; }
+  void seen(const Scan& scan);
   /// A stop event of the controller.
   void fault(const std::string& text);
   /// At least every 20 ms.
@@ -86,6 +87,8 @@ class MotionRun {
   routines::Pose start_;  // in the odometry frame, where the plan begins
   routines::Twist twist_;
   std::optional<Scan> scan_;
+  std::vector<Scan> at_rest_;  // since the robot came to rest
+  double moved_at_ = 0.0;      // s, when it was last commanded to move
   std::vector<Leg> legs_;
   std::optional<Error> error_;
   safety::StopGuard guard_;  // last: destroyed first, while everything it uses still exists

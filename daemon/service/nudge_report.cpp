@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "daemon/routines/wiring.hpp"
+#include "daemon/service/leg_report.hpp"
 #include "daemon/service/status_report.hpp"
 
 namespace odomcalib {
@@ -26,12 +27,6 @@ routines::Pose mean(const routines::Pose& a, const routines::Pose& b) {
   return {0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.yaw + b.yaw)};
 }
 
-std::array<double, 2> counted(const Leg& leg, double ticks_per_rev) {
-  const double turn = 2.0 * std::numbers::pi / ticks_per_rev;
-  return {turn * static_cast<double>(leg.ticks_after.left - leg.ticks_before.left),
-          turn * static_cast<double>(leg.ticks_after.right - leg.ticks_before.right)};
-}
-
 /// One move and its opposite.
 routines::NudgeMove nudge_move(const Calibrator& calibrator, const RobotDescription& robot, const Leg& there,
                                const Leg& back) {
@@ -41,7 +36,7 @@ routines::NudgeMove nudge_move(const Calibrator& calibrator, const RobotDescript
       routines::to_wheels(amount, {robot.left_wheel_diameter, robot.right_wheel_diameter, robot.track_width});
   routines::NudgeMove out;
   out.commanded = {wheels.left, wheels.right};
-  const auto ahead = counted(there, robot.ticks_per_rev), behind = counted(back, robot.ticks_per_rev);
+  const auto ahead = wheel_turns(there, robot.ticks_per_rev), behind = wheel_turns(back, robot.ticks_per_rev);
   for (std::size_t i = 0; i < 2; ++i) out.counted.at(i) = 0.5 * (ahead.at(i) - behind.at(i));
   const auto first = seen_by(calibrator, there), second = seen_by(calibrator, back);
   if (first && second) out.seen = mean(*first, undone(*second));

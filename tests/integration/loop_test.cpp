@@ -4,7 +4,7 @@
 namespace odomcalib {
 namespace {
 
-TEST_F(WholeLoop, calibrated_values_are_true_stored_and_make_the_odometry_better) {
+TEST_F(WholeLoop, SX_02_calibrated_values_are_true_stored_and_make_the_odometry_better) {
   acquire();
   const double straight_before = straight_error();
   const double spin_before = spin_error();

@@ -59,7 +59,7 @@ class ScanPaths : public ::testing::Test {
   Eigen::VectorXd truth_;
 };
 
-TEST_F(ScanPaths, places_are_those_of_the_drive) {
+TEST_F(ScanPaths, SD_05_places_are_those_of_the_drive) {
   const measurement::ScanPath path = placed(truth_);
   ASSERT_TRUE(path.is_usable()) << "seed " << kSeed;
   // The true path is sampled every 20 ms: 4 mm at the drive's 0.4 m/s, half of it on the average.

@@ -25,6 +25,7 @@ constexpr std::array kMethods = {
     Method{"Release", When::unless_ending, Lease::none, "", release},
     Method{"Check", When::when_idle, Lease::unless_dry_run, "motion", nudge, "nudge"},
     Method{"Check", When::unless_ending, Lease::none, "", check},
+    Method{"Straight", When::when_idle, Lease::unless_dry_run, "motion", square, "square"},
     Method{"Straight", When::when_idle, Lease::unless_dry_run, "motion", straight},
     Method{"Spin", When::when_idle, Lease::unless_dry_run, "motion", spin},
     Method{"Calibrate", When::when_idle, Lease::unless_dry_run, "motion", calibrate},

@@ -28,6 +28,7 @@ Reading stop(Context& context, const Call& call);
 // motion_methods.cpp
 Reading nudge(Context& context, const Call& call);
 Reading straight(Context& context, const Call& call);
+Reading square(Context& context, const Call& call);
 Reading spin(Context& context, const Call& call);
 Reading calibrate(Context& context, const Call& call);
 Reading record(Context& context, const Call& call);

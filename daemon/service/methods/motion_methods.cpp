@@ -32,6 +32,14 @@ std::optional<Error> wrong_straight(const routines::StraightOptions& options) {
   return std::nullopt;
 }
 
+std::optional<Error> wrong_square(const routines::SquareOptions& options) {
+  if (!within(options.side, 0.3, 5.0))
+    return out_of_range("the side of the square is not between 0.3 and 5 m");
+  if (!within(options.speed, 0.02, 10.0)) return out_of_range("speed is not between 0.02 and 10 m/s");
+  if (options.repeat < 1 || options.repeat > 20) return out_of_range("repeat is not between 1 and 20");
+  return std::nullopt;
+}
+
 std::optional<Error> wrong_spin(const routines::SpinOptions& options) {
   if (!within(options.turns, 0.05, 10.0)) return out_of_range("turns is not between 0.05 and 10");
   if (!within(options.rate, 0.05, 10.0)) return out_of_range("rate is not between 0.05 and 10 rad/s");
@@ -160,11 +168,25 @@ Reading straight(Context& context, const Call& call) {
   options.distance = given.number("distance");
   options.speed = given.number("speed", options.speed);
   options.repeat = given.whole("repeat", 1);
+  options.one_way = given.flag("one_way");
   options.limits = context.bench.config.limits;
   (void)given.flag("dry_run");
   if (given.wrong()) return WrongParameter{*given.wrong()};
   if (auto wrong = wrong_straight(options)) return *wrong;
   return motion_request(context, call, routines::straight_plan(options), ReportMoves{});
+}
+
+Reading square(Context& context, const Call& call) {
+  CallParameters given(call.parameters);
+  routines::SquareOptions options;
+  options.side = given.number("distance");
+  options.speed = given.number("speed", options.speed);
+  options.repeat = given.whole("repeat", 1);
+  options.limits = context.bench.config.limits;
+  (void)given.flag("dry_run");
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  if (auto wrong = wrong_square(options)) return *wrong;
+  return motion_request(context, call, routines::square_plan(options), ReportMoves{routines::kMovesOfSquare});
 }
 
 Reading spin(Context& context, const Call& call) {

@@ -145,7 +145,8 @@ TaskTurn MotionTask::ended(Bench& bench) {
 }
 
 ordered_json MotionTask::report(const Bench& bench) const {
-  if (std::holds_alternative<ReportMoves>(purpose_)) return moves_report(bench, run_->legs());
+  if (const auto* moves = std::get_if<ReportMoves>(&purpose_))
+    return moves_report(bench, run_->legs(), moves->moves_in_round);
   if (std::holds_alternative<ReportWiring>(purpose_)) return nudge_report(bench, run_->legs());
   return ordered_json::object();
 }

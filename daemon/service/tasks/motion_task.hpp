@@ -15,7 +15,11 @@
 namespace odomcalib {
 
 /// What is made of a motion when it has come to its end.
-struct ReportMoves {};   ///< each move by odometry and by the lidar
+/// Each move by odometry and by the lidar.
+struct ReportMoves {
+  std::size_t moves_in_round =
+      0;  ///< after so many the robot is back at its start, which is reported too; 0: never
+};
 struct ReportWiring {};  ///< whether every wire goes where it should
 struct SolveRecording {
   std::vector<std::string> effects{"auto"};

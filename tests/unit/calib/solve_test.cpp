@@ -35,7 +35,7 @@ void expect_agreement(const Quantity& ours, double reference, double reference_s
       << reference_std;
 }
 
-TEST(Solve, a_recording_without_scans_is_refused_with_the_cause) {
+TEST(Solve, SD_11_a_recording_without_scans_is_refused_with_the_cause) {
   Recording recording;
   recording.name = "no-lidar";
   recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
@@ -50,7 +50,7 @@ TEST(Solve, a_recording_without_scans_is_refused_with_the_cause) {
   EXPECT_EQ(result.data.front().counts.front(), (std::pair<std::string, std::size_t>{"ticks", 2}));
 }
 
-TEST(Solve, a_corridor_is_refused_as_a_place_that_scans_cannot_tell) {
+TEST(Solve, S1_14_a_corridor_is_refused_as_a_place_that_scans_cannot_tell) {
   Recording recording;
   recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
   constexpr double kSpeed = 0.2, kCountsPerMetre = 4096.0 / (math::kPi * 0.15);

@@ -40,7 +40,7 @@ TEST(Body, reaches_the_commanded_wheel_speed_no_faster_than_the_ramp) {
   EXPECT_NEAR(body.rate()[kRight], -2.0, 1e-6);
 }
 
-TEST(Body, drives_a_circle_whose_radius_follows_from_the_wheel_speeds) {
+TEST(Body, S3_01_drives_a_circle_whose_radius_follows_from_the_wheel_speeds) {
   const Geometry robot = unequal_robot();
   Body body(robot, {}, 1);
   body.command(3.0, 5.0);

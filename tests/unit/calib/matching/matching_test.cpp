@@ -169,7 +169,7 @@ TEST(Matching, both_ways_is_the_inverse_of_the_other_way_round) {
   }
 }
 
-TEST(Matching, a_corridor_yields_no_pose_along_it) {
+TEST(Matching, S1_14_a_corridor_yields_no_pose_along_it) {
   for (const double noise : {0.0, 0.005, 0.02}) {
     const math::Pose motion{0.1, 0.0, 0.3};
     const math::Pose turned{0.0, 0.0, 0.7};  // the corridor runs 0.7 rad to the right of the sensor

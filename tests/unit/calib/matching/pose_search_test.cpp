@@ -114,7 +114,7 @@ TEST(PoseSearch, S2_02_a_hill_climb_reaches_the_summit_from_nearby) {
 }
 
 // LaserSLAM's search window covered -4 to +0.52 m.
-TEST(PoseSearch, S2_41_the_window_is_symmetric) {
+TEST(PoseSearch, S2_41_SD_14_the_window_is_symmetric) {
   const Scan scan = scan_from(kRoom, {}, 0.0, 1);
   for (const double sign : {-1.0, 1.0}) {
     LikelihoodField field(points_of(scan, 1), {});
@@ -126,7 +126,7 @@ TEST(PoseSearch, S2_41_the_window_is_symmetric) {
 }
 
 // LaserSLAM scored points outside of its map as perfect ones.
-TEST(PoseSearch, S2_41_leaving_the_map_is_not_rewarded) {
+TEST(PoseSearch, S2_41_SD_15_leaving_the_map_is_not_rewarded) {
   const auto points = points_of(scan_from(kRoom, {}, 0.0, 1), 1);
   const LikelihoodField field(points, {});
   EXPECT_GT(field.fit(points, {}), 0.99);

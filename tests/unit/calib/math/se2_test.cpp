@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -24,7 +25,7 @@ class Se2 : public ::testing::Test {
   std::uniform_real_distribution<double> angle_{-4.0, 4.0};
 };
 
-TEST_F(Se2, composes_associatively) {
+TEST_F(Se2, S3_03_composes_associatively) {
   for (int i = 0; i < 1000; ++i) {
     const Pose a = random_pose();
     const Pose b = random_pose();
@@ -51,7 +52,7 @@ TEST_F(Se2, S2_26_poses_and_homogeneous_matrices_say_the_same) {
   }
 }
 
-TEST_F(Se2, inverse_cancels_on_both_sides) {
+TEST_F(Se2, S3_04_inverse_cancels_on_both_sides) {
   for (int i = 0; i < 1000; ++i) {
     const Pose a = random_pose();
     expect_same(compose(a, inverse(a)), Pose{}, 1e-12);
@@ -59,15 +60,43 @@ TEST_F(Se2, inverse_cancels_on_both_sides) {
   }
 }
 
-TEST_F(Se2, between_undoes_compose) {
-  for (int i = 0; i < 100000; ++i) {
-    const Pose a = random_pose();
-    const Pose b = random_pose();
-    expect_same(compose(a, between(a, b)), b, 1e-12);
+TEST_F(Se2, S0_02_between_undoes_compose) {
+  double worst = 0.0;
+  for (int i = 0; i < 1000000; ++i) {
+    Pose a = random_pose();
+    Pose b = random_pose();
+    if (i % 3 == 0) a.yaw = i % 2 == 0 ? kPi : -kPi;
+    if (i % 5 == 0) b.yaw = i % 2 == 0 ? -kPi : kPi;
+    const Pose c = compose(a, between(a, b));
+    worst = std::max({worst, std::abs(c.x - b.x), std::abs(c.y - b.y), std::abs(wrap_angle(c.yaw - b.yaw))});
   }
+  EXPECT_LT(worst, 1e-12) << "seed " << kSeed;
 }
 
-TEST_F(Se2, conjugation_equals_the_three_motion_form) {
+TEST_F(Se2, S0_03_the_increment_is_in_the_frame_of_its_start) {
+  const double rho = 0.7, d = 0.3;
+  const Pose start{2.0, -1.0, 1.1};
+  // On an arc to the left the end lies to the left of the start.
+  const Pose end = compose(start, Pose{rho * std::sin(d), rho * (1.0 - std::cos(d)), d});
+  const Pose ours = between(start, end);
+  EXPECT_NEAR(ours.x, rho * std::sin(d), 1e-12);
+  EXPECT_NEAR(ours.y, rho * (1.0 - std::cos(d)), 1e-12);
+  // With the heading at the end, as one published program has it, y changes its sign.
+  const double dx = end.x - start.x, dy = end.y - start.y;
+  const double theirs = -std::sin(end.yaw) * dx + std::cos(end.yaw) * dy;
+  EXPECT_NEAR(theirs, -rho * (1.0 - std::cos(d)), 1e-12);
+  // With the heading in the middle there is no sideways motion at all.
+  const double middle = start.yaw + d / 2.0;
+  EXPECT_NEAR(-std::sin(middle) * dx + std::cos(middle) * dy, 0.0, 1e-12);
+}
+
+TEST_F(Se2, S0_17_increments_across_half_a_turn_stay_small) {
+  const Pose before{0.0, 0.0, kPi - 0.01}, after{0.1, 0.0, -kPi + 0.01};
+  EXPECT_NEAR(wrap_angle(between(before, after).yaw), 0.02, 1e-12);
+  EXPECT_NEAR(wrap_angle(between(after, before).yaw), -0.02, 1e-12);
+}
+
+TEST_F(Se2, S3_02_conjugation_equals_the_three_motion_form) {
   for (int i = 0; i < 1000; ++i) {
     const Pose motion = random_pose();
     const Pose mount = random_pose();

@@ -120,7 +120,7 @@ TEST(RecordingMap, S2_01_from_scans_and_ticks_to_a_closed_graph_and_a_map) {
               15.0);
 }
 
-TEST(RecordingMap, S2_23_each_edge_tells_motion_information_score_and_how_it_came_about) {
+TEST(RecordingMap, S2_23_SD_16_each_edge_tells_motion_information_score_and_how_it_came_about) {
   const auto made = map_recording(round_the_block().recording, {});
   ASSERT_TRUE(made.ok()) << made.error().text();
   const ScanGraph& graph = made.value().made;

@@ -96,7 +96,7 @@ TEST(LidarEffect, of_parts_of_the_view_has_no_common_offset) {
   EXPECT_FALSE(make_sector_error(std::vector<double>(100, 0.1)));
 }
 
-TEST(LidarEffect, a_tilted_plane_meets_walls_late_along_the_slope_and_not_across) {
+TEST(LidarEffect, S3_19_a_tilted_plane_meets_walls_late_along_the_slope_and_not_across) {
   const auto tilt = make_lidar_tilt();
   const double angle = 0.1, direction = 0.4, stretch = angle * angle / 4.0;
   const std::vector<double> values = {stretch * std::cos(2.0 * direction),

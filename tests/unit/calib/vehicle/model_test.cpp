@@ -211,7 +211,7 @@ TEST(WheelTrack, keeps_its_phase_where_a_signed_counter_of_32_bits_wraps) {
   EXPECT_NEAR(turns(after.right[0] - before.right[1]), 5.0 * before.tick_angle, 1e-9);
 }
 
-TEST(WheelTrack, interpolates_with_the_weights_the_right_way_round) {
+TEST(WheelTrack, SD_01_interpolates_with_the_weights_the_right_way_round) {
   wheels::WheelTrack track{{0.0, 1.0}, {0.0, 10.0}, {0.0, 0.0}, {0, 0}};
   const DriveModel model(track, make_context(track, kBase));
   const auto trajectory = model.trajectory(as_span(to_vector(wheels::BaseParameters{0.1, 0.1, 0.4, {}})), {});

@@ -41,7 +41,7 @@ double rms_error(const WheelTrack& track) {
   return std::sqrt(sum / count);
 }
 
-TEST(FineTrack, follows_a_wheel_that_speeds_up_between_rare_ticks) {
+TEST(FineTrack, SD_02_follows_a_wheel_that_speeds_up_between_rare_ticks) {
   const WheelTrack rare = sampled_every(0.1), fine = finely_sampled(rare);
   EXPECT_LT(rms_error(fine), 0.2 * rms_error(rare));
   for (std::size_t k = 0; k < rare.t.size(); ++k) EXPECT_NEAR(at(fine, rare.t[k]), rare.left[k], 1e-9);

@@ -84,7 +84,7 @@ TEST(Straight, backwards_first_when_the_distance_is_negative) {
   EXPECT_NEAR(trace.reach, 0.5, 0.01);
 }
 
-TEST(Spin, counts_full_turns_through_the_jump_of_the_angle) {
+TEST(Spin, SD_18_counts_full_turns_through_the_jump_of_the_angle) {
   SpinOptions options;
   options.turns = 2.0;
   options.right = false;

@@ -137,7 +137,7 @@ TEST(CensiTuples, are_all_read_where_objects_share_a_line) {
   }
 }
 
-TEST(CensiTuples, take_the_robot_from_the_fallback_and_count_what_is_damaged) {
+TEST(CensiTuples, S3_17_SX_03_take_the_robot_from_the_fallback_and_count_what_is_damaged) {
   const auto robot = test::example_robot();
   const auto result = read_text(
       R"({ "T": 0.5, "phi_l": 1, "phi_r": -1, "sm": [ 1, 2, 3 ] }{ "T": 1, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] })"
@@ -166,7 +166,7 @@ TEST(CensiTuples, take_the_robot_from_the_fallback_and_count_what_is_damaged) {
   EXPECT_EQ(discarded(r, "tuple", "cut off"), 1U);
 }
 
-TEST(CensiRawLog, gives_scans_and_the_counts_they_carry) {
+TEST(CensiRawLog, SX_03_gives_scans_and_the_counts_they_carry) {
   ODOMCALIB_SHARED_FILE(path, "mines-rover-2/exp3.scans.jsonl.gz");
   ODOMCALIB_SHARED_FILE(jsonl_path, "mines-rover-2/exp3.jsonl.gz");
   const auto jsonl = read_recording(jsonl_path);
@@ -211,7 +211,7 @@ TEST(CarmenLog, gives_back_the_counts_behind_its_odometry) {
   EXPECT_EQ(read_recording(path).error().code, ErrorCode::missing_units);
 }
 
-TEST(CarmenLog, reads_its_messages_with_their_times_and_the_lidar_pose) {
+TEST(CarmenLog, SX_03_reads_its_messages_with_their_times_and_the_lidar_pose) {
   const auto robot = test::example_robot();
   const auto result = read_text(
       "# CARMEN log\nPARAM robot_width 0.5 0 host 0\n"

@@ -34,7 +34,7 @@ TEST(PoseGraphText, S2_36_reads_all_vertex_tags_with_ids_in_any_order) {
   }
 }
 
-TEST(PoseGraphText, S2_37_the_tag_decides_the_order_of_the_information) {
+TEST(PoseGraphText, S2_37_SD_17_the_tag_decides_the_order_of_the_information) {
   const std::array<double, 6> expected{10, 1, 2, 20, 3, 30};  // xx xy xt yy yt tt
   const std::string vertices = kTwoPoses;
   EXPECT_EQ(good(vertices + "EDGE_SE2 0 1 1 0 0 10 1 2 20 3 30\n").edges[0].information, expected);

@@ -1,0 +1,361 @@
+#include "daemon/cli/manual_moves.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "calib/classical/rest_to_rest.hpp"
+#include "daemon/cli/display.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using calib::classical::SpinMove;
+using calib::classical::SquarePair;
+using calib::classical::SquareRun;
+using calib::classical::StraightMove;
+using calib::math::Repeated;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kFewRepetitions = 3;  ///< with fewer the spread is hardly known
+constexpr double kSettled =
+    1.41421356;  ///< deviation over its part that repetitions show, where both parts are equal
+constexpr std::size_t kMovesOfSquare = 8;
+
+/// `count` finite numbers of a member, or nullopt where they are not there.
+template <std::size_t count>
+std::optional<std::array<double, count>> numbers(const ordered_json& body, const char* name) {
+  if (!body.is_object() || !body.contains(name) || !body[name].is_array() || body[name].size() != count)
+    return std::nullopt;
+  std::array<double, count> values{};
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!body[name][k].is_number()) return std::nullopt;
+    values.at(k) = body[name][k].template get<double>();
+  }
+  return values;
+}
+
+double length(const ordered_json& robot, const char* name) {
+  return robot.is_object() && robot.contains(name) && robot[name].is_number() ? robot[name].get<double>()
+                                                                              : 0.0;
+}
+
+RobotDescription robot_of(const ordered_json& robot) {
+  RobotDescription description;
+  description.left_wheel_diameter = length(robot, "left_wheel_diameter");
+  description.right_wheel_diameter = length(robot, "right_wheel_diameter");
+  description.track_width = length(robot, "track_width");
+  description.ticks_per_rev = length(robot, "ticks_per_rev");
+  return description;
+}
+
+calib::wheels::BaseParameters base_of(const RobotDescription& robot) {
+  return {robot.left_wheel_diameter / 2.0, robot.right_wheel_diameter / 2.0, robot.track_width, {}};
+}
+
+Error malformed(const std::string& what) {
+  return {ErrorCode::format, what, "motion", "odomcalibctl and odomcalibd must be of one version"};
+}
+
+/// Of the way of the first move: what a person measures is the way out.
+bool goes_out(const ordered_json& move, double first) {
+  return (*numbers<3>(move, "odometry"))[0] * first > 0.0;
+}
+
+Error wrong_count(std::size_t values, std::size_t moves) {
+  return {ErrorCode::usage, fmt::format("{} values were measured and {} moves were driven", values, moves),
+          "", "give one value for all, or one for each"};
+}
+
+Error unseen() {
+  return {ErrorCode::refused, "the lidar recognised the place after none of the moves", "scan matching",
+          "measure by hand: --measured or --measured-turn"};
+}
+
+double chosen(const std::vector<double>& measured, std::size_t k) {
+  return measured.size() == 1 ? measured[0] : measured[k];
+}
+
+Quantity diameter(const Repeated& radius) {
+  return {2.0 * radius.mean, radius.std < 0.0 ? -1.0 : 2.0 * radius.std, "m"};
+}
+
+void add_error(Proposal& proposal, const char* name, const Repeated& factor) {
+  proposal.errors.push_back({name, {factor.mean, factor.std, ""}});
+  proposal.spreads.push_back(factor.spread);
+}
+
+calib::classical::ReferenceError error_of(bool by_tape) {
+  return by_tape ? calib::classical::kTapeAndMark : calib::classical::kLidarAtRest;
+}
+
+/// Where the spread matters less than what repetitions do not show, they teach nothing more.
+bool is_settled(const Repeated& factor) {
+  const double of_spread = calib::math::student_factor(std::max<std::size_t>(factor.count, 2) - 1) *
+                           factor.spread / std::sqrt(static_cast<double>(factor.count));
+  return factor.count >= kFewRepetitions && factor.std > kSettled * of_spread;
+}
+
+Proposal begun(const char* method, bool by_tape, const DrivenMoves& driven) {
+  Proposal proposal;
+  proposal.method = method;
+  proposal.measured_by = by_tape ? "tape" : "lidar";
+  proposal.robot = robot_of(driven.robot);
+  return proposal;
+}
+
+void remark_few(Proposal& proposal) {
+  if (proposal.used < kFewRepetitions)
+    proposal.remarks.push_back(fmt::format("{} {}: the deviation {}; --repeat 3 makes it known",
+                                           proposal.used, proposal.used == 1 ? "repetition" : "repetitions",
+                                           proposal.used == 1 ? "is not known" : "is hardly known"));
+}
+
+Result<std::vector<StraightMove>> straights_by_tape(const DrivenMoves& driven,
+                                                    const std::vector<double>& measured) {
+  std::vector<StraightMove> moves;
+  const double first = driven.moves.empty() ? 0.0 : (*numbers<3>(driven.moves[0], "odometry"))[0];
+  std::vector<const ordered_json*> out;
+  for (const auto& move : driven.moves)
+    if (goes_out(move, first)) out.push_back(&move);
+  if (measured.size() != 1 && measured.size() != out.size()) return wrong_count(measured.size(), out.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const auto wheels = *numbers<2>(*out[k], "wheels");
+    moves.push_back({{wheels[0], wheels[1]}, chosen(measured, k), std::nullopt});
+  }
+  return moves;
+}
+
+std::vector<StraightMove> straights_by_lidar(const DrivenMoves& driven) {
+  std::vector<StraightMove> moves;
+  for (const auto& move : driven.moves) {
+    const auto seen = numbers<3>(move, "lidar");
+    const auto wheels = *numbers<2>(move, "wheels");
+    if (seen) moves.push_back({{wheels[0], wheels[1]}, std::hypot((*seen)[0], (*seen)[1]), (*seen)[2]});
+  }
+  return moves;
+}
+
+/// Eight moves of one direction and the lidar's view of the whole.
+std::optional<SquareRun> run_of(const DrivenMoves& driven, std::size_t round) {
+  const auto seen = numbers<3>(driven.rounds[round], "lidar");
+  if (!seen || (round + 1) * kMovesOfSquare > driven.moves.size()) return std::nullopt;
+  SquareRun run;
+  for (std::size_t k = round * kMovesOfSquare; k < (round + 1) * kMovesOfSquare; ++k) {
+    const auto wheels = *numbers<2>(driven.moves[k], "wheels");
+    run.moves.push_back({wheels[0], wheels[1]});
+  }
+  run.end = {(*seen)[0], (*seen)[1], (*seen)[2]};
+  return run;
+}
+
+std::string percent(double factor) { return fmt::format("{:+.3f} %", 100.0 * (factor - 1.0)); }
+
+double in_force(const RobotDescription& robot, const std::string& name) {
+  if (name == "left_wheel_diameter") return robot.left_wheel_diameter;
+  return name == "right_wheel_diameter" ? robot.right_wheel_diameter : robot.track_width;
+}
+
+ordered_json quantity(const Quantity& q) {
+  return {{"value", q.value},
+          {"std", q.std < 0.0 ? ordered_json(nullptr) : ordered_json(q.std)},
+          {"unit", q.unit}};
+}
+
+std::string assignments(const Proposal& proposal) {
+  std::string text;
+  for (const auto& [name, q] : proposal.parameters) text += fmt::format(" {}={:.7f}", name, q.value);
+  return text;
+}
+
+}  // namespace
+
+Result<void> DrivenMoves::add(const ordered_json& result) {
+  if (!result.is_object() || !result.contains("moves") || !result["moves"].is_array() ||
+      !result.contains("robot"))
+    return malformed("no moves of a robot");
+  const RobotDescription given = robot_of(result["robot"]);
+  if (!(given.left_wheel_diameter > 0.0 && given.right_wheel_diameter > 0.0 && given.track_width > 0.0 &&
+        given.ticks_per_rev > 0.0))
+    return malformed("no lengths of a robot");
+  if (!robot.empty() && robot != result["robot"])
+    return malformed("the robot's lengths changed between two motions");
+  for (const auto& move : result["moves"]) {
+    if (!numbers<3>(move, "odometry") || !numbers<2>(move, "wheels"))
+      return malformed("a move without wheels");
+    moves.push_back(move);
+  }
+  robot = result["robot"];
+  if (result.contains("rounds"))
+    for (const auto& round : result["rounds"]) rounds.push_back(round);
+  if (result.contains("recording") && result["recording"].is_string())
+    recordings.push_back(result["recording"]);
+  return {};
+}
+
+Result<Proposal> straight_proposal(const DrivenMoves& driven, const std::vector<double>& measured) {
+  const bool by_tape = !measured.empty();
+  auto moves = by_tape ? straights_by_tape(driven, measured) : Result(straights_by_lidar(driven));
+  if (!moves) return moves.error();
+  if (moves.value().empty()) return unseen();
+  Proposal proposal = begun("straight", by_tape, driven);
+  const auto radii =
+      calib::classical::propose_radii(moves.value(), base_of(proposal.robot), error_of(by_tape));
+  if (!radii) return radii.error();
+  const auto& found = radii.value();
+  proposal.parameters = {{"left_wheel_diameter", diameter(found.left)},
+                         {"right_wheel_diameter", diameter(found.right)}};
+  add_error(proposal, "E_s", found.scale);
+  if (found.diameters) add_error(proposal, "E_d", *found.diameters);
+  proposal.used = moves.value().size();
+  if (!by_tape) proposal.left_out = driven.moves.size() - proposal.used;
+  proposal.settled = is_settled(found.scale);
+  if (by_tape)
+    proposal.remarks.emplace_back(
+        "a tape shows no heading: both wheels got one factor, unequal wheels stay hidden");
+  remark_few(proposal);
+  return proposal;
+}
+
+Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<double>& measured) {
+  const bool by_tape = !measured.empty();
+  if (by_tape && measured.size() != 1 && measured.size() != driven.moves.size())
+    return wrong_count(measured.size(), driven.moves.size());
+  std::vector<SpinMove> turns;
+  for (std::size_t k = 0; k < driven.moves.size(); ++k) {
+    const auto seen = numbers<3>(driven.moves[k], "lidar");
+    const auto wheels = *numbers<2>(driven.moves[k], "wheels");
+    const double way = (*numbers<3>(driven.moves[k], "odometry"))[2] > 0.0 ? 1.0 : -1.0;
+    if (by_tape)
+      turns.push_back({{wheels[0], wheels[1]}, way * chosen(measured, k)});
+    else if (seen)
+      turns.push_back({{wheels[0], wheels[1]}, (*seen)[2]});
+  }
+  if (turns.empty()) return unseen();
+  Proposal proposal = begun("spin", by_tape, driven);
+  const auto track = calib::classical::propose_track_width(turns, base_of(proposal.robot), error_of(by_tape));
+  if (!track) return track.error();
+  const Repeated& width = track.value().track_width;
+  proposal.parameters = {{"track_width", {width.mean, width.std, "m"}}};
+  add_error(proposal, "E_b", track.value().track);
+  proposal.used = turns.size();
+  proposal.left_out = driven.moves.size() - turns.size();
+  proposal.settled = is_settled(track.value().track);
+  proposal.remarks.push_back(
+      fmt::format("the diameters in force are taken as right to {:.2f} %, as straight leaves them",
+                  100.0 * calib::classical::kDiametersOfStraight));
+  remark_few(proposal);
+  return proposal;
+}
+
+Result<Proposal> square_proposal(const DrivenMoves& driven, double side) {
+  std::vector<SquarePair> pairs;
+  const std::size_t count = driven.rounds.size() / 2;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto ccw = run_of(driven, 2 * k), cw = run_of(driven, 2 * k + 1);
+    if (ccw && cw) pairs.push_back({*ccw, *cw});
+  }
+  if (pairs.empty()) return unseen();
+  Proposal proposal = begun("square", false, driven);
+  const auto base = base_of(proposal.robot);
+  const auto result = calib::classical::propose_from_squares(pairs, base, side);
+  if (!result) return result.error();
+  const auto& found = result.value();
+  const auto lengths = calib::classical::with_errors(base, {1.0, found.diameters.mean, found.track.mean});
+  const auto std_of = [](const Repeated& factor, double length) {
+    return factor.std < 0.0 ? -1.0 : factor.std * length;
+  };
+  // With the mean fixed, each wheel moves by half of what their ratio moves.
+  proposal.parameters = {
+      {"left_wheel_diameter", {2.0 * lengths.left_radius, std_of(found.diameters, lengths.left_radius), "m"}},
+      {"right_wheel_diameter",
+       {2.0 * lengths.right_radius, std_of(found.diameters, lengths.right_radius), "m"}},
+      {"track_width", {lengths.track_width, std_of(found.track, base.track_width), "m"}}};
+  add_error(proposal, "E_d", found.diameters);
+  add_error(proposal, "E_b", found.track);
+  proposal.used = pairs.size();
+  proposal.left_out = count - pairs.size();
+  proposal.settled = is_settled(found.diameters) && is_settled(found.track);
+  proposal.remarks.push_back(fmt::format("by the first-order formulae: E_d {:.5f}, E_b {:.5f}",
+                                         found.formula.diameters, found.formula.track));
+  proposal.remarks.push_back(fmt::format(
+      "mean end of a square: {:.1f} mm from where odometry says, {:.1f} mm with the lengths proposed",
+      1e3 * found.farthest_before, 1e3 * found.farthest_after));
+  proposal.remarks.emplace_back(
+      "a closed figure does not show the common scale of the wheels: straight does");
+  remark_few(proposal);
+  return proposal;
+}
+
+ordered_json to_json(const Proposal& proposal) {
+  ordered_json body = {{"method", proposal.method},
+                       {"measured_by", proposal.measured_by},
+                       {"used", proposal.used},
+                       {"left_out", proposal.left_out},
+                       {"settled", proposal.settled},
+                       {"parameters", ordered_json::object()},
+                       {"errors", ordered_json::object()},
+                       {"remarks", proposal.remarks}};
+  for (const auto& [name, q] : proposal.parameters) {
+    body["parameters"][name] = quantity(q);
+    body["parameters"][name]["in_force"] = in_force(proposal.robot, name);
+  }
+  for (std::size_t k = 0; k < proposal.errors.size(); ++k) {
+    const auto& [name, q] = proposal.errors[k];
+    ordered_json entry = {{"value", q.value}, {"std", nullptr}, {"spread", nullptr}};
+    if (q.std >= 0.0) {
+      entry["std"] = q.std;
+      entry["spread"] = proposal.spreads[k];
+    }
+    body["errors"][name] = entry;
+  }
+  return body;
+}
+
+std::vector<std::string> to_lines(const Proposal& proposal) {
+  std::vector<std::string> lines;
+  for (const auto& [name, q] : proposal.parameters) {
+    const double before = in_force(proposal.robot, name);
+    std::string line = fmt::format("{}: {:.3f} -> {:.3f}", readable(name), 1e3 * before, 1e3 * q.value);
+    if (q.std >= 0.0) line += fmt::format(" +- {:.3f}", 2e3 * q.std);
+    lines.push_back(line + fmt::format(" mm ({})", percent(q.value / before)));
+  }
+  for (std::size_t k = 0; k < proposal.errors.size(); ++k) {
+    const auto& [name, q] = proposal.errors[k];
+    std::string line = fmt::format("{} {:.5f}", name, q.value);
+    if (q.std >= 0.0)
+      line += fmt::format(" +- {:.5f}, spread of one repetition {:.5f}", 2.0 * q.std, proposal.spreads[k]);
+    lines.push_back(line);
+  }
+  lines.push_back(fmt::format(
+      "by {}, from {}{}{}", proposal.measured_by, proposal.used,
+      proposal.method == "square" ? " squares both ways" : " moves",
+      proposal.left_out > 0 ? fmt::format(", {} without a lidar match left out", proposal.left_out) : ""));
+  lines.insert(lines.end(), proposal.remarks.begin(), proposal.remarks.end());
+  lines.push_back("Next: odomcalibctl params set" + assignments(proposal));
+  return lines;
+}
+
+Calibration calibration_of(const Proposal& proposal, const DrivenMoves& driven) {
+  Calibration calibration;
+  calibration.robot = proposal.robot;
+  calibration.parameters = proposal.parameters;
+  calibration.verdict = Verdict::accepted_with_warnings;
+  calibration.reasons = {
+      fmt::format("lengths of {} alone, by {}: {} repetitions, no other error was looked for",
+                  proposal.method, proposal.measured_by, proposal.used)};
+  calibration.reasons.insert(calibration.reasons.end(), proposal.remarks.begin(), proposal.remarks.end());
+  for (const std::string& recording : driven.recordings) {
+    DataUse use;
+    use.name = recording.substr(recording.find_last_of('/') + 1);
+    calibration.data.push_back(use);
+  }
+  calibration.extensions["proposal"] = to_json(proposal).dump();
+  return calibration;
+}
+
+}  // namespace odomcalib::cli

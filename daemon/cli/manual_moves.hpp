@@ -1,0 +1,50 @@
+// What straight lines, turns on the spot and squares come to: corrected lengths from the moves that the
+// daemon reported, by its lidar or by what a person measured.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "proto/calibration/calibration.hpp"
+#include "proto/result.hpp"
+
+namespace odomcalib::cli {
+
+/// Answers of one or more motions: "moves", "robot", "rounds", "recording".
+struct DrivenMoves {
+  nlohmann::ordered_json moves = nlohmann::ordered_json::array();
+  nlohmann::ordered_json rounds = nlohmann::ordered_json::array();
+  nlohmann::ordered_json robot = nlohmann::ordered_json::object();
+  std::vector<std::string> recordings;
+  /// Error: format, when `result` is no answer of a motion, or of another robot than those before.
+  Result<void> add(const nlohmann::ordered_json& result);
+};
+
+struct Proposal {
+  std::string method;                  ///< straight, spin or square
+  std::string measured_by;             ///< lidar or tape
+  QuantityList parameters;             ///< corrected lengths that this motion shows
+  QuantityList errors;                 ///< E_s, E_d, E_b as far as it shows them
+  std::vector<double> spreads;         ///< standard deviations of one repetition, one for each of `errors`
+  std::size_t used = 0, left_out = 0;  ///< moves or squares; those that the lidar did not see are left out
+  bool settled = false;                ///< more repetitions would not make it better
+  RobotDescription robot;              ///< values in force during the motion
+  std::vector<std::string> remarks;
+};
+
+/// @param measured m, of the moves that go the way of the first one: one value for each, or one for all;
+/// empty: by the lidar Errors: usage (another number of values than moves), refused (as propose_radii, or the
+/// lidar saw nothing)
+Result<Proposal> straight_proposal(const DrivenMoves& driven, const std::vector<double>& measured);
+/// @param measured rad, positive, of every turn: one value for each, or one for all; empty: by the lidar
+Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<double>& measured);
+/// @param side m
+Result<Proposal> square_proposal(const DrivenMoves& driven, double side);
+
+nlohmann::ordered_json to_json(const Proposal& proposal);
+std::vector<std::string> to_lines(const Proposal& proposal);
+/// A calibration of these lengths alone, for `apply`.
+Calibration calibration_of(const Proposal& proposal, const DrivenMoves& driven);
+
+}  // namespace odomcalib::cli

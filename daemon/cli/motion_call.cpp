@@ -1,0 +1,94 @@
+#include "daemon/cli/motion_call.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <iostream>
+#include <numbers>
+
+#include "daemon/cli/client.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+// Rule M11: somebody has looked at the robot.
+Result<void> ask(const Consent& given, const std::string& what, const std::string& besides) {
+  if (given.dry_run) return {};
+  if (given.yes) {
+    if (!besides.empty()) std::cerr << "odomcalibctl: " << besides << '\n';
+    return {};
+  }
+  if (isatty(STDIN_FILENO) != 1)
+    return Error{ErrorCode::usage, "moving or writing needs consent", what, "add --yes"};
+  std::cerr
+      << what
+      << ": is the area clear and an emergency stop at hand? This program's obstacle stop replaces neither"
+      << " a safety scanner nor an emergency stop. " << besides << "Type yes to go on: " << std::flush;
+  std::string answer;
+  std::getline(std::cin, answer);
+  if (answer == "yes") return {};
+  return Error{ErrorCode::cancelled, "no consent", what, ""};
+}
+
+bool moves(const std::string& method) {
+  return method == "Straight" || method == "Spin" || method == "Calibrate" || method == "Check";
+}
+
+// What the motion would be, and what of it the lidar would not see (rule M10). Empty: the lidar sees it all.
+Result<std::string> unseen_question(const Session& session, const std::string& method,
+                                    ordered_json parameters) {
+  auto client = Client::connect(session.socket);
+  if (!client) return client.error();
+  parameters["dry_run"] = true;
+  const auto answer = client.value().call(method, parameters.dump());
+  if (!answer) return answer.error();
+  const auto plan =
+      ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
+  const auto unseen = plan.value("unseen_moves", std::vector<std::string>());
+  if (unseen.empty()) return std::string();
+  std::string where;
+  for (const auto& sector : plan.value("blind_sectors", std::vector<std::array<double, 2>>()))
+    where += fmt::format("{}{:.0f} to {:.0f}", where.empty() ? "" : ", ", sector[0] * kDegrees,
+                         sector[1] * kDegrees);
+  return fmt::format(
+      "The lidar does not see {} deg around the robot (0 is ahead, 90 left), and \"{}\" goes there: nothing "
+      "but you stops the robot for what is or comes there. ",
+      where, fmt::join(unseen, "\", \""));
+}
+
+}  // namespace
+
+Result<ordered_json> run_method(const Session& session, const Consent& given, const std::string& method,
+                                ordered_json parameters) {
+  std::string unseen;
+  if (moves(method) && !given.dry_run) {
+    auto asked = unseen_question(session, method, parameters);
+    if (!asked) return asked.error();
+    unseen = asked.value();
+  }
+  if (auto agreed = ask(given, method, unseen); !agreed) return agreed.error();
+  if (given.dry_run) parameters["dry_run"] = true;
+  ProgressLine line;
+  const auto progress = [&line](const std::string& text) {
+    const auto body = ordered_json::parse(text, nullptr, false);
+    line.show(fmt::format("{} {:3.0f} %   Ctrl-C stops the robot", body.value("phase", ""),
+                          100.0 * body.value("fraction", 0.0)));
+  };
+  const auto answer = call_with_lease(session.socket, method, parameters.dump(), progress);
+  if (!answer) return answer.error();
+  return ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
+}
+
+void add_consent(CLI::App& verb, Consent& consent) {
+  verb.add_flag("--yes", consent.yes, "consent: the area is clear, somebody can stop the robot");
+  verb.add_flag("--dry-run", consent.dry_run, "check and say what would be done");
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,283 @@
+// straight and spin: the robot moves, the lidar or a person says how far, and corrected lengths are proposed.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <numbers>
+
+#include "daemon/cli/client.hpp"
+#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/manual_moves.hpp"
+#include "daemon/cli/motion_call.hpp"
+#include "daemon/cli/numbers.hpp"
+#include "daemon/cli/outputs.hpp"
+#include "daemon/cli/verbs.hpp"
+#include "proto/file_bytes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr int kMostRepetitions = 20;
+
+struct Options {
+  Consent consent;
+  double distance = 1.0, turns = 1.0;
+  std::string direction = "both";
+  int repeat = 1;
+  bool one_way = false, square = false;
+  std::vector<std::string> measured;
+  std::string of, out;
+};
+
+/// One motion of the daemon, and the question that follows it.
+struct Motion {
+  std::string method;
+  ordered_json parameters;
+  std::string question;  ///< empty: nothing is asked after it
+};
+
+bool asks(const Options& options) { return options.measured.size() == 1 && options.measured[0] == "ask"; }
+
+/// @param unit of what is typed, in SI
+Result<double> number_of(const std::string& text, double unit) {
+  double value = 0.0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (parsed.ec != std::errc{} || parsed.ptr != text.data() + text.size() || !std::isfinite(value) ||
+      !(value > 0.0))
+    return Error{ErrorCode::usage, "\"" + text + "\" is no number above 0", "what was measured",
+                 "for example 1.0132"};
+  return value * unit;
+}
+
+Result<std::vector<double>> measured_values(const Options& options, double unit) {
+  std::vector<double> values;
+  if (asks(options)) return values;
+  for (const auto& text : options.measured) {
+    const auto value = number_of(text, unit);
+    if (!value) return value.error();
+    values.push_back(value.value());
+  }
+  return values;
+}
+
+/// What a person reads; an answer that is no number is asked for again.
+Result<double> asked(const std::string& question, double unit) {
+  for (std::string line; std::cerr << question << std::flush, std::getline(std::cin, line);) {
+    const auto value = number_of(line, unit);
+    if (value) return value;
+    std::cerr << value.error().what << '\n';
+  }
+  return Error{ErrorCode::cancelled, "nothing was measured", "standard input", ""};
+}
+
+/// Motions of one repetition.
+std::vector<Motion> straight_motions(const Options& options) {
+  ordered_json there = {{"distance", options.distance}};
+  if (options.square) there["square"] = true;
+  if (!options.one_way && !asks(options)) return {{"Straight", there, ""}};
+  there["one_way"] = true;
+  std::vector<Motion> motions = {{"Straight", there, "Distance from where it stood to where it stands, m: "}};
+  if (options.one_way) return motions;
+  there["distance"] = -options.distance;
+  motions.push_back({"Straight", there, ""});
+  return motions;
+}
+
+std::vector<Motion> spin_motions(const Options& options) {
+  const auto motion = [&](const std::string& direction) {
+    return Motion{"Spin",
+                  {{"turns", options.turns}, {"direction", direction}},
+                  "Angle that it turned, degrees, whole turns counted: "};
+  };
+  if (asks(options) && options.direction == "both") return {motion("ccw"), motion("cw")};
+  return {motion(options.direction)};
+}
+
+using Propose = std::function<Result<Proposal>(const DrivenMoves&, const std::vector<double>&)>;
+
+struct Outcome {
+  DrivenMoves driven;
+  std::optional<Proposal> proposal;
+  ordered_json plan;  ///< with --dry-run only
+};
+
+/// Consent is asked for once, and then for every motion of the repetitions given.
+Result<ordered_json> move(const Session& session, Options& options, const Motion& motion) {
+  auto result = run_method(session, options.consent, motion.method, motion.parameters);
+  if (result) options.consent.yes = true;
+  return result;
+}
+
+Result<Outcome> drive(const Session& session, Options options, const std::vector<Motion>& motions,
+                      double unit, std::vector<double> measured, const Propose& propose) {
+  Outcome outcome;
+  for (int round = 0; round < options.repeat && !(outcome.proposal && outcome.proposal->settled); ++round) {
+    for (const Motion& motion : motions) {
+      const auto result = move(session, options, motion);
+      if (!result) return result.error();
+      if (options.consent.dry_run) return Outcome{{}, std::nullopt, result.value()};
+      if (auto added = outcome.driven.add(result.value()); !added) return added.error();
+      if (!asks(options) || motion.question.empty()) continue;
+      const auto answer = asked(motion.question, unit);
+      if (!answer) return answer.error();
+      measured.push_back(answer.value());
+    }
+    // One value for each move can only be set beside all of them.
+    if (!asks(options) && measured.size() > 1 && round + 1 < options.repeat) continue;
+    auto proposal = propose(outcome.driven, measured);
+    if (!proposal) return proposal.error();
+    outcome.proposal = std::move(proposal).value();
+  }
+  return outcome;
+}
+
+/// What was driven before, as --json printed it.
+Result<DrivenMoves> read_moves(const std::string& path) {
+  const auto bytes = read_file_bytes(path);
+  if (!bytes) return bytes.error();
+  DrivenMoves driven;
+  auto added = driven.add(ordered_json::parse(bytes.value(), nullptr, false));
+  if (!added)
+    return Error{ErrorCode::format, added.error().what, path, "a file that --json of the same verb printed"};
+  return driven;
+}
+
+std::string describe_move(const ordered_json& move) {
+  const auto& told = move["odometry"];
+  std::string text =
+      fmt::format("{}: odometry {:.4f} m, {:.3f} deg", move.value("move", ""),
+                  std::hypot(told[0].get<double>(), told[1].get<double>()), told[2].get<double>() * kDegrees);
+  if (!move.contains("error") || !move["error"].is_object()) return text + "; no lidar reference";
+  return text + fmt::format("; error {:+.1f} mm, {:+.3f} deg",
+                            1000.0 * move["error"]["distance"].get<double>(),
+                            move["error"]["yaw"].get<double>() * kDegrees);
+}
+
+void print(const Session& session, const Outcome& outcome) {
+  const auto& [driven, proposal, plan] = outcome;
+  if (!plan.is_null()) {
+    session.json == JsonMode::off ? void(std::cout << plan.dump(2) << '\n')
+                                  : print_json(plan.dump(), session.json);
+    return;
+  }
+  if (session.json != JsonMode::off) {
+    ordered_json body = {{"moves", driven.moves}, {"robot", driven.robot}};
+    if (!driven.rounds.empty()) body["rounds"] = driven.rounds;
+    body["proposal"] = proposal ? to_json(*proposal) : ordered_json(nullptr);
+    if (!driven.recordings.empty()) body["recording"] = driven.recordings.back();
+    body["recordings"] = driven.recordings;
+    return print_json(body.dump(), session.json);
+  }
+  for (const auto& one : driven.moves) std::cout << describe_move(one) << '\n';
+  for (const auto& recording : driven.recordings) std::cout << "recording " << recording << '\n';
+  if (proposal)
+    for (const auto& line : to_lines(*proposal)) std::cout << line << '\n';
+}
+
+int finish(const Session& session, const Options& options, const Result<Outcome>& outcome) {
+  if (!outcome) return report_error(outcome.error(), session.json);
+  print(session, outcome.value());
+  if (options.out.empty() || !outcome.value().proposal) return kDone;
+  const auto text = to_json(calibration_of(*outcome.value().proposal, outcome.value().driven));
+  if (auto written = write_output(options.out, text); !written)
+    return report_error(written.error(), session.json);
+  return kDone;
+}
+
+/// Drives, or with --of looks again at what was driven before.
+int run(const Session& session, const Options& options, const std::vector<Motion>& motions, double unit,
+        const Propose& propose) {
+  if (const auto files = check_outputs({{"--out", options.out}}, {{"--of", options.of}}); !files)
+    return report_error(files.error(), session.json);
+  auto measured = measured_values(options, unit);
+  if (!measured) return report_error(measured.error(), session.json);
+  if (options.of.empty())
+    return finish(session, options,
+                  drive(session, options, motions, unit, std::move(measured).value(), propose));
+  auto driven = read_moves(options.of);
+  if (!driven) return report_error(driven.error(), session.json);
+  auto proposal = propose(driven.value(), measured.value());
+  if (!proposal) return report_error(proposal.error(), session.json);
+  return finish(session, options, Outcome{std::move(driven).value(), std::move(proposal).value(), nullptr});
+}
+
+int straight(const Session& session, const Options& options) {
+  if (options.square && (!options.measured.empty() || options.one_way))
+    return report_error({ErrorCode::usage, "a square is measured by the lidar, and ends where it began",
+                         "--square", "leave --measured and --one-way out"},
+                        session.json);
+  const auto propose = [side = std::abs(options.distance), square = options.square](
+                           const DrivenMoves& driven, const std::vector<double>& measured) {
+    return square ? square_proposal(driven, side) : straight_proposal(driven, measured);
+  };
+  return run(session, options, straight_motions(options), 1.0, propose);
+}
+
+/// The track width inherits the error of the diameters.
+void warn_of_order(const Session& session) {
+  auto client = Client::connect(session.socket);
+  if (!client) return;
+  const auto status = client.value().call("GetStatus");
+  if (!status) return;
+  const auto body =
+      ordered_json::parse(status.value(), nullptr, false).value("status", ordered_json::object());
+  if (!body.value("calibrated", true))
+    warn(
+        "no calibration is in force: the track width inherits the error of the wheel diameters; straight "
+        "first, apply, then spin");
+}
+
+int spin(const Session& session, const Options& options) {
+  if (options.of.empty()) warn_of_order(session);
+  return run(session, options, spin_motions(options), 1.0 / kDegrees, spin_proposal);
+}
+
+void add_common(CLI::App& verb, const std::shared_ptr<Options>& options) {
+  add_consent(verb, options->consent);
+  verb.add_option("--repeat", options->repeat, "times at most; fewer when more would not make it better")
+      ->check(CLI::Range(1, kMostRepetitions))
+      ->capture_default_str();
+  verb.add_option("--of", options->of, "nothing moves: what --json of an earlier drive printed");
+  verb.add_option("--out", options->out, "calibration file of the lengths proposed, for apply");
+}
+
+}  // namespace
+
+void add_manual(CLI::App& app, Session& session) {
+  const auto options = std::make_shared<Options>();
+  auto* line =
+      app.add_subcommand("straight", "Drive straight and back, and propose corrected wheel diameters");
+  line->add_option("--distance", options->distance,
+                   "m, negative: backwards; with --square the length of a side")
+      ->check(finite())
+      ->capture_default_str();
+  line->add_option("--measured", options->measured,
+                   "m, by a tape instead of the lidar: ask, one value, or one for each way out")
+      ->delimiter(',');
+  line->add_flag("--one-way", options->one_way, "do not come back: to be measured where it stands");
+  line->add_flag("--square", options->square,
+                 "around a square in both directions: unequal diameters and track width (UMBmark)");
+  add_common(*line, options);
+  line->callback(
+      [&session, options] { session.run = [&session, options] { return straight(session, *options); }; });
+  auto* turn = app.add_subcommand("spin", "Turn on the spot, and propose a corrected track width");
+  turn->add_option("--turns", options->turns, "full turns")->check(finite())->capture_default_str();
+  turn->add_option("--direction", options->direction)->check(CLI::IsMember({"ccw", "cw", "both"}));
+  turn->add_option(
+          "--measured-turn", options->measured,
+          "degrees, by a mark on the floor instead of the lidar: ask, one value, or one for each turn")
+      ->delimiter(',');
+  add_common(*turn, options);
+  turn->callback(
+      [&session, options] { session.run = [&session, options] { return spin(session, *options); }; });
+}
+
+}  // namespace odomcalib::cli
