@@ -7,14 +7,17 @@
 #include <utility>
 
 #include "calib/classical/sign_check.hpp"
+#include "calib/estimation/first_look.hpp"
 #include "calib/estimation/path_fit.hpp"
 #include "calib/estimation/start_values.hpp"
+#include "calib/ingest/phantom_return.hpp"
 #include "calib/ingest/sweeps.hpp"
 #include "calib/ingest/tick_stamps.hpp"
 #include "calib/measurement/location.hpp"
 #include "calib/measurement/placed_pairs.hpp"
 #include "calib/measurement/placed_poses.hpp"
 #include "calib/measurement/scan_stamps.hpp"
+#include "calib/report/explain.hpp"
 #include "calib/report/findings.hpp"
 #include "calib/report/report.hpp"
 #include "calib/selection/criterion.hpp"
@@ -61,11 +64,18 @@ class Solver {
   Solver(std::span<const Recording> recordings, const SolveOptions& options, Progress progress)
       : recordings_(recordings), options_(options), progress_(std::move(progress)) {}
 
+  /// Whether a refusal has its cause, so that no other needs to be looked for.
+  [[nodiscard]] bool cause_is_known() const { return cause_is_known_; }
+
   Calibration run() {
     if (!recordings_.empty()) calibration_.robot = recordings_.front().robot;
+    drop_phantom_returns();
     even_out_ticks();
+    cause_is_known_ = true;
     if (auto error = open(recordings_)) return refuse(*error);
+    if (auto error = undirected_counts()) return refuse(*error);
     if (auto error = choose_effects()) return refuse(*error);
+    cause_is_known_ = false;
     if (auto error = start()) return refuse(*error);
     auto fit = settle();
     if (fit) fit = seat_reference(std::move(fit));
@@ -122,6 +132,24 @@ class Solver {
   Recording& own(std::size_t recording) {
     if (evened_.empty()) evened_.assign(recordings_.begin(), recordings_.end());
     return evened_[recording];
+  }
+
+  /// Numbers that stand for no return are no walls.
+  void drop_phantom_returns() {
+    const auto given = recordings_;
+    for (std::size_t i = 0; i < given.size(); ++i)
+      if (const auto value = ingest::phantom_return(given[i])) {
+        ingest::remove_readings(own(i), *value);
+        remarks_.push_back(ingest::phantom_remark(*value));
+      }
+    if (!evened_.empty()) recordings_ = evened_;
+  }
+
+  /// Asked before scans are matched from where the counts say they are.
+  [[nodiscard]] std::optional<Error> undirected_counts() const {
+    for (const Recording& recording : recordings_)
+      if (auto error = estimation::counts_without_direction(recording)) return error;
+    return std::nullopt;
   }
 
   void even_out_ticks() {
@@ -565,7 +593,7 @@ class Solver {
 
   void fill() {
     report("validating", 0.0);
-    report::fill_calibration({*session_, outcome_, lidar_, stamps_, automatic_, every_scan_placed_},
+    report::fill_calibration({*session_, outcome_, lidar_, stamps_, automatic_, every_scan_placed_, remarks_},
                              calibration_);
     report("validating", 1.0);
   }
@@ -575,6 +603,7 @@ class Solver {
   Progress progress_;
   Calibration calibration_;
   std::unique_ptr<measurement::Session> session_;
+  bool cause_is_known_ = false;
   bool automatic_ = false;
   bool every_scan_placed_ =
       false;                   ///< the parameters come from the whole path, not from matches of keyframes
@@ -589,6 +618,7 @@ class Solver {
   std::vector<terms::LidarFinding> lidar_;
   std::vector<Recording> evened_;  ///< with other times; empty where those given are right
   ingest::StampReport stamps_;
+  std::vector<std::string> remarks_;  ///< on what was taken out of the recordings
   std::vector<Recording> corrected_;  ///< without the lidar's errors; what the session measures then
 };
 
@@ -596,7 +626,10 @@ class Solver {
 
 Calibration solve(std::span<const Recording> recordings, const SolveOptions& options,
                   const Progress& progress) {
-  return Solver(recordings, options, progress).run();
+  Solver solver(recordings, options, progress);
+  Calibration calibration = solver.run();
+  if (!solver.cause_is_known()) report::explain(recordings, calibration);
+  return calibration;
 }
 
 }  // namespace odomcalib::calib

@@ -70,7 +70,7 @@ class Filler {
     const ReportData report = make_report_data(found_.session, found_.outcome, plain_);
     store_report_data(report, calibration_);
     if (odometry_is_off(report.drive_errors)) tell_what_failed_its_proof();
-    const GateResult gate = judge(calibration_, footing(report.drive_errors));
+    const GateResult gate = judge(calibration_, footing(report));
     calibration_.verdict = gate.verdict;
     calibration_.reasons = gate.reasons;
   }
@@ -89,11 +89,16 @@ class Filler {
     return std::hypot(kMatcherScale, selection::metre_in_doubt(found_.lidar, found_.session.recordings()));
   }
 
-  [[nodiscard]] Footing footing(const std::vector<DriveError>& drive_errors) const {
+  [[nodiscard]] Footing footing(const ReportData& report) const {
     Footing footing;
-    footing.drive_errors = drive_errors;
+    footing.drive_errors = report.drive_errors;
+    footing.axes = report.axes;
+    footing.outliers = found_.outcome.model.fit.discarded;
+    footing.pairs = found_.outcome.model.fit.used + footing.outliers;
+    footing.of_poses = found_.session.reference_is_base();
     footing.converged = found_.outcome.model.fit.converged;
     footing.measured = measured_;
+    footing.remarks = found_.remarks;
     if (outliers_) footing.remarks.push_back(to_text(*outliers_));
     for (const std::string& remark : remarks_on(found_.stamps)) footing.remarks.push_back(remark);
     const math::Pose mount = vehicle::to_base(vehicle::as_span(found_.outcome.model.fit.parameters)).mount;

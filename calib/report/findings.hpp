@@ -2,6 +2,7 @@
 // unexplained, the held-out residual, and the verdict.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calib/ingest/stamp_report.hpp"
@@ -19,6 +20,7 @@ struct Findings {
   ingest::StampReport stamps;
   bool was_searched = false;       ///< for effects that nobody named
   bool every_scan_placed = false;  ///< the parameters come from the whole path, not from matches of keyframes
+  std::vector<std::string> remarks = {};  ///< on what was taken out of the recordings
 };
 
 /// Fills in all that depends on the fit; data and classical methods are there already.

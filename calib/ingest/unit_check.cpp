@@ -1,0 +1,167 @@
+#include "calib/ingest/unit_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <vector>
+
+#include "calib/ingest/settings.hpp"
+#include "calib/math/median.hpp"
+#include "calib/matching/surface.hpp"
+
+namespace odomcalib::calib::ingest {
+namespace {
+
+struct Unit {
+  const char* name;
+  double size;  ///< in s or m
+};
+
+constexpr std::array kTimeUnits = {Unit{"milliseconds", 1e-3}, Unit{"microseconds", 1e-6},
+                                   Unit{"nanoseconds", 1e-9}, Unit{"minutes", 60.0}};
+constexpr std::array kLengthUnits = {Unit{"millimetres", 1e-3}, Unit{"centimetres", 1e-2},
+                                     Unit{"inches", 0.0254}, Unit{"kilometres", 1e3}};
+
+std::string number(double value) {
+  std::ostringstream out;
+  out.precision(4);
+  out << value;
+  return out.str();
+}
+
+Error wrong(const Recording& recording, const std::string& what, const std::string& remedy) {
+  return {ErrorCode::format, what, recording.name, remedy};
+}
+
+std::size_t count_of_reason(const Recording& recording, const std::string& what, const std::string& reason) {
+  std::size_t count = 0;
+  for (const Discarded& discarded : recording.discarded)
+    if (discarded.what == what && discarded.reason == reason) count += discarded.count;
+  return count;
+}
+
+/// Whole seconds, or numbers that are too large for the digits they are stored in.
+std::optional<Error> lost_digits(const Recording& recording, const std::string& what, const std::string& many,
+                                 std::size_t kept) {
+  const std::size_t repeated = count_of_reason(recording, what, kRepeatedStamp);
+  const auto all = static_cast<double>(kept + repeated);
+  if (!(static_cast<double>(repeated) > settings::kRepeatedShare * all)) return std::nullopt;
+  return wrong(recording,
+               std::to_string(repeated) + " of " + std::to_string(kept + repeated) + " " + many +
+                   " carry the same time stamp as the one before: the stamps have lost their last digits, as "
+                   "whole seconds or single-precision numbers do",
+               "write stamps with at least three digits after the point, as double-precision numbers");
+}
+
+std::optional<Error> rounded_stamps(const Recording& recording) {
+  if (auto error = lost_digits(recording, "ticks", "ticks", recording.ticks.size())) return error;
+  if (auto error = lost_digits(recording, "scan", "scans", recording.scans.size())) return error;
+  return lost_digits(recording, "pose", "poses", recording.poses.size());
+}
+
+/// Of one lidar: scans of several come in between each other.
+double interval_of_scans(const Recording& recording) {
+  std::vector<double> times;
+  for (const Scan& scan : recording.scans)
+    if (scan.sensor == recording.scans.front().sensor) times.push_back(scan.t);
+  return times.size() < 2 ? settings::kLongestInterval_s : math::median_of(math::differences_of(times));
+}
+
+std::optional<Error> scans_too_fast(const Recording& recording) {
+  if (recording.scans.size() < 2) return std::nullopt;
+  const double interval = interval_of_scans(recording);
+  if (interval >= settings::kFastestScans_s) return std::nullopt;
+  const std::string unit = unit_of_interval(interval);
+  return wrong(recording,
+               "scans come every " + number(1e3 * interval) + " ms, faster than any lidar turns" +
+                   (unit.empty() ? "" : ": their times look like " + unit),
+               "write times in seconds; where one turn is split into parts, join them");
+}
+
+std::optional<Error> slow_beams(const Recording& recording) {
+  if (recording.scans.size() < 2) return std::nullopt;
+  const double interval = interval_of_scans(recording);
+  std::vector<double> sweeps;
+  for (const Scan& scan : recording.scans)
+    sweeps.push_back(matching::beam_time(scan, scan.ranges.size() - 1) - matching::beam_time(scan, 0));
+  const double sweep = std::abs(math::median_of(std::move(sweeps)));
+  if (sweep <= settings::kLongestSweep * interval) return std::nullopt;
+  return wrong(recording,
+               "the beams of a scan take " + number(sweep) + " s, but scans come every " + number(interval) +
+                   " s: time_increment or times are not in seconds",
+               "write time_increment as seconds from one beam to the next, or leave it out");
+}
+
+std::optional<Error> too_many_turns(const Recording& recording) {
+  std::vector<double> sweeps;
+  for (const Scan& scan : recording.scans)
+    sweeps.push_back(std::abs(scan.angle(scan.ranges.size() - 1) - scan.angle(0)));
+  if (sweeps.empty()) return std::nullopt;
+  const double sweep = math::median_of(std::move(sweeps));
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  if (sweep <= settings::kMostTurns * kTurn) return std::nullopt;
+  const bool degrees = sweep > 4.0 * kTurn;
+  return wrong(recording,
+               "a scan covers " + number(sweep) + " rad, " + number(sweep / kTurn) + " turns" +
+                   (degrees ? ": its angles look like degrees" : ": its angles are stretched"),
+               degrees ? "angle_min, angle_increment and angles must be in radians"
+                       : "check angle_increment: it is the angle from one beam to the next, in radians, and "
+                         "the number of beams per turn depends on the lidar's mode");
+}
+
+double median_reading(const Recording& recording) {
+  std::vector<double> readings;
+  const std::size_t step =
+      std::max<std::size_t>(1, recording.scans.size() / settings::kScansLookedAt);
+  for (std::size_t k = 0; k < recording.scans.size(); k += step)
+    for (const float range : recording.scans[k].ranges)
+      if (range > 0.0F) readings.push_back(static_cast<double>(range));
+  return readings.empty() ? 0.0 : math::median_of(std::move(readings));
+}
+
+const Unit& likeliest_length(double reading) {
+  const auto distance = [&](const Unit& unit) {
+    return std::abs(std::log(reading * unit.size / settings::kUsualMedian_m));
+  };
+  return *std::min_element(kLengthUnits.begin(), kLengthUnits.end(),
+                           [&](const Unit& a, const Unit& b) { return distance(a) < distance(b); });
+}
+
+std::optional<Error> wrong_ranges(const Recording& recording) {
+  const double median = median_reading(recording);
+  const bool far = median > settings::kFarthestMedian_m;
+  if (median == 0.0 || (!far && median >= settings::kNearestMedian_m)) return std::nullopt;
+  const Unit& unit = likeliest_length(median);
+  return wrong(recording,
+               "half of the ranges are " + std::string(far ? "above " : "below ") + number(median) +
+                   ", which no 2D lidar sees in metres: they look like " + unit.name + " (" +
+                   number(median * unit.size) + " m)",
+               "multiply ranges, range_min and range_max by " + number(unit.size));
+}
+
+using Rule = std::optional<Error> (*)(const Recording&);
+
+constexpr std::array<Rule, 5> kRules = {rounded_stamps, scans_too_fast, slow_beams, too_many_turns,
+                                        wrong_ranges};
+
+}  // namespace
+
+std::string unit_of_interval(double interval) {
+  const auto is_usual = [](double seconds) {
+    return seconds >= settings::kShortestInterval_s && seconds <= settings::kLongestInterval_s;
+  };
+  if (is_usual(interval)) return "";
+  for (const Unit& unit : kTimeUnits)
+    if (is_usual(interval * unit.size)) return unit.name;
+  return "";
+}
+
+std::optional<Error> wrong_units(const Recording& recording) {
+  for (const Rule rule : kRules)
+    if (auto error = rule(recording)) return error;
+  return std::nullopt;
+}
+
+}  // namespace odomcalib::calib::ingest
