@@ -19,6 +19,7 @@
 #include "calib/measurement/scan_stamps.hpp"
 #include "calib/report/explain.hpp"
 #include "calib/report/findings.hpp"
+#include "calib/report/one_robot.hpp"
 #include "calib/report/report.hpp"
 #include "calib/selection/criterion.hpp"
 #include "calib/selection/held_out.hpp"
@@ -73,6 +74,8 @@ class Solver {
     even_out_ticks();
     cause_is_known_ = true;
     if (auto error = open(recordings_)) return refuse(*error);
+    if (!options_.same_robot)
+      if (auto error = report::different_robots(recordings_)) return refuse(*error);
     if (auto error = undirected_counts()) return refuse(*error);
     if (auto error = choose_effects()) return refuse(*error);
     cause_is_known_ = false;
@@ -265,9 +268,7 @@ class Solver {
       effects_.push_back(terms::clock_effect(ClockPart::offset));
     const estimation::ClockStart clock =
         has(ClockPart::offset) ? estimation::search_clock(session_->data()) : estimation::ClockStart{};
-    if (auto error = classical::check_signs(wheel_motions(session_->data(), clock.delay), calibration_.robot,
-                                            session_->reference_is_base()))
-      return error;
+    if (auto error = check_signs(clock.delay)) return error;
     if (automatic_ && clock.rate != 0.0) effects_.push_back(terms::clock_effect(ClockPart::rate));
     parameters_ = vehicle::to_vector(estimation::start_values(*session_, clock.delay),
                                      vehicle::count_parameters(effects_));
@@ -277,6 +278,18 @@ class Solver {
     if (has(ClockPart::offset)) parameters_(first_of(ClockPart::offset)) = clock.delay;
     if (has(ClockPart::rate)) parameters_(first_of(ClockPart::rate)) = clock.rate;
     return std::nullopt;
+  }
+
+  /// Of each recording alone first: one with exchanged wires beside sound ones is outvoted.
+  [[nodiscard]] std::optional<Error> check_signs(double delay) const {
+    const std::span<const measurement::FitData> data(session_->data());
+    const bool of_base = session_->reference_is_base();
+    for (std::size_t i = 0; data.size() > 1 && i < data.size(); ++i)
+      if (auto error = classical::check_signs(wheel_motions(data.subspan(i, 1), delay), calibration_.robot, of_base)) {
+        error->where = recordings_[i].name;
+        return error;
+      }
+    return classical::check_signs(wheel_motions(data, delay), calibration_.robot, of_base);
   }
 
   /// Fits, matches again with the fitted parameters (guess and de-skew), and fits again. Noise of a match

@@ -37,6 +37,7 @@ bool is_near(double ratio, double factor) {
 struct Factor {
   double ratio;
   const char* reason;
+  bool of_ranges = false;  ///< no other reference has that mistake
 };
 
 constexpr std::array kOfAllLengths = {
@@ -44,10 +45,10 @@ constexpr std::array kOfAllLengths = {
     Factor{1e2, "lengths of the reference are in centimetres"},
     Factor{1.0 / 0.0254, "lengths of the reference are in inches"},
     Factor{1.0 / 0.3048, "lengths of the reference are in feet"},
-    Factor{2.0, "ranges are twice as long as they are: the way there and back was not halved"},
-    Factor{0.5, "ranges are half as long as they are: they were halved twice"},
-    Factor{0.25, "ranges in quarters of a millimetre were taken for millimetres"},
-    Factor{4.0, "ranges in millimetres were taken for four times as much"},
+    Factor{2.0, "ranges are twice as long as they are: the way there and back was not halved", true},
+    Factor{0.5, "ranges are half as long as they are: they were halved twice", true},
+    Factor{0.25, "ranges in quarters of a millimetre were taken for millimetres", true},
+    Factor{4.0, "ranges in millimetres were taken for four times as much", true},
     Factor{0.3048, "wheel_diameter and track_width are in feet"},
     Factor{0.0254, "wheel_diameter and track_width are in inches"},
     Factor{1e-2, "wheel_diameter and track_width are in centimetres"},
@@ -76,9 +77,9 @@ constexpr std::array kOfTrack = {
     Factor{1e-3, "it is in millimetres"}};
 
 template <std::size_t kCount>
-const char* reason_for(const std::array<Factor, kCount>& table, double ratio) {
+const char* reason_for(const std::array<Factor, kCount>& table, double ratio, bool of_poses = false) {
   for (const Factor& factor : table)
-    if (is_near(ratio, factor.ratio)) return factor.reason;
+    if (is_near(ratio, factor.ratio) && !(factor.of_ranges && of_poses)) return factor.reason;
   return nullptr;
 }
 
@@ -88,7 +89,7 @@ Cause of_all(double ratio, bool of_poses) {
   const std::string lengths = of_poses ? "x and y of the poses" : "ranges and their limits";
   return {"both wheel diameters and the track width come out " + number(ratio) +
               " times their nominal values, so that a unit or the scale of the reference is wrong" +
-              because(reason_for(kOfAllLengths, ratio)),
+              because(reason_for(kOfAllLengths, ratio, of_poses)),
           "measure a wheel with a tape; then multiply " + lengths + " by " + number(1.0 / ratio) +
               ", or wheel_diameter and track_width by " + number(ratio)};
 }
@@ -99,7 +100,7 @@ Cause of_wheels(double ratio, const RobotDescription& robot) {
   return {"both wheel diameters come out " + number(ratio) +
               " times their nominal values, the track width does not" +
               because(gear ? "counts are those of the motor before a gear, or ticks_per_rev is" : reason),
-          "set ticks_per_rev to " + count(robot.ticks_per_rev / ratio) + " instead of " +
+          "set ticks_per_rev to about " + count(robot.ticks_per_rev / ratio) + " instead of " +
               count(robot.ticks_per_rev) + ", or wheel_diameter to " +
               number(0.5 * (robot.left_wheel_diameter + robot.right_wheel_diameter) * ratio) +
               " m; a tape at the wheel tells which"};

@@ -190,7 +190,7 @@ class Look {
     for (const ReferenceMotion& m : seen_.motions) turned += std::abs(m.motion.yaw);
     if (turned < 1.0) return std::nullopt;
     return Cause{"left and right counts are always the same, although the robot turned by " +
-                     number(turned * 180.0 / math::kPi) + " degrees in all",
+                     std::to_string(std::lround(turned * 180.0 / math::kPi)) + " degrees in all",
                  "check that each count comes from its own encoder"};
   }
 

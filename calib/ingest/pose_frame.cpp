@@ -26,7 +26,7 @@ constexpr std::array kMistakes = {
             [](PoseSample p) { return p.yaw *= kPi / 180.0, p; }},
     Mistake{"yaw has the opposite sign of the frame that x and y are in (clockwise, or z down)",
             "negate yaw: it is counter-clockwise, x forward, y left", [](PoseSample p) { return p.yaw = -p.yaw, p; }},
-    Mistake{"yaw is a compass heading (clockwise from y) beside x and y of a map",
+    Mistake{"yaw is a compass heading (clockwise from y) beside x and y of a map, or x and y are exchanged",
             "write pi / 2 - yaw: yaw is counter-clockwise from x",
             [](PoseSample p) { return p.yaw = 0.5 * kPi - p.yaw, p; }},
     Mistake{"yaw is a quarter of a turn off: it looks to the side of the robot",

@@ -20,6 +20,15 @@ inline constexpr double kRepeatedShare = 0.6;
 /// before it ends. Chosen: half a turn is left to uneven stamps.
 inline constexpr double kLongestSweep = 1.5;
 
+/// The same ratio, of beam times that are in another unit rather than on another clock. Chosen: clocks that run
+/// apart by more are none.
+inline constexpr double kSweepInOtherUnit = 20.0;
+/// Relative difference of the spans of two streams in their units. Chosen: one recorder starts and ends a
+/// little later.
+inline constexpr double kSameSpan = 0.1;
+/// m, of a lidar from the middle of the axle. Chosen: larger robots are not driven by two wheels.
+inline constexpr double kFarthestLidar_m = 5.0;
+
 // --- Angles ----------------------------------------------------------------------------------------------
 
 /// Turns that the beams of one scan cover. Chosen: drivers repeat a few beams where turns overlap; what is

@@ -88,10 +88,15 @@ std::optional<Error> slow_beams(const Recording& recording) {
     sweeps.push_back(matching::beam_time(scan, scan.ranges.size() - 1) - matching::beam_time(scan, 0));
   const double sweep = std::abs(math::median_of(std::move(sweeps)));
   if (sweep <= settings::kLongestSweep * interval) return std::nullopt;
+  const bool is_unit = sweep > settings::kSweepInOtherUnit * interval;
   return wrong(recording,
                "the beams of a scan take " + number(sweep) + " s, but scans come every " + number(interval) +
-                   " s: time_increment or times are not in seconds",
-               "write time_increment as seconds from one beam to the next, or leave it out");
+                   " s: " +
+                   (is_unit ? "time_increment or times are not in seconds"
+                            : "the stamps of the scans run too slowly, or time_increment is too long"),
+               is_unit ? "write time_increment as seconds from one beam to the next, or leave it out"
+                       : "stamp scans with the clock that stamps the counts, and write time_increment as "
+                         "seconds from one beam to the next");
 }
 
 std::optional<Error> too_many_turns(const Recording& recording) {
@@ -109,6 +114,43 @@ std::optional<Error> too_many_turns(const Recording& recording) {
                degrees ? "angle_min, angle_increment and angles must be in radians"
                        : "check angle_increment: it is the angle from one beam to the next, in radians, and "
                          "the number of beams per turn depends on the lidar's mode");
+}
+
+template <typename Sample>
+double span_of(const std::vector<Sample>& samples) {
+  return samples.empty() ? 0.0 : samples.back().t - samples.front().t;
+}
+
+/// Both streams are of one drive: where one seems to take a unit's factor longer, it is in that unit.
+std::optional<Error> spans_in_units(const Recording& recording) {
+  const bool by_poses = !recording.poses.empty();
+  const double ticks = span_of(recording.ticks);
+  const double reference = by_poses ? span_of(recording.poses) : span_of(recording.scans);
+  if (!(ticks > 0.0) || !(reference > 0.0)) return std::nullopt;
+  for (const Unit& unit : kTimeUnits)
+    for (const bool of_ticks : {true, false}) {
+      const double ratio = of_ticks ? ticks / reference : reference / ticks;
+      if (std::abs(ratio * unit.size - 1.0) > settings::kSameSpan) continue;
+      const std::string scans = by_poses ? "poses" : "scans";
+      return wrong(recording,
+                   "ticks run over " + number(ticks) + ", " + scans + " over " + number(reference) +
+                       " seconds: the times of the " + (of_ticks ? "ticks" : scans) + " look like " + unit.name,
+                   "write every \"t\" in seconds");
+    }
+  return std::nullopt;
+}
+
+/// Where the lidar sits on the base: no robot is that large, and no angle.
+std::optional<Error> wrong_lidar_pose(const Recording& recording) {
+  if (!recording.robot.lidar_pose) return std::nullopt;
+  const auto& [x, y, yaw] = *recording.robot.lidar_pose;
+  if (std::hypot(x, y) > settings::kFarthestLidar_m)
+    return wrong(recording, "lidar_pose puts the lidar " + number(std::hypot(x, y)) + " m from the middle of the axle",
+                 "write x and y of lidar_pose in metres");
+  if (std::abs(yaw) > 2.0 * std::numbers::pi)
+    return wrong(recording, "lidar_pose turns the lidar by " + number(yaw) + " rad: its yaw looks like degrees",
+                 "write the yaw of lidar_pose in radians");
+  return std::nullopt;
 }
 
 double median_reading(const Recording& recording) {
@@ -143,8 +185,8 @@ std::optional<Error> wrong_ranges(const Recording& recording) {
 
 using Rule = std::optional<Error> (*)(const Recording&);
 
-constexpr std::array<Rule, 5> kRules = {rounded_stamps, scans_too_fast, slow_beams, too_many_turns,
-                                        wrong_ranges};
+constexpr std::array<Rule, 7> kRules = {rounded_stamps, scans_too_fast, spans_in_units,  slow_beams,
+                                        too_many_turns, wrong_ranges,   wrong_lidar_pose};
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calib/report/gate.hpp"
+#include "calib/report/one_robot.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/report_data.hpp"
 #include "calib/selection/event_text.hpp"
@@ -53,6 +54,9 @@ class Filler {
     const std::span<const double> p = vehicle::as_span(fit.parameters);
     Eigen::MatrixXd covariance = with_scale_error(fit.covariance, vehicle::to_base(p), scale_deviation());
     measured_ = base_quantities(vehicle::to_base(p), covariance);
+    compare_recordings();
+    if (apart_)
+      covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>().diagonal() += homogeneity_->between;
     for (const Eigen::VectorXd& doubt : found_.outcome.doubts)
       covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>() += doubt * doubt.transpose();
     calibration_.parameters = base_quantities(vehicle::to_base(p), covariance);
@@ -76,6 +80,20 @@ class Filler {
   }
 
  private:
+  /// With what was found in all of them each recording is asked alone.
+  void compare_recordings() {
+    const auto recordings = found_.session.recordings();
+    if (recordings.size() < 2) return;
+    std::vector<std::string> names;
+    for (const Recording& recording : recordings) names.push_back(recording.name);
+    const selection::FitTask task{found_.session.data(), found_.session.fixed(0)};
+    const double metre = found_.session.reference_is_scans() ? kMatcherScale : 0.0;
+    homogeneity_ = selection::homogeneity(task, found_.outcome.model, metre, names);
+    if (!homogeneity_) return;
+    store_homogeneity(*homogeneity_, recordings, calibration_);
+    apart_ = recordings_apart(*homogeneity_, recordings);
+  }
+
   [[nodiscard]] const vehicle::EffectList& effects() const { return found_.outcome.model.effects; }
   [[nodiscard]] std::vector<bool> fixed() const {
     return vehicle::fixed_with(found_.session.fixed(0), effects());
@@ -99,6 +117,7 @@ class Filler {
     footing.converged = found_.outcome.model.fit.converged;
     footing.measured = measured_;
     footing.remarks = found_.remarks;
+    footing.recordings_apart = apart_;
     if (outliers_) footing.remarks.push_back(to_text(*outliers_));
     for (const std::string& remark : remarks_on(found_.stamps)) footing.remarks.push_back(remark);
     const math::Pose mount = vehicle::to_base(vehicle::as_span(found_.outcome.model.fit.parameters)).mount;
@@ -271,6 +290,8 @@ class Filler {
   Calibration& calibration_;
   std::optional<selection::OutlierTrace> outliers_;
   std::optional<estimation::FitResult> plain_;
+  std::optional<selection::Homogeneity> homogeneity_;
+  std::optional<Apart> apart_;
   QuantityList measured_;  ///< with the deviations that the motion leaves
   std::vector<selection::FittedCurve> fitted_curves_;
 };

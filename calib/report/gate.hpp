@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,12 @@ namespace odomcalib::calib::report {
 struct GateResult {
   Verdict verdict = Verdict::refused;
   std::vector<std::string> reasons;
+};
+
+/// Recordings that disagree about the robot.
+struct Apart {
+  bool refuses = false;  ///< by more than wider deviations could stand for
+  std::string reason;
 };
 
 /// What the values stand on.
@@ -27,6 +34,7 @@ struct Footing {
   std::vector<DriveError> drive_errors = {};
   std::vector<ResidualAxis> axes = {};  ///< of the residual, with their runs tests
   std::size_t outliers = 0, pairs = 0;  ///< pairs that contradict all others, of all
+  std::optional<Apart> recordings_apart = std::nullopt;
   bool of_poses = false;                ///< the reference is poses of the base
 };
 

@@ -46,4 +46,14 @@ inline constexpr double kEstimatorsApart = 6.0, kEstimatorsApartShare = 0.005;
 /// recordings.
 inline constexpr double kTooFewRuns = -5.0;
 
+// --- Several recordings ---------------------------------------------------------------------------------------
+
+/// Level of the test of homogeneity. Chosen: one in a thousand sets of recordings of one robot is told apart.
+inline constexpr double kApartLevel = 1e-3;
+/// Deviations of a single difference that is no chance. Chosen.
+inline constexpr double kPlainlyApart = 4.0;
+/// Share of a length, m and rad of the lidar's place: differences beyond are refused, smaller ones widen the
+/// deviations. Chosen: the first is what the verdict warns of where a length is not known better.
+inline constexpr double kLengthApart = kWarnRelativeDeviation, kMountApart_m = 0.01, kMountApart_rad = 0.02;
+
 }  // namespace odomcalib::calib::report::settings

@@ -174,9 +174,9 @@ Objections undetermined_lengths(const std::vector<Length>& lengths) {
 Objections negative_lengths(const std::vector<Length>& lengths) {
   const auto negative = [](const Length& length) { return !length.is_positive(); };
   if (lengths.size() == 3 && std::all_of(lengths.begin(), lengths.end(), negative))
-    return {refusal("the lidar, or the reference, looks backwards: all lengths come out negative, which half a "
-                    "turn of lidar_yaw puts right; correct lidar_pose (its yaw is 3.14 rad off), or check "
-                    "which end of the robot counts forward")};
+    return {refusal("the reference looks backwards by what lidar_pose says (by their yaw, of poses): all lengths "
+                    "come out negative, which half a turn puts right; correct that yaw by 3.14 rad, or, if it "
+                    "is right, the left and right counts are exchanged and both wheels count backwards")};
   Objections found;
   for (const Length& length : lengths)
     if (negative(length))
@@ -260,6 +260,13 @@ Objections lidar_yaw(const Calibration& calibration, const Footing&) {
   if (!(std::abs(apart) > classical::kFarYaw)) return {};
   return {warning("lidar_yaw differs from its nominal value by " + degrees(apart) +
                   ": correct lidar_pose, or check which end of the robot counts forward")};
+}
+
+// --- Recordings ----------------------------------------------------------------------------------------------
+
+Objections recordings_disagree(const Calibration&, const Footing& footing) {
+  if (!footing.recordings_apart) return {};
+  return {{footing.recordings_apart->refuses, footing.recordings_apart->reason}};
 }
 
 // --- Pairs -------------------------------------------------------------------------------------------------
@@ -359,6 +366,7 @@ Objections unsettled_fit(const Calibration&, const Footing& footing) {
 }
 
 constexpr std::array kRules = {VerdictRule{"no_better_than_before", no_better_than_before},
+                               VerdictRule{"recordings_disagree", recordings_disagree},
                                VerdictRule{"lengths", lengths},
                                VerdictRule{"lidar_yaw", lidar_yaw},
                                VerdictRule{"unmatched_pairs", unmatched_pairs},
