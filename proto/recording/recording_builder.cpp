@@ -184,8 +184,15 @@ Error RecordingBuilder::nothing_usable(const std::string& where) const {
   for (const auto& [key, count] : discarded_)
     if (const std::string unit = unit_of_reason(key.second); !unit.empty())
       return wrong_dates(key.first, count, unit, where);
-  return {ErrorCode::empty, "no usable ticks, scans, poses or increments", where,
-          "check that the recording was running while the robot moved"};
+  const auto most = std::max_element(discarded_.begin(), discarded_.end(), [](const auto& a, const auto& b) {
+    return a.second < b.second;
+  });
+  const std::string what = "no usable ticks, scans, poses or increments";
+  if (most == discarded_.end())
+    return {ErrorCode::empty, what, where, "check that the recording was running while the robot moved"};
+  const auto& [name, reason] = most->first;
+  return {ErrorCode::empty, what + ": " + std::to_string(most->second) + " x " + name + " left out, " + reason, where,
+          "compare a line of it with docs/user/formats.md"};
 }
 
 void RecordingBuilder::merge_robot(const RobotDescription* fallback) {
