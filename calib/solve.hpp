@@ -1,11 +1,11 @@
 // Recordings in, calibration out: the one entry point of the estimators.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "calib/measurement/progress.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/recording/recording.hpp"
 
@@ -18,9 +18,7 @@ struct SolveOptions {
   bool same_robot = false;
 };
 
-/// Called with a phase name and its completed share in [0, 1]; never called with a smaller share within a
-/// phase.
-using Progress = std::function<void(const std::string& phase, double fraction)>;
+using Progress = measurement::Progress;
 
 /// Estimates wheel diameters, track width and lidar pose from the recordings of one robot, jointly.
 /// Never fails: a recording that cannot be calibrated yields a Calibration with verdict refused, the reasons,

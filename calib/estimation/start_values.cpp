@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "calib/classical/closed_form.hpp"
+#include "calib/classical/sign_check.hpp"
+#include "calib/terms/catalogue.hpp"
 
 namespace odomcalib::calib::estimation {
 namespace {
@@ -86,6 +88,18 @@ bool plausible(const wheels::BaseParameters& p) {
   return p.left_radius > 0.0 && p.right_radius > 0.0 && p.track_width > 0.0 && std::isfinite(p.track_width);
 }
 
+vehicle::VehicleModel with_start_values(const vehicle::EffectList& effects,
+                                        const wheels::BaseParameters& base, const ClockStart& clock) {
+  Eigen::VectorXd parameters = vehicle::to_vector(base, vehicle::count_parameters(effects));
+  const std::vector<double> own = vehicle::start_of(effects);
+  parameters.tail(static_cast<Eigen::Index>(own.size())) =
+      Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size()));
+  if (const auto offset = parameter_of(effects, vehicle::ClockPart::offset))
+    parameters(*offset) = clock.delay;
+  if (const auto rate = parameter_of(effects, vehicle::ClockPart::rate)) parameters(*rate) = clock.rate;
+  return {effects, parameters};
+}
+
 }  // namespace
 
 ClockStart search_clock(std::span<const measurement::FitData> data) {
@@ -101,12 +115,12 @@ ClockStart search_clock(std::span<const measurement::FitData> data) {
   return {0.5 * (first.seconds + second.seconds), apart / (mean_time(late) - mean_time(early))};
 }
 
-wheels::BaseParameters start_values(const measurement::Session& session, double delay) {
-  wheels::BaseParameters start = session.nominal();
-  if (session.reference_is_base()) return start;
-  const auto closed = classical::solve_closed_form(wheel_motions(session.data(), delay));
+wheels::BaseParameters start_values(const measurement::Dataset& dataset, double delay) {
+  wheels::BaseParameters start = dataset.nominal;
+  if (dataset.reference_is_base()) return start;
+  const auto closed = classical::solve_closed_form(wheel_motions(dataset.data, delay));
   if (!closed || !plausible(closed.value().parameters)) return start;
-  const RobotDescription& robot = session.recordings().front().robot;
+  const RobotDescription& robot = dataset.recordings.front().robot;
   if (!robot.lidar_pose) start.mount = closed.value().parameters.mount;
   if (!(robot.left_wheel_diameter > 0.0)) {
     const math::Pose mount = start.mount;
@@ -114,6 +128,31 @@ wheels::BaseParameters start_values(const measurement::Session& session, double 
     start.mount = mount;
   }
   return start;
+}
+
+/// Of each recording alone first: one with exchanged wires beside sound ones is outvoted.
+std::optional<Error> check_signs(const measurement::Dataset& rough, double delay) {
+  const std::span<const measurement::FitData> data(rough.data);
+  const RobotDescription& robot = rough.recordings.front().robot;
+  const bool of_base = rough.reference_is_base();
+  for (std::size_t i = 0; data.size() > 1 && i < data.size(); ++i)
+    if (auto error = classical::check_signs(wheel_motions(data.subspan(i, 1), delay), robot, of_base)) {
+      error->where = rough.recordings[i].name;
+      return error;
+    }
+  return classical::check_signs(wheel_motions(data, delay), robot, of_base);
+}
+
+Result<vehicle::VehicleModel> start_model(const measurement::Dataset& rough, const terms::Request& request) {
+  using vehicle::ClockPart;
+  vehicle::EffectList effects = request.effects;
+  if (request.is_automatic && !rough.has_motions_alone())
+    effects.push_back(terms::clock_effect(ClockPart::offset));
+  const bool has_offset = place_of(effects, ClockPart::offset).has_value();
+  const ClockStart clock = has_offset ? search_clock(rough.data) : ClockStart{};
+  if (auto error = check_signs(rough, clock.delay)) return *error;
+  if (request.is_automatic && clock.rate != 0.0) effects.push_back(terms::clock_effect(ClockPart::rate));
+  return with_start_values(effects, start_values(rough, clock.delay), clock);
 }
 
 }  // namespace odomcalib::calib::estimation

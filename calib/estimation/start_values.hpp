@@ -2,7 +2,9 @@
 // clocks.
 #pragma once
 
-#include "calib/measurement/session.hpp"
+#include "calib/measurement/dataset.hpp"
+#include "calib/terms/request.hpp"
+#include "calib/vehicle/vehicle_model.hpp"
 
 namespace odomcalib::calib::estimation {
 
@@ -19,6 +21,11 @@ struct ClockStart {
 ClockStart search_clock(std::span<const measurement::FitData> data);
 
 /// Nominal values where they exist; the closed form supplies what the recording does not state.
-wheels::BaseParameters start_values(const measurement::Session& session, double delay);
+wheels::BaseParameters start_values(const measurement::Dataset& dataset, double delay);
+
+/// Where the fit begins: what was asked for and, where that is automatic and times are known, a delay between
+/// the clocks. Errors: those of check_signs, which is asked before anything is fitted.
+/// @param rough measured roughly
+Result<vehicle::VehicleModel> start_model(const measurement::Dataset& rough, const terms::Request& request);
 
 }  // namespace odomcalib::calib::estimation

@@ -63,6 +63,24 @@ std::optional<float> outstanding(const std::vector<Reading>& readings) {
   return most->value;
 }
 
+void remove_readings(Recording& recording, double value) {
+  std::size_t count = 0;
+  for (Scan& scan : recording.scans)
+    for (float& range : scan.ranges)
+      if (range == static_cast<float>(value)) {
+        range = 0.0F;
+        ++count;
+      }
+  recording.discarded.push_back(
+      {"beam", "exactly " + number(value) + " m, which stands for no return", count});
+}
+
+std::string remark_on(double value) {
+  return "many readings are exactly " + number(value) +
+         " m wherever the robot was: the lidar or its driver writes that number where nothing came back, or "
+         "sees the robot itself; they are left out, and null says the same";
+}
+
 }  // namespace
 
 std::optional<double> phantom_return(const Recording& recording) {
@@ -81,22 +99,17 @@ std::optional<double> phantom_return(const Recording& recording) {
   return std::nullopt;
 }
 
-void remove_readings(Recording& recording, double value) {
-  std::size_t count = 0;
-  for (Scan& scan : recording.scans)
-    for (float& range : scan.ranges)
-      if (range == static_cast<float>(value)) {
-        range = 0.0F;
-        ++count;
-      }
-  recording.discarded.push_back(
-      {"beam", "exactly " + number(value) + " m, which stands for no return", count});
-}
-
-std::string phantom_remark(double value) {
-  return "many readings are exactly " + number(value) +
-         " m wherever the robot was: the lidar or its driver writes that number where nothing came back, or "
-         "sees the robot itself; they are left out, and null says the same";
+Cleaned without_phantom_returns(std::span<const Recording> given) {
+  std::vector<Recording> cleaned;  // a copy of all, made when the first of them is changed
+  std::vector<std::string> remarks;
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (const auto value = phantom_return(given[i])) {
+      if (cleaned.empty()) cleaned.assign(given.begin(), given.end());
+      remove_readings(cleaned[i], *value);
+      remarks.push_back(remark_on(*value));
+    }
+  if (cleaned.empty()) return {Recordings(given)};
+  return {Recordings(std::move(cleaned), {}), std::move(remarks)};
 }
 
 }  // namespace odomcalib::calib::ingest

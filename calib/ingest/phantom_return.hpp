@@ -2,9 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
-#include "proto/recording/recording.hpp"
+#include "calib/ingest/recordings.hpp"
 
 namespace odomcalib::calib::ingest {
 
@@ -12,10 +14,13 @@ namespace odomcalib::calib::ingest {
 /// through the recording: what stands for no return, or a part of the robot. nullopt where none does.
 std::optional<double> phantom_return(const Recording& recording);
 
-/// Turns readings of that number into no reading, and counts them as discarded beams.
-void remove_readings(Recording& recording, double value);
+struct Cleaned {
+  Recordings recordings;
+  std::vector<std::string> remarks = {};  ///< what a user should know of it
+};
 
-/// What a user should know of it.
-std::string phantom_remark(double value);
+/// Recordings whose readings of such a number are no readings, and count as discarded beams; without any the
+/// recordings given.
+Cleaned without_phantom_returns(std::span<const Recording> given);
 
 }  // namespace odomcalib::calib::ingest

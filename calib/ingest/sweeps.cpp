@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "calib/ingest/even_stamps.hpp"
 #include "calib/matching/surface.hpp"
@@ -29,26 +31,33 @@ void let_sweep(Recording& recording) {
     scan.time_increment = turn * angle_between_beams(scan) / (2.0 * math::kPi);
 }
 
-}  // namespace
-
-std::vector<Recording> with_sweeps(std::span<const Recording> recordings) {
-  if (!std::all_of(recordings.begin(), recordings.end(), could_sweep)) return {};
-  std::vector<Recording> sweeping(recordings.begin(), recordings.end());
-  for (Recording& recording : sweeping) let_sweep(recording);
-  return sweeping;
-}
-
-double turn_of_head(const Recording& sweeping) {
-  const Scan& scan = sweeping.scans.front();
+/// Of a head that sweeps, s; negative where it turns clockwise.
+double turn_of_head(const Scan& scan) {
   const double step = angle_between_beams(scan);
   if (!(step > 0.0) || scan.ranges.size() < 2) return 0.0;
   const double turn = scan.time_increment.value_or(0.0) * 2.0 * math::kPi / step;
   return std::copysign(turn, math::wrap_angle(scan.angle(1) - scan.angle(0)));
 }
 
-void take_stamps_for_middles(std::vector<Recording>& recordings) {
-  for (Recording& recording : recordings)
+}  // namespace
+
+std::optional<Recordings> with_sweeps(const Recordings& recordings) {
+  const auto given = recordings.view();
+  if (given.empty() || !std::all_of(given.begin(), given.end(), could_sweep)) return std::nullopt;
+  std::vector<Recording> sweeping(given.begin(), given.end());
+  for (Recording& recording : sweeping) let_sweep(recording);
+  StampReport stamps = recordings.stamps();
+  const Scan& first = sweeping.front().scans.front();
+  stamps.sweep = *first.time_increment;
+  stamps.turn = turn_of_head(first);
+  return Recordings(std::move(sweeping), stamps);
+}
+
+Recordings stamped_in_the_middle(const Recordings& sweeping) {
+  std::vector<Recording> moved(sweeping.view().begin(), sweeping.view().end());
+  for (Recording& recording : moved)
     for (Scan& scan : recording.scans) scan.t -= matching::reference_time(scan);
+  return {std::move(moved), sweeping.stamps()};
 }
 
 }  // namespace odomcalib::calib::ingest

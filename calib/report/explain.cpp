@@ -1,5 +1,7 @@
 #include "calib/report/explain.hpp"
 
+#include <utility>
+
 #include "calib/estimation/first_look.hpp"
 #include "calib/report/settings.hpp"
 
@@ -13,28 +15,32 @@ double share_that_contradicts(const Calibration& calibration) {
   return 0.0;
 }
 
-}  // namespace
-
+/// Whether a mistake in the recordings is likelier than a bad drive.
 bool needs_explanation(const Calibration& calibration) {
   return calibration.verdict == Verdict::refused ||
          share_that_contradicts(calibration) > settings::kManyContradict;
 }
 
-void explain(std::span<const Recording> recordings, Calibration& calibration) {
-  if (!needs_explanation(calibration)) return;
-  for (const Recording& recording : recordings)
-    if (const auto cause = estimation::first_look(recording))
-      return refuse_for({ErrorCode::refused, cause->what, recording.name, cause->remedy}, calibration);
-}
-
-void refuse_for(const Error& cause, Calibration& calibration) {
+/// Refused for this reason; keeps what was measured, but no value of a fit.
+Calibration refused_for(const Error& cause, Calibration calibration) {
   Calibration refused;
   refused.robot = calibration.robot;
   refused.verdict = Verdict::refused;
   refused.reasons = {cause.text()};
   refused.data = std::move(calibration.data);
   refused.methods = std::move(calibration.methods);
-  calibration = std::move(refused);
+  return refused;
+}
+
+}  // namespace
+
+Calibration explained(std::span<const Recording> recordings, Calibration calibration) {
+  if (!needs_explanation(calibration)) return calibration;
+  for (const Recording& recording : recordings)
+    if (const auto cause = estimation::first_look(recording))
+      return refused_for({ErrorCode::refused, cause->what, recording.name, cause->remedy},
+                         std::move(calibration));
+  return calibration;
 }
 
 }  // namespace odomcalib::calib::report

@@ -1,4 +1,4 @@
-// Why a calibration failed, where the recording itself tells: asked only of what was refused or fits badly.
+// Why a calibration failed, where the recording itself shows it: only of what was refused or fits badly.
 #pragma once
 
 #include <span>
@@ -8,14 +8,9 @@
 
 namespace odomcalib::calib::report {
 
-/// Whether the result is such that a mistake in the recordings is likelier than a bad drive.
-bool needs_explanation(const Calibration& calibration);
-
-/// Looks at each recording without the wheels (estimation/first_look.hpp). Where that names a mistake, the
-/// calibration is refused for it, and values of the fit that it spoilt are taken out.
-void explain(std::span<const Recording> recordings, Calibration& calibration);
-
-/// Refused for this reason; keeps what was measured, but no value of a fit.
-void refuse_for(const Error& cause, Calibration& calibration);
+/// Where a mistake in the recordings is likelier than a bad drive, each recording is looked at without the
+/// wheels (estimation/first_look.hpp). Where that names a mistake, the calibration is refused for it, and has
+/// no value of the fit that it spoilt; otherwise it stays as it is.
+Calibration explained(std::span<const Recording> recordings, Calibration calibration);
 
 }  // namespace odomcalib::calib::report

@@ -2,302 +2,248 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
 
+#include "calib/report/found_effects.hpp"
 #include "calib/report/gate.hpp"
 #include "calib/report/one_robot.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/report_data.hpp"
+#include "calib/report/unexplained.hpp"
 #include "calib/selection/event_text.hpp"
 #include "calib/selection/held_out.hpp"
 #include "calib/selection/lidar_report.hpp"
 #include "calib/selection/metre.hpp"
 #include "calib/selection/outlier_trace.hpp"
-#include "calib/selection/search_round.hpp"
-#include "calib/selection/settings.hpp"
 #include "calib/selection/tracing_json.hpp"
-#include "calib/terms/basis.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
 
-/// What stays without a name, put together from its parts.
-class UnnamedSummary {
- public:
-  void mention(const std::string& variable) {
-    auto& names = all_.depends_on;
-    if (std::find(names.begin(), names.end(), variable) == names.end()) names.push_back(variable);
-  }
-  void add(const std::string& variable, double p_value, double before, double after) {
-    if (all_.depends_on.empty()) all_.p_value = p_value;
-    mention(variable);
-    const double ratio = before > 0.0 ? after / before : 1.0;
-    left_ *= std::min(ratio * ratio, 1.0);
-  }
-  [[nodiscard]] std::optional<Unexplained> result() const {
-    if (all_.depends_on.empty()) return std::nullopt;
-    Unexplained out = all_;
-    out.share = 1.0 - left_;
-    return out;
-  }
+using Curves = std::vector<selection::FittedCurve>;
+using Outliers = std::optional<selection::OutlierTrace>;
+using PlainFit = std::optional<estimation::FitResult>;
 
- private:
-  Unexplained all_;
-  double left_ = 1.0;  // of the squared error
+/// Base parameters: values, and how well they are known.
+struct BaseEstimate {
+  QuantityList measured;       ///< with the deviations that the motion leaves
+  QuantityList stated;         ///< also with what nobody knows of the laws of the effects
+  Eigen::MatrixXd covariance;  ///< of what is stated, in radii
 };
 
-class Filler {
- public:
-  Filler(const Findings& found, Calibration& calibration) : found_(found), calibration_(calibration) {}
+/// Matches of keyframes are not free of bias; neither is a model with a law that was found to fit, whose true
+/// shape nobody knows (a delay may be a filter). Places in a map are, as far as simulated drives tell.
+double scale_deviation(const Findings& found) {
+  const measurement::Dataset& dataset = found.fit.dataset;
+  if (!dataset.reference_is_scans()) return 0.0;
+  if (found.every_scan_placed && found.outcome.model.effects.empty() && found.lidar.empty()) return 0.0;
+  return std::hypot(kMatcherScale, selection::metre_in_doubt(found.lidar, dataset.recordings.view()));
+}
 
-  void run() {
-    const estimation::FitResult& fit = found_.outcome.model.fit;
-    const std::span<const double> p = vehicle::as_span(fit.parameters);
-    Eigen::MatrixXd covariance = with_scale_error(fit.covariance, vehicle::to_base(p), scale_deviation());
-    measured_ = base_quantities(vehicle::to_base(p), covariance);
-    compare_recordings();
-    if (apart_)
-      covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>().diagonal() += homogeneity_->between;
-    for (const Eigen::VectorXd& doubt : found_.outcome.doubts)
-      covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>() += doubt * doubt.transpose();
-    calibration_.parameters = base_quantities(vehicle::to_base(p), covariance);
-    calibration_.covariance_order = base_quantity_names();
-    calibration_.covariance = diameter_covariance(covariance);
-    calibration_.methods.push_back(joint_method(fit));
-    fit_plain();
-    fill_residual();
-    fill_effects();
-    fill_unnamed();
-    fill_outliers();
-    if (found_.stamps.any()) calibration_.extensions["stamps"] = to_json(found_.stamps);
-    if (!found_.outcome.considered.empty())
-      calibration_.extensions["considered"] = considered_to_json(found_.outcome.considered);
-    const ReportData report = make_report_data(found_.session, found_.outcome, plain_);
-    store_report_data(report, calibration_);
-    if (odometry_is_off(report.drive_errors)) tell_what_failed_its_proof();
-    const GateResult gate = judge(calibration_, footing(report));
-    calibration_.verdict = gate.verdict;
-    calibration_.reasons = gate.reasons;
-  }
-
- private:
-  /// With what was found in all of them each recording is asked alone.
-  void compare_recordings() {
-    const auto recordings = found_.session.recordings();
-    if (recordings.size() < 2) return;
-    std::vector<std::string> names;
-    for (const Recording& recording : recordings) names.push_back(recording.name);
-    const selection::FitTask task{found_.session.data(), found_.session.fixed(0)};
-    const double metre = found_.session.reference_is_scans() ? kMatcherScale : 0.0;
-    homogeneity_ = selection::homogeneity(task, found_.outcome.model, metre, names);
-    if (!homogeneity_) return;
-    store_homogeneity(*homogeneity_, recordings, calibration_);
-    apart_ = recordings_apart(*homogeneity_, recordings);
-  }
-
-  [[nodiscard]] const vehicle::EffectList& effects() const { return found_.outcome.model.effects; }
-  [[nodiscard]] std::vector<bool> fixed() const {
-    return vehicle::fixed_with(found_.session.fixed(0), effects());
-  }
-
-  /// Matches of keyframes are not free of bias; neither is a model with a law that was found to fit, whose
-  /// true shape nobody knows (a delay may be a filter). Places in a map are, as far as simulated drives tell.
-  [[nodiscard]] double scale_deviation() const {
-    if (!found_.session.reference_is_scans()) return 0.0;
-    if (found_.every_scan_placed && effects().empty() && found_.lidar.empty()) return 0.0;
-    return std::hypot(kMatcherScale, selection::metre_in_doubt(found_.lidar, found_.session.recordings()));
-  }
-
-  [[nodiscard]] Footing footing(const ReportData& report) const {
-    Footing footing;
-    footing.drive_errors = report.drive_errors;
-    footing.axes = report.axes;
-    footing.outliers = found_.outcome.model.fit.discarded;
-    footing.pairs = found_.outcome.model.fit.used + footing.outliers;
-    footing.of_poses = found_.session.reference_is_base();
-    footing.converged = found_.outcome.model.fit.converged;
-    footing.measured = measured_;
-    footing.remarks = found_.remarks;
-    footing.recordings_apart = apart_;
-    if (outliers_) footing.remarks.push_back(to_text(*outliers_));
-    for (const std::string& remark : remarks_on(found_.stamps)) footing.remarks.push_back(remark);
-    const math::Pose mount = vehicle::to_base(vehicle::as_span(found_.outcome.model.fit.parameters)).mount;
-    for (const selection::FittedCurve& curve : fitted_curves_)
-      if (happens_at_once(curve.curve)) footing.remarks.push_back(event_to_text(curve, mount));
-    if (!found_.session.reference_is_scans() || found_.every_scan_placed) return footing;
-    for (const measurement::PairSet& set : found_.session.pair_sets()) {
-      footing.matched += set.pairs.size();
-      footing.unmatched += set.unmatched;
-    }
-    return footing;
-  }
-
-  /// The six base parameters alone, on the same pairs: what the effects are measured against.
-  void fit_plain() {
-    if (effects().empty()) {
-      plain_ = found_.outcome.model.fit;
-      return;
-    }
-    estimation::FitOptions options;
-    options.fixed = found_.session.fixed(0);
-    auto plain = fit_joint(found_.session.data(), {},
-                           found_.outcome.model.fit.parameters.head(vehicle::kBaseCount), options);
-    if (plain) plain_ = std::move(plain).value();
-  }
-
-  void fill_residual() {
-    const auto& data = found_.session.data();
-    const auto of_all = selection::held_out_errors(data, effects(), found_.outcome.model.fit, fixed());
-    const auto of_plain = effects().empty() || !plain_
-                              ? of_all
-                              : selection::held_out_errors(data, {}, *plain_, found_.session.fixed(0));
-    const auto after = selection::held_out_residual(of_all, of_plain);
-    const auto before = selection::held_out_residual(of_plain, of_all);
-    calibration_.residual.held_out = after && before;
-    if (!after || !before) return;
-    calibration_.residual.after = after->rms;
-    calibration_.residual.noise_floor = after->noise_floor;
-    calibration_.residual.before = before->rms;
-  }
-
-  [[nodiscard]] const selection::Finding* finding_of(const vehicle::Effect* effect) const {
-    for (const selection::Finding& finding : found_.outcome.findings)
-      if (finding.effect.get() == effect) return &finding;
-    return nullptr;
-  }
-
-  /// Evidence for an effect that the search did not add: the delay found before it, or what the user asked
-  /// for.
-  [[nodiscard]] Evidence evidence_against_plain(double z) const {
-    Evidence evidence;
-    evidence.p_value = std::erfc(z / std::sqrt(2.0));
-    if (!plain_) return evidence;
-    const auto& data = found_.session.data();
-    const estimation::FitResult& fit = found_.outcome.model.fit;
-    const auto windows = find_stretches(selection::StretchKind::open_loop, data, selection::folds_of(data),
-                                        fit, selection::trusted_pairs(*plain_, fit));
-    if (windows.size() < selection::settings::kFewestWindows) return evidence;
-    evidence.held_out_before =
-        stretch_errors(data, windows, {}, *plain_, found_.session.fixed(0)).rms_position();
-    evidence.held_out_after = stretch_errors(data, windows, effects(), fit, fixed()).rms_position();
-    return evidence;
-  }
-
-  void fill_effects() {
-    calibration_.effects = selection::effect_results(found_.lidar);
-    if (found_.was_searched)
-      for (EffectResult& effect : effects_of(found_.stamps))
-        calibration_.effects.push_back(std::move(effect));
-    Eigen::Index index = vehicle::kBaseCount;
-    for (const auto& effect : effects()) {
-      const auto curve = std::find_if(found_.outcome.curves.begin(), found_.outcome.curves.end(),
-                                      [&](const selection::AddedCurve& c) { return c.effect == effect; });
-      if (curve != found_.outcome.curves.end())
-        fitted_curves_.push_back(fitted(*curve, index));
-      else if (!contains(found_.outcome.quiet, effect))
-        calibration_.effects.push_back(describe(*effect, index));
-      index += static_cast<Eigen::Index>(effect->parameters().size());
-    }
-    if (!fitted_curves_.empty())
-      calibration_.extensions[selection::kCurvesMember] = curves_to_json(fitted_curves_);
-  }
-
-  static bool contains(const vehicle::EffectList& list,
-                       const std::shared_ptr<const vehicle::Effect>& effect) {
-    return std::find(list.begin(), list.end(), effect) != list.end();
-  }
-
-  [[nodiscard]] selection::FittedCurve fitted(const selection::AddedCurve& added, Eigen::Index index) const {
-    selection::FittedCurve curve{added.curve, {}, added.law_of ? added.law_of->name() : ""};
-    for (std::size_t k = 0; k < basis_size(added.curve); ++k)
-      curve.coefficients.push_back(found_.outcome.model.fit.parameters(index++));
-    return curve;
-  }
-
-  /// @param index of the effect's first parameter in the parameter vector
-  [[nodiscard]] EffectResult describe(const vehicle::Effect& effect, Eigen::Index index) const {
-    EffectResult result;
-    result.name = effect.name();
-    double z = 0.0;
-    for (const vehicle::EffectParameter& parameter : effect.parameters()) {
-      const double value = found_.outcome.model.fit.parameters(index);
-      const double deviation = std::sqrt(std::max(found_.outcome.model.fit.covariance(index, index), 0.0));
-      // What the data do not speak of has no deviation, rather than none at all.
-      const bool is_estimated = !parameter.fixed && deviation > 0.0;
-      result.parameters.push_back({parameter.name, {value, is_estimated ? deviation : -1.0, parameter.unit}});
-      if (deviation > 0.0 && parameter.start == 0.0) z = std::max(z, std::abs(value) / deviation);
-      ++index;
-    }
-    const selection::Finding* finding = finding_of(&effect);
-    result.aliases = finding != nullptr ? finding->aliases : effect.always_alike();
-    result.evidence = finding != nullptr ? Evidence{finding->proof.family_p_value, finding->proof.before,
-                                                    finding->proof.after}
-                                         : evidence_against_plain(z);
-    return result;
-  }
-
-  /// Curves without a name: variables they depend on, in the order found.
-  void fill_unnamed() {
-    UnnamedSummary summary;
-    for (const terms::LidarFinding& finding : found_.lidar)
-      if (!finding.effect->is_named() && !completes(finding, found_.lidar))
-        summary.add(finding.effect->name(), finding.family_p_value, finding.before, finding.after);
-    for (const selection::AddedCurve& added : found_.outcome.curves)
-      if (!added.law_of)
-        summary.add(to_string(added.curve.law.variable), added.proof.family_p_value, added.proof.before,
-                    added.proof.after);
-    for (const selection::AddedCurve& added : found_.outcome.curves) {
-      if (added.law_of) continue;
-      for (const vehicle::Variable variable : added.alike) summary.mention(to_string(variable));
-    }
-    calibration_.unexplained = summary.result();
-    const auto has_no_name = [](const terms::LidarFinding& finding) { return !finding.effect->is_named(); };
-    if (std::any_of(found_.lidar.begin(), found_.lidar.end(), has_no_name))
-      calibration_.extensions[selection::kLidarCurvesMember] = selection::lidar_curves_to_json(found_.lidar);
-  }
-
-  /// What happened in so few pairs that a robust fit leaves them out is no part of the model, but something
-  /// that a user should know.
-  void fill_outliers() {
-    outliers_ = selection::trace_outliers(found_.session.data(), found_.outcome.model.fit);
-    if (!outliers_) return;
-    outliers_->cause =
-        selection::cause_of_outliers(found_.session.data(), effects(), found_.outcome.model.fit);
-    calibration_.extensions["outliers"] = to_json(*outliers_);
-    if (!found_.was_searched || calibration_.unexplained || outliers_->depends_on.empty()) return;
-    flag(outliers_->depends_on, outliers_->p_value);
-  }
-
-  /// Where odometry is plainly off and nothing is told of it, what goes with it is, although no law of it
-  /// foretells anything: it is not compensated.
-  void tell_what_failed_its_proof() {
-    if (!found_.was_searched || calibration_.unexplained || !calibration_.effects.empty()) return;
-    const selection::Considered* best = nullptr;
-    for (const selection::Considered& one : found_.outcome.considered)
-      if (!one.depends_on.empty() && one.family_p_value <= selection::settings::kNamedLevel &&
-          (best == nullptr || one.statistic > best->statistic))
-        best = &one;
-    if (best != nullptr) flag(best->depends_on, best->family_p_value);
-  }
-
-  /// What goes with variables, but is no part of the model.
-  void flag(const std::vector<vehicle::Variable>& variables, double p_value) {
-    calibration_.unexplained = Unexplained{{}, p_value, 0.0};
-    for (const vehicle::Variable variable : variables)
-      calibration_.unexplained->depends_on.push_back(to_string(variable));
-  }
-
-  const Findings& found_;
-  Calibration& calibration_;
-  std::optional<selection::OutlierTrace> outliers_;
-  std::optional<estimation::FitResult> plain_;
-  std::optional<selection::Homogeneity> homogeneity_;
-  std::optional<Apart> apart_;
-  QuantityList measured_;  ///< with the deviations that the motion leaves
-  std::vector<selection::FittedCurve> fitted_curves_;
+/// With what was found in all recordings, what each of them says alone.
+struct Agreement {
+  std::optional<selection::Homogeneity> homogeneity;
+  std::optional<Apart> apart;  ///< what speaks against one set of lengths
 };
+
+Agreement agreement(const Findings& found) {
+  const measurement::Dataset& dataset = found.fit.dataset;
+  if (dataset.recordings.size() < 2) return {};
+  std::vector<std::string> names;
+  for (const Recording& recording : dataset.recordings.view()) names.push_back(recording.name);
+  const double metre = dataset.reference_is_scans() ? kMatcherScale : 0.0;
+  auto homogeneity =
+      selection::homogeneity({dataset.data, dataset.fixed()}, found.outcome.model, metre, names);
+  if (!homogeneity) return {};
+  auto apart = recordings_apart(*homogeneity, dataset.recordings.view());
+  return {std::move(homogeneity), std::move(apart)};
+}
+
+BaseEstimate base_estimate(const Findings& found, const Agreement& agreement) {
+  const estimation::FitResult& fit = found.outcome.model.fit;
+  const wheels::BaseParameters base = vehicle::to_base(vehicle::as_span(fit.parameters));
+  Eigen::MatrixXd covariance = with_scale_error(fit.covariance, base, scale_deviation(found));
+  QuantityList measured = base_quantities(base, covariance);
+  if (agreement.apart)
+    covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>().diagonal() +=
+        agreement.homogeneity->between;
+  for (const Eigen::VectorXd& doubt : found.outcome.doubts)
+    covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>() += doubt * doubt.transpose();
+  QuantityList stated = base_quantities(base, covariance);
+  return {std::move(measured), std::move(stated), std::move(covariance)};
+}
+
+/// The six base parameters alone, on the same pairs: what the effects are measured against.
+PlainFit plain_fit(const Findings& found) {
+  const estimation::FitResult& fit = found.outcome.model.fit;
+  if (found.outcome.model.effects.empty()) return fit;
+  estimation::FitOptions options;
+  options.fixed = found.fit.dataset.fixed();
+  auto plain = fit_joint(found.fit.dataset.data, {}, fit.parameters.head(vehicle::kBaseCount), options);
+  return plain ? PlainFit(std::move(plain).value()) : std::nullopt;
+}
+
+ResidualReport residual(const Findings& found, const PlainFit& plain) {
+  const measurement::Dataset& dataset = found.fit.dataset;
+  const auto& [effects, fit] = found.outcome.model;
+  const auto of_all =
+      selection::held_out_errors(dataset.data, effects, fit, vehicle::fixed_with(dataset.fixed(), effects));
+  const auto of_plain = effects.empty() || !plain
+                            ? of_all
+                            : selection::held_out_errors(dataset.data, {}, *plain, dataset.fixed());
+  const auto after = selection::held_out_residual(of_all, of_plain);
+  const auto before = selection::held_out_residual(of_plain, of_all);
+  if (!after || !before) return {false, {}, {}, {}};
+  return {true, before->rms, after->rms, after->noise_floor};
+}
+
+/// What happened in so few pairs that a robust fit leaves them out is no part of the model, but something
+/// that a user should know.
+Outliers outliers_of(const Findings& found) {
+  const auto& data = found.fit.dataset.data;
+  const auto& [effects, fit] = found.outcome.model;
+  Outliers outliers = selection::trace_outliers(data, fit);
+  if (outliers) outliers->cause = selection::cause_of_outliers(data, effects, fit);
+  return outliers;
+}
+
+/// Curves without a name; without these, of what was searched, what goes with outliers; and where nothing at
+/// all is told although odometry is plainly off, what failed its proof.
+std::optional<Unexplained> unexplained(const Findings& found, const Outliers& outliers, bool has_effects,
+                                       const std::vector<DriveError>& drive_errors) {
+  if (const auto curves = unnamed_curves(found)) return curves;
+  if (!found.was_searched) return std::nullopt;
+  if (const auto flagged = outliers ? flagged_outliers(*outliers) : std::nullopt) return flagged;
+  if (has_effects || !odometry_is_off(drive_errors)) return std::nullopt;
+  return failed_proof(found.outcome);
+}
+
+/// Members of the file beyond its contract.
+std::map<std::string, std::string> extensions(const Findings& found, const Curves& curves,
+                                              const Outliers& outliers) {
+  std::map<std::string, std::string> members;
+  if (!curves.empty()) members[selection::kCurvesMember] = curves_to_json(curves);
+  if (std::any_of(found.lidar.begin(), found.lidar.end(),
+                  [](const auto& f) { return !f.effect->is_named(); }))
+    members[selection::kLidarCurvesMember] = selection::lidar_curves_to_json(found.lidar);
+  if (outliers) members["outliers"] = to_json(*outliers);
+  const ingest::StampReport& stamps = found.fit.dataset.recordings.stamps();
+  if (stamps.any()) members["stamps"] = to_json(stamps);
+  if (!found.outcome.considered.empty()) members["considered"] = considered_to_json(found.outcome.considered);
+  return members;
+}
+
+std::vector<std::string> remarks(const Findings& found, const Curves& curves, const Outliers& outliers) {
+  std::vector<std::string> sentences = found.remarks;
+  if (outliers) sentences.push_back(to_text(*outliers));
+  for (const std::string& remark : remarks_on(found.fit.dataset.recordings.stamps()))
+    sentences.push_back(remark);
+  const math::Pose mount = vehicle::to_base(vehicle::as_span(found.outcome.model.fit.parameters)).mount;
+  for (const selection::FittedCurve& curve : curves)
+    if (happens_at_once(curve.curve)) sentences.push_back(event_to_text(curve, mount));
+  return sentences;
+}
+
+/// What the verdict stands on.
+Footing footing(const Findings& found, const BaseEstimate& base, const ReportData& data,
+                const std::optional<Apart>& apart, std::vector<std::string> remarks) {
+  const estimation::FitResult& fit = found.outcome.model.fit;
+  Footing footing;
+  footing.remarks = std::move(remarks);
+  footing.drive_errors = data.drive_errors;
+  footing.axes = data.axes;
+  footing.outliers = fit.discarded;
+  footing.pairs = fit.used + fit.discarded;
+  footing.recordings_apart = apart;
+  footing.of_poses = found.fit.dataset.reference_is_base();
+  footing.converged = fit.converged;
+  footing.measured = base.measured;
+  if (!found.fit.dataset.reference_is_scans() || found.every_scan_placed) return footing;
+  for (const measurement::PairSet& set : found.fit.dataset.pair_sets) {
+    footing.matched += set.pairs.size();
+    footing.unmatched += set.unmatched;
+  }
+  return footing;
+}
+
+/// Where no scan matched, the fit has nothing to say but that.
+Error cause_of(const Error& error, std::span<const measurement::PairSet> sets) {
+  std::size_t unmatched = 0;
+  for (const measurement::PairSet& set : sets) unmatched += set.unmatched;
+  if (error.code != ErrorCode::empty || unmatched == 0) return error;
+  return {ErrorCode::refused, "none of " + std::to_string(unmatched) + " pairs of scans could be matched",
+          "scan matching", "drive where the lidar sees walls on all sides, not along a corridor"};
+}
+
+Calibration begun(const ingest::Recordings& recordings, std::span<const measurement::PairSet> sets) {
+  Calibration calibration;
+  if (recordings.size() > 0) calibration.robot = recordings.front().robot;
+  calibration.data = data_use(recordings.view(), sets);
+  return calibration;
+}
+
+Calibration with_classical_methods(const estimation::Fit& fit) {
+  Calibration calibration = begun(fit.dataset.recordings, fit.dataset.pair_sets);
+  calibration.methods = classical_methods(fit.dataset, delay_of(fit.model), calibration);
+  return calibration;
+}
+
+Calibration refused(Calibration calibration, const Error& error) {
+  calibration.verdict = Verdict::refused;
+  calibration.reasons = {error.text()};
+  return calibration;
+}
 
 }  // namespace
 
-void fill_calibration(const Findings& found, Calibration& calibration) { Filler(found, calibration).run(); }
+Calibration refused(const ingest::Recordings& recordings, const Error& error) {
+  return refused(begun(recordings, {}), error);
+}
+
+Calibration refused(const measurement::Dataset& dataset, const Error& error) {
+  return refused(begun(dataset.recordings, dataset.pair_sets), error);
+}
+
+Calibration refused(const estimation::Fit& failed) {
+  Calibration calibration = with_classical_methods(failed);
+  MethodResult joint;
+  joint.name = "joint";
+  joint.refused = failed.failure->what;
+  calibration.methods.push_back(joint);
+  return refused(std::move(calibration), cause_of(*failed.failure, failed.dataset.pair_sets));
+}
+
+Calibration calibrated(const Findings& found) {
+  const estimation::FitResult& fit = found.outcome.model.fit;
+  const PlainFit plain = plain_fit(found);
+  const Agreement together = agreement(found);
+  const BaseEstimate base = base_estimate(found, together);
+  const Curves curves = found_curves(found);
+  const Outliers outliers = outliers_of(found);
+  const ReportData data = make_report_data(found.fit.dataset, found.outcome, plain);
+
+  Calibration calibration = with_classical_methods(found.fit);
+  calibration.methods.push_back(joint_method(fit));
+  calibration.parameters = base.stated;
+  calibration.covariance_order = base_quantity_names();
+  calibration.covariance = diameter_covariance(base.covariance);
+  calibration.residual = residual(found, plain);
+  calibration.effects = found_effects(found, plain);
+  calibration.unexplained = unexplained(found, outliers, !calibration.effects.empty(), data.drive_errors);
+  calibration.extensions = extensions(found, curves, outliers);
+  store_report_data(data, calibration);
+  if (together.homogeneity)
+    store_homogeneity(*together.homogeneity, found.fit.dataset.recordings.view(), calibration);
+
+  const GateResult gate =
+      judge(calibration, footing(found, base, data, together.apart, remarks(found, curves, outliers)));
+  calibration.verdict = gate.verdict;
+  calibration.reasons = gate.reasons;
+  return calibration;
+}
 
 }  // namespace odomcalib::calib::report

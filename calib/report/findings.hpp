@@ -5,25 +5,31 @@
 #include <string>
 #include <vector>
 
-#include "calib/ingest/stamp_report.hpp"
-#include "calib/measurement/session.hpp"
-#include "calib/selection/lidar_trace.hpp"
+#include "calib/estimation/fit.hpp"
 #include "calib/selection/search_result.hpp"
+#include "calib/terms/lidar_finding.hpp"
 #include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::calib::report {
 
 struct Findings {
-  const measurement::Session& session;  ///< with the pairs that the outcome was fitted to
+  const estimation::Fit& fit;  ///< before terms were selected, of the same dataset
   const selection::SearchResult& outcome;
   const std::vector<terms::LidarFinding>& lidar;
-  ingest::StampReport stamps;
   bool was_searched = false;       ///< for effects that nobody named
   bool every_scan_placed = false;  ///< the parameters come from the whole path, not from matches of keyframes
   std::vector<std::string> remarks = {};  ///< on what was taken out of the recordings
 };
 
-/// Fills in all that depends on the fit; data and classical methods are there already.
-void fill_calibration(const Findings& found, Calibration& calibration);
+Calibration calibrated(const Findings& found);
+
+/// Nothing was measured.
+Calibration refused(const ingest::Recordings& recordings, const Error& error);
+
+/// Nothing was fitted.
+Calibration refused(const measurement::Dataset& dataset, const Error& error);
+
+/// The fit failed; classical methods may have not.
+Calibration refused(const estimation::Fit& failed);
 
 }  // namespace odomcalib::calib::report

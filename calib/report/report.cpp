@@ -138,15 +138,15 @@ std::vector<std::vector<double>> diameter_covariance(const Eigen::MatrixXd& cova
   return rows;
 }
 
-std::vector<MethodResult> classical_methods(const measurement::Session& session, double delay,
+std::vector<MethodResult> classical_methods(const measurement::Dataset& dataset, double delay,
                                             Calibration& calibration) {
-  const auto samples = wheel_motions(session.data(), delay);
+  const auto samples = wheel_motions(dataset.data, delay);
   std::vector<MethodResult> methods;
-  methods.push_back(straight_method(samples, session.nominal()));
-  methods.push_back(spin_method(samples, session.nominal()));
+  methods.push_back(straight_method(samples, dataset.nominal));
+  methods.push_back(spin_method(samples, dataset.nominal));
   const auto closed = classical::solve_closed_form(samples);
   methods.push_back(
-      linear_method(samples, session.nominal(), closed ? &closed.value().inliers : nullptr, calibration));
+      linear_method(samples, dataset.nominal, closed ? &closed.value().inliers : nullptr, calibration));
   if (!closed) {
     methods.push_back(refusal("joint_closed_form", closed.error()));
     return methods;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "calib/estimation/joint.hpp"
-#include "calib/measurement/session.hpp"
+#include "calib/measurement/dataset.hpp"
 #include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::calib::report {
@@ -28,7 +28,7 @@ std::vector<std::string> base_quantity_names();
 
 /// The four classical estimators and the closed form on the same pairs: straight, spin, linear,
 /// joint_closed_form.
-std::vector<MethodResult> classical_methods(const measurement::Session& session, double delay,
+std::vector<MethodResult> classical_methods(const measurement::Dataset& dataset, double delay,
                                             Calibration& calibration);
 
 MethodResult joint_method(const estimation::FitResult& fit);

@@ -45,13 +45,13 @@ std::vector<math::Pose> reference_path(const measurement::FitData& data,
 }
 
 /// The recording with the most to see. Tuples of separate motions make no path.
-std::vector<PathTrace> paths_of(const measurement::Session& session, const vehicle::EffectList& effects,
+std::vector<PathTrace> paths_of(const measurement::Dataset& dataset, const vehicle::EffectList& effects,
                                 const estimation::FitResult& fit) {
-  const auto& data = session.data();
-  if (!session.recordings().front().increments.empty()) return {};
+  const auto& data = dataset.data;
+  if (dataset.has_motions_alone()) return {};
   const auto longest = std::max_element(
       data.begin(), data.end(), [](const auto& a, const auto& b) { return a.pairs.size() < b.pairs.size(); });
-  const Eigen::VectorXd nominal = selection::with_wheels(fit.parameters, effects, session.nominal());
+  const Eigen::VectorXd nominal = selection::with_wheels(fit.parameters, effects, dataset.nominal);
   const vehicle::Trajectory calibrated =
       longest->model->trajectory(vehicle::as_span(fit.parameters), effects);
   const math::Pose mount = vehicle::to_base(vehicle::as_span(fit.parameters)).mount;
@@ -126,9 +126,9 @@ ResidualAxis axis_of(const estimation::FitResult& fit, Eigen::Index axis, const 
 }
 
 /// Of the first recording, over its time.
-std::vector<ResidualSample> series_of(const measurement::Session& session, const estimation::FitResult& fit) {
+std::vector<ResidualSample> series_of(const measurement::Dataset& dataset, const estimation::FitResult& fit) {
   std::vector<ResidualSample> series;
-  const auto& pairs = session.data().front().pairs;
+  const auto& pairs = dataset.data.front().pairs;
   const std::size_t step = stride(pairs.size(), kMostSamples);
   for (std::size_t k = 0; k < pairs.size(); k += step) {
     const auto row = static_cast<Eigen::Index>(3 * k);
@@ -139,10 +139,10 @@ std::vector<ResidualSample> series_of(const measurement::Session& session, const
   return series;
 }
 
-std::vector<std::pair<std::string, std::vector<double>>> left_out_of(const measurement::Session& session,
+std::vector<std::pair<std::string, std::vector<double>>> left_out_of(const measurement::Dataset& dataset,
                                                                      const estimation::FitResult& fit,
                                                                      const std::vector<bool>& fixed) {
-  const auto folds = selection::folds_of(session.data());
+  const auto folds = selection::folds_of(dataset.data);
   std::vector<std::pair<std::string, std::vector<double>>> parameters;
   for (const std::string& name : base_quantity_names()) parameters.push_back({name, {}});
   for (std::size_t fold = 0; fold < selection::kFolds; ++fold) {
@@ -158,22 +158,22 @@ std::vector<std::pair<std::string, std::vector<double>>> left_out_of(const measu
 
 }  // namespace
 
-ReportData make_report_data(const measurement::Session& session, const selection::SearchResult& found,
+ReportData make_report_data(const measurement::Dataset& dataset, const selection::SearchResult& found,
                             const std::optional<estimation::FitResult>& plain) {
   const vehicle::EffectList& effects = found.model.effects;
   const estimation::FitResult& fit = found.model.fit;
   ReportData data;
-  const auto fixed = vehicle::fixed_with(session.fixed(0), effects);
+  const auto fixed = vehicle::fixed_with(dataset.fixed(), effects);
   const selection::JudgedModel full{&fit, fixed, effects};
-  const selection::JudgedModel geometry{plain ? &*plain : nullptr, session.fixed(0), {}};
+  const selection::JudgedModel geometry{plain ? &*plain : nullptr, dataset.fixed(), {}};
   data.drive_errors =
-      drive_errors(session.data(), session.nominal(), plain && !effects.empty() ? &geometry : nullptr, full);
-  data.traces = selection::residual_traces(session.data(), effects, fit, fixed, found.quiet);
+      drive_errors(dataset.data, dataset.nominal, plain && !effects.empty() ? &geometry : nullptr, full);
+  data.traces = selection::residual_traces(dataset.data, effects, fit, fixed, found.quiet);
   data.detectable = found.detectable;
-  data.paths = paths_of(session, effects, fit);
+  data.paths = paths_of(dataset, effects, fit);
   data.axes = {axis_of(fit, 0, "x", "m"), axis_of(fit, 1, "y", "m"), axis_of(fit, 2, "yaw", "rad")};
-  data.series = series_of(session, fit);
-  data.left_out = left_out_of(session, fit, fixed);
+  data.series = series_of(dataset, fit);
+  data.left_out = left_out_of(dataset, fit, fixed);
   return data;
 }
 

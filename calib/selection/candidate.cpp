@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <type_traits>
+#include <variant>
 
 #include "calib/selection/settings.hpp"
 #include "calib/terms/candidate_curves.hpp"
@@ -19,11 +21,21 @@ std::string key_of(const vehicle::Effect& effect) {
   return effect.name() + "/" + effect.parameters().front().name;
 }
 
+/// What tells a basis from others of the same law that are sought for themselves; empty for all that are
+/// shapes of one law.
+constexpr auto kind_of = []<typename Kind>(const Kind& basis) -> std::string {
+  if constexpr (std::is_same_v<Kind, terms::Cycle>) return "/cycle " + std::to_string(basis.period);
+  if constexpr (std::is_same_v<Kind, terms::Harmonics>) return "/harmonic " + std::to_string(basis.only);
+  if constexpr (std::is_same_v<Kind, terms::Wave>)
+    return "/wave " + std::to_string(basis.along_x) + " " + std::to_string(basis.along_y);
+  if constexpr (std::is_same_v<Kind, terms::Patches>) return "/patches";
+  if constexpr (std::is_same_v<Kind, terms::ChangePoint>) return "/change point";
+  if constexpr (std::is_same_v<Kind, terms::Decay>) return "/decay";
+  return {};
+};
+
 std::string key_of(const vehicle::Effect& effect, const terms::Curve& curve) {
-  return effect.name() + "/" + std::to_string(curve.period) + "/" + std::to_string(curve.harmonic) + "/" +
-         std::to_string(curve.wave[0]) + "/" + std::to_string(curve.wave[1]) +
-         (curve.patches ? "/patches" : "") + (curve.with_motion ? "/pace" : "") +
-         (happens_at_once(curve) ? "/moment" : "") + (curve.fading > 0.0 ? "/fading" : "");
+  return effect.name() + (curve.with_motion ? "/pace" : "") + std::visit(kind_of, curve.basis);
 }
 
 bool belongs_to_one_recording(const vehicle::Effect& effect) {

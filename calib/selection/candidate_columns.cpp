@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "calib/estimation/stack.hpp"
-#include "calib/terms/basis.hpp"
+#include "calib/terms/curve.hpp"
 #include "calib/terms/effects/step_effect.hpp"
 #include "calib/vehicle/sensitivity.hpp"
 
@@ -57,7 +57,7 @@ class Tried {
   [[nodiscard]] Eigen::MatrixXd by_part(const terms::Curve& curve, vehicle::Carrier carrier,
                                         std::size_t part) const {
     const auto steps = static_cast<Eigen::Index>(model_.context().size());
-    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(basis_size(curve)));
+    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(function_count(curve)));
     for (Eigen::Index k = 0; k < steps; ++k) {
       const terms::BasisValues values =
           functions_in(curve, model_.context()[static_cast<std::size_t>(k)], part);
@@ -141,16 +141,27 @@ void fill_names(const AllTried& recordings, const std::vector<Candidate>& candid
 
 }  // namespace
 
+void for_each_candidate(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
+                        const estimation::FitResult& fit, const std::vector<Candidate>& candidates,
+                        const std::function<void(Eigen::MatrixXd)>& visit) {
+  const AllTried recordings = try_along(data, effects, fit);
+  std::vector<Eigen::MatrixXd> names(candidates.size());  // empty where the candidate is a curve
+  fill_names(recordings, candidates, names);
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const auto& curve = candidates[k].curve;
+    visit(curve ? stacked(recordings, [&](const Tried& t) { return t.by_curve(*curve); })
+                : std::move(names[k]));
+  }
+}
+
 std::vector<Eigen::MatrixXd> candidate_columns(std::span<const measurement::FitData> data,
                                                const vehicle::EffectList& effects,
                                                const estimation::FitResult& fit,
                                                const std::vector<Candidate>& candidates) {
-  const AllTried recordings = try_along(data, effects, fit);
-  std::vector<Eigen::MatrixXd> columns(candidates.size());
-  fill_names(recordings, candidates, columns);
-  for (std::size_t k = 0; k < candidates.size(); ++k)
-    if (candidates[k].curve)
-      columns[k] = stacked(recordings, [&](const Tried& t) { return t.by_curve(*candidates[k].curve); });
+  std::vector<Eigen::MatrixXd> columns;
+  columns.reserve(candidates.size());
+  for_each_candidate(data, effects, fit, candidates,
+                     [&](Eigen::MatrixXd one) { columns.push_back(std::move(one)); });
   return columns;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <variant>
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -43,7 +44,8 @@ std::string change_of_track(const std::vector<double>& c) {
 
 std::string event_to_text(const FittedCurve& event, const math::Pose& mount) {
   std::ostringstream out;
-  out << std::fixed << std::setprecision(1) << event.curve.moment << " s after the beginning ";
+  out << std::fixed << std::setprecision(1) << std::get<terms::ChangePoint>(event.curve.basis).moment
+      << " s after the beginning ";
   if (is_bump(event.curve))
     out << change_of_place(event.coefficients, mount);
   else if (event.curve.law.carrier == vehicle::Carrier::track)

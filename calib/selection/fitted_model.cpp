@@ -53,12 +53,6 @@ std::optional<estimation::FitResult> FitTask::fit(const vehicle::EffectList& eff
   return fit ? std::optional(std::move(fit).value()) : std::nullopt;
 }
 
-Eigen::Index first_parameter(const vehicle::EffectList& effects, std::size_t index) {
-  Eigen::Index first = vehicle::kBaseCount;
-  for (std::size_t e = 0; e < index; ++e) first += static_cast<Eigen::Index>(effects[e]->parameters().size());
-  return first;
-}
-
 std::optional<FittedModel> without_effect(const FitTask& task, const FittedModel& model, std::size_t index,
                                           const std::vector<measurement::NoiseModel>& noise) {
   vehicle::EffectList effects = model.effects;

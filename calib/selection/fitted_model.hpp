@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/estimation/joint.hpp"
+#include "calib/vehicle/vehicle_model.hpp"
 
 namespace odomcalib::calib::selection {
 
@@ -29,9 +30,6 @@ struct FitTask {
       const vehicle::EffectList& effects, const Eigen::VectorXd& start,
       const std::vector<measurement::NoiseModel>& noise) const;
 };
-
-/// Position of an effect's first parameter in the parameter vector.
-Eigen::Index first_parameter(const vehicle::EffectList& effects, std::size_t index);
 
 /// Fitted with one more effect, the last then; nullopt if that does not settle.
 /// @param noise per recording; empty: estimated anew

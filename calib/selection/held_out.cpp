@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/estimation/fit.hpp"
 #include "calib/estimation/stack.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/selection/folds.hpp"
@@ -76,6 +77,13 @@ std::optional<HeldOut> held_out_residual(std::span<const measurement::FitData> d
                                          const std::vector<bool>& fixed) {
   const auto errors = held_out_errors(data, effects, fit, fixed);
   return held_out_residual(errors, errors);
+}
+
+std::optional<HeldOut> held_out_residual(const estimation::Fit& fit) {
+  if (fit.failure) return std::nullopt;
+  const auto& [effects, parameters] = fit.model;
+  return held_out_residual(fit.dataset.data, effects, fit.result,
+                           vehicle::fixed_with(fit.dataset.fixed(), effects));
 }
 
 }  // namespace odomcalib::calib::selection

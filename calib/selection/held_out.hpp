@@ -9,6 +9,10 @@
 
 #include "calib/estimation/joint.hpp"
 
+namespace odomcalib::calib::estimation {
+struct Fit;
+}
+
 namespace odomcalib::calib::selection {
 
 struct HeldOut {
@@ -40,5 +44,8 @@ std::optional<HeldOut> held_out_residual(const std::vector<HeldOutError>& errors
 std::optional<HeldOut> held_out_residual(std::span<const measurement::FitData> data,
                                          const vehicle::EffectList& effects, const estimation::FitResult& fit,
                                          const std::vector<bool>& fixed);
+
+/// Of a fit to its own dataset; nullopt also where it failed.
+std::optional<HeldOut> held_out_residual(const estimation::Fit& fit);
 
 }  // namespace odomcalib::calib::selection

@@ -7,8 +7,8 @@
 
 #include "calib/selection/plausibility.hpp"
 #include "calib/selection/proof.hpp"
-#include "calib/terms/basis.hpp"
 #include "calib/terms/candidate_curves.hpp"
+#include "calib/terms/curve.hpp"
 #include "calib/terms/curve_effect.hpp"
 #include "calib/terms/curve_on_drives.hpp"
 #include "calib/terms/effects/reference_effect.hpp"
@@ -96,6 +96,12 @@ bool is_credible(const vehicle::Effect& curve, const estimation::FitResult& befo
   return !curve_spoils_base(curve, before, after) && impossibility(curve, after).empty();
 }
 
+/// Polynomials of a lower degree.
+bool is_plainer(const terms::Curve& shape, const terms::Curve& curve) {
+  const auto *a = terms::basis_as<terms::Polynomials>(shape), *b = terms::basis_as<terms::Polynomials>(curve);
+  return a && b && a->degree < b->degree;
+}
+
 /// nullopt if it is not credible.
 std::optional<Reshaped> fitted_in_shape(const FitTask& task, const FittedModel& model,
                                         const terms::Curve& shape,
@@ -118,8 +124,8 @@ std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now,
     effects.back() = make_curve_effect(shape);
     Eigen::VectorXd start = model.fit.parameters;
     // As many functions say much the same; which pairs are outliers hangs on where the fit begins.
-    if (basis_size(shape) != basis_size(now.curve)) {
-      start = Eigen::VectorXd::Zero(kept + static_cast<Eigen::Index>(basis_size(shape)));
+    if (function_count(shape) != function_count(now.curve)) {
+      start = Eigen::VectorXd::Zero(kept + static_cast<Eigen::Index>(function_count(shape)));
       start.head(kept) = model.fit.parameters.head(kept);
     }
     auto fit = task.fit(effects, start, model.fit.noise);
@@ -145,7 +151,7 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
                                       const std::vector<measurement::NoiseModel>& noise) {
   std::vector<terms::Curve> shapes = other_shapes(curve, task.models());
   // What is as plain as a name proves nothing against it.
-  std::erase_if(shapes, [&](const terms::Curve& shape) { return shape.degree < curve.degree; });
+  std::erase_if(shapes, [&](const terms::Curve& shape) { return is_plainer(shape, curve); });
   shapes.push_back(curve);
   std::optional<Reshaped> best;
   const auto misfit = [&](const FittedModel& m) {
@@ -193,7 +199,7 @@ Eigen::VectorXd doubt_of_zero(const FitTask& task, const FittedModel& model, con
   const bool leaves_mean = leaves_mean_to_wheels(curve, task.models());
   // What was kept of the past has no natural zero either: neither side of it is the robot as it was measured.
   if (curve.mean.empty() && !is_memory(curve.law.variable) && !leaves_mean) return doubt;
-  const Eigen::VectorXd own = model.fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
+  const Eigen::VectorXd own = model.fit.parameters.tail(static_cast<Eigen::Index>(function_count(curve)));
   // What changes as the day goes is often right at one end of it.
   const bool goes_with_time = curve.law.variable == vehicle::Variable::time;
   const double spread =

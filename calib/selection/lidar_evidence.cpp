@@ -34,35 +34,33 @@ std::optional<terms::LidarFinding> mean_of(const terms::LidarFinding& first,
 
 }  // namespace
 
-std::vector<measurement::HeadingPair> heading_pairs(const measurement::Session& session,
-                                                    const Eigen::VectorXd& parameters,
-                                                    const vehicle::EffectList& effects) {
+std::vector<measurement::HeadingPair> heading_pairs(const estimation::Fit& fit) {
   std::vector<measurement::HeadingPair> all;
-  const std::span<const double> p = vehicle::as_span(parameters);
-  for (std::size_t i = 0; i < session.recordings().size(); ++i) {
-    const measurement::ScanSurfaces scans(session.recordings()[i], *session.data()[i].model, p, effects,
-                                          session.pair_sets()[i].range_noise);
-    const std::size_t most = std::max<std::size_t>(1, kMostPairs / session.recordings().size());
+  const measurement::Dataset& dataset = fit.dataset;
+  const std::span<const double> p = vehicle::as_span(fit.model.parameters);
+  for (std::size_t i = 0; i < dataset.recordings.size(); ++i) {
+    const measurement::ScanSurfaces scans(dataset.recordings[i], *dataset.models[i], p, fit.model.effects,
+                                          dataset.pair_sets[i].range_noise);
+    const std::size_t most = std::max<std::size_t>(1, kMostPairs / dataset.recordings.size());
     auto pairs = heading_pairs(scans, most);
     std::move(pairs.begin(), pairs.end(), std::back_inserter(all));
   }
   return all;
 }
 
-bool sees_all_round(const measurement::Session& session) {
-  return std::all_of(session.recordings().begin(), session.recordings().end(),
-                     [](const Recording& recording) {
-                       return !recording.scans.empty() &&
-                              ingest::sees_all_round(recording.scans[recording.scans.size() / 2]);
-                     });
+bool sees_all_round(const measurement::Dataset& dataset) {
+  const auto recordings = dataset.recordings.view();
+  return std::all_of(recordings.begin(), recordings.end(), [](const Recording& recording) {
+    return !recording.scans.empty() && ingest::sees_all_round(recording.scans[recording.scans.size() / 2]);
+  });
 }
 
-std::vector<Recording> corrected(std::span<const Recording> recordings,
-                                 const std::vector<terms::LidarFinding>& findings) {
-  std::vector<Recording> out(recordings.begin(), recordings.end());
+ingest::Recordings corrected(const ingest::Recordings& recordings,
+                             const std::vector<terms::LidarFinding>& findings) {
+  std::vector<Recording> out(recordings.view().begin(), recordings.view().end());
   for (Recording& recording : out)
     for (Scan& scan : recording.scans) scan = corrected(scan, findings);
-  return out;
+  return {std::move(out), recordings.stamps()};
 }
 
 std::vector<terms::LidarFinding> common_findings(std::span<const measurement::ScanPath> paths) {

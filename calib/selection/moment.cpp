@@ -1,11 +1,12 @@
 #include "calib/selection/moment.hpp"
 
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "calib/selection/law_shape.hpp"
 #include "calib/selection/settings.hpp"
-#include "calib/terms/basis.hpp"
+#include "calib/terms/curve.hpp"
 #include "calib/terms/curve_effect.hpp"
 #include "calib/terms/curve_on_drives.hpp"
 
@@ -13,8 +14,7 @@ namespace odomcalib::calib::selection {
 namespace {
 
 terms::Curve at_moment(const FitTask& task, terms::Curve event, double moment) {
-  event.moment = moment;
-  return as_of_the_drive(std::move(event), task.models());
+  return as_of_the_drive(on_basis(std::move(event), terms::ChangePoint{moment}), task.models());
 }
 
 /// Sought ever closer, from half a step between candidates on.
@@ -25,7 +25,7 @@ Reshaped at_best_moment(const FitTask& task, Reshaped now) {
   for (int round = 0; round < kRounds; ++round, step /= kEachWay) {
     std::vector<terms::Curve> others;
     for (int k = -kEachWay; k <= kEachWay; ++k) {
-      const double moment = now.curve.moment + k * step;
+      const double moment = std::get<terms::ChangePoint>(now.curve.basis).moment + k * step;
       if (k != 0 && moment > 0.0 && moment < now.curve.high)
         others.push_back(at_moment(task, now.curve, moment));
     }

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "calib/selection/score.hpp"
-#include "calib/terms/basis.hpp"
+#include "calib/terms/curve.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -79,13 +79,13 @@ bool is_hidden_by_ticks(const terms::Curve& curve, const estimation::FitResult& 
         track.tick_angle * fit.parameters(vehicle::kLeftRadius) / fit.parameters(vehicle::kTrackWidth);
     hidden = std::max(hidden, strongest * track.tick_period * track.tick_period / 8.0 + step);
   }
-  const Eigen::VectorXd own = fit.parameters.tail(static_cast<Eigen::Index>(basis_size(curve)));
+  const Eigen::VectorXd own = fit.parameters.tail(static_cast<Eigen::Index>(function_count(curve)));
   double sway = 0.0;
   for (const double share : {0.5, 1.0}) {
     vehicle::StepContext c;
     c.turn_acceleration_before.fill(share * strongest);
     c.turn_acceleration_after = c.turn_acceleration_before;
-    const terms::BasisValues functions = basis(curve, c);
+    const terms::BasisValues functions = functions_of(curve, c);
     sway = std::max(sway, std::abs(std::inner_product(functions.begin(), functions.end(), own.data(), 0.0)));
   }
   return sway < kAtLeast * hidden;

@@ -37,7 +37,7 @@ std::array<Roller, 3> rollers(const estimation::FitResult& fit) {
 Eigen::VectorXd steady_column(const vehicle::Law& law, std::span<const measurement::FitData> data,
                               const FittedModel& model) {
   constexpr double kEndless = 1e12;
-  const std::vector<Candidate> steady{candidate_of({law, 0.0, 1.0, kEndless, 0})};
+  const std::vector<Candidate> steady{candidate_of(on_basis({law, 0.0, 1.0}, terms::Cycle{kEndless}))};
   return candidate_columns(data, model.effects, model.fit, steady).front().col(0);
 }
 
@@ -139,7 +139,9 @@ std::vector<Candidate> rolling_waves(std::span<const measurement::FitData> data,
     const Rolled way = rolled(data.front(), roller.law.variable);
     const Periodogram periodogram(steady_column(roller.law, data, model), way, residual);
     const auto frequency = outstanding(roller.metre, periodogram, way.all);
-    if (frequency) candidates.push_back(candidate_of({roller.law, 0.0, way.all, 1.0 / *frequency, 0}));
+    if (frequency)
+      candidates.push_back(
+          candidate_of(on_basis({roller.law, 0.0, way.all}, terms::Cycle{1.0 / *frequency})));
   }
   return with_their_names(std::move(candidates), model.effects);
 }

@@ -135,8 +135,8 @@ ScoreTable::ScoreTable(std::span<const measurement::FitData> data, const vehicle
   borders_ = std::move(blocks.borders);
   block_folds_ = std::move(blocks.folds);
   const Projection projection(fit, fixed);
-  for (const Eigen::MatrixXd& raw : candidate_columns(data, effects, fit, candidates))
-    add(raw, projection.rest(raw));
+  for_each_candidate(data, effects, fit, candidates,
+                     [&](const Eigen::MatrixXd& raw) { add(raw, projection.rest(raw)); });
   largest_ = largest_of_draws(block_scores_, variance_);
   for (Score& score : scores_) score.family_p_value = family_p_value(score.statistic, score.degrees);
 }

@@ -149,7 +149,7 @@ class Search {
   void strike_hopeless_waves() {
     constexpr double kHopeless = 0.05;  // family-wise
     for (std::size_t k = 0; round_ && k < candidates_.size(); ++k)
-      if (candidates_[k].curve && candidates_[k].curve->is_wave() &&
+      if (candidates_[k].curve && terms::basis_as<terms::Wave>(*candidates_[k].curve) &&
           round_->score(k).family_p_value > kHopeless)
         candidates_[k].struck = true;
   }
@@ -426,7 +426,7 @@ class Search {
   /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.
   std::optional<Proof> accept_reshaped(std::size_t index) {
     Candidate& candidate = candidates_[index];
-    if (candidate.curve->is_wave()) return std::nullopt;
+    if (terms::basis_as<terms::Wave>(*candidate.curve)) return std::nullopt;
     auto best = in_best_shape(task_, basis(), *candidate.curve, basis().fit.noise);
     if (best && is_held_back(*best->model.effects.back(), best->model.fit))
       best = in_best_shape(task_, basis(), strong(*candidate.curve), basis().fit.noise);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "calib/selection/law_shape.hpp"
-#include "calib/terms/basis.hpp"
 #include "calib/terms/candidate_curves.hpp"
+#include "calib/terms/curve.hpp"
 #include "calib/terms/curve_effect.hpp"
 
 namespace odomcalib::calib::selection {
@@ -23,8 +23,9 @@ void fit_anew_on_own_noise(const FitTask& task, FittedModel& model) {
 bool bends_too_often(const Reshaped& shape) {
   constexpr double kPlain = 0.25;
   constexpr int kMost = 3;
-  if (shape.curve.period > 0.0 || shape.curve.law.variable == vehicle::Variable::time) return false;
-  const auto count = static_cast<Eigen::Index>(basis_size(shape.curve));
+  if (terms::basis_as<terms::Cycle>(shape.curve) || shape.curve.law.variable == vehicle::Variable::time)
+    return false;
+  const auto count = static_cast<Eigen::Index>(function_count(shape.curve));
   const Eigen::VectorXd values = shape.model.fit.parameters.tail(count);
   const double plain = kPlain * (values.maxCoeff() - values.minCoeff());
   int bends = 0;
@@ -53,8 +54,9 @@ void fit_anew_on_estimated_noise(const FitTask& task, FittedModel& model) {
 
 /// A law's splines are smooth all alike at first, then each bend as it was found.
 std::vector<terms::Curve> shapes_to_try(const FitTask& task, const Reshaped& now) {
-  if (now.curve.roughness.empty()) return other_shapes(now.curve, task.models());
-  return as_rough_as(now.curve, vehicle::as_span(now.model.fit.parameters).last(basis_size(now.curve)));
+  const auto* splines = terms::basis_as<terms::Splines>(now.curve);
+  if (!splines || splines->roughness.empty()) return other_shapes(now.curve, task.models());
+  return as_rough_as(now.curve, vehicle::as_span(now.model.fit.parameters).last(function_count(now.curve)));
 }
 
 bool take_best_shape(const FitTask& task, const std::vector<Reshaped>& shapes, SearchResult& result) {

@@ -1,49 +1,32 @@
-// The functions that curves are sums of.
+// What a curve may be a sum of: a closed set of bases, each with its own settings.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <initializer_list>
-#include <span>
+#include <variant>
 
-#include "calib/terms/curve.hpp"
+#include "calib/terms/bases/change_point.hpp"
+#include "calib/terms/bases/cycle.hpp"
+#include "calib/terms/bases/decay.hpp"
+#include "calib/terms/bases/fading_since.hpp"
+#include "calib/terms/bases/harmonics.hpp"
+#include "calib/terms/bases/patches.hpp"
+#include "calib/terms/bases/polynomials.hpp"
+#include "calib/terms/bases/relay.hpp"
+#include "calib/terms/bases/speed_hats.hpp"
+#include "calib/terms/bases/splines.hpp"
+#include "calib/terms/bases/surface.hpp"
+#include "calib/terms/bases/sway.hpp"
+#include "calib/terms/bases/turn_path.hpp"
+#include "calib/terms/bases/wave.hpp"
 
 namespace odomcalib::calib::terms {
 
-/// A curve's functions' values. They are asked for each tick interval of each fit, so they stay off the
-/// heap.
-class BasisValues {
- public:
-  BasisValues() = default;
-  /// All zero.
-  explicit BasisValues(std::size_t count) : count_(count) { std::fill_n(values_.begin(), count, 0.0); }
-  BasisValues(std::initializer_list<double> values) {
-    for (const double value : values) push_back(value);
-  }
-  void push_back(double value) { values_[count_++] = value; }
-  [[nodiscard]] std::size_t size() const { return count_; }
-  double& operator[](std::size_t k) { return values_[k]; }
-  double operator[](std::size_t k) const { return values_[k]; }
-  [[nodiscard]] const double* begin() const { return values_.data(); }
-  [[nodiscard]] const double* end() const { return values_.data() + count_; }
+/// Each gives the values of its functions in an interval (`values`); one whose coefficients are not all
+/// expected to be alike says so (`prior`, `penalty`).
+using Basis = std::variant<Polynomials, SpeedHats, Splines, TurnPath, Harmonics, Cycle, FadingSince, Relay,
+                           ChangePoint, Decay, Sway, Surface, Patches, Wave>;
 
- private:
-  std::array<double, kMostKnots + 3> values_;  // NOLINT(*-member-init): the first `count_` are set
-  std::size_t count_ = 0;
-};
-
-/// The carriers that a curve acts on: its own, or, of a variable that each wheel has for itself, the travel
-/// of the left and of the right wheel with the same coefficients, or, of an event, with one for each; of a
-/// sensor that was moved, its three.
-std::span<const vehicle::Carrier> acts_on(const Curve& curve);
-/// Whether the function is one of that carrier's; otherwise it is zero there.
-bool belongs_to(const Curve& curve, std::size_t function, std::size_t part);
-
-/// @param part index of the carrier among those it acts on
-BasisValues basis(const Curve& curve, const vehicle::StepContext& context, std::size_t part = 0);
-std::size_t basis_size(const Curve& curve);
-
-/// What the coefficients are multiplied by in an interval: the basis, or on the sensor's yaw its growth.
-BasisValues functions_in(const Curve& curve, const vehicle::StepContext& context, std::size_t part = 0);
+/// The plainest basis for a law, in which it is sought first.
+/// @param memory which way to understand what happened before, see vehicle::memories_of
+Basis usual_basis(const vehicle::Law& law, std::size_t memory);
 
 }  // namespace odomcalib::calib::terms

@@ -79,7 +79,8 @@ void add_periods(double duration, std::vector<Curve>& curves) {
   for (double cycles = kFewestCycles; duration / cycles > kShortest; cycles += kStep)
     for (const auto carrier : {vehicle::Carrier::both_travel, vehicle::Carrier::left_travel,
                                vehicle::Carrier::right_travel, vehicle::Carrier::yaw_path})
-      curves.push_back({{vehicle::Variable::time, carrier}, 0.0, duration, duration / cycles, 0});
+      curves.push_back(
+          on_basis({{vehicle::Variable::time, carrier}, 0.0, duration}, Cycle{duration / cycles}));
 }
 
 /// A load that is taken up or slips, a tyre that lets its air out, a lidar that is knocked: from one moment
@@ -88,47 +89,60 @@ void add_moments(double duration, std::vector<Curve>& curves) {
   constexpr int kLeast = 2;  // parts of the drive
   for (int k = kLeast; k <= kMoments - kLeast; ++k)
     for (const auto carrier :
-         {vehicle::Carrier::both_travel, vehicle::Carrier::track, vehicle::Carrier::way_turned}) {
-      curves.push_back({{vehicle::Variable::time, carrier}, 0.0, duration});
-      curves.back().moment = duration * k / kMoments;
-    }
+         {vehicle::Carrier::both_travel, vehicle::Carrier::track, vehicle::Carrier::way_turned})
+      curves.push_back(on_basis({{vehicle::Variable::time, carrier}, 0.0, duration},
+                                ChangePoint{duration * k / kMoments}));
 }
 
 /// A lidar's metre as it warms up, which is a matter of minutes.
 void add_fading(double duration, std::vector<Curve>& curves) {
-  for (const double time_constant : {30.0, 100.0}) {
-    curves.push_back({{vehicle::Variable::time, vehicle::Carrier::scale}, 0.0, duration});
-    curves.back().fading = time_constant;
-  }
+  for (const double time_constant : {30.0, 100.0})
+    curves.push_back(
+        on_basis({{vehicle::Variable::time, vehicle::Carrier::scale}, 0.0, duration}, Decay{time_constant}));
 }
 
-void add_time_constants_about(const Curve& curve, std::vector<Curve>& shapes) {
-  for (const double factor : {0.5, 0.71, 1.41, 2.0}) {
-    shapes.push_back(curve);
-    shapes.back().fading *= factor;
-  }
+void add_time_constants_about(const Curve& curve, const Decay& decay, std::vector<Curve>& shapes) {
+  for (const double factor : {0.5, 0.71, 1.41, 2.0})
+    shapes.push_back(on_basis(curve, Decay{decay.time_constant * factor}));
 }
 
 /// Close to where it was found.
-void add_moments_about(const Curve& curve, std::vector<Curve>& shapes) {
+void add_moments_about(const Curve& curve, const ChangePoint& event, std::vector<Curve>& shapes) {
   for (int k = 3; k <= 5; ++k)
-    for (const double way : {-1.0, 1.0}) {
-      shapes.push_back(curve);
-      shapes.back().moment += std::ldexp(way * curve.high / kMoments, -k);
-    }
+    for (const double way : {-1.0, 1.0})
+      shapes.push_back(
+          on_basis(curve, ChangePoint{event.moment + std::ldexp(way * curve.high / kMoments, -k)}));
+}
+
+void add_degrees_beside(const Curve& curve, const Polynomials& found, std::vector<Curve>& shapes) {
+  for (int degree = kPlainest; degree <= kDegrees; ++degree)
+    if (degree != found.degree) shapes.push_back(on_basis(curve, Polynomials{degree}));
+}
+
+/// The range of the variable hangs on how it is understood.
+void add_memories_beside(const Curve& curve, std::span<const vehicle::DriveModel* const> models,
+                         std::vector<Curve>& shapes) {
+  const std::size_t memories = vehicle::memories_of(curve.law.variable);
+  for (std::size_t memory = 0; memories > vehicle::kUsualMemory + 1 && memory < memories; ++memory) {
+    if (memory == curve.memory) continue;
+    Curve shape = curve;
+    shape.memory = memory;
+    std::tie(shape.low, shape.high) = range_of(curve.law.variable, models, memory);
+    const bool is_as_before = is_relay(curve.law.variable, memory) == (basis_as<Relay>(curve) != nullptr);
+    if (!is_as_before) shape.basis = usual_basis(shape.law, memory);
+    shapes.push_back(std::move(shape));
+  }
 }
 
 /// Of what lies on the floor; wheels sink in, both alike.
 void add_patches(double low, double high, std::vector<Curve>& curves) {
-  curves.push_back({{vehicle::Variable::position, vehicle::Carrier::both_travel}, low, high});
-  curves.back().patches = true;
+  curves.push_back(
+      on_basis({{vehicle::Variable::position, vehicle::Carrier::both_travel}, low, high}, Patches{}));
 }
 
 void add_harmonics(const Curve& curve, int first, int last, std::vector<Curve>& curves) {
-  for (int harmonic = first; harmonic <= last; ++harmonic) {
-    curves.push_back(curve);
-    curves.back().harmonic = harmonic;
-  }
+  for (int harmonic = first; harmonic <= last; ++harmonic)
+    curves.push_back(on_basis(curve, Harmonics{harmonic}));
 }
 
 /// What drives a wheel and what brakes it need not slip alike, whichever way it goes.
@@ -162,10 +176,9 @@ std::vector<Curve> candidate_curves(std::span<const vehicle::DriveModel* const> 
     const auto [low, high] = range_of(variable, models);
     if (!(high - low > 1e-6)) continue;
     for (const vehicle::Carrier carrier : carriers_of(variable)) {
-      Curve curve{{variable, carrier}, low, high, 0.0, 0};
-      curve.constant = variable == vehicle::Variable::heading && is_unsigned(carrier) && both_ways;
-      curves.push_back(curve);
-      curve.constant = false;
+      const Curve curve{{variable, carrier}, low, high};
+      const bool has_constant = variable == vehicle::Variable::heading && is_unsigned(carrier) && both_ways;
+      curves.push_back(has_constant ? on_basis(curve, Harmonics{0, true}) : curve);
       if (is_phase(variable)) add_harmonics(curve, kHarmonics + 1, kHighestHarmonic, curves);
       if (variable ==
           vehicle::Variable::turn_acceleration) {  // what comes late may look like what went before
@@ -175,7 +188,7 @@ std::vector<Curve> candidate_curves(std::span<const vehicle::DriveModel* const> 
       // What stays until the opposite push hardly resembles what fades.
       for (std::size_t memory = 0; memory < memories_of(variable); ++memory)
         if (is_relay(variable, memory) && (memory - vehicle::kMemorySpans.size()) % kEvery == 0) {
-          curves.push_back(curve);
+          curves.push_back(on_basis(curve, Relay{}));
           curves.back().memory = memory;
         }
       // A drive seldom shows all headings; one wave round the circle is what few of them can tell.
@@ -196,28 +209,13 @@ std::vector<Curve> other_shapes(const Curve& curve, std::span<const vehicle::Dri
   std::vector<Curve> shapes;
   for (const double roughness : kRoughness) {
     if (!may_have_knots(curve.law)) continue;
-    shapes.push_back(curve);
-    shapes.back().knots = kMostKnots;
-    shapes.back().roughness.assign(kMostKnots - 1, roughness);
+    shapes.push_back(on_basis(curve, Splines{kMostKnots, std::vector<double>(kMostKnots - 1, roughness)}));
   }
-  if (happens_at_once(curve)) add_moments_about(curve, shapes);
-  if (curve.fading > 0.0) add_time_constants_about(curve, shapes);
-  for (int degree = kPlainest; has_polynomials(curve) && degree <= kDegrees; ++degree) {
-    if (degree == curve.degree) continue;
-    shapes.push_back(curve);
-    shapes.back().degree = degree;
-  }
-  if (curve.law.variable == vehicle::Variable::position && !curve.is_wave() && !curve.patches) {
-    shapes.push_back(curve);
-    shapes.back().patches = true;
-  }
-  const std::size_t memories = vehicle::memories_of(curve.law.variable);
-  for (std::size_t memory = 0; memories > vehicle::kUsualMemory + 1 && memory < memories; ++memory) {
-    if (memory == curve.memory) continue;
-    shapes.push_back(curve);
-    shapes.back().memory = memory;
-    std::tie(shapes.back().low, shapes.back().high) = range_of(curve.law.variable, models, memory);
-  }
+  if (const auto* event = basis_as<ChangePoint>(curve)) add_moments_about(curve, *event, shapes);
+  if (const auto* decay = basis_as<Decay>(curve)) add_time_constants_about(curve, *decay, shapes);
+  if (const auto* found = basis_as<Polynomials>(curve)) add_degrees_beside(curve, *found, shapes);
+  if (basis_as<Surface>(curve)) shapes.push_back(on_basis(curve, Patches{}));
+  add_memories_beside(curve, models, shapes);
   for (Curve& shape : shapes)
     if (!shape.mean.empty()) shape = centred(std::move(shape), models);
   return shapes;

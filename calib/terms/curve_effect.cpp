@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "calib/terms/basis.hpp"
+#include "calib/terms/curve.hpp"
 #include "calib/terms/effects/step_effect.hpp"
 
 namespace odomcalib::calib::terms {
@@ -16,7 +17,7 @@ double typical_size_of(const Curve& curve) {
   if (curve.law.variable == vehicle::Variable::heading || curve.law.variable == vehicle::Variable::position)
     return 0.015;
   // An error of the encoder's angle shows in its rate, n times as large for the n-th harmonic.
-  if (curve.harmonic > 0) return 5e-3 * curve.harmonic;
+  if (const auto* wave = basis_as<Harmonics>(curve); wave && wave->only > 0) return 5e-3 * wave->only;
   const bool per_turn =
       curve.law.carrier == vehicle::Carrier::turn_path || curve.law.carrier == vehicle::Carrier::turn_side;
   return per_turn ? 1e-3 : 5e-3;
@@ -32,7 +33,7 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   }
   [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
     std::vector<vehicle::EffectParameter> list;
-    for (std::size_t k = 0; k < basis_size(curve_); ++k) {
+    for (std::size_t k = 0; k < function_count(curve_); ++k) {
       std::string name(1, 'c');
       list.push_back({name.append(std::to_string(k + 1)), "1", typical_size(), -largest_size(),
                       largest_size(), 0.0, prior(k)});
@@ -40,14 +41,9 @@ class CurveEffect final : public StepEffect<CurveEffect> {
     return list;
   }
   [[nodiscard]] std::vector<std::vector<double>> expected_zeros() const override {
-    std::vector<std::vector<double>> differences;
-    for (std::size_t k = 0; k < curve_.roughness.size(); ++k) {
-      const double weight = 1.0 / (curve_.roughness[k] * strength() * typical_size());
-      differences.emplace_back(basis_size(curve_), 0.0);
-      differences.back()[k] = differences.back()[k + 2] = weight;
-      differences.back()[k + 1] = -2.0 * weight;
-    }
-    return differences;
+    const auto* splines = basis_as<Splines>(curve_);
+    if (!splines) return {};
+    return splines->penalty(strength(), typical_size(), function_count(curve_));
   }
   [[nodiscard]] vehicle::Storage storage() const override {
     if (is_the_lidars(curve_)) return vehicle::Storage::driver;
@@ -55,7 +51,8 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   }
   /// Wheels that changed with time begin the next drive as they ended this one.
   [[nodiscard]] bool carries_over() const override {
-    return curve_.law.variable == vehicle::Variable::time && !is_the_lidars(curve_) && curve_.period == 0.0;
+    return curve_.law.variable == vehicle::Variable::time && !is_the_lidars(curve_) &&
+           !basis_as<Cycle>(curve_);
   }
   /// A head that sways moves sideways too, which looks like a base that does: odometry must not follow it.
   [[nodiscard]] bool excludes(const vehicle::Law& law) const override {
@@ -79,19 +76,18 @@ class CurveEffect final : public StepEffect<CurveEffect> {
   /// Just after a reversal or a stop a wheel may lose a good part of its travel; otherwise no robot is that
   /// bad.
   [[nodiscard]] double largest_size() const {
-    if (is_distance_since(curve_.law.variable)) return 100.0 * typical_size();
+    if (basis_as<FadingSince>(curve_)) return 100.0 * typical_size();
     return (curve_.strong ? 60.0 : 20.0) * typical_size();
   }
   [[nodiscard]] double strength() const { return strength_of(curve_); }
   /// Wide for any real defect, narrow enough that what this drive does not show is not made up: a curve must
   /// do no harm in other drives.
   [[nodiscard]] double prior(std::size_t function) const {
-    // Where turns of one speed cannot tell which, each radian leaves the same way.
-    const bool is_refinement = curve_.law.carrier == vehicle::Carrier::turn_path && function > 0;
-    const double usual = (is_refinement ? 1.0 : 4.0) * typical_size();
-    if (!is_distance_since(curve_.law.variable)) return usual * strength();
-    // What is lost between one knot and the next is as much everywhere, the way between them half as long.
-    return std::min(std::ldexp(usual, kFadeKnots - 1 - static_cast<int>(function)), largest_size());
+    const double usual = 4.0 * typical_size();
+    if (const auto* fading = basis_as<FadingSince>(curve_))
+      return std::min(fading->prior(function, usual), largest_size());
+    const auto* turn_path = basis_as<TurnPath>(curve_);
+    return (turn_path ? turn_path->prior(function, usual) : usual) * strength();
   }
 
   Curve curve_;
@@ -108,7 +104,8 @@ double mean_about(std::span<const double> values, std::size_t k) {
 }  // namespace
 
 std::vector<Curve> as_rough_as(const Curve& curve, std::span<const double> coefficients) {
-  const std::size_t count = curve.roughness.size();
+  const auto* splines = basis_as<Splines>(curve);
+  const std::size_t count = splines ? splines->roughness.size() : 0;
   std::vector<double> bends;
   for (std::size_t k = 0; k < count; ++k)
     bends.push_back(std::abs(coefficients[k] - 2.0 * coefficients[k + 1] + coefficients[k + 2]) /
@@ -116,9 +113,9 @@ std::vector<Curve> as_rough_as(const Curve& curve, std::span<const double> coeff
   std::vector<Curve> shapes;
   for (const double least : kRoughness) {
     if (count == 0 || least == kRoughness.back()) break;
-    shapes.push_back(curve);
-    for (std::size_t k = 0; k < count; ++k)
-      shapes.back().roughness[k] = std::hypot(least, mean_about(bends, k));
+    Splines rough = *splines;
+    for (std::size_t k = 0; k < count; ++k) rough.roughness[k] = std::hypot(least, mean_about(bends, k));
+    shapes.push_back(on_basis(curve, std::move(rough)));
   }
   return shapes;
 }

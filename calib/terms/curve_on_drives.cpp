@@ -5,8 +5,6 @@
 #include <limits>
 #include <numeric>
 
-#include "calib/terms/basis.hpp"
-
 namespace odomcalib::calib::terms {
 namespace {
 
@@ -39,7 +37,7 @@ template <typename Visit>
 void for_each_part(const Curve& curve, const vehicle::StepContext& c, const Visit& visit) {
   const std::span<const vehicle::Carrier> carriers = acts_on(curve);
   for (std::size_t part = 0; part < carriers.size(); ++part)
-    visit(part, basis(curve, c, part), amount(carriers[part], c));
+    visit(part, functions_of(curve, c, part), amount(carriers[part], c));
 }
 
 /// Each of the curve's values in an interval, with how much motion it acts on.
@@ -88,13 +86,15 @@ bool may_be_centred(const Curve& curve) {
 }
 
 Curve as_of_the_drive(Curve curve, std::span<const vehicle::DriveModel* const> models) {
-  const bool ends_as_it_is = is_bump(curve) || curve.fading > 0.0;
-  const bool has_mean = belongs_to_the_place(curve.law.variable) && !curve.constant && !ends_as_it_is;
+  const bool ends_as_it_is = is_bump(curve) || basis_as<Decay>(curve);
+  const auto* waves = basis_as<Harmonics>(curve);
+  const bool has_constant = waves && waves->constant;
+  const bool has_mean = belongs_to_the_place(curve.law.variable) && !has_constant && !ends_as_it_is;
   return has_mean ? centred(std::move(curve), models) : curve;
 }
 
 Curve centred(Curve curve, std::span<const vehicle::DriveModel* const> models) {
-  std::vector<double> sum(basis_size(curve), 0.0), total(sum.size(), 1e-12);
+  std::vector<double> sum(function_count(curve), 0.0), total(sum.size(), 1e-12);
   curve.mean.clear();
   for (const vehicle::DriveModel* model : models)
     for (const vehicle::StepContext& c : model->context())

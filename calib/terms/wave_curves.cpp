@@ -39,16 +39,15 @@ std::vector<Curve> wave_curves(std::span<const vehicle::DriveModel* const> model
   }
   if (!(x.high > x.low) && !(y.high > y.low)) return waves;
   const double highest = highest_frequency(x.step(), y.step());
-  Curve wave{{vehicle::Variable::position, vehicle::Carrier::both_travel},
-             std::min(x.low, y.low),
-             std::max(x.high, y.high)};
+  const Curve floor{{vehicle::Variable::position, vehicle::Carrier::both_travel},
+                    std::min(x.low, y.low),
+                    std::max(x.high, y.high)};
   for (double a = 0.0; a <= highest; a += x.step())
     for (double b = a > 0.0 ? -std::floor(highest / y.step()) * y.step() : y.step(); b <= highest;
          b += y.step()) {
       const double frequency = std::hypot(a, b);
       if (frequency < 1.0 / kLongest || frequency > highest) continue;
-      wave.wave = {a, b};
-      waves.push_back(wave);
+      waves.push_back(on_basis(floor, Wave{a, b}));
     }
   return waves;
 }

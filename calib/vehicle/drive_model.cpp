@@ -48,14 +48,14 @@ std::span<const StepContext> DriveModel::context_within(const Interval& interval
   return std::span(context_).subspan(first, last - first + 1);
 }
 
-void DriveModel::locate(std::span<const Fix> fixes, std::span<const double> parameters,
-                        const EffectList& effects) {
-  context_ = make_context(track_, to_base(parameters));
-  const Trajectory path = trajectory(parameters, effects);
+DriveModel DriveModel::located(std::span<const Fix> fixes, std::span<const double> parameters,
+                               const EffectList& effects) const {
+  DriveModel model(track_, make_context(track_, to_base(parameters)));
+  const Trajectory path = model.trajectory(parameters, effects);
   math::Pose origin;  // of dead reckoning, in the frame of the fixes
   std::size_t next = 0;
-  for (std::size_t k = 0; k < context_.size(); ++k) {
-    StepContext& c = context_[k];
+  for (std::size_t k = 0; k < model.context_.size(); ++k) {
+    StepContext& c = model.context_[k];
     for (; next < fixes.size() && (next == 0 || path.encoder_time(fixes[next].time) <= track_.t[k]); ++next)
       origin = compose(fixes[next].pose, inverse(path.at(fixes[next].time)));
     const math::Pose here = compose(origin, path.poses_[k]);
@@ -63,6 +63,7 @@ void DriveModel::locate(std::span<const Fix> fixes, std::span<const double> para
     c.x = here.x;
     c.y = here.y;
   }
+  return model;
 }
 
 double Trajectory::encoder_time(double sensor_time) const {

@@ -76,9 +76,10 @@ class DriveModel {
   /// Of the tick intervals that a measured motion touches: one at least.
   [[nodiscard]] std::span<const StepContext> context_within(const Interval& interval) const;
 
-  /// Observes every interval anew with these base parameters. Heading and place are the latest fix (in time
-  /// order) and dead reckoning from there on; without fixes dead reckoning alone.
-  void locate(std::span<const Fix> fixes, std::span<const double> parameters, const EffectList& effects);
+  /// The same wheels with every interval observed anew, with these base parameters. Heading and place are the
+  /// latest fix (in time order) and dead reckoning from there on; without fixes dead reckoning alone.
+  [[nodiscard]] DriveModel located(std::span<const Fix> fixes, std::span<const double> parameters,
+                                   const EffectList& effects) const;
 
   /// Dead reckoning with these parameters, to be asked for poses. Throws std::invalid_argument if they are
   /// too few.

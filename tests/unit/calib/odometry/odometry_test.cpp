@@ -6,7 +6,6 @@
 #include "calib/odometry/predict.hpp"
 #include "calib/report/next_test.hpp"
 #include "calib/selection/tracing_json.hpp"
-#include "calib/terms/basis.hpp"
 #include "calib/terms/catalogue.hpp"
 
 namespace odomcalib::calib::odometry {
@@ -121,8 +120,9 @@ TEST(Odometry, a_curve_of_time_acts_where_the_time_is_known) {
   bent.data.resize(1);
   bent.data[0].duration = 200.0;
   const auto set_curve = [&bent](double period, const std::string& law_of) {
-    const terms::Curve curve{{vehicle::Variable::time, vehicle::Carrier::both_travel}, 0.0, 200.0, period};
-    std::vector<double> coefficients(basis_size(curve), 0.0);
+    const terms::Curve steady{{vehicle::Variable::time, vehicle::Carrier::both_travel}, 0.0, 200.0};
+    const terms::Curve curve = period > 0.0 ? on_basis(steady, terms::Cycle{period}) : steady;
+    std::vector<double> coefficients(function_count(curve), 0.0);
     coefficients[0] = 0.01;
     bent.extensions[selection::kCurvesMember] = selection::curves_to_json({{curve, coefficients, law_of}});
   };
@@ -147,8 +147,8 @@ TEST(Odometry, what_a_lidar_did_in_time_is_not_followed) {
   for (const auto carrier :
        {vehicle::Carrier::sideways, vehicle::Carrier::scale, vehicle::Carrier::way_turned}) {
     terms::Curve curve{{vehicle::Variable::time, carrier}, 0.0, 200.0};
-    curve.moment = 100.0;
-    const std::vector<double> coefficients(basis_size(curve), 0.01);
+    curve.basis = terms::ChangePoint{100.0};
+    const std::vector<double> coefficients(function_count(curve), 0.01);
     lidars.extensions[selection::kCurvesMember] = selection::curves_to_json({{curve, coefficients, ""}});
     expect_as_larger(lidars, 0.0, to_string(carrier).c_str());
     EXPECT_EQ(effect_placements(lidars).front().place, Place::reference) << to_string(carrier);

@@ -11,7 +11,6 @@
 #include "calib/selection/event_text.hpp"
 #include "calib/selection/tracing_json.hpp"
 #include "calib/selection/vain_curves.hpp"
-#include "calib/terms/basis.hpp"
 #include "calib/terms/candidate_curves.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/curve_effect.hpp"
@@ -26,9 +25,11 @@ constexpr double kDuration = 240.0;  // s, of the drives
 
 terms::Curve event_at(double moment, vehicle::Carrier carrier) {
   terms::Curve curve{{vehicle::Variable::time, carrier}, 0.0, kDuration};
-  curve.moment = moment;
+  curve.basis = terms::ChangePoint{moment};
   return curve;
 }
+
+double moment_of(const terms::Curve& event) { return std::get<terms::ChangePoint>(event.basis).moment; }
 
 vehicle::StepContext at(double t) {
   vehicle::StepContext c;
@@ -98,14 +99,14 @@ TEST(Event, is_sought_close_to_where_it_was_found) {
   const auto shapes = other_shapes(curve, {});
   ASSERT_FALSE(shapes.empty());
   for (const terms::Curve& shape : shapes) {
-    EXPECT_NE(shape.moment, curve.moment);
-    EXPECT_LT(std::abs(shape.moment - curve.moment), kDuration / terms::kMoments);
+    EXPECT_NE(moment_of(shape), moment_of(curve));
+    EXPECT_LT(std::abs(moment_of(shape) - moment_of(curve)), kDuration / terms::kMoments);
   }
 }
 
 TEST(Event, and_what_fades_survive_the_calibration_file_on_time_alone) {
   terms::Curve fading{{vehicle::Variable::time, vehicle::Carrier::scale}, 0.0, kDuration};
-  fading.fading = 40.0;
+  fading.basis = terms::Decay{40.0};
   const terms::Curve event = event_at(100.0, vehicle::Carrier::both_travel);
   const auto read = curves_from_json(curves_to_json({{event, {0.01, -0.02}, ""}, {fading, {0.01}, ""}}));
   ASSERT_EQ(read.size(), 2U);
@@ -123,7 +124,7 @@ TEST(Event, a_load_that_slips_is_found_with_its_moment) {
   ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
   EXPECT_TRUE(result.findings.empty()) << "no drift";
   EXPECT_EQ(result.curves[0].curve.law, slip.law);
-  EXPECT_NEAR(result.curves[0].curve.moment, 131.0, 1.0);
+  EXPECT_NEAR(moment_of(result.curves[0].curve), 131.0, 1.0);
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kBaseCount), -0.008, 4e-4);
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kBaseCount + 1), 0.005, 4e-4);
 }
@@ -145,7 +146,7 @@ TEST(Event, a_lidar_that_was_knocked_is_where_it_is_now) {
   const SearchResult result = searched(measured(model, {make_curve_effect(bump)}, {0.012, -0.005, 0.04}));
   ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
   EXPECT_TRUE(is_bump(result.curves[0].curve));
-  EXPECT_NEAR(result.curves[0].curve.moment, 87.0, 1.0);
+  EXPECT_NEAR(moment_of(result.curves[0].curve), 87.0, 1.0);
   EXPECT_EQ(result.curves[0].effect->storage(), vehicle::Storage::driver) << "wheels do not crab";
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kMountX), kBase.mount.x, 5e-4);
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kMountYaw), kBase.mount.yaw, 5e-4);
@@ -155,11 +156,11 @@ TEST(Event, a_lidar_that_was_knocked_is_where_it_is_now) {
 TEST(Event, a_lidar_that_warms_up_leaves_the_lengths_of_a_warm_one) {
   const vehicle::DriveModel model = lively_model();
   terms::Curve warming{{vehicle::Variable::time, vehicle::Carrier::scale}, 0.0, kDuration};
-  warming.fading = 45.0;
+  warming.basis = terms::Decay{45.0};
   const SearchResult result = searched(measured(model, {make_curve_effect(warming)}, {0.01}));
   ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
   EXPECT_EQ(result.curves[0].curve.law, warming.law);
-  EXPECT_NEAR(result.curves[0].curve.fading, 45.0, 15.0);
+  EXPECT_NEAR(std::get<terms::Decay>(result.curves[0].curve.basis).time_constant, 45.0, 15.0);
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kTrackWidth), kBase.track_width, 5e-4);
 }
 

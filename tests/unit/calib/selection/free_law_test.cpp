@@ -4,7 +4,6 @@
 #include <tuple>
 
 #include "calib/selection/search.hpp"
-#include "calib/terms/basis.hpp"
 #include "calib/terms/curve_effect.hpp"
 #include "calib/terms/curve_on_drives.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
@@ -55,7 +54,7 @@ TEST_P(FreeLaws, are_found_as_what_they_are) {
   const vehicle::DriveModel* const models[] = {&model};
   terms::Curve curve{GetParam().law};
   std::tie(curve.low, curve.high) = terms::range_of(curve.law.variable, models);
-  ASSERT_EQ(basis_size(curve), GetParam().coefficients.size());
+  ASSERT_EQ(function_count(curve), GetParam().coefficients.size());
   const SearchResult result = searched(measured(model, {make_curve_effect(curve)}, GetParam().coefficients));
   EXPECT_TRUE(result.findings.empty()) << result.findings.front().effect->name();
   ASSERT_FALSE(result.curves.empty()) << "seed " << kSeed;

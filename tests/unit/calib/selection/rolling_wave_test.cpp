@@ -19,6 +19,13 @@ std::ostream& operator<<(std::ostream& out, const Wave& wave) {
   return out << to_string(wave.curve.law.variable);
 }
 
+/// @param all the range of the variable, in the unit of the period
+Wave wave_of(const vehicle::Law& law, double all, double period) {
+  return {on_basis({law, 0.0, all}, terms::Cycle{period})};
+}
+
+double period_of(const terms::Curve& wave) { return std::get<terms::Cycle>(wave.basis).period; }
+
 class RollingWaves : public testing::TestWithParam<Wave> {};
 
 TEST_P(RollingWaves, are_found_with_their_length) {
@@ -28,7 +35,7 @@ TEST_P(RollingWaves, are_found_with_their_length) {
   ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
   const terms::Curve& found = result.curves.front().curve;
   EXPECT_EQ(found.law, GetParam().curve.law) << result.curves.front().effect->name();
-  EXPECT_NEAR(found.period, GetParam().curve.period, 0.02 * GetParam().curve.period);
+  EXPECT_NEAR(period_of(found), period_of(GetParam().curve), 0.02 * period_of(GetParam().curve));
   EXPECT_EQ(result.curves.front().effect->storage(), vehicle::Storage::nowhere)
       << "the next drive begins at another phase";
 }
@@ -36,15 +43,11 @@ TEST_P(RollingWaves, are_found_with_their_length) {
 /// A caster that wobbles, and belts that go round once in 1.7 and 2.6 turns of their wheels.
 INSTANTIATE_TEST_SUITE_P(
     Curve, RollingWaves,
-    testing::Values(Wave{{{vehicle::Variable::distance, vehicle::Carrier::yaw_path}, 0.0, 100.0, 0.41}},
-                    Wave{{{vehicle::Variable::left_phase, vehicle::Carrier::left_travel},
-                          0.0,
-                          1000.0,
-                          1.7 * 2.0 * math::kPi}},
-                    Wave{{{vehicle::Variable::right_phase, vehicle::Carrier::right_travel},
-                          0.0,
-                          1000.0,
-                          2.6 * 2.0 * math::kPi}}),
+    testing::Values(wave_of({vehicle::Variable::distance, vehicle::Carrier::yaw_path}, 100.0, 0.41),
+                    wave_of({vehicle::Variable::left_phase, vehicle::Carrier::left_travel}, 1000.0,
+                            1.7 * 2.0 * math::kPi),
+                    wave_of({vehicle::Variable::right_phase, vehicle::Carrier::right_travel}, 1000.0,
+                            2.6 * 2.0 * math::kPi)),
     testing::PrintToStringParamName());
 
 /// Names that the wave found competes with.
@@ -70,7 +73,8 @@ TEST(RollingWave, of_a_wheel_competes_with_the_names_of_what_goes_round_with_it)
 }
 
 TEST(RollingWave, of_the_base_has_no_name) {
-  const terms::Curve caster{{vehicle::Variable::distance, vehicle::Carrier::yaw_path}, 0.0, 100.0, 0.41};
+  const terms::Curve caster =
+      on_basis({{vehicle::Variable::distance, vehicle::Carrier::yaw_path}, 0.0, 100.0}, terms::Cycle{0.41});
   EXPECT_TRUE(names_beside({make_curve_effect(caster)}, {0.03, -0.02}, {}).empty());
 }
 

@@ -9,7 +9,6 @@
 #include "calib/selection/law_shape.hpp"
 #include "calib/selection/plausibility.hpp"
 #include "calib/selection/search.hpp"
-#include "calib/terms/basis.hpp"
 #include "calib/terms/candidate_curves.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/curve_effect.hpp"
@@ -127,12 +126,13 @@ TEST(Tracing, shapes_that_are_tried_are_not_fitted) {
 
 TEST(Tracing, says_which_variable_when_it_has_no_name) {
   const vehicle::DriveModel model = lively_model();
-  const terms::Curve swing{{vehicle::Variable::left_phase, vehicle::Carrier::left_travel}, 0.0, 1.0, 0.0, 5};
+  const terms::Curve swing = on_basis(
+      {{vehicle::Variable::left_phase, vehicle::Carrier::left_travel}, 0.0, 1.0}, terms::Harmonics{5});
   const SearchResult result = searched(measured(model, {make_curve_effect(swing)}, {0.03, 0.01}));
   EXPECT_TRUE(result.findings.empty());
   ASSERT_TRUE(result.has_unnamed());
   EXPECT_EQ(result.curves[0].curve.law, swing.law);
-  EXPECT_EQ(result.curves[0].curve.harmonic, 5);
+  EXPECT_EQ(result.curves[0].curve.basis, terms::Basis(terms::Harmonics{5}));
 }
 
 TEST(Tracing, a_clock_is_asked_before_what_happened_before) {
@@ -145,7 +145,7 @@ TEST(Tracing, a_clock_is_asked_before_what_happened_before) {
 
 TEST(Tracing, a_wheel_that_keeps_what_the_last_push_did_is_flagged) {
   const vehicle::DriveModel model = lively_model(3.0);
-  const terms::Curve seat{{vehicle::Variable::previous_push, vehicle::Carrier::track}, -1.0, 1.0, 0.0, 0};
+  const terms::Curve seat{{vehicle::Variable::previous_push, vehicle::Carrier::track}, -1.0, 1.0};
   const SearchResult result = searched(measured(model, {make_curve_effect(seat)}, {0.01, 0.0, 0.0, 0.0}));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.curves[0].curve.law.variable, vehicle::Variable::previous_push);
@@ -240,13 +240,13 @@ TEST(Tracing, a_sway_that_ticks_can_hide_is_not_believed) {
 
 TEST(Tracing, a_narrow_peak_gets_splines_and_the_wheel_a_wider_deviation) {
   const vehicle::DriveModel model = lively_model();
-  const terms::Curve peak{
-      {vehicle::Variable::left_speed, vehicle::Carrier::left_travel}, -0.3, 0.3, 0.0, 0, {}, 8};
+  const terms::Curve peak = on_basis(
+      {{vehicle::Variable::left_speed, vehicle::Carrier::left_travel}, -0.3, 0.3}, terms::Splines{8});
   const std::vector<double> values = {0.0, 0.0, 0.0, -0.03, -0.03, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   const SearchResult result = searched(measured(model, {make_curve_effect(peak)}, values));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.curves[0].curve.law, peak.law);
-  EXPECT_TRUE(has_splines(result.curves[0].curve));
+  EXPECT_TRUE(terms::basis_as<terms::Splines>(result.curves[0].curve));
   double doubt = 0.0;
   for (const Eigen::VectorXd& d : result.doubts) doubt = std::hypot(doubt, d(vehicle::kLeftRadius));
   const double deviation =
@@ -322,7 +322,7 @@ TEST(Tracing, a_name_and_an_unsigned_law_beside_it_leave_all_between_their_extre
   terms::Curve unsigned_way{{vehicle::Variable::left_speed, vehicle::Carrier::left_path}, -0.5, 0.5};
   FittedModel found{{terms::find_effect("direction_dependent_diameter"), make_curve_effect(unsigned_way)},
                     {}};
-  std::vector<double> values(2 + basis_size(unsigned_way), 0.0);
+  std::vector<double> values(2 + function_count(unsigned_way), 0.0);
   values[0] = -0.04;
   found.fit.parameters = vehicle::to_vector(kBase, values.size());
   std::copy(values.begin(), values.end(), found.fit.parameters.data() + vehicle::kBaseCount);
@@ -337,11 +337,12 @@ TEST(Tracing, a_name_and_an_unsigned_law_beside_it_leave_all_between_their_extre
 TEST(Tracing, tiles_are_flagged_as_a_matter_of_the_place) {
   const vehicle::DriveModel model = lively_model();
   terms::Curve tiles{{vehicle::Variable::position, vehicle::Carrier::both_travel}};
-  tiles.wave = {2.4, 1.8};  // every third of a metre
+  tiles.basis = terms::Wave{2.4, 1.8};  // every third of a metre
   const SearchResult result = searched(measured(model, {make_curve_effect(tiles)}, {0.0, 0.0, 0.06, 0.0}));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.curves[0].curve.law, tiles.law);
-  EXPECT_NEAR(std::hypot(result.curves[0].curve.wave[0], result.curves[0].curve.wave[1]), 3.0, 0.3);
+  const auto& wave = std::get<terms::Wave>(result.curves[0].curve.basis);
+  EXPECT_NEAR(std::hypot(wave.along_x, wave.along_y), 3.0, 0.3);
   EXPECT_EQ(result.curves[0].effect->storage(), vehicle::Storage::nowhere);
 }
 
@@ -441,8 +442,7 @@ TEST(Tracing, columns_of_curves_are_their_derivatives) {
 
 TEST(Tracing, how_long_a_robot_remembers_is_found_out) {
   const vehicle::DriveModel model = jerky_model();
-  const terms::Curve twist{
-      {vehicle::Variable::previous_turn, vehicle::Carrier::left_travel}, -1.0, 1.0, 0.0, 0, {}, 4, 0};
+  const terms::Curve twist{{vehicle::Variable::previous_turn, vehicle::Carrier::left_travel}, -1.0, 1.0, 0};
   const SearchResult result = searched(measured(model, {make_curve_effect(twist)}, {0.01, 0.0, 0.0, 0.0}));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.curves[0].curve.law, twist.law);
@@ -452,8 +452,7 @@ TEST(Tracing, how_long_a_robot_remembers_is_found_out) {
 TEST(Tracing, a_seat_that_only_the_opposite_push_changes_is_no_fading_memory) {
   const vehicle::DriveModel model = lively_model(3.0);
   const std::size_t hard = vehicle::kMemorySpans.size() + 2;
-  const terms::Curve seat{
-      {vehicle::Variable::previous_push, vehicle::Carrier::track}, -1.0, 1.0, 0.0, 0, {}, 4, hard};
+  const terms::Curve seat{{vehicle::Variable::previous_push, vehicle::Carrier::track}, -1.0, 1.0, hard};
   const SearchResult result = searched(measured(model, {make_curve_effect(seat)}, {0.01}));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.curves[0].curve.law, seat.law);
@@ -465,8 +464,7 @@ TEST(Tracing, a_seat_that_only_the_opposite_push_changes_is_no_fading_memory) {
 TEST(Tracing, a_slight_seat_is_found_as_what_it_is) {
   const vehicle::DriveModel model = jerky_model();
   const std::size_t hard = vehicle::kMemorySpans.size() + 2;
-  const terms::Curve seat{
-      {vehicle::Variable::previous_push, vehicle::Carrier::track}, -1.0, 1.0, 0.0, 0, {}, 4, hard};
+  const terms::Curve seat{{vehicle::Variable::previous_push, vehicle::Carrier::track}, -1.0, 1.0, hard};
   const SearchResult result = searched(measured(model, {make_curve_effect(seat)}, {0.001}));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.curves[0].curve.law, seat.law);

@@ -9,7 +9,6 @@
 
 #include "calib/selection/law_shape.hpp"
 #include "calib/selection/tracing_json.hpp"
-#include "calib/terms/basis.hpp"
 #include "calib/terms/candidate_curves.hpp"
 #include "calib/terms/curve.hpp"
 #include "calib/terms/curve_effect.hpp"
@@ -23,20 +22,19 @@ TEST(Curve, is_zero_at_rest_but_on_the_turn_path) {
   for (int v = 0; v <= static_cast<int>(vehicle::kLastVariable); ++v) {
     const auto variable = static_cast<vehicle::Variable>(v);
     if (begins_with_the_recording(variable) || is_distance_since(variable)) continue;
-    const Curve curve{{variable, vehicle::Carrier::both_travel}, -0.7, 0.9, 0.0, 0};
-    for (const double f : basis(curve, vehicle::StepContext{}))
+    const Curve curve{{variable, vehicle::Carrier::both_travel}, -0.7, 0.9};
+    for (const double f : functions_of(curve, vehicle::StepContext{}))
       EXPECT_NEAR(f, 0.0, 1e-12) << to_string(variable);
   }
-  const Curve turn{{vehicle::Variable::turn_rate, vehicle::Carrier::turn_path}, -1.0, 1.0, 0.0, 0};
-  EXPECT_EQ(basis(turn, vehicle::StepContext{})[0], 1.0);
+  const Curve turn{{vehicle::Variable::turn_rate, vehicle::Carrier::turn_path}, -1.0, 1.0};
+  EXPECT_EQ(functions_of(turn, vehicle::StepContext{})[0], 1.0);
 }
 
 TEST(Curve, of_a_speed_is_zero_at_rest_with_any_knots) {
-  for (const int knots : {kKnots, kMostKnots}) {
-    const Curve curve{
-        {vehicle::Variable::speed, vehicle::Carrier::both_travel}, -0.5, 0.5, 0.0, 0, {}, knots};
-    for (const double f : basis(curve, vehicle::StepContext{})) EXPECT_NEAR(f, 0.0, 1e-12) << knots;
-  }
+  const Curve hats{{vehicle::Variable::speed, vehicle::Carrier::both_travel}, -0.5, 0.5};
+  for (const Curve& curve : {hats, on_basis(hats, Splines{8}), on_basis(hats, Splines{})})
+    for (const double f : functions_of(curve, vehicle::StepContext{}))
+      EXPECT_NEAR(f, 0.0, 1e-12) << curve.basis.index();
 }
 
 TEST(Curve, of_the_pace_is_the_same_both_ways) {
@@ -57,7 +55,8 @@ TEST(Curve, of_the_pace_is_the_same_both_ways) {
     Curve curve{law, -1.0, 1.0};
     curve.with_motion = true;
     for (const double push : {-1.0, 1.0}) {
-      const BasisValues ahead = basis(curve, moving(1.0, push)), back = basis(curve, moving(-1.0, push));
+      const BasisValues ahead = functions_of(curve, moving(1.0, push)),
+                        back = functions_of(curve, moving(-1.0, push));
       EXPECT_NEAR(ahead[0], 0.5 * push, 1e-12) << to_string(law.variable);
       for (std::size_t k = 0; k < ahead.size(); ++k) EXPECT_EQ(ahead[k], back[k]) << to_string(law.variable);
     }
@@ -67,13 +66,13 @@ TEST(Curve, of_the_pace_is_the_same_both_ways) {
 /// Largest error of the curve that is nearest to a smooth bump, relative to its height.
 double misfit_of_bump(const Curve& curve) {
   constexpr int kSpeeds = 200;
-  const auto functions = static_cast<Eigen::Index>(basis_size(curve));
+  const auto functions = static_cast<Eigen::Index>(function_count(curve));
   Eigen::MatrixXd columns(kSpeeds, functions);
   Eigen::VectorXd bump(kSpeeds);
   for (int k = 0; k < kSpeeds; ++k) {
     vehicle::StepContext c;
     c.speed = 0.5 * (k + 1) / kSpeeds;
-    const BasisValues values = basis(curve, c);
+    const BasisValues values = functions_of(curve, c);
     columns.row(k) = Eigen::Map<const Eigen::RowVectorXd>(values.begin(), functions);
     bump(k) = std::exp(-std::pow((c.speed - 0.27) / 0.06, 2));
   }
@@ -105,7 +104,7 @@ TEST(Curve, of_splines_expects_straight_lines) {
         of_parabola += row[k] * x * x;
       }
       EXPECT_NEAR(of_line, 0.0, 1e-9);
-      EXPECT_NEAR(of_parabola, 2.0 / (shape.roughness.front() * 5e-3), 1e-6)
+      EXPECT_NEAR(of_parabola, 2.0 / (std::get<Splines>(shape.basis).roughness.front() * 5e-3), 1e-6)
           << "second difference of x^2 is 2";
     }
   }
@@ -114,11 +113,11 @@ TEST(Curve, of_splines_expects_straight_lines) {
 TEST(Curve, may_be_as_rough_as_it_was_found) {
   const Curve smooth =
       other_shapes({{vehicle::Variable::speed, vehicle::Carrier::both_travel}, -0.5, 0.5}, {}).front();
-  std::vector<double> coefficients(basis_size(smooth), 0.0);
+  std::vector<double> coefficients(function_count(smooth), 0.0);
   coefficients[12] = 0.02;  // one kink, far from both ends
   const auto shapes = as_rough_as(smooth, coefficients);
   ASSERT_FALSE(shapes.empty());
-  const std::vector<double>& roughness = shapes.front().roughness;
+  const std::vector<double>& roughness = std::get<Splines>(shapes.front().basis).roughness;
   EXPECT_NEAR(roughness[2], kRoughness.front(), 1e-12);
   EXPECT_NEAR(roughness[20], kRoughness.front(), 1e-12);
   EXPECT_GT(roughness[11], 3.0);
@@ -130,7 +129,7 @@ TEST(Curve, may_be_as_rough_as_it_was_found) {
 /// Of the best sum of the curve's functions and a constant to what is 1 in a square and 0 elsewhere.
 double misfit_of_rug(const Curve& curve) {
   constexpr int kSteps = 30;  // each way
-  const auto functions = static_cast<Eigen::Index>(basis_size(curve));
+  const auto functions = static_cast<Eigen::Index>(function_count(curve));
   Eigen::MatrixXd columns(kSteps * kSteps, functions + 1);
   Eigen::VectorXd rug(kSteps * kSteps);
   for (Eigen::Index k = 0; k < rug.size(); ++k) {
@@ -138,7 +137,7 @@ double misfit_of_rug(const Curve& curve) {
     const Eigen::Index column = k % kSteps, row = k / kSteps;
     c.x = -1.0 + 2.0 * static_cast<double>(column) / (kSteps - 1);
     c.y = -1.0 + 2.0 * static_cast<double>(row) / (kSteps - 1);
-    const BasisValues values = basis(curve, c);
+    const BasisValues values = functions_of(curve, c);
     columns.row(k) << 1.0, Eigen::Map<const Eigen::RowVectorXd>(values.begin(), functions);
     rug(k) = std::max(std::abs(c.x - 0.4), std::abs(c.y - 0.3)) < 0.35 ? 1.0 : 0.0;
   }
@@ -150,13 +149,13 @@ TEST(Curve, patches_describe_a_rug_better_than_polynomials) {
   const Curve smooth{{vehicle::Variable::position, vehicle::Carrier::both_travel}, -1.0, 1.0};
   const auto shapes = other_shapes(smooth, {});
   ASSERT_EQ(shapes.size(), 1U);
-  EXPECT_TRUE(shapes[0].patches);
+  EXPECT_TRUE(basis_as<Patches>(shapes[0]));
   EXPECT_LT(misfit_of_rug(shapes[0]), 0.8 * misfit_of_rug(smooth));
   for (const double place : {-3.0, -0.9, 0.0, 0.37, 1.0, 8.0}) {
     vehicle::StepContext c;
     c.x = place;
     c.y = -0.7 * place;
-    const BasisValues values = basis(shapes[0], c);
+    const BasisValues values = functions_of(shapes[0], c);
     EXPECT_NEAR(std::accumulate(values.begin(), values.end(), 0.0), 1.0, 1e-12) << place;
   }
 }
@@ -164,7 +163,8 @@ TEST(Curve, patches_describe_a_rug_better_than_polynomials) {
 TEST(Curve, its_spread_is_that_of_the_law_over_the_drive) {
   const vehicle::DriveModel model = selection::lively_model();
   const vehicle::DriveModel* models[] = {&model};
-  const Curve wave{{vehicle::Variable::left_phase, vehicle::Carrier::left_travel}, 0.0, 1.0, 0.0, 5};
+  const Curve wave =
+      on_basis({{vehicle::Variable::left_phase, vehicle::Carrier::left_travel}, 0.0, 1.0}, Harmonics{5});
   // Root mean square of a sine, as the wheel passes all its angles alike.
   EXPECT_NEAR(spread_of(wave, std::vector<double>{0.01, 0.0}, models), 0.01 / std::sqrt(2.0), 2e-4);
 }
@@ -173,12 +173,12 @@ TEST(Curve, about_its_mean_it_has_none_over_the_drive) {
   const vehicle::DriveModel model = selection::lively_model();
   const vehicle::DriveModel* models[] = {&model};
   const Curve curve =
-      centred({{vehicle::Variable::left_speed, vehicle::Carrier::left_travel}, -0.8, 0.8, 0.0, 0}, models);
-  std::vector<double> sum(basis_size(curve), 0.0);
+      centred({{vehicle::Variable::left_speed, vehicle::Carrier::left_travel}, -0.8, 0.8}, models);
+  std::vector<double> sum(function_count(curve), 0.0);
   double way = 0.0;
   for (const vehicle::StepContext& c : model.context()) {
     way += std::abs(c.left_delta);
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += std::abs(c.left_delta) * basis(curve, c)[k];
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += std::abs(c.left_delta) * functions_of(curve, c)[k];
   }
   for (const double value : sum) EXPECT_NEAR(value / way, 0.0, 1e-12);
   const std::vector<selection::FittedCurve> written = {{curve, std::vector<double>(sum.size(), 0.01), ""}};
@@ -190,7 +190,7 @@ TEST(Curve, about_its_mean_it_has_none_over_the_drive) {
 TEST(Curve, of_each_wheel_acts_on_both_by_their_own_speeds) {
   Curve curve{vehicle::kOfEachWheel, -0.4, 0.4};
   ASSERT_EQ(acts_on(curve).size(), 2U);
-  std::vector<double> coefficients(basis_size(curve), 0.0);
+  std::vector<double> coefficients(function_count(curve), 0.0);
   coefficients[3] = 0.01;  // at the highest speed
   vehicle::StepContext c;
   c.left_speed = 0.4;
@@ -215,8 +215,8 @@ TEST(Curve, of_each_wheel_is_spread_over_the_ways_of_both) {
   const Curve about_mean = centred(curve, models);
   double sum = 0.0;
   for (const vehicle::StepContext& c : model.context())
-    sum += std::abs(c.left_delta) * basis(about_mean, c, 0)[2] +
-           std::abs(c.right_delta) * basis(about_mean, c, 1)[2];
+    sum += std::abs(c.left_delta) * functions_of(about_mean, c, 0)[2] +
+           std::abs(c.right_delta) * functions_of(about_mean, c, 1)[2];
   EXPECT_NEAR(sum, 0.0, 1e-9);
 }
 
@@ -258,9 +258,10 @@ TEST(Curve, every_carrier_acts_and_reverses_as_it_says) {
 }
 
 TEST(Curve, survives_the_calibration_file) {
-  const Curve curve{{vehicle::Variable::time, vehicle::Carrier::both_travel}, 0.0, 290.0, 61.5, 0};
+  const Curve curve =
+      on_basis({{vehicle::Variable::time, vehicle::Carrier::both_travel}, 0.0, 290.0}, Cycle{61.5});
   Curve tiles{{vehicle::Variable::position, vehicle::Carrier::both_travel}};
-  tiles.wave = {3.0, -0.5};
+  tiles.basis = Wave{3.0, -0.5};
   const Curve rug =
       other_shapes({{vehicle::Variable::position, vehicle::Carrier::both_travel}, -1.0, 1.0}, {}).front();
   Curve brake{{vehicle::Variable::left_acceleration, vehicle::Carrier::left_travel}, -0.8, 0.8};
@@ -273,9 +274,8 @@ TEST(Curve, survives_the_calibration_file) {
   ASSERT_EQ(read.size(), 4U);
   EXPECT_EQ(read[3].curve, brake);
   EXPECT_EQ(read[2].curve, rug);
-  EXPECT_EQ(read[1].curve.wave, tiles.wave);
-  EXPECT_EQ(read[0].curve.law, curve.law);
-  EXPECT_EQ(read[0].curve.period, curve.period);
+  EXPECT_EQ(read[1].curve, tiles);
+  EXPECT_EQ(read[0].curve, curve);
   EXPECT_EQ(read[0].coefficients, (std::vector<double>{0.01, -0.02}));
   EXPECT_EQ(read[0].law_of, "drift_with_time");
   EXPECT_TRUE(
@@ -288,8 +288,7 @@ std::vector<selection::Reshaped> in_shapes(vehicle::Variable variable, std::size
                                            std::initializer_list<std::size_t> likely) {
   std::vector<selection::Reshaped> shapes(count);
   for (std::size_t k = 0; k < count; ++k) {
-    shapes[k].curve = {{variable, vehicle::Carrier::both_travel}};
-    shapes[k].curve.memory = first + k;
+    shapes[k].curve = {{variable, vehicle::Carrier::both_travel}, -1.0, 1.0, first + k};
     shapes[k].model.fit.cost = 900.0;
   }
   for (const std::size_t k : likely) shapes[k].model.fit.cost = 501.0;

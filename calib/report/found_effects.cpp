@@ -1,0 +1,128 @@
+#include "calib/report/found_effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/selection/folds.hpp"
+#include "calib/selection/lidar_report.hpp"
+#include "calib/selection/settings.hpp"
+#include "calib/selection/stretch_errors.hpp"
+#include "calib/terms/curve.hpp"
+
+namespace odomcalib::calib::report {
+namespace {
+
+using EffectPtr = std::shared_ptr<const vehicle::Effect>;
+
+const selection::Finding* finding_of(const selection::SearchResult& outcome, const EffectPtr& effect) {
+  for (const selection::Finding& finding : outcome.findings)
+    if (finding.effect == effect) return &finding;
+  return nullptr;
+}
+
+const selection::AddedCurve* curve_of(const selection::SearchResult& outcome, const EffectPtr& effect) {
+  for (const selection::AddedCurve& added : outcome.curves)
+    if (added.effect == effect) return &added;
+  return nullptr;
+}
+
+bool is_quiet(const selection::SearchResult& outcome, const EffectPtr& effect) {
+  return std::find(outcome.quiet.begin(), outcome.quiet.end(), effect) != outcome.quiet.end();
+}
+
+/// Evidence for an effect that the search did not add: the delay found before it, or what the user asked for.
+/// @param z standard deviations from zero
+Evidence evidence_against(const std::optional<estimation::FitResult>& plain, const Findings& found,
+                          double z) {
+  Evidence evidence;
+  evidence.p_value = std::erfc(z / std::sqrt(2.0));
+  if (!plain) return evidence;
+  const measurement::Dataset& dataset = found.fit.dataset;
+  const auto& [effects, fit] = found.outcome.model;
+  const auto windows =
+      find_stretches(selection::StretchKind::open_loop, dataset.data, selection::folds_of(dataset.data), fit,
+                     selection::trusted_pairs(*plain, fit));
+  if (windows.size() < selection::settings::kFewestWindows) return evidence;
+  evidence.held_out_before =
+      stretch_errors(dataset.data, windows, {}, *plain, dataset.fixed()).rms_position();
+  evidence.held_out_after =
+      stretch_errors(dataset.data, windows, effects, fit, vehicle::fixed_with(dataset.fixed(), effects))
+          .rms_position();
+  return evidence;
+}
+
+/// Name and values.
+/// @param first parameter of the effect in the parameter vector
+EffectResult values_of(const vehicle::Effect& effect, Eigen::Index first, const estimation::FitResult& fit) {
+  EffectResult result;
+  result.name = effect.name();
+  for (const vehicle::EffectParameter& parameter : effect.parameters()) {
+    const double deviation = std::sqrt(std::max(fit.covariance(first, first), 0.0));
+    // What the data do not speak of has no deviation, rather than none at all.
+    const bool is_estimated = !parameter.fixed && deviation > 0.0;
+    result.parameters.push_back(
+        {parameter.name, {fit.parameters(first), is_estimated ? deviation : -1.0, parameter.unit}});
+    ++first;
+  }
+  return result;
+}
+
+/// Standard deviations from zero of the size that is plainest.
+double plainest_size(const vehicle::Effect& effect, Eigen::Index first, const estimation::FitResult& fit) {
+  double z = 0.0;
+  for (const vehicle::EffectParameter& parameter : effect.parameters()) {
+    const double deviation = std::sqrt(std::max(fit.covariance(first, first), 0.0));
+    if (deviation > 0.0 && parameter.start == 0.0)
+      z = std::max(z, std::abs(fit.parameters(first)) / deviation);
+    ++first;
+  }
+  return z;
+}
+
+EffectResult found_effect(const EffectPtr& effect, Eigen::Index first, const Findings& found,
+                          const std::optional<estimation::FitResult>& plain) {
+  const estimation::FitResult& fit = found.outcome.model.fit;
+  EffectResult result = values_of(*effect, first, fit);
+  if (const selection::Finding* finding = finding_of(found.outcome, effect)) {
+    result.aliases = finding->aliases;
+    result.evidence = {finding->proof.family_p_value, finding->proof.before, finding->proof.after};
+  } else {
+    result.aliases = effect->always_alike();
+    result.evidence = evidence_against(plain, found, plainest_size(*effect, first, fit));
+  }
+  return result;
+}
+
+selection::FittedCurve fitted(const selection::AddedCurve& added, Eigen::Index first,
+                              const estimation::FitResult& fit) {
+  selection::FittedCurve curve{added.curve, {}, added.law_of ? added.law_of->name() : ""};
+  for (std::size_t k = 0; k < function_count(added.curve); ++k)
+    curve.coefficients.push_back(fit.parameters(first++));
+  return curve;
+}
+
+}  // namespace
+
+std::vector<EffectResult> found_effects(const Findings& found,
+                                        const std::optional<estimation::FitResult>& plain) {
+  std::vector<EffectResult> results = selection::effect_results(found.lidar);
+  if (found.was_searched)
+    for (EffectResult& effect : effects_of(found.fit.dataset.recordings.stamps()))
+      results.push_back(std::move(effect));
+  const vehicle::EffectList& effects = found.outcome.model.effects;
+  for (std::size_t e = 0; e < effects.size(); ++e)
+    if (curve_of(found.outcome, effects[e]) == nullptr && !is_quiet(found.outcome, effects[e]))
+      results.push_back(found_effect(effects[e], first_parameter(effects, e), found, plain));
+  return results;
+}
+
+std::vector<selection::FittedCurve> found_curves(const Findings& found) {
+  std::vector<selection::FittedCurve> curves;
+  const auto& [effects, fit] = found.outcome.model;
+  for (std::size_t e = 0; e < effects.size(); ++e)
+    if (const selection::AddedCurve* added = curve_of(found.outcome, effects[e]))
+      curves.push_back(fitted(*added, first_parameter(effects, e), fit));
+  return curves;
+}
+
+}  // namespace odomcalib::calib::report

@@ -1,0 +1,109 @@
+#include "calib/selection/lidar_correction.hpp"
+
+#include <algorithm>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "calib/selection/criterion.hpp"
+#include "calib/selection/lidar_evidence.hpp"
+#include "calib/selection/placed_fit.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+using Findings = std::vector<terms::LidarFinding>;
+
+/// What stays the same from one correction to the next.
+struct Task {
+  ingest::Recordings uncorrected;
+  const terms::Request& request;
+  const estimation::Settling& how;
+
+  [[nodiscard]] bool is_asked() const { return !request.lidar_effects.empty(); }
+};
+
+/// Whether what was found is refined by a second look, at pairs of the corrected scans.
+enum class Looks { once, twice };
+
+Findings joined(const Findings& known, const Findings& found) {
+  Findings all = known;
+  all.insert(all.end(), found.begin(), found.end());
+  return all;
+}
+
+/// Beams spread too wide bend the walls of a map, as ranges that are too short would.
+Findings wrong_angles(const estimation::Fit& fit, const Task& task) {
+  if (task.is_asked()) return {};
+  Findings found = trace_lidar(heading_pairs(fit), sees_all_round(fit.dataset), true);
+  if (found.empty() || found.front().effect->name() != terms::make_angle_scale()->name()) return {};
+  found.resize(1);
+  return found;
+}
+
+/// What pairs of scans show, a map or its absence known.
+Findings wrong_scans(const LidarCorrection& now, const Task& task) {
+  const auto pairs = heading_pairs(now.fit);
+  if (task.is_asked()) return fit_lidar(pairs, task.request.lidar_effects);
+  return trace_lidar(pairs, sees_all_round(now.fit.dataset), !now.placement.paths.empty());
+}
+
+measurement::Dataset without(const Findings& findings, const measurement::Dataset& dataset,
+                             const Task& task) {
+  return with_scans_of(dataset, corrected(task.uncorrected, findings));
+}
+
+/// The findings with what corrected scans still show, and the model fitted to these.
+/// @param known findings before them
+std::pair<Findings, vehicle::VehicleModel> refined(Findings findings, std::size_t known,
+                                                   const estimation::Fit& fit, const Task& task) {
+  const auto& [effects, parameters] = fit.model;
+  const estimation::Fit first_look =
+      estimation::fit_once(measured(without(findings, fit.dataset, task), parameters, effects), fit.model);
+  if (first_look.failure) return {std::move(findings), fit.model};
+  refine(std::span(findings).subspan(known), heading_pairs(first_look));
+  return {std::move(findings), first_look.model};
+}
+
+/// Everything measured and fitted anew without the errors found.
+LidarCorrection take_out(const Findings& found, LidarCorrection before, const Task& task, Looks looks) {
+  Findings findings = joined(before.findings, found);
+  if (std::none_of(found.begin(), found.end(), [](const auto& f) { return f.effect->is_correctable(); }))
+    return {std::move(before.fit), std::move(findings), std::move(before.placement)};
+  vehicle::VehicleModel start = before.fit.model;
+  if (looks == Looks::twice)
+    std::tie(findings, start) = refined(std::move(findings), before.findings.size(), before.fit, task);
+  estimation::Fit after =
+      measure_and_settle(without(findings, before.fit.dataset, task), std::move(start), task.how);
+  const bool is_kept = !after.failure && (task.is_asked() ||
+                                          !is_worse(held_out_residual(before.fit), held_out_residual(after)));
+  if (is_kept) return {std::move(after), std::move(findings), std::move(before.placement)};
+  // Fitted once more instead of keeping the fit as it was: also without any error corrected scans state their
+  // angles one by one, rounded, and results so far have stood on these.
+  estimation::Fit again = measure_and_settle(without(before.findings, before.fit.dataset, task),
+                                             std::move(before.fit.model), task.how);
+  return {std::move(again), std::move(before.findings), std::move(before.placement)};
+}
+
+}  // namespace
+
+LidarCorrection correct_lidar(estimation::Fit fit, const terms::Request& request,
+                              const estimation::Settling& how) {
+  const Task task{fit.dataset.recordings, request, how};
+  const bool may_trace = request.is_automatic || task.is_asked();
+  LidarCorrection now{std::move(fit)};
+  if (now.fit.failure || !may_trace || !now.fit.dataset.reference_is_scans()) return now;
+  Findings found = wrong_angles(now.fit, task);
+  now = take_out(found, std::move(now), task, Looks::twice);
+  if (now.fit.failure) return now;
+  now.placement =
+      place_every_scan(now.fit, how.progress, task.is_asked() ? Ranges::believed : Ranges::traced);
+  found = common_findings(now.placement.paths);
+  now = take_out(found, std::move(now), task, Looks::once);
+  if (now.fit.failure) return now;
+  how.progress("tracing the lidar", 0.0);
+  found = wrong_scans(now, task);
+  return take_out(found, std::move(now), task, Looks::twice);
+}
+
+}  // namespace odomcalib::calib::selection

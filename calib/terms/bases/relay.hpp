@@ -1,0 +1,15 @@
+// What stays until the opposite happens.
+#pragma once
+
+#include "calib/terms/bases/argument.hpp"
+#include "calib/terms/bases/basis_values.hpp"
+
+namespace odomcalib::calib::terms {
+
+/// The sign of the last push (the relay of Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989).
+struct Relay {
+  [[nodiscard]] static BasisValues values(const Argument& at) { return {at.z}; }
+  friend bool operator==(const Relay&, const Relay&) = default;
+};
+
+}  // namespace odomcalib::calib::terms
