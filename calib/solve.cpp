@@ -78,12 +78,13 @@ Calibration solve(std::span<const Recording> recordings, const SolveOptions& opt
   const ingest::Recordings repaired = ingest::with_even_ticks(cleaned.recordings.view());
   auto opened = measurement::open_dataset(repaired);
   if (!opened) return report::refused(repaired, opened.error());
-  if (const auto error = contradiction(repaired, options.same_robot)) return report::refused(repaired, *error);
+  if (const auto error = contradiction(repaired, options.same_robot))
+    return report::refused(repaired, *error);
   const auto request = terms::request_for(options.effects);
   if (!request) return report::refused(repaired, request.error());
 
-  return report::explained(
-      recordings, calibrate(std::move(opened).value(), request.value(), cleaned.remarks, progress));
+  return report::explained(recordings,
+                           calibrate(std::move(opened).value(), request.value(), cleaned.remarks, progress));
 }
 
 }  // namespace odomcalib::calib

@@ -26,13 +26,9 @@ std::string count(double value) {
   return out.str();
 }
 
-bool is_one(double ratio) {
-  return ratio > 1.0 / settings::kSameLength && ratio < settings::kSameLength;
-}
+bool is_one(double ratio) { return ratio > 1.0 / settings::kSameLength && ratio < settings::kSameLength; }
 
-bool is_near(double ratio, double factor) {
-  return std::abs(ratio / factor - 1.0) < settings::kSameFactor;
-}
+bool is_near(double ratio, double factor) { return std::abs(ratio / factor - 1.0) < settings::kSameFactor; }
 
 struct Factor {
   double ratio;
@@ -69,12 +65,9 @@ constexpr std::array kOfBothWheels = {
     Factor{1e-2, "wheel_diameter is in centimetres"},
     Factor{1e-3, "wheel_diameter is in millimetres"}};
 
-constexpr std::array kOfTrack = {
-    Factor{2.0, "it was measured from the middle of the robot to a wheel"},
-    Factor{0.5, "it was doubled"},
-    Factor{0.0254, "it is in inches"},
-    Factor{1e-2, "it is in centimetres"},
-    Factor{1e-3, "it is in millimetres"}};
+constexpr std::array kOfTrack = {Factor{2.0, "it was measured from the middle of the robot to a wheel"},
+                                 Factor{0.5, "it was doubled"}, Factor{0.0254, "it is in inches"},
+                                 Factor{1e-2, "it is in centimetres"}, Factor{1e-3, "it is in millimetres"}};
 
 template <std::size_t kCount>
 const char* reason_for(const std::array<Factor, kCount>& table, double ratio, bool of_poses = false) {
@@ -83,7 +76,9 @@ const char* reason_for(const std::array<Factor, kCount>& table, double ratio, bo
   return nullptr;
 }
 
-std::string because(const char* reason) { return reason == nullptr ? "" : ": it looks as if " + std::string(reason); }
+std::string because(const char* reason) {
+  return reason == nullptr ? "" : ": it looks as if " + std::string(reason);
+}
 
 Cause of_all(double ratio, bool of_poses) {
   const std::string lengths = of_poses ? "x and y of the poses" : "ranges and their limits";

@@ -1,5 +1,5 @@
-// Lengths that come out as a round multiple of their nominal values: which number in the description, or of the
-// reference, has that factor in it.
+// Lengths that come out as a round multiple of their nominal values: which number in the description, or of
+// the reference, has that factor in it.
 #pragma once
 
 #include <optional>

@@ -45,8 +45,7 @@ std::vector<Wires> all_wires() {
   for (const bool mirrored : {false, true})
     for (const bool exchanged : {false, true})
       for (const bool left : {false, true})
-        for (const bool right : {false, true})
-          all.push_back({exchanged, left, right, mirrored});
+        for (const bool right : {false, true}) all.push_back({exchanged, left, right, mirrored});
   return all;
 }
 

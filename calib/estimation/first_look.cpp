@@ -89,8 +89,7 @@ bool mends(double before, double after) {
 std::int64_t fall_of(const std::vector<TickSample>& ticks, std::int64_t TickSample::*side) {
   std::int64_t fall = 0;
   for (std::size_t k = 1; k < ticks.size(); ++k)
-    if (ticks[k].segment == ticks[k - 1].segment)
-      fall = std::max(fall, ticks[k - 1].*side - ticks[k].*side);
+    if (ticks[k].segment == ticks[k - 1].segment) fall = std::max(fall, ticks[k - 1].*side - ticks[k].*side);
   return fall;
 }
 
@@ -170,7 +169,9 @@ class Look {
     const auto share = static_cast<double>(changed(motions_, mended, recording_.robot)) /
                        std::max(static_cast<double>(motions_.size()), 1.0);
     if (share < settings::kAgainstCounting) return std::nullopt;
-    const std::string whose = counted.left ? "the right wheel" : counted.right ? "the left wheel" : "both wheels";
+    const std::string whose = counted.left    ? "the right wheel"
+                              : counted.right ? "the left wheel"
+                                              : "both wheels";
     return Cause{"the counts of " + whose + " only ever grow, although the " + reference() +
                      " shows that the robot also turned the other way: the encoders count edges without "
                      "their direction",
@@ -234,10 +235,12 @@ class Look {
   [[nodiscard]] std::optional<Cause> delay() const {
     double best = explained_, late = 0.0;
     for (double d = -settings::kDelayReach_s; d <= settings::kDelayReach_s; d += settings::kDelayStep_s)
-      if (const double explained = explained_with({d, 0.0, 1.0}); explained > best) best = explained, late = d;
+      if (const double explained = explained_with({d, 0.0, 1.0}); explained > best)
+        best = explained, late = d;
     if (!mends(explained_, best)) return std::nullopt;
     return Cause{"stamps of the " + reference() + " are " + number(std::abs(late)) + " s " +
-                     (late > 0.0 ? "late" : "early") + " against those of the counts: two clocks, or one of "
+                     (late > 0.0 ? "late" : "early") +
+                     " against those of the counts: two clocks, or one of "
                      "them was set while recording",
                  "stamp both with the same clock, or subtract the difference"};
   }
@@ -271,9 +274,10 @@ class Look {
         for (float& angle : scan.angles) angle = static_cast<float>(angle * factor);
       }
       const auto seen = measurement::reference_motions(mended, settings::kMostTried);
-      if (seen.unmatched > seen.matched || !are_nominal(ratios(beside_wheels(seen.motions, track_)))) continue;
-      return Cause{"angles of the scans are " + number(1.0 / factor) +
-                       " times as wide as they are: with " + number(factor) +
+      if (seen.unmatched > seen.matched || !are_nominal(ratios(beside_wheels(seen.motions, track_))))
+        continue;
+      return Cause{"angles of the scans are " + number(1.0 / factor) + " times as wide as they are: with " +
+                       number(factor) +
                        " times angle_increment all lengths come out near their nominal values",
                    "check angle_increment, or the number of beams in a turn, for the mode the lidar runs in"};
     }

@@ -40,17 +40,16 @@ std::string what_was_dropped(const Recording& recording, const std::string& what
 }
 
 std::optional<Error> missing_stream(const Recording& recording) {
-  const bool is_missing = recording.ticks.size() < 2 || (recording.poses.size() < 2 && recording.scans.size() < 2);
+  const bool is_missing =
+      recording.ticks.size() < 2 || (recording.poses.size() < 2 && recording.scans.size() < 2);
   if (is_missing)
     if (auto error = undated_stream(recording)) return error;
   if (recording.ticks.size() < 2)
     return Error{ErrorCode::empty, "fewer than two tick samples" + what_was_dropped(recording, "ticks"),
-                 recording.name,
-                 "check that the controller's ticks were recorded"};
+                 recording.name, "check that the controller's ticks were recorded"};
   if ((recording.poses.empty() ? recording.scans.size() : recording.poses.size()) < 2)
     return Error{ErrorCode::empty, "neither scans nor reference poses" + what_was_dropped(recording, "scan"),
-                 recording.name,
-                 "check that the lidar was recorded"};
+                 recording.name, "check that the lidar was recorded"};
   if (!(recording.robot.ticks_per_rev > 0.0))
     return Error{ErrorCode::missing_units, "ticks_per_rev is missing", recording.name,
                  "add it to the robot line"};

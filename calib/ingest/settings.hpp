@@ -13,15 +13,15 @@ namespace odomcalib::calib::ingest::settings {
 inline constexpr double kShortestInterval_s = 2e-3, kLongestInterval_s = 1.0;
 /// s, of scans that come faster than any head turns. Chosen: the fastest 2D lidars send 100 scans a second.
 inline constexpr double kFastestScans_s = 3e-3;
-/// Share of samples with the stamp of the one before, of stamps that have lost their last digits. Chosen: of a
-/// stream that two programs recorded together half of the samples repeat themselves, in stamp and value.
+/// Share of samples with the stamp of the one before, of stamps that have lost their last digits. Chosen: of
+/// a stream that two programs recorded together half of the samples repeat themselves, in stamp and value.
 inline constexpr double kRepeatedShare = 0.6;
 /// Time that all beams of a scan take over the time from scan to scan: no head sends a scan before the one
 /// before it ends. Chosen: half a turn is left to uneven stamps.
 inline constexpr double kLongestSweep = 1.5;
 
-/// The same ratio, of beam times that are in another unit rather than on another clock. Chosen: clocks that run
-/// apart by more are none.
+/// The same ratio, of beam times that are in another unit rather than on another clock. Chosen: clocks that
+/// run apart by more are none.
 inline constexpr double kSweepInOtherUnit = 20.0;
 /// Relative difference of the spans of two streams in their units. Chosen: one recorder starts and ends a
 /// little later.

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "calib/ingest/settings.hpp"
-#include "calib/math/median.hpp"
 #include "calib/matching/surface.hpp"
+#include "calib/math/median.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -134,7 +134,8 @@ std::optional<Error> spans_in_units(const Recording& recording) {
       const std::string scans = by_poses ? "poses" : "scans";
       return wrong(recording,
                    "ticks run over " + number(ticks) + ", " + scans + " over " + number(reference) +
-                       " seconds: the times of the " + (of_ticks ? "ticks" : scans) + " look like " + unit.name,
+                       " seconds: the times of the " + (of_ticks ? "ticks" : scans) + " look like " +
+                       unit.name,
                    "write every \"t\" in seconds");
     }
   return std::nullopt;
@@ -145,18 +146,19 @@ std::optional<Error> wrong_lidar_pose(const Recording& recording) {
   if (!recording.robot.lidar_pose) return std::nullopt;
   const auto& [x, y, yaw] = *recording.robot.lidar_pose;
   if (std::hypot(x, y) > settings::kFarthestLidar_m)
-    return wrong(recording, "lidar_pose puts the lidar " + number(std::hypot(x, y)) + " m from the middle of the axle",
+    return wrong(recording,
+                 "lidar_pose puts the lidar " + number(std::hypot(x, y)) + " m from the middle of the axle",
                  "write x and y of lidar_pose in metres");
   if (std::abs(yaw) > 2.0 * std::numbers::pi)
-    return wrong(recording, "lidar_pose turns the lidar by " + number(yaw) + " rad: its yaw looks like degrees",
+    return wrong(recording,
+                 "lidar_pose turns the lidar by " + number(yaw) + " rad: its yaw looks like degrees",
                  "write the yaw of lidar_pose in radians");
   return std::nullopt;
 }
 
 double median_reading(const Recording& recording) {
   std::vector<double> readings;
-  const std::size_t step =
-      std::max<std::size_t>(1, recording.scans.size() / settings::kScansLookedAt);
+  const std::size_t step = std::max<std::size_t>(1, recording.scans.size() / settings::kScansLookedAt);
   for (std::size_t k = 0; k < recording.scans.size(); k += step)
     for (const float range : recording.scans[k].ranges)
       if (range > 0.0F) readings.push_back(static_cast<double>(range));

@@ -16,7 +16,7 @@ struct ReferenceMotion {
 };
 
 struct ReferenceMotions {
-  std::vector<ReferenceMotion> motions;  ///< of about kFirstLookStep each, in order of time
+  std::vector<ReferenceMotion> motions;    ///< of about kFirstLookStep each, in order of time
   std::size_t matched = 0, unmatched = 0;  ///< neighbouring scans
 };
 

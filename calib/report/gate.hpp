@@ -35,7 +35,7 @@ struct Footing {
   std::vector<ResidualAxis> axes = {};  ///< of the residual, with their runs tests
   std::size_t outliers = 0, pairs = 0;  ///< pairs that contradict all others, of all
   std::optional<Apart> recordings_apart = std::nullopt;
-  bool of_poses = false;                ///< the reference is poses of the base
+  bool of_poses = false;  ///< the reference is poses of the base
 };
 
 /// Odometry over ten seconds errs by plainly more than the reference and the wheels' noise make of it.

@@ -30,7 +30,8 @@ double value_of(const selection::Homogeneity& found, std::size_t recording, Eige
 }
 
 std::string amount(const selection::Homogeneity& found, Eigen::Index parameter, double difference) {
-  if (parameter == vehicle::kMountYaw) return number(std::abs(difference) * 180.0 / math::kPi, 3) + " degrees";
+  if (parameter == vehicle::kMountYaw)
+    return number(std::abs(difference) * 180.0 / math::kPi, 3) + " degrees";
   if (!is_length(parameter)) return number(1e3 * std::abs(difference), 3) + " mm";
   const double value = value_of(found, found.recording, parameter);
   return number(100.0 * std::abs(difference / value), 3) + " % (" +
@@ -86,9 +87,10 @@ std::optional<Apart> recordings_apart(const selection::Homogeneity& found,
     return Apart{true, what +
                            "; solve recordings of different robots, or of one before and after a change of "
                            "tyres, load or lidar, separately"};
-  return Apart{false, what +
-                          "; the stated deviations are widened by what lies between recordings; if tyres, load "
-                          "or floor changed, solve them separately"};
+  return Apart{false,
+               what +
+                   "; the stated deviations are widened by what lies between recordings; if tyres, load "
+                   "or floor changed, solve them separately"};
 }
 
 void store_homogeneity(const selection::Homogeneity& found, std::span<const Recording> recordings,

@@ -14,7 +14,8 @@ inline constexpr double kPlausibleLow = 0.5, kPlausibleHigh = 2.0;
 /// Relative difference from the nominal value to warn of. Chosen.
 inline constexpr double kWarnChange = 0.10;
 
-// --- Pairs of scans or poses --------------------------------------------------------------------------------
+// --- Pairs of scans or poses
+// --------------------------------------------------------------------------------
 
 /// Share of the pairs that matched: of fewer the rest may say something else. Chosen.
 inline constexpr double kFewestMatched = 0.1, kWarnMatched = 0.5;
@@ -24,7 +25,8 @@ inline constexpr double kManyContradict = 0.1;
 /// The same, of a fit that describes one part of the recording and not the other. Chosen.
 inline constexpr double kTooManyContradict = 0.25;
 
-// --- Figures of what odometry is off by ---------------------------------------------------------------------
+// --- Figures of what odometry is off by
+// ---------------------------------------------------------------------
 
 /// Times the noise: most of the error has another cause. Chosen.
 inline constexpr double kWarnResidual = 2.0;
@@ -37,7 +39,8 @@ inline constexpr double kWorthGaining = 1.2;
 /// two per cent, a degree, two degrees.
 inline constexpr double kMetreOff_m = 0.02, kMetreOff_rad = 0.0175, kTurnOff_rad = 0.035;
 
-// --- Agreement ----------------------------------------------------------------------------------------------
+// --- Agreement
+// ----------------------------------------------------------------------------------------------
 
 /// Deviations, and share of the length, by which the closed form and the joint fit differ. Measured: 1.3
 /// deviations and 0.1 % in sound simulated recordings; 2 deviations in real ones.
@@ -46,7 +49,8 @@ inline constexpr double kEstimatorsApart = 6.0, kEstimatorsApartShare = 0.005;
 /// recordings.
 inline constexpr double kTooFewRuns = -5.0;
 
-// --- Several recordings ---------------------------------------------------------------------------------------
+// --- Several recordings
+// ---------------------------------------------------------------------------------------
 
 /// Level of the test of homogeneity. Chosen: one in a thousand sets of recordings of one robot is told apart.
 inline constexpr double kApartLevel = 1e-3;

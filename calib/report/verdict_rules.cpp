@@ -76,11 +76,12 @@ Objections no_better_than_before(const Calibration&, const Footing& footing) {
     const auto words = std::find_if(kDriveFigures.begin(), kDriveFigures.end(),
                                     [&](const DriveFigure& figure) { return figure.name == error.name; });
     if (!is_no_better(error)) continue;
-    found.push_back(warning(
-        (words == kDriveFigures.end() ? "odometry over ten seconds" : std::string(words->words)) +
-        " is no better than before on data that was not fitted: off by " + amount(error, error.before->value) +
-        " with the nominal values, by " + amount(error, error.after->value) +
-        " now; keep the old values unless something else speaks for the new ones"));
+    found.push_back(
+        warning((words == kDriveFigures.end() ? "odometry over ten seconds" : std::string(words->words)) +
+                " is no better than before on data that was not fitted: off by " +
+                amount(error, error.before->value) + " with the nominal values, by " +
+                amount(error, error.after->value) +
+                " now; keep the old values unless something else speaks for the new ones"));
   }
   return found;
 }
@@ -174,9 +175,10 @@ Objections undetermined_lengths(const std::vector<Length>& lengths) {
 Objections negative_lengths(const std::vector<Length>& lengths) {
   const auto negative = [](const Length& length) { return !length.is_positive(); };
   if (lengths.size() == 3 && std::all_of(lengths.begin(), lengths.end(), negative))
-    return {refusal("the reference looks backwards by what lidar_pose says (by their yaw, of poses): all lengths "
-                    "come out negative, which half a turn puts right; correct that yaw by 3.14 rad, or, if it "
-                    "is right, the left and right counts are exchanged and both wheels count backwards")};
+    return {
+        refusal("the reference looks backwards by what lidar_pose says (by their yaw, of poses): all lengths "
+                "come out negative, which half a turn puts right; correct that yaw by 3.14 rad, or, if it "
+                "is right, the left and right counts are exchanged and both wheels count backwards")};
   Objections found;
   for (const Length& length : lengths)
     if (negative(length))
@@ -262,7 +264,8 @@ Objections lidar_yaw(const Calibration& calibration, const Footing&) {
                   ": correct lidar_pose, or check which end of the robot counts forward")};
 }
 
-// --- Recordings ----------------------------------------------------------------------------------------------
+// --- Recordings
+// ----------------------------------------------------------------------------------------------
 
 Objections recordings_disagree(const Calibration&, const Footing& footing) {
   if (!footing.recordings_apart) return {};
@@ -275,7 +278,8 @@ Objections unmatched_pairs(const Calibration&, const Footing& footing) {
   const auto all = static_cast<double>(footing.matched + footing.unmatched);
   const auto matched = static_cast<double>(footing.matched);
   const std::string finding =
-      "only " + std::to_string(footing.matched) + " of " + std::to_string(footing.matched + footing.unmatched) +
+      "only " + std::to_string(footing.matched) + " of " +
+      std::to_string(footing.matched + footing.unmatched) +
       " pairs of scans could be matched; drive where the lidar sees walls on all sides";
   if (matched < settings::kFewestMatched * all) return {refusal(finding)};
   if (matched < settings::kWarnMatched * all) return {warning(finding)};

@@ -25,8 +25,7 @@ std::optional<OwnEstimate> own_estimate(const FitTask& task, const FittedModel& 
                                         double metre) {
   estimation::FitOptions options;
   options.fixed = fixed_of_one(task, model);
-  const auto fit =
-      fit_joint(task.data.subspan(recording, 1), model.effects, model.fit.parameters, options);
+  const auto fit = fit_joint(task.data.subspan(recording, 1), model.effects, model.fit.parameters, options);
   if (!fit) return std::nullopt;
   OwnEstimate own{fit.value().parameters.head(kBase), fit.value().covariance.topLeftCorner(kBase, kBase)};
   Eigen::VectorXd lengths = own.value;
@@ -157,8 +156,7 @@ double p_value_of(double q, double freedom) {
 std::optional<Homogeneity> homogeneity(const FitTask& task, const FittedModel& model, double metre,
                                        const std::vector<std::string>& names) {
   Homogeneity found;
-  for (std::size_t i = 0; i < task.data.size(); ++i)
-    found.own.push_back(own_estimate(task, model, i, metre));
+  for (std::size_t i = 0; i < task.data.size(); ++i) found.own.push_back(own_estimate(task, model, i, metre));
   const std::vector<Eigen::Index> free = free_parameters(task);
   const std::vector<Reduced> estimates = reduced(found.own, free);
   if (estimates.size() < 2) return std::nullopt;

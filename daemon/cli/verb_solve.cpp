@@ -56,7 +56,8 @@ int solve_recordings(const Options& options, const Session& session) {
   const auto progress = [&line](const std::string& phase, double fraction) {
     line.show(fmt::format("{} {:3.0f} %", phase, 100.0 * fraction));
   };
-  Calibration calibration = calib::solve(recordings.value(), {.effects = options.effects, .same_robot = options.same_robot}, progress);
+  Calibration calibration = calib::solve(
+      recordings.value(), {.effects = options.effects, .same_robot = options.same_robot}, progress);
   calibration.extensions["settings"] = settings_of(options);
   line.clear();
   if (auto written = write_results(options, calibration); !written)

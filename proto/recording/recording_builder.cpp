@@ -184,14 +184,14 @@ Error RecordingBuilder::nothing_usable(const std::string& where) const {
   for (const auto& [key, count] : discarded_)
     if (const std::string unit = unit_of_reason(key.second); !unit.empty())
       return wrong_dates(key.first, count, unit, where);
-  const auto most = std::max_element(discarded_.begin(), discarded_.end(), [](const auto& a, const auto& b) {
-    return a.second < b.second;
-  });
+  const auto most = std::max_element(discarded_.begin(), discarded_.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::string what = "no usable ticks, scans, poses or increments";
   if (most == discarded_.end())
     return {ErrorCode::empty, what, where, "check that the recording was running while the robot moved"};
   const auto& [name, reason] = most->first;
-  return {ErrorCode::empty, what + ": " + std::to_string(most->second) + " x " + name + " left out, " + reason, where,
+  return {ErrorCode::empty,
+          what + ": " + std::to_string(most->second) + " x " + name + " left out, " + reason, where,
           "compare a line of it with docs/user/formats.md"};
 }
 

@@ -222,8 +222,8 @@ const std::vector<Mistake>& mistakes() {
        "in seconds"},
       {"dates_of_ticks_ns", dated(1e9, kTicks), "stamps of [0-9]+ ticks look like nanoseconds since",
        "in seconds"},
-      {"ticks_ms", stretched(1e3, kTicks), "ticks come every 20 s: .*milliseconds|ticks look like milliseconds",
-       "in seconds"},
+      {"ticks_ms", stretched(1e3, kTicks),
+       "ticks come every 20 s: .*milliseconds|ticks look like milliseconds", "in seconds"},
       {"scans_ms", stretched(1e3, kReference), "scans.* look like milliseconds", "in seconds"},
       {"ticks_minutes", stretched(1.0 / 60.0, kTicks), "ticks look like minutes", "in seconds"},
       {"two_clocks", dated(1.0, kReference), "ticks run from 0 to .* scans run from 1.7", "same clock"},
@@ -238,7 +238,8 @@ const std::vector<Mistake>& mistakes() {
       {"beam_times_us", beam_times(1e6), "time_increment or times are not in seconds", "leave it out"},
       {"beam_times_ms", beam_times(1e3), "time_increment or times are not in seconds", "leave it out"},
       // Ranges and angles.
-      {"ranges_mm", ranges(1e3), "look like millimetres", "multiply ranges, range_min and range_max by 0.001"},
+      {"ranges_mm", ranges(1e3), "look like millimetres",
+       "multiply ranges, range_min and range_max by 0.001"},
       {"ranges_mm_without_limits", without_limits(1e3), "look like millimetres", "by 0.001"},
       {"ranges_mm_limits_m", ranges(1e3, false), "readings lie outside range_min and range_max",
        "must be in metres"},
@@ -256,13 +257,17 @@ const std::vector<Mistake>& mistakes() {
       {"no_return_is_4_m", no_return_is(4.0F, 4.0F), "exactly 4 m", "null says the same", cli::kDone},
       {"lidar_covered", of_scans([](Scan& s) { std::fill(s.ranges.begin(), s.ranges.end(), 0.0F); }),
        "no scan has a reading", "covers the lidar"},
-      {"lidar_repeats_itself", [](Recording& r) { for (Scan& s : r.scans) s.ranges = r.scans[0].ranges; },
+      {"lidar_repeats_itself",
+       [](Recording& r) {
+         for (Scan& s : r.scans) s.ranges = r.scans[0].ranges;
+       },
        "hardly moved", "new each time"},
       {"angles_missing", of_scans([](Scan& s) { s.angle_increment = 0.0; }),
        "left out, angle_min or angle_increment missing", "lidar"},
       // The robot.
       {"diameter_in_mm", diameters(1e3), "wheel_diameter.* at most 10", "in m", cli::kFailure},
-      {"diameter_in_inches", diameters(1.0 / 0.0254), "wheel_diameter is in inches", "wheel_diameter to 0.14"},
+      {"diameter_in_inches", diameters(1.0 / 0.0254), "wheel_diameter is in inches",
+       "wheel_diameter to 0.14"},
       {"lengths_in_inches", lengths(1.0 / 0.0254), "wheel_diameter and track_width are in inches", "tape"},
       {"radius", diameters(0.5), "the radius was given as diameter", "wheel_diameter to 0.14", cli::kDone},
       {"circumference", diameters(kPi), "the circumference was given as diameter", "wheel_diameter to 0.14"},
@@ -271,15 +276,20 @@ const std::vector<Mistake>& mistakes() {
       {"track_in_cm", track(100.0), "track_width.*(at most 50|centimetres)", "m"},
       {"quadrature_counted_once", ticks_per_rev(4.0), "3.9[0-9]* times .*all four edges",
        "ticks_per_rev to about 16"},
-      {"quadrature_counted_fourfold", ticks_per_rev(0.25), "one edge of a period", "ticks_per_rev to about 16"},
+      {"quadrature_counted_fourfold", ticks_per_rev(0.25), "one edge of a period",
+       "ticks_per_rev to about 16"},
       {"counts_of_the_motor", ticks_per_rev(1.0 / 20.0), "0.049[0-9]* times .*before a gear",
        "ticks_per_rev to about 16"},
-      {"gear_of_three_halves", ticks_per_rev(1.5), "1.4[0-9]* times .*gear ratio", "ticks_per_rev to about 16",
-       cli::kDone},
+      {"gear_of_three_halves", ticks_per_rev(1.5), "1.4[0-9]* times .*gear ratio",
+       "ticks_per_rev to about 16", cli::kDone},
       {"counts_per_radian", ticks_per_rev(0.5 / kPi), "counts per radian", "ticks_per_rev to about 16"},
-      {"lidar_pose_in_mm", of_robot([](RobotDescription& r) { r.lidar_pose = {100.0, 0.0, 0.0}; }),
+      {"lidar_pose_in_mm", of_robot([](RobotDescription& r) {
+         r.lidar_pose = {100.0, 0.0, 0.0};
+       }),
        "lidar_pose puts the lidar 100 m", "in metres"},
-      {"lidar_pose_in_degrees", of_robot([](RobotDescription& r) { r.lidar_pose = {0.1, 0.0, 90.0}; }),
+      {"lidar_pose_in_degrees", of_robot([](RobotDescription& r) {
+         r.lidar_pose = {0.1, 0.0, 90.0};
+       }),
        "lidar_pose .*degrees", "in radians"},
       // Counts.
       {"counts_exchanged", counted([](auto l, auto r) { return std::pair(r, l); }),
@@ -288,7 +298,8 @@ const std::vector<Mistake>& mistakes() {
        "left wheel counts backwards", "put it right"},
       {"both_count_backwards", counted([](auto l, auto r) { return std::pair(-l, -r); }),
        "both wheels count backwards", "put it right"},
-      {"counts_without_direction", counted([](auto l, auto r) { return std::pair(std::abs(l), std::abs(r)); }),
+      {"counts_without_direction",
+       counted([](auto l, auto r) { return std::pair(std::abs(l), std::abs(r)); }),
        "both wheels only ever grow", "quadrature"},
       {"left_counts_without_direction", counted([](auto l, auto r) { return std::pair(std::abs(l), r); }),
        "the left wheel only ever grow", "quadrature"},
@@ -356,7 +367,8 @@ TEST(MistakesNone, are_made_of_beams_in_another_order) {
     Recording recording = plain_run().recording;
     for (Scan& scan : recording.scans) {
       for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
-        scan.angles.push_back(static_cast<float>(scan.angle(0) + scan.angle_increment * static_cast<double>(k)));
+        scan.angles.push_back(
+            static_cast<float>(scan.angle(0) + scan.angle_increment * static_cast<double>(k)));
         scan.times.push_back(static_cast<float>(*scan.time_increment * static_cast<double>(k)));
       }
       scan.time_increment.reset();
@@ -395,7 +407,8 @@ const std::vector<WrongFile>& wrong_files() {
       {"xml", "<xml></xml>", "known format", "JSON Lines"},
       {"robot_file", "[robot]\nwheel_diameter = 0.15\n", "known format", "JSON Lines"},
       {"pose_graph", "VERTEX_SE2 0 0 0 0\n", "is a pose graph", "odomcalibctl graph"},
-      {"one_json_list", "[{\"type\":\"ticks\",\"t\":0,\"left\":0,\"right\":0}]\n", "known format", "JSON Lines"},
+      {"one_json_list", "[{\"type\":\"ticks\",\"t\":0,\"left\":0,\"right\":0}]\n", "known format",
+       "JSON Lines"},
       {"other_json", "{\"ranges\": [1,2,3]}\n", "no usable ticks.*no type", "formats"},
       {"python_quotes", "{'type':'ticks','t':0,'left':0,'right':0}\n{'type':'ticks'}\n",
        "no usable ticks.*not valid JSON", "formats"},
@@ -405,11 +418,13 @@ const std::vector<WrongFile>& wrong_files() {
        "no usable ticks.*time stamp missing", "formats"},
       {"counts_with_a_point", kRobotLine + "{\"type\":\"ticks\",\"t\":0,\"left\":0.5,\"right\":0.5}\n",
        "no usable ticks.*not a whole number", "formats"},
-      {"no_track", R"({"type":"robot","wheel_diameter":0.15,"ticks_per_rev":100})"
-                   "\n{\"type\":\"ticks\",\"t\":0,\"left\":0,\"right\":0}\n",
+      {"no_track",
+       R"({"type":"robot","wheel_diameter":0.15,"ticks_per_rev":100})"
+       "\n{\"type\":\"ticks\",\"t\":0,\"left\":0,\"right\":0}\n",
        "lacks \"track_width\"", "in m"},
-      {"negative_diameter", R"({"type":"robot","wheel_diameter":-0.15,"track_width":0.4,"ticks_per_rev":100})"
-                            "\n{\"type\":\"ticks\",\"t\":0,\"left\":0,\"right\":0}\n",
+      {"negative_diameter",
+       R"({"type":"robot","wheel_diameter":-0.15,"track_width":0.4,"ticks_per_rev":100})"
+       "\n{\"type\":\"ticks\",\"t\":0,\"left\":0,\"right\":0}\n",
        "must be greater than 0", "in m"},
   };
   return all;

@@ -20,8 +20,7 @@ Recording recorded(std::uint64_t robot, std::uint64_t noise, double left_factor 
   config.duration = kDuration;
   config.seed = noise;
   config.truth.left_diameter *= left_factor;
-  Recording recording =
-      sim::simulate_recording(config, sim::random_drive(config.nominal, noise)).recording;
+  Recording recording = sim::simulate_recording(config, sim::random_drive(config.nominal, noise)).recording;
   recording.name = "drive" + std::to_string(noise) + ".jsonl";
   recording.robot.robot_id = "robot-" + std::to_string(robot);
   return recording;
@@ -57,13 +56,15 @@ TEST(OneRobot, is_not_seen_in_recordings_of_two_without_a_name) {
     if (turned) std::swap(recordings[0], recordings[1]);
     const Calibration result = calib::solve(recordings, {.same_robot = true});
     EXPECT_EQ(result.verdict, Verdict::refused);
-    EXPECT_TRUE(holds(reasons_of(result), "do not agree on one robot: in drive2.jsonl")) << reasons_of(result);
+    EXPECT_TRUE(holds(reasons_of(result), "do not agree on one robot: in drive2.jsonl"))
+        << reasons_of(result);
   }
 }
 
 TEST(OneRobot, with_another_tyre_in_one_recording_is_told_by_name) {
   std::vector<Recording> recordings;
-  for (std::uint64_t noise = 1; noise <= 5; ++noise) recordings.push_back(recorded(9, noise, noise == 3 ? 1.003 : 1.0));
+  for (std::uint64_t noise = 1; noise <= 5; ++noise)
+    recordings.push_back(recorded(9, noise, noise == 3 ? 1.003 : 1.0));
   const Calibration result = calib::solve(recordings, {});
   EXPECT_EQ(result.verdict, Verdict::accepted_with_warnings);
   EXPECT_TRUE(holds(reasons_of(result), "in drive3.jsonl left_wheel_diameter is")) << reasons_of(result);

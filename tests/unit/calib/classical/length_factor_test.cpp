@@ -1,5 +1,5 @@
-// Patterns of ratios are told by their cause; lengths that are what they are called, and none of the patterns,
-// are not.
+// Patterns of ratios are told by their cause; lengths that are what they are called, and none of the
+// patterns, are not.
 #include "calib/classical/length_factor.hpp"
 
 #include <gtest/gtest.h>

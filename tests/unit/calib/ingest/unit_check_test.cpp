@@ -47,8 +47,7 @@ TEST(PhantomReturn, is_not_seen_in_the_ranges_of_walls) {
 TEST(PhantomReturn, is_found_where_a_twentieth_of_the_beams_return_nothing) {
   Recording recording = through_a_room(0.001);
   for (std::size_t k = 0; k < recording.scans.size(); ++k)
-    for (std::size_t beam = 0; beam < 18; ++beam)
-      recording.scans[k].ranges[(beam + 7 * k) % 360] = 4.6F;
+    for (std::size_t beam = 0; beam < 18; ++beam) recording.scans[k].ranges[(beam + 7 * k) % 360] = 4.6F;
   const auto found = phantom_return(recording);
   ASSERT_TRUE(found);
   EXPECT_FLOAT_EQ(static_cast<float>(*found), 4.6F);
