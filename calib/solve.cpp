@@ -2,9 +2,13 @@
 
 #include <utility>
 
+#include "calib/estimation/first_look.hpp"
 #include "calib/estimation/fit.hpp"
 #include "calib/estimation/start_values.hpp"
+#include "calib/ingest/phantom_return.hpp"
+#include "calib/report/explain.hpp"
 #include "calib/report/findings.hpp"
+#include "calib/report/one_robot.hpp"
 #include "calib/selection/clocks.hpp"
 #include "calib/selection/lidar_correction.hpp"
 #include "calib/selection/placed_fit.hpp"
@@ -25,43 +29,62 @@ selection::SearchResult select_terms(const estimation::Fit& fit, bool is_wanted,
   return without_idle_delay({fit.dataset.data, fit.dataset.fixed()}, std::move(found));
 }
 
+/// What makes any fit of the recordings meaningless, as far as it shows before scans are matched from where
+/// the counts say they are.
+std::optional<Error> contradiction(const ingest::Recordings& recordings, bool same_robot) {
+  if (auto error = same_robot ? std::nullopt : report::different_robots(recordings.view())) return error;
+  for (const Recording& recording : recordings.view())
+    if (auto error = estimation::counts_without_direction(recording)) return error;
+  return std::nullopt;
+}
+
+/// @param remarks on what was taken out of the recordings
+Calibration calibrate(measurement::Dataset opened, const terms::Request& request,
+                      const std::vector<std::string>& remarks, const Progress& progress) {
+  progress("matching", 0.0);
+  measurement::Dataset rough = measured_roughly(std::move(opened));
+  const auto start = estimation::start_model(rough, request);
+  if (!start) return report::refused(rough, start.error());
+
+  // A stage that does not apply, that is rejected, or that follows a failed fit hands on the fit as it is.
+  const estimation::Settling how = selection::settling(request.is_automatic, progress);
+  estimation::Fit fit = settle(std::move(rough), start.value(), how);
+  fit = selection::seat_reference(std::move(fit), how);
+  fit = selection::even_out_scans(std::move(fit), how);
+  fit = selection::let_scans_sweep(std::move(fit), request, how);
+  auto [corrected, lidar, placement] = selection::correct_lidar(std::move(fit), request, how);
+  placement = selection::placement_of(corrected, std::move(placement), progress);
+  fit = selection::locate(std::move(corrected), placement);
+  if (fit.failure) return report::refused(fit);
+
+  selection::SearchResult found = select_terms(fit, request.is_automatic, progress);
+  const auto [outcome, every_scan_placed] =
+      selection::fit_to_every_scan(std::move(found), fit.dataset, std::move(placement), progress);
+
+  progress("validating", 0.0);
+  Calibration calibration =
+      report::calibrated({fit, outcome, lidar, request.is_automatic, every_scan_placed, remarks});
+  progress("validating", 1.0);
+  return calibration;
+}
+
 }  // namespace
 
 Calibration solve(std::span<const Recording> recordings, const SolveOptions& options,
                   const Progress& callback) {
   const Progress progress = callback ? callback : [](const std::string&, double) {};
 
-  const ingest::Recordings repaired = ingest::with_even_ticks(recordings);
+  const ingest::Cleaned cleaned = ingest::without_phantom_returns(recordings);
+  const ingest::Recordings repaired = ingest::with_even_ticks(cleaned.recordings.view());
   auto opened = measurement::open_dataset(repaired);
   if (!opened) return report::refused(repaired, opened.error());
+  if (const auto error = contradiction(repaired, options.same_robot))
+    return report::refused(repaired, *error);
   const auto request = terms::request_for(options.effects);
   if (!request) return report::refused(repaired, request.error());
 
-  progress("matching", 0.0);
-  measurement::Dataset rough = measured_roughly(std::move(opened).value());
-  const auto start = estimation::start_model(rough, request.value());
-  if (!start) return report::refused(rough, start.error());
-
-  // A stage that does not apply, that is rejected, or that follows a failed fit hands on the fit as it is.
-  const estimation::Settling how = selection::settling(request.value().is_automatic, progress);
-  estimation::Fit fit = settle(std::move(rough), start.value(), how);
-  fit = selection::seat_reference(std::move(fit), how);
-  fit = selection::even_out_scans(std::move(fit), how);
-  fit = selection::let_scans_sweep(std::move(fit), request.value(), how);
-  auto [corrected, lidar, placement] = selection::correct_lidar(std::move(fit), request.value(), how);
-  placement = selection::placement_of(corrected, std::move(placement), progress);
-  fit = selection::locate(std::move(corrected), placement);
-  if (fit.failure) return report::refused(fit);
-
-  selection::SearchResult found = select_terms(fit, request.value().is_automatic, progress);
-  const auto [outcome, every_scan_placed] =
-      selection::fit_to_every_scan(std::move(found), fit.dataset, std::move(placement), progress);
-
-  progress("validating", 0.0);
-  Calibration calibration =
-      report::calibrated({fit, outcome, lidar, request.value().is_automatic, every_scan_placed});
-  progress("validating", 1.0);
-  return calibration;
+  return report::explained(recordings,
+                           calibrate(std::move(opened).value(), request.value(), cleaned.remarks, progress));
 }
 
 }  // namespace odomcalib::calib

@@ -14,6 +14,8 @@ namespace odomcalib::calib {
 struct SolveOptions {
   /// "auto": look for missing effects; "none": six base parameters only; otherwise names of effects to fit.
   std::vector<std::string> effects = {"auto"};
+  /// Recordings that state different robot_id are of one robot all the same.
+  bool same_robot = false;
 };
 
 using Progress = measurement::Progress;

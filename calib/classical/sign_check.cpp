@@ -40,13 +40,12 @@ std::vector<wheels::WheelMotion> put_right(std::span<const wheels::WheelMotion> 
   return out;
 }
 
-std::vector<Wires> all_wires(bool of_base) {
+std::vector<Wires> all_wires() {
   std::vector<Wires> all;
   for (const bool mirrored : {false, true})
     for (const bool exchanged : {false, true})
       for (const bool left : {false, true})
-        for (const bool right : {false, true})
-          if (!(mirrored && of_base)) all.push_back({exchanged, left, right, mirrored});
+        for (const bool right : {false, true}) all.push_back({exchanged, left, right, mirrored});
   return all;
 }
 
@@ -96,7 +95,7 @@ std::optional<Explanation> explanation(std::span<const wheels::WheelMotion> moti
 std::vector<Explanation> explanations(std::span<const wheels::WheelMotion> motions,
                                       const RobotDescription& robot, bool of_base) {
   std::vector<Explanation> best;
-  for (const Wires& wires : all_wires(of_base)) {
+  for (const Wires& wires : all_wires()) {
     const auto one = explanation(motions, wires, robot, of_base);
     if (!one || (!best.empty() && one->faults() > best.front().faults())) continue;
     if (!best.empty() && one->faults() < best.front().faults()) best.clear();
@@ -114,7 +113,9 @@ std::string text_of(const Explanation& one, bool of_base) {
     parts.emplace_back("the " + std::string(one.wires.left_inverted ? "left" : "right") +
                        " wheel counts backwards");
   if (one.wires.lidar_mirrored)
-    parts.emplace_back("the lidar is upside down or its angles run the other way");
+    parts.emplace_back(of_base ? "y and yaw of the reference poses run the other way, as in a frame with z "
+                                 "down (north-east-down)"
+                               : "the lidar is upside down or its angles run the other way");
   if (one.elsewhere)
     parts.emplace_back(of_base ? "the reference poses do not look ahead"
                                : "the lidar looks elsewhere than lidar_pose says");

@@ -130,6 +130,19 @@ wheels::BaseParameters start_values(const measurement::Dataset& dataset, double 
   return start;
 }
 
+/// Of each recording alone first: one with exchanged wires beside sound ones is outvoted.
+std::optional<Error> check_signs(const measurement::Dataset& rough, double delay) {
+  const std::span<const measurement::FitData> data(rough.data);
+  const RobotDescription& robot = rough.recordings.front().robot;
+  const bool of_base = rough.reference_is_base();
+  for (std::size_t i = 0; data.size() > 1 && i < data.size(); ++i)
+    if (auto error = classical::check_signs(wheel_motions(data.subspan(i, 1), delay), robot, of_base)) {
+      error->where = rough.recordings[i].name;
+      return error;
+    }
+  return classical::check_signs(wheel_motions(data, delay), robot, of_base);
+}
+
 Result<vehicle::VehicleModel> start_model(const measurement::Dataset& rough, const terms::Request& request) {
   using vehicle::ClockPart;
   vehicle::EffectList effects = request.effects;
@@ -137,9 +150,7 @@ Result<vehicle::VehicleModel> start_model(const measurement::Dataset& rough, con
     effects.push_back(terms::clock_effect(ClockPart::offset));
   const bool has_offset = place_of(effects, ClockPart::offset).has_value();
   const ClockStart clock = has_offset ? search_clock(rough.data) : ClockStart{};
-  if (auto error = classical::check_signs(wheel_motions(rough.data, clock.delay),
-                                          rough.recordings.front().robot, rough.reference_is_base()))
-    return *error;
+  if (auto error = check_signs(rough, clock.delay)) return *error;
   if (request.is_automatic && clock.rate != 0.0) effects.push_back(terms::clock_effect(ClockPart::rate));
   return with_start_values(effects, start_values(rough, clock.delay), clock);
 }

@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calib/ingest/gaps.hpp"
+#include "calib/ingest/pose_frame.hpp"
+#include "calib/ingest/unit_check.hpp"
 #include "calib/math/median.hpp"
+#include "proto/recording/stamp_units.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -21,13 +23,33 @@ std::string number(double value) {
   return out.str();
 }
 
+/// Samples that were dropped for their stamps say more than that they are missing.
+std::optional<Error> undated_stream(const Recording& recording) {
+  for (const Discarded& discarded : recording.discarded)
+    if (const std::string unit = unit_of_reason(discarded.reason); !unit.empty())
+      return wrong_dates(discarded.what, discarded.count, unit, recording.name);
+  return std::nullopt;
+}
+
+/// Why nearly nothing is left of a stream, where something was: the reason of most of the samples left out.
+std::string what_was_dropped(const Recording& recording, const std::string& what) {
+  const Discarded* most = nullptr;
+  for (const Discarded& discarded : recording.discarded)
+    if (discarded.what == what && (most == nullptr || discarded.count > most->count)) most = &discarded;
+  return most == nullptr ? "" : ": " + std::to_string(most->count) + " were left out, " + most->reason;
+}
+
 std::optional<Error> missing_stream(const Recording& recording) {
+  const bool is_missing =
+      recording.ticks.size() < 2 || (recording.poses.size() < 2 && recording.scans.size() < 2);
+  if (is_missing)
+    if (auto error = undated_stream(recording)) return error;
   if (recording.ticks.size() < 2)
-    return Error{ErrorCode::empty, "fewer than two tick samples", recording.name,
-                 "check that the controller's ticks were recorded"};
+    return Error{ErrorCode::empty, "fewer than two tick samples" + what_was_dropped(recording, "ticks"),
+                 recording.name, "check that the controller's ticks were recorded"};
   if ((recording.poses.empty() ? recording.scans.size() : recording.poses.size()) < 2)
-    return Error{ErrorCode::empty, "neither scans nor reference poses", recording.name,
-                 "check that the lidar was recorded"};
+    return Error{ErrorCode::empty, "neither scans nor reference poses" + what_was_dropped(recording, "scan"),
+                 recording.name, "check that the lidar was recorded"};
   if (!(recording.robot.ticks_per_rev > 0.0))
     return Error{ErrorCode::missing_units, "ticks_per_rev is missing", recording.name,
                  "add it to the robot line"};
@@ -56,8 +78,13 @@ double spacing(const Stream& stream) {
 std::optional<Error> too_seldom(const Recording& recording, const Stream& stream) {
   const double step = spacing(stream);
   if (step <= kMaxGap) return std::nullopt;
+  const std::string unit = unit_of_interval(step);
+  if (!unit.empty())
+    return Error{ErrorCode::format,
+                 stream.name + " come every " + number(step) + " s: their times look like " + unit,
+                 recording.name, "write every \"t\" in seconds"};
   return Error{ErrorCode::format, stream.name + " come every " + number(step) + " s only", recording.name,
-               "record them at least every " + number(kMaxGap) + " s; check that times are in seconds"};
+               "record them at least every " + number(kMaxGap) + " s"};
 }
 
 std::string span_text(const Stream& stream) {
@@ -103,19 +130,6 @@ std::optional<Error> standing_counts(std::span<const Recording> recordings) {
                "check that wheel's encoder and its cable, or drive with both wheels"};
 }
 
-double angle_of_sweep(const Scan& scan) {
-  return std::abs(scan.angle(scan.ranges.size() - 1) - scan.angle(0));
-}
-
-std::optional<Error> wrong_angles(const Recording& recording) {
-  std::vector<double> sweeps;
-  for (const Scan& scan : recording.scans) sweeps.push_back(angle_of_sweep(scan));
-  const double sweep = math::median_of(std::move(sweeps));
-  if (sweep <= 4.0 * std::numbers::pi) return std::nullopt;
-  return Error{ErrorCode::format, "a scan covers " + number(sweep) + " rad, several whole turns",
-               recording.name, "angle_min, angle_increment and angles must be in radians"};
-}
-
 std::size_t readings_outside(const Recording& recording) {
   std::size_t count = 0;
   for (const Discarded& discarded : recording.discarded)
@@ -140,21 +154,18 @@ std::optional<Error> no_readings(const Recording& recording) {
                recording.name, "ranges and their limits must be in metres"};
 }
 
-std::optional<Error> wrong_scans(const Recording& recording) {
-  if (auto error = wrong_angles(recording)) return error;
-  return no_readings(recording);
-}
-
 std::optional<Error> check_one(const Recording& recording) {
   if (!recording.increments.empty()) return std::nullopt;
   if (auto error = missing_stream(recording)) return error;
+  if (auto error = wrong_units(recording)) return error;
   const bool by_poses = !recording.poses.empty();
   const Stream ticks = stream("ticks", recording.ticks);
   const Stream reference = by_poses ? stream("poses", recording.poses) : stream("scans", recording.scans);
   for (const Stream* one : {&ticks, &reference})
     if (auto error = too_seldom(recording, *one)) return error;
   if (auto error = clocks_apart(recording, ticks, reference)) return error;
-  return by_poses ? std::nullopt : wrong_scans(recording);
+  if (by_poses) return wrong_pose_frame(recording);
+  return no_readings(recording);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "calib/report/found_effects.hpp"
 #include "calib/report/gate.hpp"
+#include "calib/report/one_robot.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/report_data.hpp"
 #include "calib/report/unexplained.hpp"
@@ -43,11 +44,33 @@ double scale_deviation(const Findings& found) {
   return std::hypot(kMatcherScale, selection::metre_in_doubt(found.lidar, dataset.recordings.view()));
 }
 
-BaseEstimate base_estimate(const Findings& found) {
+/// With what was found in all recordings, what each of them says alone.
+struct Agreement {
+  std::optional<selection::Homogeneity> homogeneity;
+  std::optional<Apart> apart;  ///< what speaks against one set of lengths
+};
+
+Agreement agreement(const Findings& found) {
+  const measurement::Dataset& dataset = found.fit.dataset;
+  if (dataset.recordings.size() < 2) return {};
+  std::vector<std::string> names;
+  for (const Recording& recording : dataset.recordings.view()) names.push_back(recording.name);
+  const double metre = dataset.reference_is_scans() ? kMatcherScale : 0.0;
+  auto homogeneity =
+      selection::homogeneity({dataset.data, dataset.fixed()}, found.outcome.model, metre, names);
+  if (!homogeneity) return {};
+  auto apart = recordings_apart(*homogeneity, dataset.recordings.view());
+  return {std::move(homogeneity), std::move(apart)};
+}
+
+BaseEstimate base_estimate(const Findings& found, const Agreement& agreement) {
   const estimation::FitResult& fit = found.outcome.model.fit;
   const wheels::BaseParameters base = vehicle::to_base(vehicle::as_span(fit.parameters));
   Eigen::MatrixXd covariance = with_scale_error(fit.covariance, base, scale_deviation(found));
   QuantityList measured = base_quantities(base, covariance);
+  if (agreement.apart)
+    covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>().diagonal() +=
+        agreement.homogeneity->between;
   for (const Eigen::VectorXd& doubt : found.outcome.doubts)
     covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>() += doubt * doubt.transpose();
   QuantityList stated = base_quantities(base, covariance);
@@ -115,7 +138,7 @@ std::map<std::string, std::string> extensions(const Findings& found, const Curve
 }
 
 std::vector<std::string> remarks(const Findings& found, const Curves& curves, const Outliers& outliers) {
-  std::vector<std::string> sentences;
+  std::vector<std::string> sentences = found.remarks;
   if (outliers) sentences.push_back(to_text(*outliers));
   for (const std::string& remark : remarks_on(found.fit.dataset.recordings.stamps()))
     sentences.push_back(remark);
@@ -126,12 +149,18 @@ std::vector<std::string> remarks(const Findings& found, const Curves& curves, co
 }
 
 /// What the verdict stands on.
-Footing footing(const Findings& found, const BaseEstimate& base, const std::vector<DriveError>& drive_errors,
-                std::vector<std::string> remarks) {
+Footing footing(const Findings& found, const BaseEstimate& base, const ReportData& data,
+                const std::optional<Apart>& apart, std::vector<std::string> remarks) {
+  const estimation::FitResult& fit = found.outcome.model.fit;
   Footing footing;
   footing.remarks = std::move(remarks);
-  footing.drive_errors = drive_errors;
-  footing.converged = found.outcome.model.fit.converged;
+  footing.drive_errors = data.drive_errors;
+  footing.axes = data.axes;
+  footing.outliers = fit.discarded;
+  footing.pairs = fit.used + fit.discarded;
+  footing.recordings_apart = apart;
+  footing.of_poses = found.fit.dataset.reference_is_base();
+  footing.converged = fit.converged;
   footing.measured = base.measured;
   if (!found.fit.dataset.reference_is_scans() || found.every_scan_placed) return footing;
   for (const measurement::PairSet& set : found.fit.dataset.pair_sets) {
@@ -191,7 +220,8 @@ Calibration refused(const estimation::Fit& failed) {
 Calibration calibrated(const Findings& found) {
   const estimation::FitResult& fit = found.outcome.model.fit;
   const PlainFit plain = plain_fit(found);
-  const BaseEstimate base = base_estimate(found);
+  const Agreement together = agreement(found);
+  const BaseEstimate base = base_estimate(found, together);
   const Curves curves = found_curves(found);
   const Outliers outliers = outliers_of(found);
   const ReportData data = make_report_data(found.fit.dataset, found.outcome, plain);
@@ -206,9 +236,11 @@ Calibration calibrated(const Findings& found) {
   calibration.unexplained = unexplained(found, outliers, !calibration.effects.empty(), data.drive_errors);
   calibration.extensions = extensions(found, curves, outliers);
   store_report_data(data, calibration);
+  if (together.homogeneity)
+    store_homogeneity(*together.homogeneity, found.fit.dataset.recordings.view(), calibration);
 
   const GateResult gate =
-      judge(calibration, footing(found, base, data.drive_errors, remarks(found, curves, outliers)));
+      judge(calibration, footing(found, base, data, together.apart, remarks(found, curves, outliers)));
   calibration.verdict = gate.verdict;
   calibration.reasons = gate.reasons;
   return calibration;

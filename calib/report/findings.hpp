@@ -2,6 +2,7 @@
 // unexplained, the held-out residual, and the verdict.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calib/estimation/fit.hpp"
@@ -17,6 +18,7 @@ struct Findings {
   const std::vector<terms::LidarFinding>& lidar;
   bool was_searched = false;       ///< for effects that nobody named
   bool every_scan_placed = false;  ///< the parameters come from the whole path, not from matches of keyframes
+  std::vector<std::string> remarks = {};  ///< on what was taken out of the recordings
 };
 
 Calibration calibrated(const Findings& found);

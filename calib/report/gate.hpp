@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,12 @@ struct GateResult {
   std::vector<std::string> reasons;
 };
 
+/// Recordings that disagree about the robot.
+struct Apart {
+  bool refuses = false;  ///< by more than wider deviations could stand for
+  std::string reason;
+};
+
 /// What the values stand on.
 struct Footing {
   bool converged = true;
@@ -25,13 +32,17 @@ struct Footing {
   /// empty: those of the calibration.
   QuantityList measured = {};
   std::vector<DriveError> drive_errors = {};
+  std::vector<ResidualAxis> axes = {};  ///< of the residual, with their runs tests
+  std::size_t outliers = 0, pairs = 0;  ///< pairs that contradict all others, of all
+  std::optional<Apart> recordings_apart = std::nullopt;
+  bool of_poses = false;  ///< the reference is poses of the base
 };
 
 /// Odometry over ten seconds errs by plainly more than the reference and the wheels' noise make of it.
 bool odometry_is_off(const std::vector<DriveError>& errors);
 
-/// Refuses implausible or badly determined values, or those of the few scans that happened to match, and says
-/// what is missing; warns of what a user should know.
+/// Every rule of the table in verdict_rules.hpp, in its order: refused if one refuses, for its reasons alone;
+/// accepted with warnings if one warns.
 GateResult judge(const Calibration& calibration, const Footing& footing);
 
 }  // namespace odomcalib::calib::report

@@ -24,6 +24,7 @@ struct Options {
   std::vector<std::string> effects{"auto"};
   std::string out, report, note;
   RecordingOptions reading;
+  bool same_robot = false;
 };
 
 Result<void> write_results(const Options& options, const Calibration& calibration) {
@@ -56,7 +57,8 @@ int solve_recordings(const Options& options, const Session& session) {
   const auto progress = [&line](const std::string& phase, double fraction) {
     line.show(fmt::format("{} {:3.0f} %", phase, 100.0 * fraction));
   };
-  Calibration calibration = calib::solve(recordings.value(), {.effects = options.effects}, progress);
+  Calibration calibration = calib::solve(
+      recordings.value(), {.effects = options.effects, .same_robot = options.same_robot}, progress);
   calibration.extensions["settings"] = settings_of(options);
   line.clear();
   if (auto written = write_results(options, calibration); !written)
@@ -78,6 +80,7 @@ void add_solve(CLI::App& app, Session& session) {
       ->required();
   add_reading_options(*verb, options->reading);
   verb->add_option("--effects", options->effects, "auto, none, or names of effects to fit")->delimiter(',');
+  verb->add_flag("--same-robot", options->same_robot, "recordings with different robot_id are of one robot");
   verb->add_option("--out", options->out, "calibration file to write, also when refused");
   verb->add_option("--report", options->report, "HTML report to write");
   verb->add_option("--note", options->note, "surface, load, tyres: kept in file and report");

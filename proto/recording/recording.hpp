@@ -20,6 +20,9 @@ struct Discarded {
 /// Reason of beams that are no distance this lidar can measure.
 inline constexpr const char* kOutsideLimits = "outside range_min and range_max";
 
+/// Reason of samples that carry the stamp of the one before.
+inline constexpr const char* kRepeatedStamp = "repeated time stamp";
+
 /// What a recording tells the motion of the wheels with, the finest first. One of them decides.
 enum class MotionSource { ticks, wheels, wheel_speeds, odometry };
 

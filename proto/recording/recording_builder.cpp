@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "proto/recording/scan_checks.hpp"
+#include "proto/recording/stamp_units.hpp"
 #include "proto/recording/tick_counts.hpp"
 #include "proto/recording/wheel_motion.hpp"
 
@@ -33,6 +34,11 @@ bool is_wheel_speed(double value) { return std::abs(value) <= kLargestWheelSpeed
 bool is_position(double value) { return std::abs(value) <= kFarthestPosition; }
 
 bool sane_time(double t) { return std::isfinite(t) && std::abs(t) <= kLatestTime; }
+
+std::string stamp_problem(double t) {
+  const char* unit = unit_of_date(t);
+  return unit == nullptr ? "time stamp missing or impossible" : stamp_reason(unit);
+}
 
 template <typename Sample>
 void sort_by_time(std::vector<Sample>& samples) {
@@ -114,7 +120,7 @@ template <typename Sample>
 bool RecordingBuilder::in_time(const char* what, const Sample& sample, StreamClock& clock,
                                std::vector<Sample>& stream) {
   if (!sane_time(sample.t)) {
-    discard(what, "time stamp missing or impossible");
+    discard(what, stamp_problem(sample.t));
     return false;
   }
   const bool late = sample.t < clock.newest - kReorderWindow;
@@ -171,7 +177,7 @@ void RecordingBuilder::add_odometry(PoseSample sample) {
 }
 
 void RecordingBuilder::add_scan(Scan scan) {
-  if (!sane_time(scan.t)) return discard("scan", "time stamp missing or impossible");
+  if (!sane_time(scan.t)) return discard("scan", stamp_problem(scan.t));
   if (const char* problem = scan_problem(scan)) return discard("scan", problem);
   if (!in_time("scan", scan, scan_clocks_[scan.sensor], recording_.scans)) return;
   const auto problems = clean_scan(scan);
@@ -210,6 +216,21 @@ bool RecordingBuilder::has_data() const {
          !recording_.gyro.empty() || !recording_.increments.empty();
 }
 
+Error RecordingBuilder::nothing_usable(const std::string& where) const {
+  for (const auto& [key, count] : discarded_)
+    if (const std::string unit = unit_of_reason(key.second); !unit.empty())
+      return wrong_dates(key.first, count, unit, where);
+  const auto most = std::max_element(discarded_.begin(), discarded_.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  const std::string what = "no usable ticks, scans, poses or increments";
+  if (most == discarded_.end())
+    return {ErrorCode::empty, what, where, "check that the recording was running while the robot moved"};
+  const auto& [name, reason] = most->first;
+  return {ErrorCode::empty,
+          what + ": " + std::to_string(most->second) + " x " + name + " left out, " + reason, where,
+          "compare a line of it with docs/user/formats.md"};
+}
+
 void RecordingBuilder::merge_robot(const RobotDescription* fallback) {
   if (fallback == nullptr) return;
   auto& robot = recording_.robot;
@@ -235,13 +256,13 @@ void RecordingBuilder::sort_streams() {
   sort_by_time(recording_.gyro);
   const auto same = [](const auto& a, const auto& b) { return a.t == b.t; };
   const auto same_scan = [](const Scan& a, const Scan& b) { return a.t == b.t && a.sensor == b.sensor; };
-  discard("ticks", "repeated time stamp", drop_repeated(recording_.ticks, same));
-  discard("wheels", "repeated time stamp", drop_repeated(recording_.wheels, same));
-  discard("wheel_speeds", "repeated time stamp", drop_repeated(recording_.wheel_speeds, same));
-  discard("odometry", "repeated time stamp", drop_repeated(recording_.odometry, same));
-  discard("scan", "repeated time stamp", drop_repeated(recording_.scans, same_scan));
-  discard("pose", "repeated time stamp", drop_repeated(recording_.poses, same));
-  discard("gyro", "repeated time stamp", drop_repeated(recording_.gyro, same));
+  discard("ticks", kRepeatedStamp, drop_repeated(recording_.ticks, same));
+  discard("wheels", kRepeatedStamp, drop_repeated(recording_.wheels, same));
+  discard("wheel_speeds", kRepeatedStamp, drop_repeated(recording_.wheel_speeds, same));
+  discard("odometry", kRepeatedStamp, drop_repeated(recording_.odometry, same));
+  discard("scan", kRepeatedStamp, drop_repeated(recording_.scans, same_scan));
+  discard("pose", kRepeatedStamp, drop_repeated(recording_.poses, same));
+  discard("gyro", kRepeatedStamp, drop_repeated(recording_.gyro, same));
 }
 
 /// The finest that is there decides; what is coarser is left out, and counted.
@@ -296,9 +317,7 @@ const char* name_of(MotionSource source) {
 
 Result<Recording> RecordingBuilder::finish(const std::string& where, const RobotDescription* fallback,
                                            RobotNeed need) && {
-  if (!has_data())
-    return Error{ErrorCode::empty, "no usable wheel motion, scans, poses or increments", where,
-                 "check that the recording was running while the robot moved"};
+  if (!has_data()) return nothing_usable(where);
   merge_robot(fallback);
   decide_motion();
   if (need == RobotNeed::required)

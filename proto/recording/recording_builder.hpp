@@ -33,7 +33,7 @@ class RecordingBuilder {
   enum class RobotNeed { required, optional };
 
   /// Sorts, removes repeated time stamps, makes counts of the finest wheel motion that is there, unwraps
-  /// counts, checks the robot description. Errors: empty, missing_units.
+  /// counts, checks the robot description. Errors: empty, missing_units, format (stamps that are no seconds).
   Result<Recording> finish(const std::string& where, const RobotDescription* fallback, RobotNeed need) &&;
 
  private:
@@ -49,6 +49,7 @@ class RecordingBuilder {
   template <typename Sample>
   void forget_leap(const char* what, StreamClock& clock, std::vector<Sample>& stream);
   [[nodiscard]] bool has_data() const;
+  [[nodiscard]] Error nothing_usable(const std::string& where) const;
   void merge_robot(const RobotDescription* fallback);
   void sort_streams();
   void decide_motion();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace odomcalib {
 namespace {
@@ -49,6 +51,29 @@ void set_missing_range_max(Scan& scan) {
   scan.range_max = static_cast<double>(*std::max_element(scan.ranges.begin(), scan.ranges.end()));
 }
 
+template <typename Value>
+void reorder(std::vector<Value>& values, const std::vector<std::size_t>& order) {
+  if (values.empty()) return;
+  std::vector<Value> sorted;
+  sorted.reserve(values.size());
+  for (const std::size_t k : order) sorted.push_back(values[k]);
+  values = std::move(sorted);
+}
+
+/// Some drivers list beams in another order than they were sent. Walls are found among neighbours in the
+/// list, and the sweep runs from its first to its last beam. A grid of angles states an order of its own.
+void list_in_time_order(Scan& scan) {
+  if (scan.angles.empty() || std::is_sorted(scan.times.begin(), scan.times.end())) return;
+  std::vector<std::size_t> order(scan.times.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return scan.times[a] < scan.times[b]; });
+  reorder(scan.ranges, order);
+  reorder(scan.angles, order);
+  reorder(scan.times, order);
+  reorder(scan.intensities, order);
+}
+
 }  // namespace
 
 const char* scan_problem(const Scan& scan) {
@@ -66,6 +91,7 @@ const char* scan_problem(const Scan& scan) {
 
 BeamProblems clean_scan(Scan& scan) {
   complete_scan(scan);
+  list_in_time_order(scan);
   const auto problems = clean_ranges(scan);
   set_missing_range_max(scan);
   return problems;

@@ -16,7 +16,8 @@ struct BeamProblems {
 };
 
 /// Turns ranges that are no distance into 0 ("no reading") and counts them; replaces impossible limits and
-/// increments by "unknown"; a lidar that states no range_max gets its farthest reading.
+/// increments by "unknown"; lists beams that state their angles and times in order of time; a lidar that
+/// states no range_max gets its farthest reading.
 BeamProblems clean_scan(Scan& scan);
 
 }  // namespace odomcalib

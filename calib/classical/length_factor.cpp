@@ -1,0 +1,143 @@
+#include "calib/classical/length_factor.hpp"
+
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <numbers>
+#include <sstream>
+
+#include "calib/classical/settings.hpp"
+
+namespace odomcalib::calib::classical {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+std::string number(double value) {
+  std::ostringstream out;
+  out << std::setprecision(3) << value;
+  return out.str();
+}
+
+/// Counts are whole numbers that have to be typed.
+std::string count(double value) {
+  std::ostringstream out;
+  out << std::setprecision(6) << value;
+  return out.str();
+}
+
+bool is_one(double ratio) { return ratio > 1.0 / settings::kSameLength && ratio < settings::kSameLength; }
+
+bool is_near(double ratio, double factor) { return std::abs(ratio / factor - 1.0) < settings::kSameFactor; }
+
+struct Factor {
+  double ratio;
+  const char* reason;
+  bool of_ranges = false;  ///< no other reference has that mistake
+};
+
+constexpr std::array kOfAllLengths = {
+    Factor{1e3, "lengths of the reference are in millimetres"},
+    Factor{1e2, "lengths of the reference are in centimetres"},
+    Factor{1.0 / 0.0254, "lengths of the reference are in inches"},
+    Factor{1.0 / 0.3048, "lengths of the reference are in feet"},
+    Factor{2.0, "ranges are twice as long as they are: the way there and back was not halved", true},
+    Factor{0.5, "ranges are half as long as they are: they were halved twice", true},
+    Factor{0.25, "ranges in quarters of a millimetre were taken for millimetres", true},
+    Factor{4.0, "ranges in millimetres were taken for four times as much", true},
+    Factor{0.3048, "wheel_diameter and track_width are in feet"},
+    Factor{0.0254, "wheel_diameter and track_width are in inches"},
+    Factor{1e-2, "wheel_diameter and track_width are in centimetres"},
+    Factor{1e-3, "wheel_diameter and track_width are in millimetres"}};
+
+constexpr std::array kOfBothWheels = {
+    Factor{2.0, "the radius was given as diameter, or ticks_per_rev counts twice the edges that come"},
+    Factor{4.0, "ticks_per_rev counts all four edges of a period, the recorded counts only one"},
+    Factor{0.25, "ticks_per_rev counts one edge of a period, the recorded counts all four"},
+    Factor{0.5, "ticks_per_rev counts half of the edges that come, or the diameter was doubled"},
+    Factor{1.0 / kPi, "the circumference was given as diameter"},
+    Factor{kPi, "the diameter was divided by pi"},
+    Factor{0.5 / kPi, "ticks_per_rev is counts per radian"},
+    Factor{2.0 * kPi, "ticks_per_rev was multiplied by 2 pi"},
+    Factor{1.5, "ticks_per_rev has a gear ratio in it that the counts have not"},
+    Factor{2.0 / 3.0, "ticks_per_rev lacks a gear ratio"},
+    Factor{0.0254, "wheel_diameter is in inches"},
+    Factor{1e-2, "wheel_diameter is in centimetres"},
+    Factor{1e-3, "wheel_diameter is in millimetres"}};
+
+constexpr std::array kOfTrack = {Factor{2.0, "it was measured from the middle of the robot to a wheel"},
+                                 Factor{0.5, "it was doubled"}, Factor{0.0254, "it is in inches"},
+                                 Factor{1e-2, "it is in centimetres"}, Factor{1e-3, "it is in millimetres"}};
+
+template <std::size_t kCount>
+const char* reason_for(const std::array<Factor, kCount>& table, double ratio, bool of_poses = false) {
+  for (const Factor& factor : table)
+    if (is_near(ratio, factor.ratio) && !(factor.of_ranges && of_poses)) return factor.reason;
+  return nullptr;
+}
+
+std::string because(const char* reason) {
+  return reason == nullptr ? "" : ": it looks as if " + std::string(reason);
+}
+
+Cause of_all(double ratio, bool of_poses) {
+  const std::string lengths = of_poses ? "x and y of the poses" : "ranges and their limits";
+  return {"both wheel diameters and the track width come out " + number(ratio) +
+              " times their nominal values, so that a unit or the scale of the reference is wrong" +
+              because(reason_for(kOfAllLengths, ratio, of_poses)),
+          "measure a wheel with a tape; then multiply " + lengths + " by " + number(1.0 / ratio) +
+              ", or wheel_diameter and track_width by " + number(ratio)};
+}
+
+Cause of_wheels(double ratio, const RobotDescription& robot) {
+  const char* reason = reason_for(kOfBothWheels, ratio);
+  const bool gear = reason == nullptr && (ratio > 2.0 || ratio < 0.5);
+  return {"both wheel diameters come out " + number(ratio) +
+              " times their nominal values, the track width does not" +
+              because(gear ? "counts are those of the motor before a gear, or ticks_per_rev is" : reason),
+          "set ticks_per_rev to about " + count(robot.ticks_per_rev / ratio) + " instead of " +
+              count(robot.ticks_per_rev) + ", or wheel_diameter to " +
+              number(0.5 * (robot.left_wheel_diameter + robot.right_wheel_diameter) * ratio) +
+              " m; a tape at the wheel tells which"};
+}
+
+Cause of_track(double ratio, const RobotDescription& robot) {
+  return {"track_width comes out " + number(ratio) + " times its nominal value, the wheel diameters do not" +
+              because(reason_for(kOfTrack, ratio)),
+          "measure it from where one wheel touches the floor to where the other does, and set track_width "
+          "to about " +
+              number(robot.track_width * ratio) + " m"};
+}
+
+Cause of_one_wheel(const std::string& side, double ratio) {
+  return {"the " + side + " wheel diameter comes out " + number(ratio) +
+              " times its nominal value, the other one does not: the encoders count unlike each other",
+          "check that both encoders have the same resolution, gear and edges per period, or state "
+          "left_wheel_diameter and right_wheel_diameter"};
+}
+
+}  // namespace
+
+std::optional<Cause> cause_of_ratios(const LengthRatios& ratios, const RobotDescription& robot,
+                                     bool of_poses) {
+  const auto [left, right, track] = ratios;
+  for (const double ratio : {left, right, track})
+    if (!(ratio > 0.0) || !std::isfinite(ratio)) return std::nullopt;
+  const bool left_fits = is_one(left), right_fits = is_one(right), track_fits = is_one(track);
+  const double mean = 0.5 * (left + right);
+  if (!left_fits && !right_fits && is_near(left, right)) {
+    if (track_fits) return of_wheels(mean, robot);
+    if (is_near(track, mean)) return of_all((left + right + track) / 3.0, of_poses);
+    return std::nullopt;
+  }
+  if (left_fits && right_fits && !track_fits && reason_for(kOfTrack, track) != nullptr)
+    return of_track(track, robot);
+  if (track_fits && left_fits != right_fits) {
+    const double odd = left_fits ? right : left;
+    if (odd > 2.0 / settings::kSameLength || odd < 0.5 * settings::kSameLength)
+      return of_one_wheel(left_fits ? "right" : "left", odd);
+  }
+  return std::nullopt;
+}
+
+}  // namespace odomcalib::calib::classical

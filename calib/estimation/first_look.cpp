@@ -1,0 +1,324 @@
+#include "calib/estimation/first_look.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/classical/closed_form.hpp"
+#include "calib/estimation/first_look_settings.hpp"
+#include "calib/measurement/reference_motion.hpp"
+#include "calib/wheels/wheel_track.hpp"
+
+namespace odomcalib::calib::estimation {
+namespace {
+
+using classical::Cause;
+using measurement::ReferenceMotion;
+using wheels::WheelMotion;
+
+std::string number(double value) {
+  std::ostringstream out;
+  out << std::setprecision(3) << value;
+  return out.str();
+}
+
+/// From the clock of the reference to that of the counts.
+struct ClockMap {
+  double from = 0.0, to = 0.0, rate = 1.0;
+  [[nodiscard]] double operator()(double t) const { return to + rate * (t - from); }
+};
+
+double angle_at(const wheels::WheelTrack& track, const std::vector<double>& angle, double time) {
+  const std::size_t k = track.interval_at(time);
+  const double share = (time - track.t[k]) / (track.t[k + 1] - track.t[k]);
+  return angle[k] + share * (angle[k + 1] - angle[k]);
+}
+
+std::vector<WheelMotion> beside_wheels(const std::vector<ReferenceMotion>& motions,
+                                       const wheels::WheelTrack& track, const ClockMap& clock = {}) {
+  std::vector<WheelMotion> all;
+  if (track.empty()) return all;
+  for (const ReferenceMotion& m : motions) {
+    const double begin = clock(m.begin), end = clock(m.end);
+    if (!track.covers(begin, end)) continue;
+    all.push_back({angle_at(track, track.left, end) - angle_at(track, track.left, begin),
+                   angle_at(track, track.right, end) - angle_at(track, track.right, begin), m.motion});
+  }
+  return all;
+}
+
+/// Share of the rotation of the reference that a left + b right explains, a and b by least squares with
+/// bounded residuals; 0 where there are too few motions.
+double explained_rotation(const std::vector<WheelMotion>& motions) {
+  if (motions.size() < settings::kFewestMotions) return 0.0;
+  Eigen::Vector2d gains = Eigen::Vector2d::Zero();
+  double bound = 1e9, misfit = 0.0, all = 0.0;
+  for (int round = 0; round < 4; ++round) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-9;
+    Eigen::Vector2d right_side = Eigen::Vector2d::Zero();
+    for (const WheelMotion& m : motions) {
+      const Eigen::Vector2d turned(m.left, m.right);
+      const double residual = std::abs(m.sensor_motion.yaw - gains.dot(turned));
+      const double weight = residual > bound ? bound / residual : 1.0;
+      normal += weight * turned * turned.transpose();
+      right_side += weight * m.sensor_motion.yaw * turned;
+    }
+    gains = normal.ldlt().solve(right_side);
+    misfit = all = 0.0;
+    for (const WheelMotion& m : motions) {
+      misfit += std::abs(m.sensor_motion.yaw - gains.dot(Eigen::Vector2d(m.left, m.right)));
+      all += std::abs(m.sensor_motion.yaw);
+    }
+    bound = misfit / static_cast<double>(motions.size());
+  }
+  return all > 0.0 ? std::max(0.0, 1.0 - misfit / all) : 0.0;
+}
+
+/// A mistake put right explains plainly more.
+bool mends(double before, double after) {
+  return after > settings::kAgrees && 1.0 - after < settings::kLeftOver * (1.0 - before);
+}
+
+std::int64_t fall_of(const std::vector<TickSample>& ticks, std::int64_t TickSample::*side) {
+  std::int64_t fall = 0;
+  for (std::size_t k = 1; k < ticks.size(); ++k)
+    if (ticks[k].segment == ticks[k - 1].segment) fall = std::max(fall, ticks[k - 1].*side - ticks[k].*side);
+  return fall;
+}
+
+struct Direction {
+  bool left = true, right = true;  ///< the wheel also counts down
+};
+
+Direction directions(const Recording& recording) {
+  return {fall_of(recording.ticks, &TickSample::left) > settings::kEdge,
+          fall_of(recording.ticks, &TickSample::right) > settings::kEdge};
+}
+
+/// Rotation of the base that nominal lengths make of wheel rotations.
+double nominal_rotation(const RobotDescription& robot, double left, double right) {
+  return 0.5 * (robot.right_wheel_diameter * right - robot.left_wheel_diameter * left) / robot.track_width;
+}
+
+/// Each motion with the signs, of wheels that have none, that suit its rotation best.
+std::vector<WheelMotion> with_direction(std::vector<WheelMotion> motions, const Direction& counted,
+                                        const RobotDescription& robot) {
+  for (WheelMotion& m : motions) {
+    WheelMotion best = m;
+    for (const double left : {1.0, -1.0})
+      for (const double right : {1.0, -1.0}) {
+        if ((left < 0.0 && counted.left) || (right < 0.0 && counted.right)) continue;
+        const auto misfit = [&](double l, double r) {
+          return std::abs(m.sensor_motion.yaw - nominal_rotation(robot, l, r));
+        };
+        if (misfit(left * m.left, right * m.right) < misfit(best.left, best.right))
+          best = {left * m.left, right * m.right, m.sensor_motion};
+      }
+    m = best;
+  }
+  return motions;
+}
+
+std::size_t changed(const std::vector<WheelMotion>& before, const std::vector<WheelMotion>& after,
+                    const RobotDescription& robot) {
+  constexpr double kPlain = 0.1;  // rad in half a second: no match is off by that
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const double given = nominal_rotation(robot, before[k].left, before[k].right);
+    const double mended = nominal_rotation(robot, after[k].left, after[k].right);
+    const double yaw = before[k].sensor_motion.yaw;
+    if (std::abs(yaw - given) > kPlain && std::abs(yaw - mended) < 0.3 * std::abs(yaw - given)) ++count;
+  }
+  return count;
+}
+
+/// A trial of one mistake: what would be seen without it.
+class Look {
+ public:
+  explicit Look(const Recording& recording)
+      : recording_(recording),
+        seen_(measurement::reference_motions(recording, settings::kMostLookedAt)),
+        track_(wheels::wheel_track_from_ticks(recording)),
+        motions_(beside_wheels(seen_.motions, track_)),
+        explained_(explained_rotation(motions_)) {}
+
+  [[nodiscard]] std::optional<Cause> cause() const {
+    if (seen_.motions.size() < settings::kFewestMotions) return std::nullopt;
+    if (auto found = without_direction()) return found;
+    if (auto found = same_counts()) return found;
+    if (explained_ < settings::kContradicts) {
+      if (auto found = counts_per_sample()) return found;
+      if (auto found = clock_rate()) return found;
+      if (auto found = delay()) return found;
+    }
+    if (auto found = stretched_angles()) return found;
+    return length_factor(motions_);
+  }
+
+  [[nodiscard]] std::optional<Cause> without_direction() const {
+    const Direction counted = directions(recording_);
+    if (counted.left && counted.right) return std::nullopt;
+    const auto mended = with_direction(motions_, counted, recording_.robot);
+    const auto share = static_cast<double>(changed(motions_, mended, recording_.robot)) /
+                       std::max(static_cast<double>(motions_.size()), 1.0);
+    if (share < settings::kAgainstCounting) return std::nullopt;
+    const std::string whose = counted.left    ? "the right wheel"
+                              : counted.right ? "the left wheel"
+                                              : "both wheels";
+    return Cause{"the counts of " + whose + " only ever grow, although the " + reference() +
+                     " shows that the robot also turned the other way: the encoders count edges without "
+                     "their direction",
+                 "read both channels of each encoder (quadrature), or give the counts the sign of the speed "
+                 "that was commanded, and record again"};
+  }
+
+ private:
+  [[nodiscard]] std::string reference() const { return recording_.poses.empty() ? "lidar" : "reference"; }
+
+  [[nodiscard]] std::optional<Cause> same_counts() const {
+    const auto& ticks = recording_.ticks;
+    for (const TickSample& tick : ticks)
+      if (std::abs((tick.left - ticks.front().left) - (tick.right - ticks.front().right)) > settings::kEdge)
+        return std::nullopt;
+    double turned = 0.0;
+    for (const ReferenceMotion& m : seen_.motions) turned += std::abs(m.motion.yaw);
+    if (turned < 1.0) return std::nullopt;
+    return Cause{"left and right counts are always the same, although the robot turned by " +
+                     std::to_string(std::lround(turned * 180.0 / math::kPi)) + " degrees in all",
+                 "check that each count comes from its own encoder"};
+  }
+
+  /// Values that are the counts since the sample before, as some controllers send them.
+  [[nodiscard]] std::optional<Cause> counts_per_sample() const {
+    Recording mended;
+    mended.robot = recording_.robot;
+    mended.ticks = recording_.ticks;
+    for (std::size_t k = 1; k < mended.ticks.size(); ++k) {
+      mended.ticks[k].left += mended.ticks[k - 1].left;
+      mended.ticks[k].right += mended.ticks[k - 1].right;
+      mended.ticks[k].segment = 0;
+    }
+    const auto track = wheels::wheel_track_from_ticks(mended);
+    if (!mends(explained_, explained_rotation(beside_wheels(seen_.motions, track)))) return std::nullopt;
+    return Cause{"\"left\" and \"right\" are the counts since the sample before, not those since the start",
+                 "add them up before they are recorded: ticks are cumulative"};
+  }
+
+  [[nodiscard]] double explained_with(const ClockMap& clock) const {
+    return explained_rotation(beside_wheels(seen_.motions, track_, clock));
+  }
+
+  [[nodiscard]] std::pair<double, double> span_of_reference() const {
+    if (!recording_.poses.empty()) return {recording_.poses.front().t, recording_.poses.back().t};
+    return {recording_.scans.front().t, recording_.scans.back().t};
+  }
+
+  [[nodiscard]] std::optional<Cause> clock_rate() const {
+    const auto [begin, end] = span_of_reference();
+    const double ticks = track_.t.back() - track_.t.front();
+    const double rate = ticks / (end - begin);
+    if (!(std::abs(rate - 1.0) > settings::kSpansApart)) return std::nullopt;
+    if (!mends(explained_, explained_with({begin, track_.t.front(), rate}))) return std::nullopt;
+    return Cause{"the clock of the " + reference() + " runs at " + number(1.0 / rate) +
+                     " times the rate of the counts' clock: " + number(end - begin) + " s against " +
+                     number(ticks) + " s of the same drive",
+                 "stamp both with the same clock, in seconds"};
+  }
+
+  [[nodiscard]] std::optional<Cause> delay() const {
+    double best = explained_, late = 0.0;
+    for (double d = -settings::kDelayReach_s; d <= settings::kDelayReach_s; d += settings::kDelayStep_s)
+      if (const double explained = explained_with({d, 0.0, 1.0}); explained > best)
+        best = explained, late = d;
+    if (!mends(explained_, best)) return std::nullopt;
+    return Cause{"stamps of the " + reference() + " are " + number(std::abs(late)) + " s " +
+                     (late > 0.0 ? "late" : "early") +
+                     " against those of the counts: two clocks, or one of "
+                     "them was set while recording",
+                 "stamp both with the same clock, or subtract the difference"};
+  }
+
+  [[nodiscard]] std::optional<classical::LengthRatios> ratios(const std::vector<WheelMotion>& motions) const {
+    const auto fit = classical::solve_closed_form(motions);
+    const RobotDescription& robot = recording_.robot;
+    if (!fit || !(robot.left_wheel_diameter > 0.0) || !(robot.track_width > 0.0)) return std::nullopt;
+    const wheels::BaseParameters& p = fit.value().parameters;
+    return classical::LengthRatios{2.0 * p.left_radius / robot.left_wheel_diameter,
+                                   2.0 * p.right_radius / robot.right_wheel_diameter,
+                                   p.track_width / robot.track_width};
+  }
+
+  static bool are_nominal(const std::optional<classical::LengthRatios>& r) {
+    constexpr double kNear = 0.1;  // nominal values are right to that
+    return r && std::abs(r->left - 1.0) < kNear && std::abs(r->right - 1.0) < kNear &&
+           std::abs(r->track - 1.0) < kNear;
+  }
+
+  /// Beams spread wider, or less wide, than they were sent.
+  [[nodiscard]] std::optional<Cause> stretched_angles() const {
+    if (!recording_.poses.empty() || are_nominal(ratios(motions_))) return std::nullopt;
+    constexpr std::array kFactors = {0.75, 4.0 / 3.0, 0.5, 2.0, 2.0 / 3.0, 1.5};
+    for (const double factor : kFactors) {
+      Recording mended = recording_;
+      mended.scans.resize(std::min(mended.scans.size(), settings::kMostTried));
+      for (Scan& scan : mended.scans) {
+        scan.angle_min *= factor;
+        scan.angle_increment *= factor;
+        for (float& angle : scan.angles) angle = static_cast<float>(angle * factor);
+      }
+      const auto seen = measurement::reference_motions(mended, settings::kMostTried);
+      if (seen.unmatched > seen.matched || !are_nominal(ratios(beside_wheels(seen.motions, track_))))
+        continue;
+      return Cause{"angles of the scans are " + number(1.0 / factor) + " times as wide as they are: with " +
+                       number(factor) +
+                       " times angle_increment all lengths come out near their nominal values",
+                   "check angle_increment, or the number of beams in a turn, for the mode the lidar runs in"};
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<Cause> length_factor(const std::vector<WheelMotion>& motions) const {
+    const auto found = ratios(motions);
+    if (!found || explained_ < settings::kContradicts) return std::nullopt;
+    return cause_of_ratios(*found, recording_.robot, !recording_.poses.empty());
+  }
+
+  const Recording& recording_;
+  measurement::ReferenceMotions seen_;
+  wheels::WheelTrack track_;
+  std::vector<WheelMotion> motions_;
+  double explained_;
+};
+
+bool can_be_looked_at(const Recording& recording) {
+  return recording.increments.empty() && recording.ticks.size() > 1 &&
+         (recording.poses.size() > 1 || recording.scans.size() > 1);
+}
+
+}  // namespace
+
+bool never_counts_down(const Recording& recording) {
+  const Direction counted = directions(recording);
+  return !counted.left || !counted.right;
+}
+
+std::optional<Error> counts_without_direction(const Recording& recording) {
+  if (!can_be_looked_at(recording) || !never_counts_down(recording)) return std::nullopt;
+  const auto found = Look(recording).without_direction();
+  if (!found) return std::nullopt;
+  return Error{ErrorCode::refused, found->what, recording.name, found->remedy};
+}
+
+std::optional<Cause> first_look(const Recording& recording) {
+  if (!can_be_looked_at(recording)) return std::nullopt;
+  return Look(recording).cause();
+}
+
+}  // namespace odomcalib::calib::estimation

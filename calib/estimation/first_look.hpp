@@ -1,0 +1,24 @@
+// A second opinion on a recording that could not be calibrated: the motion of the reference is measured
+// without the wheels, and compared with the counts as they are and as they would be after each of the usual
+// mistakes.
+#pragma once
+
+#include <optional>
+
+#include "calib/classical/length_factor.hpp"
+#include "proto/recording/recording.hpp"
+
+namespace odomcalib::calib::estimation {
+
+/// The mistake without which counts and reference explain each other; nullopt when none does, or nothing is
+/// wrong. Takes about as long as a first match of all scans.
+std::optional<classical::Cause> first_look(const Recording& recording);
+
+/// Whether the counts of a wheel never fall, although it turned: the sign of encoders without a direction.
+bool never_counts_down(const Recording& recording);
+
+/// That counts have no direction, where the reference turns as counts with one would have it; nullopt where
+/// the robot only drove ahead. Matches scans only if a wheel never counts down.
+std::optional<Error> counts_without_direction(const Recording& recording);
+
+}  // namespace odomcalib::calib::estimation

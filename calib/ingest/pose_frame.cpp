@@ -1,0 +1,96 @@
+#include "calib/ingest/pose_frame.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "calib/ingest/settings.hpp"
+
+namespace odomcalib::calib::ingest {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+using Change = PoseSample (*)(PoseSample);
+
+struct Mistake {
+  const char* what;
+  const char* remedy;
+  Change mend;
+};
+
+constexpr std::array kMistakes = {
+    Mistake{"yaw looks like degrees", "multiply yaw by pi / 180",
+            [](PoseSample p) { return p.yaw *= kPi / 180.0, p; }},
+    Mistake{"yaw has the opposite sign of the frame that x and y are in (clockwise, or z down)",
+            "negate yaw: it is counter-clockwise, x forward, y left",
+            [](PoseSample p) { return p.yaw = -p.yaw, p; }},
+    Mistake{"yaw is a compass heading (clockwise from y) beside x and y of a map, or x and y are exchanged",
+            "write pi / 2 - yaw: yaw is counter-clockwise from x",
+            [](PoseSample p) { return p.yaw = 0.5 * kPi - p.yaw, p; }},
+    Mistake{"yaw is a quarter of a turn off: it looks to the side of the robot",
+            "let yaw be the heading of the robot's front",
+            [](PoseSample p) { return p.yaw += 0.5 * kPi, p; }},
+    Mistake{"yaw is half of the heading, as the z of a quaternion read as an angle",
+            "write 2 atan2(q_z, q_w)", [](PoseSample p) { return p.yaw *= 2.0, p; }}};
+
+double middle_heading(const PoseSample& a, const PoseSample& b) {
+  return a.yaw + 0.5 * std::remainder(b.yaw - a.yaw, 2.0 * kPi);
+}
+
+/// Share of the way that goes sideways, 0 to 1; about 0.64 when headings are random.
+double sideways(const std::vector<PoseSample>& steps, Change mend) {
+  double across = 0.0, all = 0.0;
+  for (std::size_t k = 1; k < steps.size(); ++k) {
+    const PoseSample a = mend(steps[k - 1]), b = mend(steps[k]);
+    const double dx = b.x - a.x, dy = b.y - a.y, heading = middle_heading(a, b);
+    across += std::abs(dy * std::cos(heading) - dx * std::sin(heading));
+    all += std::hypot(dx, dy);
+  }
+  return all > 0.0 ? across / all : 0.0;
+}
+
+/// Poses so far from each other that noise hardly bends the way; the unit of length may be any.
+std::vector<PoseSample> spaced(const std::vector<PoseSample>& poses) {
+  double length = 0.0;
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    length = std::max(length, std::hypot(poses[k].x - poses[0].x, poses[k].y - poses[0].y));
+  const double step = settings::kPoseStep * length;
+  std::vector<PoseSample> chosen;
+  for (const PoseSample& pose : poses)
+    if (chosen.empty() || std::hypot(pose.x - chosen.back().x, pose.y - chosen.back().y) > step)
+      chosen.push_back(pose);
+  return chosen;
+}
+
+/// A heading that stays the same while the way turns.
+bool heading_stands(const std::vector<PoseSample>& poses) {
+  for (const PoseSample& pose : poses)
+    if (std::abs(std::remainder(pose.yaw - poses.front().yaw, 2.0 * kPi)) > 1e-6) return false;
+  return true;
+}
+
+Error wrong(const Recording& recording, double share, const std::string& what, const std::string& remedy) {
+  return {ErrorCode::format,
+          "poses go sideways over " + std::to_string(std::lround(100.0 * share)) + " % of their way: " + what,
+          recording.name, remedy};
+}
+
+}  // namespace
+
+std::optional<Error> wrong_pose_frame(const Recording& recording) {
+  const std::vector<PoseSample> steps = spaced(recording.poses);
+  if (steps.size() < settings::kFewestPoseSteps) return std::nullopt;
+  const double given = sideways(steps, [](PoseSample p) { return p; });
+  if (given < settings::kSidewaysAtLeast) return std::nullopt;
+  if (heading_stands(steps))
+    return wrong(recording, given, "yaw never changes", "record the heading of the robot in radians");
+  for (const Mistake& mistake : kMistakes)
+    if (sideways(steps, mistake.mend) < settings::kSidewaysAtMost)
+      return wrong(recording, given, mistake.what, mistake.remedy);
+  return std::nullopt;
+}
+
+}  // namespace odomcalib::calib::ingest

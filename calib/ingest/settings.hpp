@@ -1,0 +1,75 @@
+// Numbers that decide whether the streams of a recording can be what they are called, each once, with its
+// unit and its origin: derived (from what), published (source), measured (where), chosen (for what reason).
+#pragma once
+
+#include <cstddef>
+
+namespace odomcalib::calib::ingest::settings {
+
+// --- Time stamps -----------------------------------------------------------------------------------------
+
+/// s, intervals at which counts and scans come in a recording. Chosen: robots send both 2 to 500 times a
+/// second. The bounds are less than a factor of 1000 apart, so that one unit of time fits at most.
+inline constexpr double kShortestInterval_s = 2e-3, kLongestInterval_s = 1.0;
+/// s, of scans that come faster than any head turns. Chosen: the fastest 2D lidars send 100 scans a second.
+inline constexpr double kFastestScans_s = 3e-3;
+/// Share of samples with the stamp of the one before, of stamps that have lost their last digits. Chosen: of
+/// a stream that two programs recorded together half of the samples repeat themselves, in stamp and value.
+inline constexpr double kRepeatedShare = 0.6;
+/// Time that all beams of a scan take over the time from scan to scan: no head sends a scan before the one
+/// before it ends. Chosen: half a turn is left to uneven stamps.
+inline constexpr double kLongestSweep = 1.5;
+
+/// The same ratio, of beam times that are in another unit rather than on another clock. Chosen: clocks that
+/// run apart by more are none.
+inline constexpr double kSweepInOtherUnit = 20.0;
+/// Relative difference of the spans of two streams in their units. Chosen: one recorder starts and ends a
+/// little later.
+inline constexpr double kSameSpan = 0.1;
+/// m, of a lidar from the middle of the axle. Chosen: larger robots are not driven by two wheels.
+inline constexpr double kFarthestLidar_m = 5.0;
+
+// --- Angles ----------------------------------------------------------------------------------------------
+
+/// Turns that the beams of one scan cover. Chosen: drivers repeat a few beams where turns overlap; what is
+/// stretched by a quarter is beyond.
+inline constexpr double kMostTurns = 1.15;
+
+// --- Ranges ----------------------------------------------------------------------------------------------
+
+/// m, median reading of a recording. Chosen: lidars that measure 80 m see nothing at most bearings; robots
+/// that fit on a desk see their walls at 0.2 m.
+inline constexpr double kFarthestMedian_m = 60.0, kNearestMedian_m = 0.02;
+/// m, where the median reading lies for most robots. Only the unit that is nearest is named. Chosen.
+inline constexpr double kUsualMedian_m = 2.5;
+/// Scans that are looked at, evenly spread.
+inline constexpr std::size_t kScansLookedAt = 200;
+
+// --- Readings that stand for no return ---------------------------------------------------------------------
+
+/// Share of the readings that are one and the same number. Chosen: a wall shares out over the steps of the
+/// range, and moves with the robot.
+inline constexpr double kPhantomShare = 0.004;
+/// How many times as often as its ten neighbours, one by one, the number comes. Chosen: walls seen squarely
+/// from a moving robot make 2 to 3.
+inline constexpr double kPhantomPeak = 15.0;
+/// Parts of a recording, and in how many the number must stand out: a wall at one distance does so while the
+/// robot stays there.
+inline constexpr std::size_t kPhantomParts = 8, kPhantomPartsNeeded = 6;
+
+/// Share of range_max from which a reading is no surface anyway (matching::far_limit). Derived from there.
+inline constexpr double kNearRangeMax = 0.97;
+
+// --- Poses -----------------------------------------------------------------------------------------------
+
+/// Share of the largest distance from the first pose, from one pose that is looked at to the next. Chosen:
+/// noise of a reference is small against it whatever unit lengths are in.
+inline constexpr double kPoseStep = 0.01;
+/// Steps that a judgement takes. Chosen.
+inline constexpr std::size_t kFewestPoseSteps = 30;
+/// Share of the way that goes sideways: of poses that contradict their heading, and of those that follow it.
+/// Derived: 0.64 where heading and way have nothing to do with each other; wheels slip by a few per cent, and
+/// a marker beside the middle of the axle moves sideways in turns.
+inline constexpr double kSidewaysAtLeast = 0.4, kSidewaysAtMost = 0.15;
+
+}  // namespace odomcalib::calib::ingest::settings

@@ -1,0 +1,129 @@
+#include "calib/report/one_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "calib/report/report.hpp"
+#include "calib/report/settings.hpp"
+
+namespace odomcalib::calib::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string number(double value, int digits) {
+  std::ostringstream out;
+  out.precision(digits);
+  out << value;
+  return out.str();
+}
+
+bool is_length(Eigen::Index parameter) { return parameter < vehicle::kMountX; }
+
+/// Diameters are stated, radii fitted.
+double factor_of(Eigen::Index parameter) { return parameter < vehicle::kTrackWidth ? 2.0 : 1.0; }
+
+double value_of(const selection::Homogeneity& found, std::size_t recording, Eigen::Index parameter) {
+  return found.own[recording] ? found.own[recording]->value(parameter) : 0.0;
+}
+
+std::string amount(const selection::Homogeneity& found, Eigen::Index parameter, double difference) {
+  if (parameter == vehicle::kMountYaw)
+    return number(std::abs(difference) * 180.0 / math::kPi, 3) + " degrees";
+  if (!is_length(parameter)) return number(1e3 * std::abs(difference), 3) + " mm";
+  const double value = value_of(found, found.recording, parameter);
+  return number(100.0 * std::abs(difference / value), 3) + " % (" +
+         number(1e3 * factor_of(parameter) * std::abs(difference), 3) + " mm)";
+}
+
+/// So large a difference is none that wider deviations could stand for.
+bool is_too_far(const selection::Homogeneity& found, std::size_t recording, Eigen::Index parameter) {
+  const auto row = static_cast<Eigen::Index>(recording);
+  if (!(std::abs(found.sigmas(row, parameter)) > settings::kPlainlyApart)) return false;
+  const double difference = std::abs(found.differences(row, parameter));
+  if (parameter == vehicle::kMountYaw) return difference > settings::kMountApart_rad;
+  if (!is_length(parameter)) return difference > settings::kMountApart_m;
+  return difference > settings::kLengthApart * std::abs(value_of(found, recording, parameter));
+}
+
+bool any_too_far(const selection::Homogeneity& found) {
+  for (std::size_t i = 0; i < found.own.size(); ++i)
+    for (Eigen::Index k = 0; k < found.sigmas.cols(); ++k)
+      if (is_too_far(found, i, k)) return true;
+  return false;
+}
+
+}  // namespace
+
+std::optional<Error> different_robots(std::span<const Recording> recordings) {
+  const Recording* known = nullptr;
+  for (const Recording& recording : recordings) {
+    if (recording.robot.robot_id.empty()) continue;
+    if (known == nullptr) known = &recording;
+    if (recording.robot.robot_id == known->robot.robot_id) continue;
+    return Error{ErrorCode::refused,
+                 "is of robot \"" + recording.robot.robot_id + "\", but " + known->name + " of \"" +
+                     known->robot.robot_id + "\"",
+                 recording.name,
+                 "solve each robot's recordings separately, or say --same-robot where only the name changed"};
+  }
+  return std::nullopt;
+}
+
+std::optional<Apart> recordings_apart(const selection::Homogeneity& found,
+                                      std::span<const Recording> recordings) {
+  if (!(found.p_value < settings::kApartLevel)) return std::nullopt;
+  const auto row = static_cast<Eigen::Index>(found.recording);
+  const double difference = found.differences(row, found.parameter);
+  const std::string what =
+      "the recordings do not agree on one robot: in " + recordings[found.recording].name + " " +
+      base_quantity_names()[static_cast<std::size_t>(found.parameter)] + " is " +
+      amount(found, found.parameter, difference) + (difference > 0.0 ? " larger" : " smaller") +
+      " than in the " + (recordings.size() > 2 ? "others" : "other") + ", " +
+      number(std::abs(found.sigmas(row, found.parameter)), 3) + " deviations";
+  if (any_too_far(found))
+    return Apart{true, what +
+                           "; solve recordings of different robots, or of one before and after a change of "
+                           "tyres, load or lidar, separately"};
+  return Apart{false,
+               what +
+                   "; the stated deviations are widened by what lies between recordings; if tyres, load "
+                   "or floor changed, solve them separately"};
+}
+
+void store_homogeneity(const selection::Homogeneity& found, std::span<const Recording> recordings,
+                       Calibration& calibration) {
+  const std::vector<std::string> names = base_quantity_names();
+  Json all = Json::array();
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    Json one = {{"file", recordings[i].name}, {"robot_id", recordings[i].robot.robot_id}};
+    Json parameters = nullptr, deviation = Json::object();
+    if (found.own[i]) {
+      parameters = Json::object();
+      for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(names.size()); ++k) {
+        const double variance = found.own[i]->covariance(k, k);
+        if (!(variance > 0.0)) continue;
+        const std::string& name = names[static_cast<std::size_t>(k)];
+        parameters[name] = {{"value", factor_of(k) * found.own[i]->value(k)},
+                            {"std", factor_of(k) * std::sqrt(variance)}};
+        deviation[name] = found.sigmas(static_cast<Eigen::Index>(i), k);
+      }
+    }
+    one["parameters"] = std::move(parameters);
+    one["clock"] = nullptr;
+    one["deviation"] = std::move(deviation);
+    all.push_back(std::move(one));
+  }
+  calibration.extensions["recordings"] = all.dump();
+  calibration.extensions["homogeneity"] =
+      Json{{"p_value", found.p_value},
+           {"worst",
+            {{"recording", recordings[found.recording].name},
+             {"parameter", names[static_cast<std::size_t>(found.parameter)]},
+             {"sigmas", found.sigmas(static_cast<Eigen::Index>(found.recording), found.parameter)}}}}
+          .dump();
+}
+
+}  // namespace odomcalib::calib::report

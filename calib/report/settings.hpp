@@ -1,0 +1,63 @@
+// Numbers that decide about the verdict, each once, with its unit and its origin: derived (from what),
+// published (source), measured (where), chosen (for what reason).
+#pragma once
+
+namespace odomcalib::calib::report::settings {
+
+// --- Lengths -----------------------------------------------------------------------------------------------
+
+/// Relative deviation of a length that is no calibration any more, and of one to warn of. Chosen.
+inline constexpr double kMaxRelativeDeviation = 0.03;
+inline constexpr double kWarnRelativeDeviation = 0.005;
+/// Estimate over nominal value, of what cannot be the length that it is called. Chosen.
+inline constexpr double kPlausibleLow = 0.5, kPlausibleHigh = 2.0;
+/// Relative difference from the nominal value to warn of. Chosen.
+inline constexpr double kWarnChange = 0.10;
+
+// --- Pairs of scans or poses
+// --------------------------------------------------------------------------------
+
+/// Share of the pairs that matched: of fewer the rest may say something else. Chosen.
+inline constexpr double kFewestMatched = 0.1, kWarnMatched = 0.5;
+/// Share of the pairs that contradict all others by more than five deviations, of a recording that a second
+/// look is worth. Measured: below 0.1 % in sound simulated recordings, 1 to 5 % in real ones.
+inline constexpr double kManyContradict = 0.1;
+/// The same, of a fit that describes one part of the recording and not the other. Chosen.
+inline constexpr double kTooManyContradict = 0.25;
+
+// --- Figures of what odometry is off by
+// ---------------------------------------------------------------------
+
+/// Times the noise: most of the error has another cause. Chosen.
+inline constexpr double kWarnResidual = 2.0;
+/// Times the nominal values' error, of an error that has not become smaller. Chosen.
+inline constexpr double kNoBetter = 1.0;
+/// Times the noise, of an error with the nominal values that there was something to gain from. Chosen: 1.2 is
+/// what a metre of the MinesRover recordings shows.
+inline constexpr double kWorthGaining = 1.2;
+/// m per metre, rad per metre and rad per turn, of odometry that is still off whatever the noise is. Chosen:
+/// two per cent, a degree, two degrees.
+inline constexpr double kMetreOff_m = 0.02, kMetreOff_rad = 0.0175, kTurnOff_rad = 0.035;
+
+// --- Agreement
+// ----------------------------------------------------------------------------------------------
+
+/// Deviations, and share of the length, by which the closed form and the joint fit differ. Measured: 1.3
+/// deviations and 0.1 % in sound simulated recordings; 2 deviations in real ones.
+inline constexpr double kEstimatorsApart = 6.0, kEstimatorsApartShare = 0.005;
+/// Runs test, standard normal, of residuals that come in long rows of one sign. Measured: -2.8 to 4 in sound
+/// recordings.
+inline constexpr double kTooFewRuns = -5.0;
+
+// --- Several recordings
+// ---------------------------------------------------------------------------------------
+
+/// Level of the test of homogeneity. Chosen: one in a thousand sets of recordings of one robot is told apart.
+inline constexpr double kApartLevel = 1e-3;
+/// Deviations of a single difference that is no chance. Chosen.
+inline constexpr double kPlainlyApart = 4.0;
+/// Share of a length, m and rad of the lidar's place: differences beyond are refused, smaller ones widen the
+/// deviations. Chosen: the first is what the verdict warns of where a length is not known better.
+inline constexpr double kLengthApart = kWarnRelativeDeviation, kMountApart_m = 0.01, kMountApart_rad = 0.02;
+
+}  // namespace odomcalib::calib::report::settings

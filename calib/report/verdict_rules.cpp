@@ -1,0 +1,393 @@
+#include "calib/report/verdict_rules.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <optional>
+#include <sstream>
+
+#include "calib/classical/length_factor.hpp"
+#include "calib/classical/sign_check.hpp"
+#include "calib/report/settings.hpp"
+#include "calib/selection/drive_error.hpp"
+
+namespace odomcalib::calib::report {
+namespace {
+
+using Objections = std::vector<Objection>;
+
+Objection refusal(const std::string& reason) { return {true, reason}; }
+Objection warning(const std::string& reason) { return {false, reason}; }
+
+std::string number(double value, int digits) {
+  std::ostringstream out;
+  out << std::setprecision(digits) << value;
+  return out.str();
+}
+
+std::string percent(double share) { return number(100.0 * share, 3) + " %"; }
+
+std::string degrees(double angle) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(0) << angle * 180.0 / math::kPi << " degrees";
+  return out.str();
+}
+
+std::string times(double ratio) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(1) << ratio << " times";
+  return out.str();
+}
+
+// --- What odometry is off by -------------------------------------------------------------------------------
+
+struct DriveFigure {
+  const char* name;
+  const char* words;
+  double largest;  ///< m or rad, of odometry that is not off
+};
+
+constexpr std::array kDriveFigures = {
+    DriveFigure{"straight_metre_length", "the length of a straight metre", settings::kMetreOff_m},
+    DriveFigure{"straight_metre_heading", "the heading over a straight metre", settings::kMetreOff_rad},
+    DriveFigure{"full_turn_heading", "the heading over a full turn", settings::kTurnOff_rad}};
+
+const DriveError* error_of(const Footing& footing, const char* name) {
+  for (const DriveError& error : footing.drive_errors)
+    if (error.name == name) return &error;
+  return nullptr;
+}
+
+std::string amount(const DriveError& error, double value) {
+  return error.unit == "rad" ? number(value * 180.0 / math::kPi, 3) + " degrees"
+                             : number(1e3 * value, 3) + " mm";
+}
+
+bool is_no_better(const DriveError& error) {
+  if (!error.before || !error.after || !error.noise_floor) return false;
+  return error.after->value >= settings::kNoBetter * error.before->value &&
+         error.before->value > settings::kWorthGaining * *error.noise_floor;
+}
+
+Objections no_better_than_before(const Calibration&, const Footing& footing) {
+  Objections found;
+  for (const DriveError& error : footing.drive_errors) {
+    const auto words = std::find_if(kDriveFigures.begin(), kDriveFigures.end(),
+                                    [&](const DriveFigure& figure) { return figure.name == error.name; });
+    if (!is_no_better(error)) continue;
+    found.push_back(
+        warning((words == kDriveFigures.end() ? "odometry over ten seconds" : std::string(words->words)) +
+                " is no better than before on data that was not fitted: off by " +
+                amount(error, error.before->value) + " with the nominal values, by " +
+                amount(error, error.after->value) +
+                " now; keep the old values unless something else speaks for the new ones"));
+  }
+  return found;
+}
+
+Objections still_off(const Calibration&, const Footing& footing) {
+  Objections found;
+  for (const DriveFigure& figure : kDriveFigures) {
+    const DriveError* error = error_of(footing, figure.name);
+    if (error == nullptr || !error->after || !(error->after->low > figure.largest)) continue;
+    found.push_back(warning(std::string(figure.words) + " is still off by " +
+                            amount(*error, error->after->value) +
+                            " on data that was not fitted: look for slip, loose wheels and what moves the "
+                            "lidar before this is relied on"));
+  }
+  return found;
+}
+
+/// The error over ten seconds where it is more than noise explains; null otherwise.
+const DriveError* excessive(const std::vector<DriveError>& errors) {
+  const DriveError* error = selection::open_loop_position(errors);
+  if (error == nullptr || !error->after || !error->noise_floor) return nullptr;
+  const double floor = *error->noise_floor;
+  return error->after->value > settings::kWarnResidual * floor && error->after->low > floor ? error : nullptr;
+}
+
+/// What loses counts or slips now and then leaves most pairs clean, and adds up on the way.
+Objections odometry_off(const Calibration&, const Footing& footing) {
+  const DriveError* error = excessive(footing.drive_errors);
+  if (error == nullptr) return {};
+  return {warning("odometry over ten seconds is off by " + times(error->after->value / *error->noise_floor) +
+                  " the noise floor: something moves the robot that the counts do not show; look for counts "
+                  "that get lost, slip, and what touches the robot")};
+}
+
+// --- Lengths ---------------------------------------------------------------------------------------------
+
+struct Length {
+  std::string name;
+  Quantity quantity;
+  double nominal = 0.0;
+  double measured = 0.0;  ///< relative deviation that the motion leaves
+  [[nodiscard]] double relative() const { return quantity.std / std::abs(quantity.value); }
+  [[nodiscard]] bool is_determined() const {
+    return quantity.std >= 0.0 && !(measured > settings::kMaxRelativeDeviation);
+  }
+  [[nodiscard]] bool is_positive() const { return std::isfinite(quantity.value) && quantity.value > 0.0; }
+};
+
+double nominal_value(const RobotDescription& robot, const std::string& name) {
+  if (name == "left_wheel_diameter") return robot.left_wheel_diameter;
+  if (name == "right_wheel_diameter") return robot.right_wheel_diameter;
+  return robot.track_width;
+}
+
+std::optional<double> relative_deviation(const QuantityList& quantities, const std::string& name) {
+  for (const auto& [own, quantity] : quantities)
+    if (own == name) return quantity.std / std::abs(quantity.value);
+  return std::nullopt;
+}
+
+std::vector<Length> lengths_of(const Calibration& calibration, const Footing& footing) {
+  std::vector<Length> lengths;
+  for (const auto& [name, quantity] : calibration.parameters) {
+    if (name.starts_with("lidar_")) continue;
+    Length length{name, quantity, nominal_value(calibration.robot, name)};
+    length.measured = relative_deviation(footing.measured, name).value_or(length.relative());
+    lengths.push_back(length);
+  }
+  return lengths;
+}
+
+std::string motion_for(const std::string& name) {
+  if (name == "track_width") return "turn on the spot, both ways";
+  return "drive straight lines, forward and backward, and turn on the spot";
+}
+
+/// Of a length that the motion does not determine its value says nothing.
+Objections undetermined_lengths(const std::vector<Length>& lengths) {
+  Objections found;
+  for (const Length& length : lengths) {
+    if (length.is_determined()) continue;
+    const std::string how = length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
+                                                  : "is not determined";
+    found.push_back(refusal(length.name + " " + how + "; to fix that, " + motion_for(length.name)));
+  }
+  return found;
+}
+
+/// The joint fit starts at the nominal heading of the lidar: of one that looks backwards all lengths are
+/// negative.
+Objections negative_lengths(const std::vector<Length>& lengths) {
+  const auto negative = [](const Length& length) { return !length.is_positive(); };
+  if (lengths.size() == 3 && std::all_of(lengths.begin(), lengths.end(), negative))
+    return {
+        refusal("the reference looks backwards by what lidar_pose says (by their yaw, of poses): all lengths "
+                "come out negative, which half a turn puts right; correct that yaw by 3.14 rad, or, if it "
+                "is right, the left and right counts are exchanged and both wheels count backwards")};
+  Objections found;
+  for (const Length& length : lengths)
+    if (negative(length))
+      found.push_back(refusal(length.name +
+                              " came out as a non-positive length: left and right wheels may be swapped, or "
+                              "the lidar's direction of rotation is wrong"));
+  return found;
+}
+
+Objection objection_to(const classical::Cause& cause, bool refuses) {
+  return {refuses, cause.what + "; " + cause.remedy};
+}
+
+bool is_implausible(const Length& length) {
+  const double ratio = length.quantity.value / length.nominal;
+  return length.nominal > 0.0 && (ratio < settings::kPlausibleLow || ratio > settings::kPlausibleHigh);
+}
+
+/// One number that is wrong shows in several lengths.
+std::optional<Objection> common_factor(const Calibration& calibration, const Footing& footing,
+                                       const std::vector<Length>& lengths) {
+  if (lengths.size() != 3 || !(calibration.robot.left_wheel_diameter > 0.0)) return std::nullopt;
+  classical::LengthRatios ratios;
+  for (const Length& length : lengths) {
+    if (!length.is_determined() || !length.is_positive() || !(length.nominal > 0.0)) return std::nullopt;
+    const double ratio = length.quantity.value / length.nominal;
+    if (length.name == "left_wheel_diameter")
+      ratios.left = ratio;
+    else if (length.name == "right_wheel_diameter")
+      ratios.right = ratio;
+    else
+      ratios.track = ratio;
+  }
+  const auto cause = cause_of_ratios(ratios, calibration.robot, footing.of_poses);
+  if (!cause) return std::nullopt;
+  return objection_to(*cause, std::any_of(lengths.begin(), lengths.end(), is_implausible));
+}
+
+std::optional<Objection> objection_to_deviation(const Length& length) {
+  if (length.measured > settings::kWarnRelativeDeviation)
+    return warning(length.name + " is determined to " + percent(length.measured) +
+                   " only; a longer recording would help");
+  if (length.relative() > settings::kWarnRelativeDeviation)
+    return warning(length.name + " without what was found is known to " + percent(length.relative()) +
+                   " only: how that goes on where it was not seen, this recording does not tell");
+  return std::nullopt;
+}
+
+std::optional<Objection> objection_to_change(const Length& length) {
+  if (!(length.nominal > 0.0)) return std::nullopt;
+  const double ratio = length.quantity.value / length.nominal;
+  if (is_implausible(length))
+    return refusal(length.name + " is " + percent(ratio) +
+                   " of its nominal value: check ticks per revolution, gear ratio and units");
+  if (std::abs(ratio - 1.0) > settings::kWarnChange)
+    return warning(length.name + " differs from its nominal value by " + percent(ratio - 1.0));
+  return std::nullopt;
+}
+
+/// In the order of the parameters: what a length is not, how well it is known, how far it is from nominal.
+Objections lengths(const Calibration& calibration, const Footing& footing) {
+  const std::vector<Length> all = lengths_of(calibration, footing);
+  if (Objections found = undetermined_lengths(all); !found.empty()) return found;
+  if (Objections found = negative_lengths(all); !found.empty()) return found;
+  const auto factor = common_factor(calibration, footing, all);
+  Objections found;
+  if (factor) found.push_back(*factor);
+  for (const Length& length : all) {
+    if (const auto objection = objection_to_deviation(length)) found.push_back(*objection);
+    if (factor) continue;
+    if (const auto objection = objection_to_change(length)) found.push_back(*objection);
+  }
+  return found;
+}
+
+/// Both may be right: what is called front decides.
+Objections lidar_yaw(const Calibration& calibration, const Footing&) {
+  const auto yaw = calibration.parameter("lidar_yaw");
+  if (!yaw || !calibration.robot.lidar_pose) return {};
+  const double apart = math::wrap_angle(*yaw - (*calibration.robot.lidar_pose)[2]);
+  if (!(std::abs(apart) > classical::kFarYaw)) return {};
+  return {warning("lidar_yaw differs from its nominal value by " + degrees(apart) +
+                  ": correct lidar_pose, or check which end of the robot counts forward")};
+}
+
+// --- Recordings
+// ----------------------------------------------------------------------------------------------
+
+Objections recordings_disagree(const Calibration&, const Footing& footing) {
+  if (!footing.recordings_apart) return {};
+  return {{footing.recordings_apart->refuses, footing.recordings_apart->reason}};
+}
+
+// --- Pairs -------------------------------------------------------------------------------------------------
+
+Objections unmatched_pairs(const Calibration&, const Footing& footing) {
+  const auto all = static_cast<double>(footing.matched + footing.unmatched);
+  const auto matched = static_cast<double>(footing.matched);
+  const std::string finding =
+      "only " + std::to_string(footing.matched) + " of " +
+      std::to_string(footing.matched + footing.unmatched) +
+      " pairs of scans could be matched; drive where the lidar sees walls on all sides";
+  if (matched < settings::kFewestMatched * all) return {refusal(finding)};
+  if (matched < settings::kWarnMatched * all) return {warning(finding)};
+  return {};
+}
+
+Objections contradicting_pairs(const Calibration&, const Footing& footing) {
+  const auto outliers = static_cast<double>(footing.outliers);
+  if (!(outliers > settings::kTooManyContradict * static_cast<double>(footing.pairs))) return {};
+  return {refusal(std::to_string(footing.outliers) + " of " + std::to_string(footing.pairs) +
+                  " measured motions contradict what the others say of the wheels: one set of lengths does "
+                  "not describe this robot; check counts that get lost, slip, and time stamps, and record "
+                  "again")};
+}
+
+Objections residual_beyond_noise(const Calibration& calibration, const Footing&) {
+  const ResidualReport& residual = calibration.residual;
+  if (!residual.after || !residual.noise_floor) return {};
+  constexpr std::array kComponents = {"in x of the sensor", "in y of the sensor", "in yaw"};
+  Objections found;
+  for (std::size_t i = 0; i < kComponents.size(); ++i) {
+    const double ratio = (*residual.after)[i] / (*residual.noise_floor)[i];
+    if (ratio > settings::kWarnResidual)
+      found.push_back(warning("the residual " + std::string(kComponents[i]) + " is " + times(ratio) +
+                              " the noise floor: something was not found, and the stated deviations may be "
+                              "too small"));
+  }
+  return found;
+}
+
+// --- Agreement ---------------------------------------------------------------------------------------------
+
+const MethodResult* method(const Calibration& calibration, const char* name) {
+  for (const MethodResult& one : calibration.methods)
+    if (one.name == name && !one.refused) return &one;
+  return nullptr;
+}
+
+/// The closed form knows no effects: with some in the model both may be right.
+Objections estimators_apart(const Calibration& calibration, const Footing&) {
+  const MethodResult* closed = method(calibration, "joint_closed_form");
+  const MethodResult* joint = method(calibration, "joint");
+  if (closed == nullptr || joint == nullptr || !calibration.effects.empty()) return {};
+  Objections found;
+  for (const auto& [name, ours] : joint->parameters)
+    for (const auto& [other, theirs] : closed->parameters) {
+      if (name != other || name.starts_with("lidar_")) continue;
+      const double apart = theirs.value - ours.value, sigma = std::hypot(ours.std, theirs.std);
+      if (std::abs(apart) > settings::kEstimatorsApart * sigma &&
+          std::abs(apart) > settings::kEstimatorsApartShare * std::abs(ours.value))
+        found.push_back(warning("two estimators disagree on " + name + ": the closed form is " +
+                                percent(apart / ours.value) + " away, " + number(std::abs(apart) / sigma, 3) +
+                                " of their common deviations; part of the recording says something else"));
+    }
+  return found;
+}
+
+Objections residual_in_rows(const Calibration& calibration, const Footing& footing) {
+  if (!calibration.effects.empty() || calibration.unexplained) return {};
+  for (const ResidualAxis& axis : footing.axes)
+    if (axis.runs < settings::kTooFewRuns)
+      return {warning("the residual in " + axis.name + " keeps its sign for long (runs test " +
+                      number(axis.runs, 3) +
+                      "): something that was not found acts for a while; the stated deviations may be too "
+                      "small")};
+  return {};
+}
+
+/// The reader of the verdict sees that something is left without a name.
+Objections something_unexplained(const Calibration& calibration, const Footing&) {
+  if (!calibration.unexplained) return {};
+  std::string variables;
+  for (const std::string& one : calibration.unexplained->depends_on)
+    variables += (variables.empty() ? "" : ", ") + one;
+  return {warning("part of the residual depends on " + variables +
+                  " and has no name: lengths hold for motion like the recorded one")};
+}
+
+Objections remarks(const Calibration&, const Footing& footing) {
+  Objections found;
+  for (const std::string& remark : footing.remarks) found.push_back(warning(remark));
+  return found;
+}
+
+Objections unsettled_fit(const Calibration&, const Footing& footing) {
+  if (footing.converged) return {};
+  return {warning("the fit had not settled when its iterations ran out")};
+}
+
+constexpr std::array kRules = {VerdictRule{"no_better_than_before", no_better_than_before},
+                               VerdictRule{"recordings_disagree", recordings_disagree},
+                               VerdictRule{"lengths", lengths},
+                               VerdictRule{"lidar_yaw", lidar_yaw},
+                               VerdictRule{"unmatched_pairs", unmatched_pairs},
+                               VerdictRule{"contradicting_pairs", contradicting_pairs},
+                               VerdictRule{"residual_beyond_noise", residual_beyond_noise},
+                               VerdictRule{"odometry_off", odometry_off},
+                               VerdictRule{"still_off", still_off},
+                               VerdictRule{"estimators_apart", estimators_apart},
+                               VerdictRule{"residual_in_rows", residual_in_rows},
+                               VerdictRule{"something_unexplained", something_unexplained},
+                               VerdictRule{"remarks", remarks},
+                               VerdictRule{"unsettled_fit", unsettled_fit}};
+
+}  // namespace
+
+std::span<const VerdictRule> verdict_rules() { return kRules; }
+
+bool odometry_is_off(const std::vector<DriveError>& errors) { return excessive(errors) != nullptr; }
+
+}  // namespace odomcalib::calib::report

@@ -1,0 +1,178 @@
+#include "calib/selection/homogeneity.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+namespace odomcalib::calib::selection {
+namespace {
+
+constexpr Eigen::Index kBase = vehicle::kBaseCount;
+
+/// Effects keep the size that all recordings give them; the clock is each recording's own.
+std::vector<bool> fixed_of_one(const FitTask& task, const FittedModel& model) {
+  std::vector<bool> fixed = task.fixed(model.effects);
+  for (std::size_t e = 0; e < model.effects.size(); ++e) {
+    if (model.effects[e]->clock_part() == vehicle::ClockPart::offset) continue;
+    const auto first = static_cast<std::size_t>(first_parameter(model.effects, e));
+    for (std::size_t k = 0; k < model.effects[e]->parameters().size(); ++k) fixed[first + k] = true;
+  }
+  return fixed;
+}
+
+std::optional<OwnEstimate> own_estimate(const FitTask& task, const FittedModel& model, std::size_t recording,
+                                        double metre) {
+  estimation::FitOptions options;
+  options.fixed = fixed_of_one(task, model);
+  const auto fit = fit_joint(task.data.subspan(recording, 1), model.effects, model.fit.parameters, options);
+  if (!fit) return std::nullopt;
+  OwnEstimate own{fit.value().parameters.head(kBase), fit.value().covariance.topLeftCorner(kBase, kBase)};
+  Eigen::VectorXd lengths = own.value;
+  lengths(vehicle::kMountYaw) = 0.0;
+  for (Eigen::Index k = 0; k < kBase; ++k)
+    if (!(own.covariance(k, k) > 0.0)) lengths(k) = 0.0;
+  own.covariance += metre * metre * lengths * lengths.transpose();
+  return own;
+}
+
+/// Parameters that are estimated at all.
+std::vector<Eigen::Index> free_parameters(const FitTask& task) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index k = 0; k < kBase; ++k)
+    if (!task.base_fixed[static_cast<std::size_t>(k)]) free.push_back(k);
+  return free;
+}
+
+/// Several estimates as one, weighted by their inverse covariances.
+class Pool {
+ public:
+  explicit Pool(Eigen::Index size)
+      : information_(Eigen::MatrixXd::Zero(size, size)), weighted_(Eigen::VectorXd::Zero(size)) {}
+  void add(const Eigen::VectorXd& value, const Eigen::MatrixXd& covariance) {
+    const Eigen::MatrixXd weight = inverse_of(covariance);
+    information_ += weight;
+    weighted_ += weight * value;
+  }
+  [[nodiscard]] Eigen::VectorXd value() const { return covariance() * weighted_; }
+  [[nodiscard]] Eigen::MatrixXd covariance() const { return inverse_of(information_); }
+
+  /// Units of the parameters differ by orders of magnitude.
+  static Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
+    const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
+    return scale.asDiagonal() * scaled.ldlt().solve(identity) * scale.asDiagonal();
+  }
+
+ private:
+  Eigen::MatrixXd information_;
+  Eigen::VectorXd weighted_;
+};
+
+struct Reduced {
+  std::size_t recording;
+  Eigen::VectorXd value;
+  Eigen::MatrixXd covariance;
+};
+
+std::vector<Reduced> reduced(const std::vector<std::optional<OwnEstimate>>& own,
+                             const std::vector<Eigen::Index>& free) {
+  std::vector<Reduced> all;
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (own[i]) all.push_back({i, own[i]->value(free), own[i]->covariance(free, free)});
+  return all;
+}
+
+double cochran(const std::vector<Reduced>& estimates) {
+  Pool pool(estimates.front().value.size());
+  for (const Reduced& one : estimates) pool.add(one.value, one.covariance);
+  const Eigen::VectorXd mean = pool.value();
+  double sum = 0.0;
+  for (const Reduced& one : estimates) {
+    const Eigen::VectorXd apart = one.value - mean;
+    sum += apart.dot(Pool::inverse_of(one.covariance) * apart);
+  }
+  return sum;
+}
+
+void compare_with_others(const std::vector<Reduced>& estimates, const std::vector<Eigen::Index>& free,
+                         Homogeneity& found) {
+  for (const Reduced& one : estimates) {
+    Pool others(one.value.size());
+    for (const Reduced& other : estimates)
+      if (other.recording != one.recording) others.add(other.value, other.covariance);
+    const Eigen::VectorXd apart = one.value - others.value();
+    const Eigen::VectorXd variance = one.covariance.diagonal() + others.covariance().diagonal();
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(one.recording);
+      const auto own = static_cast<Eigen::Index>(k);
+      found.differences(row, free[k]) = apart(own);
+      found.sigmas(row, free[k]) = apart(own) / std::sqrt(variance(own));
+    }
+  }
+}
+
+void name_worst(const std::vector<std::string>& names, Homogeneity& found) {
+  constexpr double kAlike = 1e-6;  // of two recordings each is as far from the other
+  double most = 0.0;
+  for (Eigen::Index i = 0; i < found.sigmas.rows(); ++i)
+    for (Eigen::Index k = 0; k < kBase; ++k) {
+      const double size = std::abs(found.sigmas(i, k));
+      const auto here = static_cast<std::size_t>(i);
+      const bool more = size > most * (1.0 + kAlike);
+      const bool alike = size > most * (1.0 - kAlike) && names[here] > names[found.recording];
+      if (!more && !(alike && size > 0.0)) continue;
+      most = std::max(most, size);
+      found.recording = here;
+      found.parameter = k;
+    }
+}
+
+/// Beyond what the recordings' own deviations make, of one parameter.
+double variance_between(const std::vector<Reduced>& estimates, Eigen::Index parameter) {
+  double weights = 0.0, squares = 0.0, weighted = 0.0;
+  for (const Reduced& one : estimates) {
+    const double w = 1.0 / one.covariance(parameter, parameter);
+    weights += w;
+    squares += w * w;
+    weighted += w * one.value(parameter);
+  }
+  const double mean = weighted / weights;
+  double q = 0.0;
+  for (const Reduced& one : estimates)
+    q += (one.value(parameter) - mean) * (one.value(parameter) - mean) / one.covariance(parameter, parameter);
+  const double spare = weights - squares / weights;
+  return spare > 0.0 ? std::max(0.0, (q - static_cast<double>(estimates.size() - 1)) / spare) : 0.0;
+}
+
+double p_value_of(double q, double freedom) {
+  if (!(q > 0.0) || !std::isfinite(q)) return 1.0;
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), q));
+}
+
+}  // namespace
+
+std::optional<Homogeneity> homogeneity(const FitTask& task, const FittedModel& model, double metre,
+                                       const std::vector<std::string>& names) {
+  Homogeneity found;
+  for (std::size_t i = 0; i < task.data.size(); ++i) found.own.push_back(own_estimate(task, model, i, metre));
+  const std::vector<Eigen::Index> free = free_parameters(task);
+  const std::vector<Reduced> estimates = reduced(found.own, free);
+  if (estimates.size() < 2) return std::nullopt;
+  const auto recordings = static_cast<Eigen::Index>(task.data.size());
+  found.sigmas = found.differences = Eigen::MatrixXd::Zero(recordings, kBase);
+  compare_with_others(estimates, free, found);
+  name_worst(names, found);
+  const auto tests = static_cast<double>(estimates.size() * free.size());
+  const double worst = std::abs(found.sigmas(static_cast<Eigen::Index>(found.recording), found.parameter));
+  const double of_worst = std::min(1.0, tests * std::erfc(worst / std::sqrt(2.0)));
+  const auto freedom = static_cast<double>((estimates.size() - 1) * free.size());
+  found.p_value = std::min(1.0, 2.0 * std::min(of_worst, p_value_of(cochran(estimates), freedom)));
+  found.between = Eigen::VectorXd::Zero(kBase);
+  for (std::size_t k = 0; k < free.size(); ++k)
+    found.between(free[k]) = variance_between(estimates, static_cast<Eigen::Index>(k));
+  return found;
+}
+
+}  // namespace odomcalib::calib::selection
