@@ -222,7 +222,7 @@ Error RecordingBuilder::nothing_usable(const std::string& where) const {
       return wrong_dates(key.first, count, unit, where);
   const auto most = std::max_element(discarded_.begin(), discarded_.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
-  const std::string what = "no usable ticks, scans, poses or increments";
+  const std::string what = "no usable wheel motion, scans, poses or increments";
   if (most == discarded_.end())
     return {ErrorCode::empty, what, where, "check that the recording was running while the robot moved"};
   const auto& [name, reason] = most->first;
