@@ -72,7 +72,7 @@ class Adjustment {
 
   void enter(const RangeTerm& term, std::size_t wall, double weight, ScanTerms& terms) {
     const Eigen::Index at = 2 * static_cast<Eigen::Index>(wall);
-    const RangeLaw by_range = -by_coefficient(term.sighting);
+    const RangeErrorTerms by_range = -by_coefficient(term.sighting);
     const Eigen::Vector3d pose = weight * term.by_pose;
     terms.pose += pose * term.by_pose.transpose();
     terms.gradient += pose * term.residual;

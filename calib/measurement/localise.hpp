@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "calib/measurement/range_law.hpp"
+#include "calib/measurement/range_error_terms.hpp"
 #include "calib/measurement/wall_map.hpp"
 
 namespace odomcalib::calib::measurement {
@@ -14,7 +14,7 @@ struct PlaceOptions {
   double range_noise = 0.01;  ///< m
   double gate = 0.3;          ///< m, largest difference of a range from what the map expects
   int iterations = 12;
-  RangeLaw range_error = RangeLaw::Zero();  ///< taken out of every reading
+  RangeErrorTerms range_error = RangeErrorTerms::Zero();  ///< taken out of every reading
   /// m, where the sensor gives up; 0: nobody knows. Of walls near it only the readings come through that
   /// noise has shortened.
   double range_max = 0.0;

@@ -6,11 +6,11 @@
 
 #include "calib/ingest/tick_stamps.hpp"
 #include "calib/odometry/drive_clock.hpp"
-#include "calib/selection/tracing_json.hpp"
+#include "calib/selection/selection_json.hpp"
 #include "calib/terms/catalogue.hpp"
-#include "calib/terms/curve_effect.hpp"
 #include "calib/terms/effects/reference_effect.hpp"
 #include "calib/terms/lidar_effect.hpp"
+#include "calib/terms/smooth_term_effect.hpp"
 #include "calib/vehicle/drive_history.hpp"
 #include "calib/vehicle/drive_model.hpp"
 #include "calib/vehicle/step_context.hpp"
@@ -31,12 +31,12 @@ double value_or(const Calibration& calibration, const std::string& name, double 
 }
 
 /// What goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
-bool carries_over(const selection::FittedCurve& fitted) {
-  const terms::Curve& curve = fitted.curve;
-  if (make_curve_effect(curve)->carries_over()) return true;
-  const auto named = terms::find_effect(fitted.law_of);
-  return named && named->carries_over() && curve.law.variable == vehicle::Variable::time &&
-         !is_the_lidars(curve);
+bool carries_over(const selection::FittedSmoothTerm& fitted) {
+  const terms::SmoothTerm& smooth = fitted.smooth;
+  if (make_smooth_term_effect(smooth)->carries_over()) return true;
+  const auto named = terms::find_effect(fitted.named_term);
+  return named && named->carries_over() && smooth.dependence.covariate == vehicle::Covariate::time &&
+         !is_the_lidars(smooth);
 }
 
 /// What belongs to the place or the day would make odometry worse elsewhere and tomorrow; an error of the
@@ -51,8 +51,8 @@ Place place_of(const vehicle::Effect& effect, const vehicle::EffectParameter& pa
   return parameter.of_wheels ? Place::odometry : place_of(effect);
 }
 
-Place place_of(const selection::FittedCurve& fitted) {
-  return carries_over(fitted) ? Place::odometry : place_of(*make_curve_effect(fitted.curve));
+Place place_of(const selection::FittedSmoothTerm& fitted) {
+  return carries_over(fitted) ? Place::odometry : place_of(*make_smooth_term_effect(fitted.smooth));
 }
 
 /// @param parameter name of one, as a file states it
@@ -84,13 +84,13 @@ std::vector<double> values_of(const EffectResult& result,
   return values;
 }
 
-std::vector<selection::FittedCurve> curves_of(const Calibration& calibration) {
-  const auto member = calibration.extensions.find(selection::kCurvesMember);
-  return member == calibration.extensions.end() ? std::vector<selection::FittedCurve>{}
-                                                : selection::curves_from_json(member->second);
+std::vector<selection::FittedSmoothTerm> smooths_of(const Calibration& calibration) {
+  const auto member = calibration.extensions.find(selection::kSmoothTermsMember);
+  return member == calibration.extensions.end() ? std::vector<selection::FittedSmoothTerm>{}
+                                                : selection::smooth_terms_from_json(member->second);
 }
 
-/// A curve of time is about its mean: where the time is not known, nothing is better known than that.
+/// A smooth term of time is about its mean: where the time is not known, nothing is better known than that.
 Correction correction_of(const Calibration& calibration, const DriveClock& clock) {
   wheels::BaseParameters base;
   base.left_radius =
@@ -108,10 +108,10 @@ Correction correction_of(const Calibration& calibration, const DriveClock& clock
     const std::vector<double> own = values_of(result, effect);
     values.insert(values.end(), own.begin(), own.end());
   }
-  for (const selection::FittedCurve& fitted : curves_of(calibration)) {
+  for (const selection::FittedSmoothTerm& fitted : smooths_of(calibration)) {
     if (place_of(fitted) != Place::odometry) continue;
-    if (fitted.curve.law.variable == vehicle::Variable::time && !clock.is_known()) continue;
-    correction.effects.push_back(make_curve_effect(fitted.curve));
+    if (fitted.smooth.dependence.covariate == vehicle::Covariate::time && !clock.is_known()) continue;
+    correction.effects.push_back(make_smooth_term_effect(fitted.smooth));
     values.insert(values.end(), fitted.coefficients.begin(), fitted.coefficients.end());
   }
   correction.parameters =
@@ -129,9 +129,9 @@ std::vector<Placement> effect_placements(const Calibration& calibration) {
     for (const auto& [name, quantity] : result.parameters)
       placements.push_back({result.name, name, quantity, effect ? place_of(*effect, name) : otherwise});
   }
-  for (const selection::FittedCurve& fitted : curves_of(calibration)) {
+  for (const selection::FittedSmoothTerm& fitted : smooths_of(calibration)) {
     const Quantity count{static_cast<double>(fitted.coefficients.size()), -1.0, "coefficients"};
-    placements.push_back({make_curve_effect(fitted.curve)->name(), "", count, place_of(fitted)});
+    placements.push_back({make_smooth_term_effect(fitted.smooth)->name(), "", count, place_of(fitted)});
   }
   return placements;
 }

@@ -19,12 +19,12 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
 enum class Place { odometry, reference, nowhere };
 
 struct Placement {
-  std::string effect;     ///< as in the calibration file, or "curve of ... on ..."
-  std::string parameter;  ///< empty for a curve
+  std::string effect;     ///< as in the calibration file, or "smooth term of ... on ..."
+  std::string parameter;  ///< empty for a smooth term
   Quantity quantity;
   Place place = Place::odometry;
 };
-/// Every value of every effect and curve of the calibration, in the order of the file.
+/// Every value of every effect and smooth term of the calibration, in the order of the file.
 std::vector<Placement> effect_placements(const Calibration& calibration);
 
 /// Names of effects in the file that this program cannot compensate, because it does not know them or not

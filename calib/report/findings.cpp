@@ -17,14 +17,14 @@
 #include "calib/selection/event_text.hpp"
 #include "calib/selection/held_out.hpp"
 #include "calib/selection/lidar_report.hpp"
-#include "calib/selection/metre.hpp"
 #include "calib/selection/outlier_trace.hpp"
-#include "calib/selection/tracing_json.hpp"
+#include "calib/selection/range_scale.hpp"
+#include "calib/selection/selection_json.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
 
-using Curves = std::vector<selection::FittedCurve>;
+using SmoothTerms = std::vector<selection::FittedSmoothTerm>;
 using Outliers = std::optional<selection::OutlierTrace>;
 using PlainFit = std::optional<estimation::FitResult>;
 
@@ -41,7 +41,8 @@ double scale_deviation(const Findings& found) {
   const measurement::Dataset& dataset = found.fit.dataset;
   if (!dataset.reference_is_scans()) return 0.0;
   if (found.every_scan_placed && found.outcome.model.effects.empty() && found.lidar.empty()) return 0.0;
-  return std::hypot(kMatcherScale, selection::metre_in_doubt(found.lidar, dataset.recordings.view()));
+  return std::hypot(kMatcherScale,
+                    selection::range_scale_uncertainty(found.lidar, dataset.recordings.view()));
 }
 
 /// With what was found in all recordings, what each of them says alone.
@@ -71,8 +72,9 @@ BaseEstimate base_estimate(const Findings& found, const Agreement& agreement) {
   if (agreement.apart)
     covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>().diagonal() +=
         agreement.homogeneity->between;
-  for (const Eigen::VectorXd& doubt : found.outcome.doubts)
-    covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>() += doubt * doubt.transpose();
+  for (const Eigen::VectorXd& uncertainty : found.outcome.model_uncertainties)
+    covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>() +=
+        uncertainty * uncertainty.transpose();
   QuantityList stated = base_quantities(base, covariance);
   return {std::move(measured), std::move(stated), std::move(covariance)};
 }
@@ -111,25 +113,25 @@ Outliers outliers_of(const Findings& found) {
   return outliers;
 }
 
-/// Curves without a name; without these, of what was searched, what goes with outliers; and where nothing at
-/// all is told although odometry is plainly off, what failed its proof.
+/// Smooth terms without a name; without these, of what was searched, what goes with outliers; and where
+/// nothing at all is told although odometry is plainly off, what failed its proof.
 std::optional<Unexplained> unexplained(const Findings& found, const Outliers& outliers, bool has_effects,
                                        const std::vector<DriveError>& drive_errors) {
-  if (const auto curves = unnamed_curves(found)) return curves;
+  if (const auto smooths = unnamed_smooths(found)) return smooths;
   if (!found.was_searched) return std::nullopt;
   if (const auto flagged = outliers ? flagged_outliers(*outliers) : std::nullopt) return flagged;
   if (has_effects || !odometry_is_off(drive_errors)) return std::nullopt;
-  return failed_proof(found.outcome);
+  return failed_validation(found.outcome);
 }
 
 /// Members of the file beyond its contract.
-std::map<std::string, std::string> extensions(const Findings& found, const Curves& curves,
+std::map<std::string, std::string> extensions(const Findings& found, const SmoothTerms& smooths,
                                               const Outliers& outliers) {
   std::map<std::string, std::string> members;
-  if (!curves.empty()) members[selection::kCurvesMember] = curves_to_json(curves);
+  if (!smooths.empty()) members[selection::kSmoothTermsMember] = smooth_terms_to_json(smooths);
   if (std::any_of(found.lidar.begin(), found.lidar.end(),
                   [](const auto& f) { return !f.effect->is_named(); }))
-    members[selection::kLidarCurvesMember] = selection::lidar_curves_to_json(found.lidar);
+    members[selection::kLidarSmoothTermsMember] = selection::lidar_smooth_terms_to_json(found.lidar);
   if (outliers) members["outliers"] = to_json(*outliers);
   const ingest::StampReport& stamps = found.fit.dataset.recordings.stamps();
   if (stamps.any()) members["stamps"] = to_json(stamps);
@@ -137,14 +139,15 @@ std::map<std::string, std::string> extensions(const Findings& found, const Curve
   return members;
 }
 
-std::vector<std::string> remarks(const Findings& found, const Curves& curves, const Outliers& outliers) {
+std::vector<std::string> remarks(const Findings& found, const SmoothTerms& smooths,
+                                 const Outliers& outliers) {
   std::vector<std::string> sentences = found.remarks;
   if (outliers) sentences.push_back(to_text(*outliers));
   for (const std::string& remark : remarks_on(found.fit.dataset.recordings.stamps()))
     sentences.push_back(remark);
   const math::Pose mount = vehicle::to_base(vehicle::as_span(found.outcome.model.fit.parameters)).mount;
-  for (const selection::FittedCurve& curve : curves)
-    if (happens_at_once(curve.curve)) sentences.push_back(event_to_text(curve, mount));
+  for (const selection::FittedSmoothTerm& smooth : smooths)
+    if (happens_at_once(smooth.smooth)) sentences.push_back(event_to_text(smooth, mount));
   return sentences;
 }
 
@@ -222,7 +225,7 @@ Calibration calibrated(const Findings& found) {
   const PlainFit plain = plain_fit(found);
   const Agreement together = agreement(found);
   const BaseEstimate base = base_estimate(found, together);
-  const Curves curves = found_curves(found);
+  const SmoothTerms smooths = found_smooths(found);
   const Outliers outliers = outliers_of(found);
   const ReportData data = make_report_data(found.fit.dataset, found.outcome, plain);
 
@@ -234,13 +237,13 @@ Calibration calibrated(const Findings& found) {
   calibration.residual = residual(found, plain);
   calibration.effects = found_effects(found, plain);
   calibration.unexplained = unexplained(found, outliers, !calibration.effects.empty(), data.drive_errors);
-  calibration.extensions = extensions(found, curves, outliers);
+  calibration.extensions = extensions(found, smooths, outliers);
   store_report_data(data, calibration);
   if (together.homogeneity)
     store_homogeneity(*together.homogeneity, found.fit.dataset.recordings.view(), calibration);
 
   const GateResult gate =
-      judge(calibration, footing(found, base, data, together.apart, remarks(found, curves, outliers)));
+      judge(calibration, footing(found, base, data, together.apart, remarks(found, smooths, outliers)));
   calibration.verdict = gate.verdict;
   calibration.reasons = gate.reasons;
   return calibration;

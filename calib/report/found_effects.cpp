@@ -6,8 +6,8 @@
 #include "calib/selection/folds.hpp"
 #include "calib/selection/lidar_report.hpp"
 #include "calib/selection/settings.hpp"
-#include "calib/selection/stretch_errors.hpp"
-#include "calib/terms/curve.hpp"
+#include "calib/selection/window_errors.hpp"
+#include "calib/terms/smooth_term.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -20,14 +20,14 @@ const selection::Finding* finding_of(const selection::SearchResult& outcome, con
   return nullptr;
 }
 
-const selection::AddedCurve* curve_of(const selection::SearchResult& outcome, const EffectPtr& effect) {
-  for (const selection::AddedCurve& added : outcome.curves)
+const selection::AddedSmoothTerm* smooth_of(const selection::SearchResult& outcome, const EffectPtr& effect) {
+  for (const selection::AddedSmoothTerm& added : outcome.smooths)
     if (added.effect == effect) return &added;
   return nullptr;
 }
 
-bool is_quiet(const selection::SearchResult& outcome, const EffectPtr& effect) {
-  return std::find(outcome.quiet.begin(), outcome.quiet.end(), effect) != outcome.quiet.end();
+bool is_nuisance(const selection::SearchResult& outcome, const EffectPtr& effect) {
+  return std::find(outcome.nuisance.begin(), outcome.nuisance.end(), effect) != outcome.nuisance.end();
 }
 
 /// Evidence for an effect that the search did not add: the delay found before it, or what the user asked for.
@@ -40,13 +40,12 @@ Evidence evidence_against(const std::optional<estimation::FitResult>& plain, con
   const measurement::Dataset& dataset = found.fit.dataset;
   const auto& [effects, fit] = found.outcome.model;
   const auto windows =
-      find_stretches(selection::StretchKind::open_loop, dataset.data, selection::folds_of(dataset.data), fit,
-                     selection::trusted_pairs(*plain, fit));
+      find_windows(selection::WindowKind::open_loop, dataset.data, selection::folds_of(dataset.data), fit,
+                   selection::trusted_pairs(*plain, fit));
   if (windows.size() < selection::settings::kFewestWindows) return evidence;
-  evidence.held_out_before =
-      stretch_errors(dataset.data, windows, {}, *plain, dataset.fixed()).rms_position();
+  evidence.held_out_before = window_errors(dataset.data, windows, {}, *plain, dataset.fixed()).rms_position();
   evidence.held_out_after =
-      stretch_errors(dataset.data, windows, effects, fit, vehicle::fixed_with(dataset.fixed(), effects))
+      window_errors(dataset.data, windows, effects, fit, vehicle::fixed_with(dataset.fixed(), effects))
           .rms_position();
   return evidence;
 }
@@ -85,7 +84,8 @@ EffectResult found_effect(const EffectPtr& effect, Eigen::Index first, const Fin
   EffectResult result = values_of(*effect, first, fit);
   if (const selection::Finding* finding = finding_of(found.outcome, effect)) {
     result.aliases = finding->aliases;
-    result.evidence = {finding->proof.family_p_value, finding->proof.before, finding->proof.after};
+    result.evidence = {finding->validation.family_p_value, finding->validation.before,
+                       finding->validation.after};
   } else {
     result.aliases = effect->always_alike();
     result.evidence = evidence_against(plain, found, plainest_size(*effect, first, fit));
@@ -93,12 +93,12 @@ EffectResult found_effect(const EffectPtr& effect, Eigen::Index first, const Fin
   return result;
 }
 
-selection::FittedCurve fitted(const selection::AddedCurve& added, Eigen::Index first,
-                              const estimation::FitResult& fit) {
-  selection::FittedCurve curve{added.curve, {}, added.law_of ? added.law_of->name() : ""};
-  for (std::size_t k = 0; k < function_count(added.curve); ++k)
-    curve.coefficients.push_back(fit.parameters(first++));
-  return curve;
+selection::FittedSmoothTerm fitted(const selection::AddedSmoothTerm& added, Eigen::Index first,
+                                   const estimation::FitResult& fit) {
+  selection::FittedSmoothTerm smooth{added.smooth, {}, added.named_term ? added.named_term->name() : ""};
+  for (std::size_t k = 0; k < function_count(added.smooth); ++k)
+    smooth.coefficients.push_back(fit.parameters(first++));
+  return smooth;
 }
 
 }  // namespace
@@ -111,18 +111,18 @@ std::vector<EffectResult> found_effects(const Findings& found,
       results.push_back(std::move(effect));
   const vehicle::EffectList& effects = found.outcome.model.effects;
   for (std::size_t e = 0; e < effects.size(); ++e)
-    if (curve_of(found.outcome, effects[e]) == nullptr && !is_quiet(found.outcome, effects[e]))
+    if (smooth_of(found.outcome, effects[e]) == nullptr && !is_nuisance(found.outcome, effects[e]))
       results.push_back(found_effect(effects[e], first_parameter(effects, e), found, plain));
   return results;
 }
 
-std::vector<selection::FittedCurve> found_curves(const Findings& found) {
-  std::vector<selection::FittedCurve> curves;
+std::vector<selection::FittedSmoothTerm> found_smooths(const Findings& found) {
+  std::vector<selection::FittedSmoothTerm> smooths;
   const auto& [effects, fit] = found.outcome.model;
   for (std::size_t e = 0; e < effects.size(); ++e)
-    if (const selection::AddedCurve* added = curve_of(found.outcome, effects[e]))
-      curves.push_back(fitted(*added, first_parameter(effects, e), fit));
-  return curves;
+    if (const selection::AddedSmoothTerm* added = smooth_of(found.outcome, effects[e]))
+      smooths.push_back(fitted(*added, first_parameter(effects, e), fit));
+  return smooths;
 }
 
 }  // namespace odomcalib::calib::report

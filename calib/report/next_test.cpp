@@ -34,7 +34,7 @@ std::optional<NextTest> for_ambiguity(const Calibration& calibration) {
 std::optional<NextTest> for_unnamed(const Calibration& calibration) {
   if (!calibration.unexplained) return std::nullopt;
   for (const std::string& variable : calibration.unexplained->depends_on) {
-    const auto covariate = vehicle::variable_from(variable);
+    const auto covariate = vehicle::covariate_from(variable);
     const std::string manoeuvre = covariate ? vehicle::manoeuvre_for(*covariate) : "";
     if (!manoeuvre.empty())
       return NextTest{manoeuvre, "the residual depends on " + variable +

@@ -168,7 +168,7 @@ ReportData make_report_data(const measurement::Dataset& dataset, const selection
   const selection::JudgedModel geometry{plain ? &*plain : nullptr, dataset.fixed(), {}};
   data.drive_errors =
       drive_errors(dataset.data, dataset.nominal, plain && !effects.empty() ? &geometry : nullptr, full);
-  data.traces = selection::residual_traces(dataset.data, effects, fit, fixed, found.quiet);
+  data.traces = selection::residual_traces(dataset.data, effects, fit, fixed, found.nuisance);
   data.detectable = found.detectable;
   data.paths = paths_of(dataset, effects, fit);
   data.axes = {axis_of(fit, 0, "x", "m"), axis_of(fit, 1, "y", "m"), axis_of(fit, 2, "yaw", "rad")};

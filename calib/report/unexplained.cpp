@@ -10,13 +10,13 @@ namespace {
 /// What stays without a name, put together from its parts.
 class UnnamedSummary {
  public:
-  void mention(const std::string& variable) {
+  void mention(const std::string& covariate) {
     auto& names = all_.depends_on;
-    if (std::find(names.begin(), names.end(), variable) == names.end()) names.push_back(variable);
+    if (std::find(names.begin(), names.end(), covariate) == names.end()) names.push_back(covariate);
   }
-  void add(const std::string& variable, double p_value, double before, double after) {
+  void add(const std::string& covariate, double p_value, double before, double after) {
     if (all_.depends_on.empty()) all_.p_value = p_value;
-    mention(variable);
+    mention(covariate);
     const double ratio = before > 0.0 ? after / before : 1.0;
     left_ *= std::min(ratio * ratio, 1.0);
   }
@@ -32,28 +32,29 @@ class UnnamedSummary {
   double left_ = 1.0;  // of the squared error
 };
 
-/// What goes with variables, but is no part of the model.
-std::optional<Unexplained> flagged(const std::vector<vehicle::Variable>& variables, double p_value) {
-  if (variables.empty()) return std::nullopt;
+/// What goes with covariates, but is no part of the model.
+std::optional<Unexplained> flagged(const std::vector<vehicle::Covariate>& covariates, double p_value) {
+  if (covariates.empty()) return std::nullopt;
   Unexplained unexplained{{}, p_value, 0.0};
-  for (const vehicle::Variable variable : variables) unexplained.depends_on.push_back(to_string(variable));
+  for (const vehicle::Covariate covariate : covariates)
+    unexplained.depends_on.push_back(to_string(covariate));
   return unexplained;
 }
 
 }  // namespace
 
-std::optional<Unexplained> unnamed_curves(const Findings& found) {
+std::optional<Unexplained> unnamed_smooths(const Findings& found) {
   UnnamedSummary summary;
   for (const terms::LidarFinding& finding : found.lidar)
     if (!finding.effect->is_named() && !completes(finding, found.lidar))
       summary.add(finding.effect->name(), finding.family_p_value, finding.before, finding.after);
-  for (const selection::AddedCurve& added : found.outcome.curves)
-    if (!added.law_of)
-      summary.add(to_string(added.curve.law.variable), added.proof.family_p_value, added.proof.before,
-                  added.proof.after);
-  for (const selection::AddedCurve& added : found.outcome.curves) {
-    if (added.law_of) continue;
-    for (const vehicle::Variable variable : added.alike) summary.mention(to_string(variable));
+  for (const selection::AddedSmoothTerm& added : found.outcome.smooths)
+    if (!added.named_term)
+      summary.add(to_string(added.smooth.dependence.covariate), added.validation.family_p_value,
+                  added.validation.before, added.validation.after);
+  for (const selection::AddedSmoothTerm& added : found.outcome.smooths) {
+    if (added.named_term) continue;
+    for (const vehicle::Covariate covariate : added.alike) summary.mention(to_string(covariate));
   }
   return summary.result();
 }
@@ -62,7 +63,7 @@ std::optional<Unexplained> flagged_outliers(const selection::OutlierTrace& outli
   return flagged(outliers.depends_on, outliers.p_value);
 }
 
-std::optional<Unexplained> failed_proof(const selection::SearchResult& outcome) {
+std::optional<Unexplained> failed_validation(const selection::SearchResult& outcome) {
   const selection::Considered* best = nullptr;
   for (const selection::Considered& one : outcome.considered)
     if (!one.depends_on.empty() && one.family_p_value <= selection::settings::kNamedLevel &&

@@ -10,13 +10,14 @@
 
 namespace odomcalib::calib::report {
 
-/// Curves without a name, of the lidar and of the wheels: variables they depend on, in the order found.
-std::optional<Unexplained> unnamed_curves(const Findings& found);
+/// Smooth terms without a name, of the lidar and of the wheels: covariates they depend on, in the order
+/// found.
+std::optional<Unexplained> unnamed_smooths(const Findings& found);
 
 /// Where nothing is told of a recording but what goes with its outliers: a defect that is not compensated.
 std::optional<Unexplained> flagged_outliers(const selection::OutlierTrace& outliers);
 
 /// What goes with odometry's error although no law of it foretells anything: it is not compensated.
-std::optional<Unexplained> failed_proof(const selection::SearchResult& outcome);
+std::optional<Unexplained> failed_validation(const selection::SearchResult& outcome);
 
 }  // namespace odomcalib::calib::report

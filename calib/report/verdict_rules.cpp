@@ -351,10 +351,10 @@ Objections residual_in_rows(const Calibration& calibration, const Footing& footi
 /// The reader of the verdict sees that something is left without a name.
 Objections something_unexplained(const Calibration& calibration, const Footing&) {
   if (!calibration.unexplained) return {};
-  std::string variables;
+  std::string covariates;
   for (const std::string& one : calibration.unexplained->depends_on)
-    variables += (variables.empty() ? "" : ", ") + one;
-  return {warning("part of the residual depends on " + variables +
+    covariates += (covariates.empty() ? "" : ", ") + one;
+  return {warning("part of the residual depends on " + covariates +
                   " and has no name: lengths hold for motion like the recorded one")};
 }
 

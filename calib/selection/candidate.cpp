@@ -7,11 +7,11 @@
 #include <variant>
 
 #include "calib/selection/settings.hpp"
-#include "calib/terms/candidate_curves.hpp"
+#include "calib/terms/candidate_smooths.hpp"
 #include "calib/terms/catalogue.hpp"
-#include "calib/terms/curve_effect.hpp"
-#include "calib/terms/curve_on_drives.hpp"
-#include "calib/terms/wave_curves.hpp"
+#include "calib/terms/periodic_smooths.hpp"
+#include "calib/terms/smooth_term_effect.hpp"
+#include "calib/terms/smooth_term_on_drives.hpp"
 #include "calib/vehicle/placed_effects.hpp"
 
 namespace odomcalib::calib::selection {
@@ -34,26 +34,27 @@ constexpr auto kind_of = []<typename Kind>(const Kind& basis) -> std::string {
   return {};
 };
 
-std::string key_of(const vehicle::Effect& effect, const terms::Curve& curve) {
-  return effect.name() + (curve.with_motion ? "/pace" : "") + std::visit(kind_of, curve.basis);
+std::string key_of(const vehicle::Effect& effect, const terms::SmoothTerm& smooth) {
+  return effect.name() + (smooth.with_motion ? "/pace" : "") + std::visit(kind_of, smooth.basis);
 }
 
 bool belongs_to_one_recording(const vehicle::Effect& effect) {
-  const auto laws = effect.laws();
-  return std::any_of(laws.begin(), laws.end(),
-                     [](const vehicle::Law& law) { return begins_with_the_recording(law.variable); });
+  const auto dependences = effect.dependences();
+  return std::any_of(dependences.begin(), dependences.end(), [](const vehicle::Dependence& dependence) {
+    return begins_with_the_recording(dependence.covariate);
+  });
 }
 
-void add_curves(std::span<const vehicle::DriveModel* const> models, std::vector<Candidate>& candidates) {
-  for (const terms::Curve& curve : terms::candidate_curves(models))
-    candidates.push_back(candidate_of(as_of_the_drive(curve, models)));
+void add_smooths(std::span<const vehicle::DriveModel* const> models, std::vector<Candidate>& candidates) {
+  for (const terms::SmoothTerm& smooth : terms::candidate_smooths(models))
+    candidates.push_back(candidate_of(as_of_the_drive(smooth, models)));
 }
 
 }  // namespace
 
-Candidate candidate_of(const terms::Curve& curve) {
-  const auto effect = make_curve_effect(curve);
-  return {effect, curve, key_of(*effect, curve)};
+Candidate candidate_of(const terms::SmoothTerm& smooth) {
+  const auto effect = make_smooth_term_effect(smooth);
+  return {effect, smooth, key_of(*effect, smooth)};
 }
 
 std::vector<Candidate> names_missing(const vehicle::EffectList& present, bool one_recording) {
@@ -72,46 +73,49 @@ std::vector<Candidate> names_missing(const vehicle::EffectList& present, bool on
 std::vector<Candidate> all_candidates(const vehicle::EffectList& present,
                                       std::span<const vehicle::DriveModel* const> models) {
   std::vector<Candidate> candidates = names_missing(present, models.size() == 1);
-  add_curves(models, candidates);
+  add_smooths(models, candidates);
   return candidates;
 }
 
 std::vector<Candidate> floor_waves(std::span<const vehicle::DriveModel* const> models) {
   std::vector<Candidate> candidates;
-  for (const terms::Curve& wave : terms::wave_curves(models)) candidates.push_back(candidate_of(wave));
+  for (const terms::SmoothTerm& wave : terms::periodic_smooths(models))
+    candidates.push_back(candidate_of(wave));
   return candidates;
 }
 
-bool contains(const std::vector<vehicle::Law>& laws, const vehicle::Law& law) {
-  return std::find(laws.begin(), laws.end(), law) != laws.end();
+bool contains(const std::vector<vehicle::Dependence>& dependences, const vehicle::Dependence& dependence) {
+  return std::find(dependences.begin(), dependences.end(), dependence) != dependences.end();
 }
 
-std::vector<vehicle::Law> laws_of(const Candidate& candidate) {
-  return candidate.curve ? std::vector<vehicle::Law>{candidate.curve->law} : candidate.effect->laws();
+std::vector<vehicle::Dependence> dependences_of(const Candidate& candidate) {
+  return candidate.smooth ? std::vector<vehicle::Dependence>{candidate.smooth->dependence}
+                          : candidate.effect->dependences();
 }
 
 bool depends_on_history(const Candidate& candidate) {
-  if (!candidate.curve) return false;
-  const vehicle::Variable variable = candidate.curve->law.variable;
-  return is_memory(variable) || is_distance_since(variable);
+  if (!candidate.smooth) return false;
+  const vehicle::Covariate covariate = candidate.smooth->dependence.covariate;
+  return is_memory(covariate) || is_distance_since(covariate);
 }
 
 bool must_be_worthwhile(const Candidate& candidate) {
-  if (depends_on_history(candidate) || (candidate.curve && happens_at_once(*candidate.curve))) return true;
-  const auto laws = laws_of(candidate);
-  return std::any_of(laws.begin(), laws.end(), [](const vehicle::Law& law) {
-    return law.variable == vehicle::Variable::heading || law.variable == vehicle::Variable::position ||
-           law.variable == vehicle::Variable::since_stop;
+  if (depends_on_history(candidate) || (candidate.smooth && happens_at_once(*candidate.smooth))) return true;
+  const auto dependences = dependences_of(candidate);
+  return std::any_of(dependences.begin(), dependences.end(), [](const vehicle::Dependence& dependence) {
+    return dependence.covariate == vehicle::Covariate::heading ||
+           dependence.covariate == vehicle::Covariate::position ||
+           dependence.covariate == vehicle::Covariate::since_stop;
   });
 }
 
 double largest_ratio(const Candidate& candidate) {
   if (must_be_worthwhile(candidate)) return settings::kWorthwhile;
   // What comes back with each turn of a wheel cancels over ten seconds, however plain it is in between.
-  if (candidate.curve && is_phase(candidate.curve->law.variable))
+  if (candidate.smooth && is_phase(candidate.smooth->dependence.covariate))
     return std::numeric_limits<double>::infinity();
   const bool will_be_used = candidate.effect->storage() == vehicle::Storage::host;
-  return candidate.curve && will_be_used ? settings::kUseful : std::numeric_limits<double>::infinity();
+  return candidate.smooth && will_be_used ? settings::kUseful : std::numeric_limits<double>::infinity();
 }
 
 bool has_textbook_shape(const std::shared_ptr<const vehicle::Effect>& effect) {

@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "calib/terms/curve.hpp"
+#include "calib/terms/smooth_term.hpp"
 #include "calib/vehicle/drive_model.hpp"
 
 namespace odomcalib::calib::selection {
 
-/// One thing that may be missing: a named effect (one of its variants) or a curve.
+/// One thing that may be missing: a named effect (one of its variants) or a smooth term.
 struct Candidate {
   std::shared_ptr<const vehicle::Effect> effect;
-  std::optional<terms::Curve> curve;
+  std::optional<terms::SmoothTerm> smooth;
   std::string key;      ///< variants of one effect share it
   bool struck = false;  ///< added, or failed its proof: not asked again
 };
@@ -25,28 +25,28 @@ struct Candidate {
 /// @param one_recording others share no zero of time, heading and the like
 std::vector<Candidate> names_missing(const vehicle::EffectList& present, bool one_recording);
 
-/// Those, and the curves that these drives can show.
+/// Those, and the smooth terms that these drives can show.
 std::vector<Candidate> all_candidates(const vehicle::EffectList& present,
                                       std::span<const vehicle::DriveModel* const> models);
 
-Candidate candidate_of(const terms::Curve& curve);
+Candidate candidate_of(const terms::SmoothTerm& smooth);
 
 /// Floors that repeat themselves: tiles, planks, joints. Many, so that they are tried when all else is told.
 std::vector<Candidate> floor_waves(std::span<const vehicle::DriveModel* const> models);
 
-bool contains(const std::vector<vehicle::Law>& laws, const vehicle::Law& law);
-std::vector<vehicle::Law> laws_of(const Candidate& candidate);
+bool contains(const std::vector<vehicle::Dependence>& dependences, const vehicle::Dependence& dependence);
+std::vector<vehicle::Dependence> dependences_of(const Candidate& candidate);
 
-/// A curve of what the robot did before.
+/// A smooth term of what the robot did before.
 bool depends_on_history(const Candidate& candidate);
 
 /// Scan matching has a bias of its own in a room, and in a scripted drive what happened before stands for
-/// the place in the script: what goes with such variables must be more than that. So must an event, which is
+/// the place in the script: what goes with such covariates must be more than that. So must an event, which is
 /// sought all over the drive.
 bool must_be_worthwhile(const Candidate& candidate);
 
-/// Largest share of the open-loop error that the candidate may leave. A curve that odometry will use must be
-/// seen to help odometry.
+/// Largest share of the open-loop error that the candidate may leave. A smooth term that odometry will use
+/// must be seen to help odometry.
 double largest_ratio(const Candidate& candidate);
 
 /// Whether it is the first of its variants; another is a choice of the data.

@@ -5,29 +5,29 @@
 #include <utility>
 
 #include "calib/estimation/stack.hpp"
-#include "calib/terms/curve.hpp"
 #include "calib/terms/effects/step_effect.hpp"
+#include "calib/terms/smooth_term.hpp"
 #include "calib/vehicle/sensitivity.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr std::size_t kCarriers = static_cast<std::size_t>(vehicle::kLastCarrier) + 1;
-static_assert(kCarriers <= vehicle::kJetSize);
+constexpr std::size_t kChannels = static_cast<std::size_t>(vehicle::kLastChannel) + 1;
+static_assert(kChannels <= vehicle::kJetSize);
 
-/// A constant defect on every carrier, of size zero: what curves are linear in.
+/// A constant defect on every channel, of size zero: what smooth terms are linear in.
 class Defects final : public terms::StepEffect<Defects> {
  public:
   [[nodiscard]] std::string name() const override { return "defects"; }
   [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
     std::vector<vehicle::EffectParameter> list;
-    for (std::size_t k = 0; k < kCarriers; ++k)
-      list.push_back({to_string(static_cast<vehicle::Carrier>(k)), "1", 1.0, -1.0, 1.0});
+    for (std::size_t k = 0; k < kChannels; ++k)
+      list.push_back({to_string(static_cast<vehicle::Channel>(k)), "1", 1.0, -1.0, 1.0});
     return list;
   }
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
-    for (std::size_t k = 0; k < kCarriers; ++k) carry(static_cast<vehicle::Carrier>(k), c, p[k], step);
+    for (std::size_t k = 0; k < kChannels; ++k) carry(static_cast<vehicle::Channel>(k), c, p[k], step);
   }
 };
 
@@ -39,13 +39,13 @@ class Tried {
       : model_(*data.model),
         trajectory_(model_.trajectory(vehicle::as_span(fit.parameters), effects)),
         sensitivity_(model_, trajectory_, estimation::intervals_of(data.pairs)),
-        responses_(sensitivity_.by_steps({std::make_shared<Defects>()}, std::vector<double>(kCarriers, 0.0))),
+        responses_(sensitivity_.by_steps({std::make_shared<Defects>()}, std::vector<double>(kChannels, 0.0))),
         whitener_(std::move(whitener)) {}
 
-  [[nodiscard]] Eigen::MatrixXd by_curve(const terms::Curve& curve) const {
-    const std::span<const vehicle::Carrier> carriers = acts_on(curve);
-    Eigen::MatrixXd sum = by_part(curve, carriers.front(), 0);
-    for (std::size_t part = 1; part < carriers.size(); ++part) sum += by_part(curve, carriers[part], part);
+  [[nodiscard]] Eigen::MatrixXd by_smooth(const terms::SmoothTerm& smooth) const {
+    const std::span<const vehicle::Channel> channels = acts_on(smooth);
+    Eigen::MatrixXd sum = by_part(smooth, channels.front(), 0);
+    for (std::size_t part = 1; part < channels.size(); ++part) sum += by_part(smooth, channels[part], part);
     return whitened(std::move(sum));
   }
 
@@ -54,17 +54,17 @@ class Tried {
   }
 
  private:
-  [[nodiscard]] Eigen::MatrixXd by_part(const terms::Curve& curve, vehicle::Carrier carrier,
+  [[nodiscard]] Eigen::MatrixXd by_part(const terms::SmoothTerm& smooth, vehicle::Channel channel,
                                         std::size_t part) const {
     const auto steps = static_cast<Eigen::Index>(model_.context().size());
-    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(function_count(curve)));
+    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(function_count(smooth)));
     for (Eigen::Index k = 0; k < steps; ++k) {
       const terms::BasisValues values =
-          functions_in(curve, model_.context()[static_cast<std::size_t>(k)], part);
+          functions_in(smooth, model_.context()[static_cast<std::size_t>(k)], part);
       for (Eigen::Index j = 0; j < functions.cols(); ++j)
         functions(k, j) = values[static_cast<std::size_t>(j)];
     }
-    return responses_[static_cast<std::size_t>(carrier)].by_coefficients(functions);
+    return responses_[static_cast<std::size_t>(channel)].by_coefficients(functions);
   }
 
   [[nodiscard]] Eigen::MatrixXd whitened(Eigen::MatrixXd rows) const {
@@ -75,7 +75,7 @@ class Tried {
   const vehicle::DriveModel& model_;
   vehicle::Trajectory trajectory_;
   vehicle::Sensitivity sensitivity_;
-  std::vector<vehicle::StepResponse> responses_;  ///< one per carrier
+  std::vector<vehicle::StepResponse> responses_;  ///< one per channel
   measurement::Whitener whitener_;
 };
 
@@ -110,12 +110,12 @@ Eigen::MatrixXd stacked(const AllTried& recordings,
 }
 
 /// As many names among the candidates from `first` on as one sweep of automatic derivatives carries, and one
-/// at least; curves are passed over.
+/// at least; smooth terms are passed over.
 std::vector<std::size_t> sweep_from(const std::vector<Candidate>& candidates, std::size_t first) {
   std::vector<std::size_t> sweep;
   std::size_t parameters = 0;
   for (std::size_t k = first; k < candidates.size(); ++k) {
-    if (candidates[k].curve) continue;
+    if (candidates[k].smooth) continue;
     parameters += candidates[k].effect->parameters().size();
     if (parameters > vehicle::kJetSize && !sweep.empty()) break;
     sweep.push_back(k);
@@ -145,12 +145,12 @@ void for_each_candidate(std::span<const measurement::FitData> data, const vehicl
                         const estimation::FitResult& fit, const std::vector<Candidate>& candidates,
                         const std::function<void(Eigen::MatrixXd)>& visit) {
   const AllTried recordings = try_along(data, effects, fit);
-  std::vector<Eigen::MatrixXd> names(candidates.size());  // empty where the candidate is a curve
+  std::vector<Eigen::MatrixXd> names(candidates.size());  // empty where the candidate is a smooth term
   fill_names(recordings, candidates, names);
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const auto& curve = candidates[k].curve;
-    visit(curve ? stacked(recordings, [&](const Tried& t) { return t.by_curve(*curve); })
-                : std::move(names[k]));
+    const auto& smooth = candidates[k].smooth;
+    visit(smooth ? stacked(recordings, [&](const Tried& t) { return t.by_smooth(*smooth); })
+                 : std::move(names[k]));
   }
 }
 

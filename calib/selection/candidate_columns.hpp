@@ -13,8 +13,8 @@ namespace odomcalib::calib::selection {
 
 /// Visits the whitened derivatives of the prediction by the parameters of each candidate, which acts on top
 /// of `effects` at its start (where it changes nothing), at the fit and with its weights: 3 n x parameters,
-/// one matrix per candidate, in the candidates' order. A curve's matrix lives for its visit only, because
-/// there may be more than a thousand waves and each matrix grows with the recording.
+/// one matrix per candidate, in the candidates' order. A smooth term's matrix lives for its visit only,
+/// because there may be more than a thousand waves and each matrix grows with the recording.
 void for_each_candidate(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
                         const estimation::FitResult& fit, const std::vector<Candidate>& candidates,
                         const std::function<void(Eigen::MatrixXd)>& visit);

@@ -48,11 +48,11 @@ vehicle::VehicleModel without_idle_clocks(const estimation::Fit& fit) {
 
 SearchResult without_idle_delay(const FitTask& task, SearchResult found) {
   const FittedModel& model = found.model;
-  if (found.findings.empty() && found.curves.empty()) return found;
+  if (found.findings.empty() && found.smooths.empty()) return found;
   if (!has_idle(ClockPart::offset, model.effects, model.fit)) return found;
   const std::size_t place = *place_of(model.effects, ClockPart::offset);
   if (has_plain_value(model, place))
-    found.quiet.push_back(model.effects[place]);
+    found.nuisance.push_back(model.effects[place]);
   else if (auto fewer = without_effect(task, model, place, {}))
     found.model = std::move(*fewer);
   return found;

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "calib/math/bootstrap.hpp"
+#include "calib/selection/evaluation_window.hpp"
 #include "calib/selection/folds.hpp"
-#include "calib/selection/stretch.hpp"
 #include "calib/terms/effects/reference_effect.hpp"
 
 namespace odomcalib::calib::selection {
@@ -20,18 +20,18 @@ constexpr unsigned kSeed = 20010823;
 
 /// Predicted minus measured motion of each stretch, in the base's frame at its begin.
 std::vector<math::Pose> errors_of(std::span<const measurement::FitData> data,
-                                  const std::vector<Stretch>& stretches,
+                                  const std::vector<EvaluationWindow>& windows,
                                   const std::vector<Eigen::VectorXd>& parameters,
                                   const vehicle::EffectList& effects) {
-  std::vector<math::Pose> errors(stretches.size());
+  std::vector<math::Pose> errors(windows.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     for (std::size_t d = 0; d < data.size(); ++d) {
       const auto trajectory = data[d].model->trajectory(vehicle::as_span(parameters[fold]), effects);
       const measurement::PathOfWheels wheels = measurement::path_of_wheels(trajectory);
       const math::Pose base_seen_from_sensor =
           inverse(vehicle::to_base(vehicle::as_span(parameters[fold])).mount);
-      for (std::size_t k = 0; k < stretches.size(); ++k) {
-        const Stretch& s = stretches[k];
+      for (std::size_t k = 0; k < windows.size(); ++k) {
+        const EvaluationWindow& s = windows[k];
         if (s.fold != fold || s.recording != d) continue;
         const math::Pose told = between(trajectory.at(s.interval.begin), trajectory.at(s.interval.end));
         const math::Pose motion = conjugate(measured_motion(s, data[d], wheels), base_seen_from_sensor);
@@ -55,21 +55,22 @@ double variance_of(Part part, const Eigen::Matrix3d& c) {
   return part == Part::heading ? c(2, 2) : c(0, 0) + c(1, 1);
 }
 
-Bounded bounded(Part part, const std::vector<Stretch>& stretches, const std::vector<math::Pose>& errors) {
+Bounded bounded(Part part, const std::vector<EvaluationWindow>& windows,
+                const std::vector<math::Pose>& errors) {
   std::map<std::size_t, math::RatioOfSums> by_block;
   math::RatioOfSums total;
-  for (std::size_t k = 0; k < stretches.size(); ++k) {
-    const math::RatioOfSums one{square_of(part, errors[k]), stretches[k].amount * stretches[k].amount};
-    by_block[stretches[k].block] += one;
+  for (std::size_t k = 0; k < windows.size(); ++k) {
+    const math::RatioOfSums one{square_of(part, errors[k]), windows[k].amount * windows[k].amount};
+    by_block[windows[k].block] += one;
     total += one;
   }
   const math::BootstrapInterval interval = bootstrap_root(by_block, kSeed);
   return {total.root(), interval.lower, interval.upper};
 }
 
-double noise_floor(Part part, const std::vector<Stretch>& stretches) {
+double noise_floor(Part part, const std::vector<EvaluationWindow>& windows) {
   math::RatioOfSums sums;
-  for (const Stretch& s : stretches)
+  for (const EvaluationWindow& s : windows)
     sums += {std::max(variance_of(part, s.covariance), 0.0), s.amount * s.amount};
   return sums.root();
 }
@@ -88,24 +89,24 @@ class Judge {
             with_wheels(full.fit->parameters, full.effects, vehicle::to_base(vehicle::as_span(p))));
   }
 
-  void add(StretchKind kind, const std::vector<std::pair<std::string, Part>>& names,
+  void add(WindowKind kind, const std::vector<std::pair<std::string, Part>>& names,
            std::vector<DriveError>& out) const {
-    const auto stretches =
-        find_stretches(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
-    if (stretches.size() < kFewest) return;
+    const auto windows =
+        find_windows(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
+    if (windows.size() < kFewest) return;
     const auto errors = [&](const std::vector<Eigen::VectorXd>& parameters) {
       return parameters.empty() ? std::vector<math::Pose>{}
-                                : errors_of(data_, stretches, parameters, full_.effects);
+                                : errors_of(data_, windows, parameters, full_.effects);
     };
     const auto before = errors(nominal_parameters_);
     const auto geometry = errors(geometry_parameters_);
     const auto after = errors(full_parameters_);
     const auto figure = [&](Part part, const std::vector<math::Pose>& e) {
-      return e.empty() ? std::nullopt : std::optional(bounded(part, stretches, e));
+      return e.empty() ? std::nullopt : std::optional(bounded(part, windows, e));
     };
     for (const auto& [name, part] : names)
-      out.push_back({name, part == Part::heading ? "rad" : "m", stretches.size(), figure(part, before),
-                     figure(part, geometry), figure(part, after), noise_floor(part, stretches)});
+      out.push_back({name, part == Part::heading ? "rad" : "m", windows.size(), figure(part, before),
+                     figure(part, geometry), figure(part, after), noise_floor(part, windows)});
   }
 
  private:
@@ -146,10 +147,10 @@ std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
                                      const JudgedModel& full) {
   const Judge judge(data, nominal, geometry, full);
   std::vector<DriveError> errors;
-  judge.add(StretchKind::straight,
+  judge.add(WindowKind::straight,
             {{"straight_metre_length", Part::along}, {"straight_metre_heading", Part::heading}}, errors);
-  judge.add(StretchKind::turn, {{"full_turn_heading", Part::heading}}, errors);
-  judge.add(StretchKind::open_loop,
+  judge.add(WindowKind::turn, {{"full_turn_heading", Part::heading}}, errors);
+  judge.add(WindowKind::open_loop,
             {{kOpenLoopPosition, Part::position}, {"open_loop_10s_heading", Part::heading}}, errors);
   return errors;
 }

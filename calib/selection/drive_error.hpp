@@ -19,9 +19,9 @@ struct JudgedModel {
 };
 
 /// Straight metre (length, heading), full turn (heading), ten seconds open loop (position, heading).
-/// Each is sqrt(sum e^2 / sum a^2) over stretches with error e and amount a (metres, turns, 1): a systematic
+/// Each is sqrt(sum e^2 / sum a^2) over windows with error e and amount a (metres, turns, 1): a systematic
 /// error of a metre counts the same whether the robot drove it in one piece or in three. Intervals: bootstrap
-/// over blocks of half a minute, 1000 draws, fixed seed. Figures without at least four stretches are left
+/// over blocks of half a minute, 1000 draws, fixed seed. Figures without at least four windows are left
 /// out.
 /// @param nominal wheel radii and track width before calibration; zero: not known, no "before"
 /// @param geometry six parameters alone; null when `full` has no effects

@@ -17,7 +17,7 @@ std::string signed_number(double value, int digits) {
 std::string percent(double share) { return signed_number(1e2 * share, 2) + " %"; }
 std::string millimetres(double metres) { return signed_number(1e3 * metres, 1) + " mm"; }
 
-/// The curve's coefficients move the base as the sensor sees it, the other way round.
+/// The smooth term's coefficients move the base as the sensor sees it, the other way round.
 math::Pose moved_by(const std::vector<double>& coefficients, const math::Pose& mount) {
   const math::Pose before = compose({-coefficients[0], -coefficients[1], -coefficients[2]}, mount);
   return {mount.x - before.x, mount.y - before.y, coefficients[2]};
@@ -42,13 +42,13 @@ std::string change_of_track(const std::vector<double>& c) {
 
 }  // namespace
 
-std::string event_to_text(const FittedCurve& event, const math::Pose& mount) {
+std::string event_to_text(const FittedSmoothTerm& event, const math::Pose& mount) {
   std::ostringstream out;
-  out << std::fixed << std::setprecision(1) << std::get<terms::ChangePoint>(event.curve.basis).moment
+  out << std::fixed << std::setprecision(1) << std::get<terms::ChangePoint>(event.smooth.basis).moment
       << " s after the beginning ";
-  if (is_bump(event.curve))
+  if (is_bump(event.smooth))
     out << change_of_place(event.coefficients, mount);
-  else if (event.curve.law.carrier == vehicle::Carrier::track)
+  else if (event.smooth.dependence.channel == vehicle::Channel::track)
     out << change_of_track(event.coefficients);
   else
     out << change_of_wheels(event.coefficients);

@@ -20,7 +20,7 @@ struct Task {
   const terms::Request& request;
   const estimation::Settling& how;
 
-  [[nodiscard]] bool is_asked() const { return !request.lidar_effects.empty(); }
+  [[nodiscard]] bool is_requested() const { return !request.lidar_effects.empty(); }
 };
 
 /// Whether what was found is refined by a second look, at pairs of the corrected scans.
@@ -34,7 +34,7 @@ Findings joined(const Findings& known, const Findings& found) {
 
 /// Beams spread too wide bend the walls of a map, as ranges that are too short would.
 Findings wrong_angles(const estimation::Fit& fit, const Task& task) {
-  if (task.is_asked()) return {};
+  if (task.is_requested()) return {};
   Findings found = trace_lidar(heading_pairs(fit), sees_all_round(fit.dataset), true);
   if (found.empty() || found.front().effect->name() != terms::make_angle_scale()->name()) return {};
   found.resize(1);
@@ -44,7 +44,7 @@ Findings wrong_angles(const estimation::Fit& fit, const Task& task) {
 /// What pairs of scans show, a map or its absence known.
 Findings wrong_scans(const LidarCorrection& now, const Task& task) {
   const auto pairs = heading_pairs(now.fit);
-  if (task.is_asked()) return fit_lidar(pairs, task.request.lidar_effects);
+  if (task.is_requested()) return fit_lidar(pairs, task.request.lidar_effects);
   return trace_lidar(pairs, sees_all_round(now.fit.dataset), !now.placement.paths.empty());
 }
 
@@ -75,7 +75,7 @@ LidarCorrection take_out(const Findings& found, LidarCorrection before, const Ta
     std::tie(findings, start) = refined(std::move(findings), before.findings.size(), before.fit, task);
   estimation::Fit after =
       measure_and_settle(without(findings, before.fit.dataset, task), std::move(start), task.how);
-  const bool is_kept = !after.failure && (task.is_asked() ||
+  const bool is_kept = !after.failure && (task.is_requested() ||
                                           !is_worse(held_out_residual(before.fit), held_out_residual(after)));
   if (is_kept) return {std::move(after), std::move(findings), std::move(before.placement)};
   // Fitted once more instead of keeping the fit as it was: also without any error corrected scans state their
@@ -90,14 +90,14 @@ LidarCorrection take_out(const Findings& found, LidarCorrection before, const Ta
 LidarCorrection correct_lidar(estimation::Fit fit, const terms::Request& request,
                               const estimation::Settling& how) {
   const Task task{fit.dataset.recordings, request, how};
-  const bool may_trace = request.is_automatic || task.is_asked();
+  const bool may_trace = request.is_automatic || task.is_requested();
   LidarCorrection now{std::move(fit)};
   if (now.fit.failure || !may_trace || !now.fit.dataset.reference_is_scans()) return now;
   Findings found = wrong_angles(now.fit, task);
   now = take_out(found, std::move(now), task, Looks::twice);
   if (now.fit.failure) return now;
   now.placement =
-      place_every_scan(now.fit, how.progress, task.is_asked() ? Ranges::believed : Ranges::traced);
+      place_every_scan(now.fit, how.progress, task.is_requested() ? Ranges::believed : Ranges::traced);
   found = common_findings(now.placement.paths);
   now = take_out(found, std::move(now), task, Looks::once);
   if (now.fit.failure) return now;

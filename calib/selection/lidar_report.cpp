@@ -18,7 +18,7 @@ std::vector<EffectResult> effect_results(const std::vector<terms::LidarFinding>&
   return all;
 }
 
-std::string lidar_curves_to_json(const std::vector<terms::LidarFinding>& findings) {
+std::string lidar_smooth_terms_to_json(const std::vector<terms::LidarFinding>& findings) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const terms::LidarFinding& finding : findings) {
     if (finding.effect->is_named()) continue;

@@ -182,9 +182,9 @@ class SignFlips {
 };
 
 /// Beside a large effect every draw of signs is large. Far out, Bonferroni's bound needs no draws.
-bool is_beyond_doubt(const LidarScores::Score& score, std::size_t family) {
+bool is_decisive(const LidarScores::Score& score, std::size_t family) {
   const double tail = chi_squared_tail(score.statistic, static_cast<std::size_t>(score.degrees));
-  return tail * static_cast<double>(family) < settings::kBeyondDoubt;
+  return tail * static_cast<double>(family) < settings::kDecisive;
 }
 
 /// What one pair's distances would gain by these values.
@@ -258,7 +258,7 @@ std::vector<LidarScores::Score> LidarScores::score(const std::vector<std::size_t
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     if (scores[c].degrees == 0) continue;
     scores[c].statistic = projected[c].rowwise().sum().squaredNorm() / flips.inflation();
-    scores[c].family_p_value = is_beyond_doubt(scores[c], candidates_.size())
+    scores[c].family_p_value = is_decisive(scores[c], candidates_.size())
                                    ? flips.smallest()
                                    : flips.family_p_value(scores[c].statistic, scores[c].degrees);
   }

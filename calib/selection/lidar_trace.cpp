@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "calib/selection/lidar_score.hpp"
-#include "calib/terms/lidar_curve.hpp"
+#include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -74,30 +74,30 @@ class Trace {
     const auto scores = scores_.score(accepted_);
     for (const std::size_t c : in_order(scores)) {
       if (refused_[c]) continue;
-      const auto proof = scores_.held_out(accepted_, c);
-      const bool holds = proof.z >= effect(c).proof_wanted() && is_worthwhile(c, proof);
+      const auto validation = scores_.held_out(accepted_, c);
+      const bool holds = validation.z >= effect(c).least_z() && is_worthwhile(c, validation);
       if (!holds || !matters(c)) {
         refused_[c] = true;
         if (holds) refuse_lesser_names(c, scores);
         continue;
       }
-      add(c, scores[c].family_p_value, proof);
-      retire_superfluous();
+      add(c, scores[c].family_p_value, validation);
+      eliminate_superfluous();
       return true;
     }
     return false;
   }
 
   /// What is too small as a free law is no larger under a name that explains too little of it.
-  void refuse_lesser_names(std::size_t curve, const std::vector<LidarScores::Score>& scores) {
-    if (effect(curve).is_named()) return;
+  void refuse_lesser_names(std::size_t smooth, const std::vector<LidarScores::Score>& scores) {
+    if (effect(smooth).is_named()) return;
     for (std::size_t c = 0; c < scores.size(); ++c)
-      if (effect(c).is_named() && effect(c).variable() == effect(curve).variable() &&
-          scores[c].statistic < effect(c).share_of_free_law() * scores[curve].statistic)
+      if (effect(c).is_named() && effect(c).covariate() == effect(smooth).covariate() &&
+          scores[c].statistic < effect(c).share_of_free_term() * scores[smooth].statistic)
         refused_[c] = true;
   }
 
-  /// Significant candidates, the best first; a name before the free curve on its own ground unless that
+  /// Significant candidates, the best first; a name before the free smooth term on its own ground unless that
   /// explains much more.
   [[nodiscard]] std::vector<std::size_t> in_order(const std::vector<LidarScores::Score>& scores) const {
     std::vector<std::size_t> order;
@@ -107,8 +107,8 @@ class Trace {
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
     const auto is_name_of_best = [&](std::size_t c) {
       const terms::LidarEffect &own = effect(c), &best = effect(order.front());
-      return own.is_named() && !best.is_named() && own.variable() == best.variable() &&
-             scores[c].statistic > own.share_of_free_law() * scores[order.front()].statistic;
+      return own.is_named() && !best.is_named() && own.covariate() == best.covariate() &&
+             scores[c].statistic > own.share_of_free_term() * scores[order.front()].statistic;
     };
     const auto name = std::find_if(order.begin(), order.end(), is_name_of_best);
     if (name != order.end()) std::rotate(order.begin(), name, name + 1);
@@ -119,8 +119,9 @@ class Trace {
     return *scores_.candidates()[candidate].effect;
   }
 
-  [[nodiscard]] bool is_worthwhile(std::size_t candidate, const LidarScores::HeldOut& proof) const {
-    return proof.after * proof.after < effect(candidate).may_leave() * proof.before * proof.before;
+  [[nodiscard]] bool is_worthwhile(std::size_t candidate, const LidarScores::HeldOut& validation) const {
+    return validation.after * validation.after <
+           effect(candidate).may_leave() * validation.before * validation.before;
   }
 
   [[nodiscard]] bool matters(std::size_t candidate) const {
@@ -132,14 +133,15 @@ class Trace {
                         slice(fit.values, fit.values.size() - count, count));
   }
 
-  void add(std::size_t candidate, double p_value, const LidarScores::HeldOut& proof) {
+  void add(std::size_t candidate, double p_value, const LidarScores::HeldOut& validation) {
     accepted_.push_back(candidate);
-    evidence_.push_back({scores_.candidates()[candidate].effect, {}, {}, p_value, proof.before, proof.after});
+    evidence_.push_back(
+        {scores_.candidates()[candidate].effect, {}, {}, p_value, validation.before, validation.after});
     refused_[candidate] = true;
   }
 
   /// A name that was only the best there was is none beside the law that was added last (Wald test, 5 %).
-  void retire_superfluous() {
+  void eliminate_superfluous() {
     const std::vector<terms::LidarFinding> all = findings();
     for (std::size_t k = all.size() - 1; k-- > 0;)
       if (is_superfluous(all[k])) {
@@ -173,7 +175,7 @@ std::vector<terms::LidarFinding> trace_lidar(const std::vector<measurement::Head
                                              bool all_round, bool ranges_are_judged) {
   if (pairs.size() < kFewestPairs) return {};
   std::vector<terms::LidarEffectPtr> candidates = terms::lidar_catalogue(all_round);
-  for (const auto& curve : terms::lidar_curves()) candidates.push_back(curve);
+  for (const auto& smooth : terms::lidar_smooths()) candidates.push_back(smooth);
   if (auto sector = terms::make_sector_error(bearings_in(pairs))) candidates.push_back(std::move(sector));
   if (ranges_are_judged)
     std::erase_if(candidates, [](const terms::LidarEffectPtr& effect) { return effect->is_judged_in_map(); });

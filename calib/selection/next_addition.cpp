@@ -5,45 +5,48 @@
 #include <string>
 #include <vector>
 
-#include "calib/selection/law_shape.hpp"
+#include "calib/selection/hyperparameters.hpp"
 #include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
 double level(const Candidate& candidate, const SearchResult& found) {
-  if (candidate.curve)
-    return found.owner_of(candidate.curve->law) || must_be_worthwhile(candidate) ? settings::kNamedLevel
-                                                                                 : settings::kUnnamedLevel;
+  if (candidate.smooth)
+    return found.owner_of(candidate.smooth->dependence) || must_be_worthwhile(candidate)
+               ? settings::kNamedLevel
+               : settings::kUnnamedLevel;
   return is_clock(candidate) ? settings::kClockLevel : settings::kNamedLevel;
 }
 
-/// What the free curves explain of those of a name's laws that a finding has already.
-double explained_by_curves(const std::vector<vehicle::Law>& laws, const SearchRound& round,
-                           const SearchResult& found) {
+/// What the free smooth terms explain of those of a name's laws that a finding has already.
+double explained_by_smooths(const std::vector<vehicle::Dependence>& dependences, const SearchRound& round,
+                            const SearchResult& found) {
   double all = 0.0;
   for (const std::size_t k :
-       round.by_score([&](std::size_t k) { return round.candidate(k).curve.has_value(); }))
-    if (const vehicle::Law& law = round.candidate(k).curve->law; contains(laws, law) && found.owner_of(law))
+       round.by_score([&](std::size_t k) { return round.candidate(k).smooth.has_value(); }))
+    if (const vehicle::Dependence& dependence = round.candidate(k).smooth->dependence;
+        contains(dependences, dependence) && found.owner_of(dependence))
       all += round.score(k).statistic;
   return all;
 }
 
 /// What a finding leaves on its own ground is the rest of its law, unless a second name explains nearly all
-/// that a free curve would.
-bool is_rest_of_a_law(std::size_t name, const SearchRound& round, const SearchResult& found) {
-  const std::vector<vehicle::Law> laws = round.candidate(name).effect->laws();
-  if (std::none_of(laws.begin(), laws.end(),
-                   [&](const vehicle::Law& law) { return found.owner_of(law) != nullptr; }))
+/// that a free smooth term would.
+bool is_rest_of_a_named_term(std::size_t name, const SearchRound& round, const SearchResult& found) {
+  const std::vector<vehicle::Dependence> dependences = round.candidate(name).effect->dependences();
+  if (std::none_of(dependences.begin(), dependences.end(), [&](const vehicle::Dependence& dependence) {
+        return found.owner_of(dependence) != nullptr;
+      }))
     return false;
-  return round.score(name).statistic < kNearlyAll * explained_by_curves(laws, round, found);
+  return round.score(name).statistic < kNearlyAll * explained_by_smooths(dependences, round, found);
 }
 
 /// Joint refits of the most promising names on the noise model of the current fit.
 std::optional<Trial> best_name(SearchRound& round, const SearchResult& found) {
   std::set<std::string> tried;
   const auto is_open = [&](std::size_t k) {
-    return !round.candidate(k).curve && passes(k, round, found) && !is_rest_of_a_law(k, round, found);
+    return !round.candidate(k).smooth && passes(k, round, found) && !is_rest_of_a_named_term(k, round, found);
   };
   for (const std::size_t k : round.by_score(is_open))
     if (tried.size() < SearchRound::kRefits && tried.insert(round.candidate(k).key).second) round.try_out(k);
@@ -59,20 +62,20 @@ bool passes(std::size_t candidate, const SearchRound& round, const SearchResult&
   return round.score(candidate).family_p_value <= level(round.candidate(candidate), found);
 }
 
-std::optional<std::size_t> best_curve(const SearchRound& round, const SearchResult& found) {
-  const auto curves =
-      round.by_score([&](std::size_t k) { return round.candidate(k).curve && passes(k, round, found); });
-  return curves.empty() ? std::nullopt : std::optional(curves.front());
+std::optional<std::size_t> best_smooth(const SearchRound& round, const SearchResult& found) {
+  const auto smooths =
+      round.by_score([&](std::size_t k) { return round.candidate(k).smooth && passes(k, round, found); });
+  return smooths.empty() ? std::nullopt : std::optional(smooths.front());
 }
 
-std::optional<Trial> best_name_beside(std::optional<std::size_t> curve, SearchRound& round,
+std::optional<Trial> best_name_beside(std::optional<std::size_t> smooth, SearchRound& round,
                                       const SearchResult& found) {
   auto name = best_name(round, found);
-  if (!name || !curve || !round.curve_beats(*curve, name->candidate)) return name;
-  const vehicle::Law& law = round.candidate(*curve).curve->law;
-  const auto own =
-      round.best_trial([&](std::size_t k) { return contains(round.candidate(k).effect->laws(), law); });
-  return own && !round.curve_beats(*curve, own->candidate) ? own : std::nullopt;
+  if (!name || !smooth || !round.smooth_beats(*smooth, name->candidate)) return name;
+  const vehicle::Dependence& dependence = round.candidate(*smooth).smooth->dependence;
+  const auto own = round.best_trial(
+      [&](std::size_t k) { return contains(round.candidate(k).effect->dependences(), dependence); });
+  return own && !round.smooth_beats(*smooth, own->candidate) ? own : std::nullopt;
 }
 
 std::optional<Trial> best_clock(const SearchRound& round) {

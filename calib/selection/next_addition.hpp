@@ -15,12 +15,12 @@ bool is_clock(const Candidate& candidate);
 /// Whether the score is significant at the candidate's own level.
 bool passes(std::size_t candidate, const SearchRound& round, const SearchResult& found);
 
-std::optional<std::size_t> best_curve(const SearchRound& round, const SearchResult& found);
+std::optional<std::size_t> best_smooth(const SearchRound& round, const SearchResult& found);
 
-/// The best name, unless the curve is clearly better: then one on the curve's own ground, which may be the
-/// second best of two effects.
-/// @param curve index of the best one, if any
-std::optional<Trial> best_name_beside(std::optional<std::size_t> curve, SearchRound& round,
+/// The best name, unless the smooth term is clearly better: then one on the smooth term's own ground, which
+/// may be the second best of two effects.
+/// @param smooth term index of the best one, if any
+std::optional<Trial> best_name_beside(std::optional<std::size_t> smooth, SearchRound& round,
                                       const SearchResult& found);
 
 /// Where motions begin, clocks that disagree look like anything that goes with beginnings. A clock cannot

@@ -9,7 +9,7 @@ namespace odomcalib::calib::selection {
 namespace {
 
 /// A mean that is told only where chance does not make it.
-class TellingMean {
+class PlainMean {
  public:
   void add(double value) {
     sum_ += value;
@@ -65,7 +65,7 @@ class Causes {
   }
 
   OutlierCause cause_;
-  TellingMean way_, turn_;
+  PlainMean way_, turn_;
 };
 
 }  // namespace

@@ -19,16 +19,16 @@ namespace {
 constexpr std::size_t kFewest = 5;      ///< events; fewer have everything in common
 constexpr double kFewestShare = 0.015;  ///< of all pairs
 constexpr double kLevel = 0.001;        ///< family-wise: better than all draws
-constexpr double kAlike = 0.8;          ///< of the best gain: a variable that may as well be the one
+constexpr double kAlike = 0.8;          ///< of the best gain: a covariate that may as well be the one
 constexpr std::size_t kMostNamed = 3;
 constexpr std::size_t kSlices = 4;  ///< of each coordinate of a place
 constexpr std::size_t kBins = kSlices * kSlices;
 constexpr int kDraws = 999;
 constexpr unsigned kSeed = 5;
 
-/// Events and pairs by bin of one variable.
+/// Events and pairs by bin of one covariate.
 struct Binned {
-  vehicle::Variable variable = vehicle::Variable::time;
+  vehicle::Covariate covariate = vehicle::Covariate::time;
   std::vector<std::size_t> bin;  ///< of each pair
   std::vector<double> value;     ///< of each pair
 };
@@ -46,50 +46,50 @@ std::vector<std::size_t> sliced(const std::vector<double>& values, std::size_t s
 }
 
 /// Where an event lies so far back, how far says no more than the time does.
-double farthest(vehicle::Variable variable) {
-  if (!is_distance_since(variable)) return std::numeric_limits<double>::infinity();
-  const bool is_angle_of_wheel = variable == vehicle::Variable::left_since_reversal ||
-                                 variable == vehicle::Variable::right_since_reversal;
+double farthest(vehicle::Covariate covariate) {
+  if (!is_distance_since(covariate)) return std::numeric_limits<double>::infinity();
+  const bool is_angle_of_wheel = covariate == vehicle::Covariate::left_since_reversal ||
+                                 covariate == vehicle::Covariate::right_since_reversal;
   return is_angle_of_wheel ? 10.0 : 0.5;  // rad, m
 }
 
 /// Mean over a pair; of an angle, in its middle.
-double value_in(vehicle::Variable variable, const vehicle::DriveModel& model,
+double value_in(vehicle::Covariate covariate, const vehicle::DriveModel& model,
                 const vehicle::Interval& interval, bool of_y) {
   const auto context = model.context_within(interval);
-  if (is_angle(variable)) return math::angle_of_turn(value_of(variable, context[(context.size() - 1) / 2]));
-  const double most = farthest(variable);
+  if (is_angle(covariate)) return math::angle_of_turn(value_of(covariate, context[(context.size() - 1) / 2]));
+  const double most = farthest(covariate);
   double sum = 0.0;
-  for (const vehicle::StepContext& c : context) sum += of_y ? c.y : std::min(value_of(variable, c), most);
+  for (const vehicle::StepContext& c : context) sum += of_y ? c.y : std::min(value_of(covariate, c), most);
   return sum / static_cast<double>(context.size());
 }
 
-std::vector<double> values_of(vehicle::Variable variable, std::span<const measurement::FitData> data,
+std::vector<double> values_of(vehicle::Covariate covariate, std::span<const measurement::FitData> data,
                               bool of_y = false) {
   std::vector<double> values;
   for (const measurement::FitData& d : data)
     for (const vehicle::Interval& interval : estimation::intervals_of(d.pairs))
-      values.push_back(value_in(variable, *d.model, interval, of_y));
+      values.push_back(value_in(covariate, *d.model, interval, of_y));
   return values;
 }
 
-Binned binned(vehicle::Variable variable, std::span<const measurement::FitData> data) {
-  Binned out{variable, {}, values_of(variable, data)};
-  out.bin = sliced(out.value, variable == vehicle::Variable::position ? kSlices : kBins);
-  if (variable != vehicle::Variable::position) return out;
-  const auto across = sliced(values_of(variable, data, true), kSlices);
+Binned binned(vehicle::Covariate covariate, std::span<const measurement::FitData> data) {
+  Binned out{covariate, {}, values_of(covariate, data)};
+  out.bin = sliced(out.value, covariate == vehicle::Covariate::position ? kSlices : kBins);
+  if (covariate != vehicle::Covariate::position) return out;
+  const auto across = sliced(values_of(covariate, data, true), kSlices);
   for (std::size_t k = 0; k < across.size(); ++k) out.bin[k] = kSlices * out.bin[k] + across[k];
   return out;
 }
 
-std::vector<Binned> all_variables(std::span<const measurement::FitData> data) {
+std::vector<Binned> all_covariates(std::span<const measurement::FitData> data) {
   std::vector<Binned> all;
-  for (int k = 0; k <= static_cast<int>(vehicle::kLastVariable); ++k) {
-    const auto variable = static_cast<vehicle::Variable>(k);
-    if (is_memory(variable) || variable == vehicle::Variable::distance ||
-        (data.size() > 1 && begins_with_the_recording(variable)))
+  for (int k = 0; k <= static_cast<int>(vehicle::kLastCovariate); ++k) {
+    const auto covariate = static_cast<vehicle::Covariate>(k);
+    if (is_memory(covariate) || covariate == vehicle::Covariate::distance ||
+        (data.size() > 1 && begins_with_the_recording(covariate)))
       continue;
-    all.push_back(binned(variable, data));
+    all.push_back(binned(covariate, data));
   }
   return all;
 }
@@ -103,9 +103,9 @@ double log_likelihood(double part, double whole) {
 
 using Counts = std::array<double, kBins>;
 
-Counts counted(const Binned& variable, const std::vector<std::size_t>& pairs) {
+Counts counted(const Binned& covariate, const std::vector<std::size_t>& pairs) {
   Counts counts{};
-  for (const std::size_t k : pairs) ++counts.at(variable.bin[k]);
+  for (const std::size_t k : pairs) ++counts.at(covariate.bin[k]);
   return counts;
 }
 
@@ -134,9 +134,9 @@ class Tracer {
  public:
   Tracer(std::span<const measurement::FitData> data, const std::vector<std::size_t>& events,
          std::size_t pairs)
-      : variables_(all_variables(data)), events_(events), order_(pairs) {
+      : covariates_(all_covariates(data)), events_(events), order_(pairs) {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
-    for (const Binned& variable : variables_) pairs_.push_back(counted(variable, order_));
+    for (const Binned& covariate : covariates_) pairs_.push_back(counted(covariate, order_));
   }
 
   void run(OutlierTrace& trace) {
@@ -149,19 +149,19 @@ class Tracer {
     std::sort(by_gain.begin(), by_gain.end(), [&](auto a, auto b) { return gains[a] > gains[b]; });
     for (const std::size_t v : by_gain)
       if (gains[v] >= kAlike * best && trace.depends_on.size() < kMostNamed)
-        trace.depends_on.push_back(variables_[v].variable);
-    if (trace.depends_on.front() == vehicle::Variable::time) set_range(by_gain.front(), trace);
+        trace.depends_on.push_back(covariates_[v].covariate);
+    if (trace.depends_on.front() == vehicle::Covariate::time) set_range(by_gain.front(), trace);
   }
 
  private:
   [[nodiscard]] std::vector<double> gains_of(const std::vector<std::size_t>& events) const {
     std::vector<double> gains;
-    for (std::size_t v = 0; v < variables_.size(); ++v)
-      gains.push_back(gain(counted(variables_[v], events), pairs_[v]));
+    for (std::size_t v = 0; v < covariates_.size(); ++v)
+      gains.push_back(gain(counted(covariates_[v], events), pairs_[v]));
     return gains;
   }
 
-  /// That events strewn over the pairs at random gain as much by any variable.
+  /// That events strewn over the pairs at random gain as much by any covariate.
   double chance_of(double best) {
     std::mt19937 engine(kSeed);
     int as_good = 0;
@@ -179,12 +179,12 @@ class Tracer {
 
   /// Of the bins with more than twice the usual share of events.
   void set_range(std::size_t v, OutlierTrace& trace) const {
-    const Counts events = counted(variables_[v], events_);
+    const Counts events = counted(covariates_[v], events_);
     const double usual = static_cast<double>(events_.size()) / static_cast<double>(order_.size());
     std::vector<double> values;
     for (const std::size_t k : events_) {
-      const std::size_t bin = variables_[v].bin[k];
-      if (events.at(bin) > 2.0 * usual * pairs_[v].at(bin)) values.push_back(variables_[v].value[k]);
+      const std::size_t bin = covariates_[v].bin[k];
+      if (events.at(bin) > 2.0 * usual * pairs_[v].at(bin)) values.push_back(covariates_[v].value[k]);
     }
     if (values.empty()) return;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -192,8 +192,8 @@ class Tracer {
     trace.end = *high;
   }
 
-  std::vector<Binned> variables_;
-  std::vector<Counts> pairs_;  ///< by variable
+  std::vector<Binned> covariates_;
+  std::vector<Counts> pairs_;  ///< by covariate
   const std::vector<std::size_t>& events_;
   std::vector<std::size_t> order_;
 };
@@ -234,7 +234,7 @@ std::string to_text(const OutlierTrace& trace) {
   if (trace.depends_on.empty()) out << "; nothing that was observed goes with them";
   for (std::size_t k = 0; k < trace.depends_on.size(); ++k)
     out << (k > 0 ? ", " : "; they go with ") << to_string(trace.depends_on[k]);
-  if (!trace.depends_on.empty() && trace.depends_on.front() == vehicle::Variable::time)
+  if (!trace.depends_on.empty() && trace.depends_on.front() == vehicle::Covariate::time)
     out << std::fixed << std::setprecision(0) << ", from " << trace.begin << " to " << trace.end << " s";
   out << to_text(trace.cause);
   return out.str();
@@ -242,7 +242,7 @@ std::string to_text(const OutlierTrace& trace) {
 
 std::string to_json(const OutlierTrace& trace) {
   nlohmann::ordered_json names = nlohmann::ordered_json::array();
-  for (const vehicle::Variable variable : trace.depends_on) names.push_back(to_string(variable));
+  for (const vehicle::Covariate covariate : trace.depends_on) names.push_back(to_string(covariate));
   const nlohmann::ordered_json json = {{"outliers", trace.outliers},
                                        {"pairs", trace.pairs},
                                        {"depends_on", names},

@@ -10,16 +10,16 @@
 
 #include "calib/estimation/joint.hpp"
 #include "calib/selection/outlier_cause.hpp"
-#include "calib/vehicle/carrier.hpp"
+#include "calib/vehicle/channel.hpp"
 
 namespace odomcalib::calib::selection {
 
 struct OutlierTrace {
   std::size_t outliers = 0;  ///< pairs beyond the limit of a fit
   std::size_t pairs = 0;     ///< all
-  std::vector<vehicle::Variable>
+  std::vector<vehicle::Covariate>
       depends_on;                 ///< that single out these pairs, the best first; empty: none does
-  double p_value = 1.0;           ///< of the best of all variables, by permutation
+  double p_value = 1.0;           ///< of the best of all covariates, by permutation
   double begin = 0.0, end = 0.0;  ///< s, of what goes with time: when
   OutlierCause cause;             ///< to be asked for: see cause_of_outliers
 };

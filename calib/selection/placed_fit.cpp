@@ -14,9 +14,10 @@ namespace odomcalib::calib::selection {
 namespace {
 
 bool acts_in_places(const vehicle::Effect& effect) {
-  const auto laws = effect.laws();
-  return std::any_of(laws.begin(), laws.end(), [](const vehicle::Law& law) {
-    return law.variable == vehicle::Variable::heading || law.variable == vehicle::Variable::position;
+  const auto dependences = effect.dependences();
+  return std::any_of(dependences.begin(), dependences.end(), [](const vehicle::Dependence& dependence) {
+    return dependence.covariate == vehicle::Covariate::heading ||
+           dependence.covariate == vehicle::Covariate::position;
   });
 }
 
@@ -49,22 +50,23 @@ PlacedData with_places(measurement::FitData data, const measurement::ScanPath& p
 }
 
 /// Of the parameters, those that are too small to be told of.
-std::vector<bool> quiet_parameters(const SearchResult& found) {
-  std::vector<bool> quiet(vehicle::kBaseCount, false);
+std::vector<bool> nuisance_parameters(const SearchResult& found) {
+  std::vector<bool> nuisance(vehicle::kBaseCount, false);
   for (const auto& effect : found.model.effects) {
-    const bool is_quiet = std::find(found.quiet.begin(), found.quiet.end(), effect) != found.quiet.end();
-    quiet.insert(quiet.end(), effect->parameters().size(), is_quiet);
+    const bool is_nuisance =
+        std::find(found.nuisance.begin(), found.nuisance.end(), effect) != found.nuisance.end();
+    nuisance.insert(nuisance.end(), effect->parameters().size(), is_nuisance);
   }
-  return quiet;
+  return nuisance;
 }
 
 /// What is too small to be told, as a millisecond's delay, is too small to speak against places.
 bool improves(const estimation::PathFit& path, const SearchResult& found) {
   const estimation::FitResult& fit = found.model.fit;
-  const std::vector<bool> quiet = quiet_parameters(found);
+  const std::vector<bool> nuisance = nuisance_parameters(found);
   std::vector<Comparison> compared;
   for (Eigen::Index k = 0; k < fit.parameters.size(); ++k)
-    if (!quiet[static_cast<std::size_t>(k)])
+    if (!nuisance[static_cast<std::size_t>(k)])
       compared.push_back({{fit.parameters(k), fit.covariance(k, k)},
                           {path.parameters(k), path.covariance(k, k)},
                           k < vehicle::kBaseCount});

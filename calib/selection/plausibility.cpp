@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "calib/selection/score.hpp"
-#include "calib/terms/curve.hpp"
+#include "calib/terms/smooth_term.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -68,10 +68,10 @@ bool is_negligible(const vehicle::Effect& effect, std::size_t first, const estim
   return largest < vehicle::kNegligibleShare;
 }
 
-bool is_hidden_by_ticks(const terms::Curve& curve, const estimation::FitResult& fit,
+bool is_hidden_by_ticks(const terms::SmoothTerm& smooth, const estimation::FitResult& fit,
                         std::span<const vehicle::DriveModel* const> models) {
-  constexpr double kAtLeast = 2.0;                                               // times what is hidden
-  const double strongest = std::max(std::abs(curve.low), std::abs(curve.high));  // rad/s^2
+  constexpr double kAtLeast = 2.0;                                                 // times what is hidden
+  const double strongest = std::max(std::abs(smooth.low), std::abs(smooth.high));  // rad/s^2
   double hidden = 0.0;
   for (const vehicle::DriveModel* model : models) {
     const wheels::WheelTrack& track = model->track();
@@ -79,13 +79,13 @@ bool is_hidden_by_ticks(const terms::Curve& curve, const estimation::FitResult& 
         track.tick_angle * fit.parameters(vehicle::kLeftRadius) / fit.parameters(vehicle::kTrackWidth);
     hidden = std::max(hidden, strongest * track.tick_period * track.tick_period / 8.0 + step);
   }
-  const Eigen::VectorXd own = fit.parameters.tail(static_cast<Eigen::Index>(function_count(curve)));
+  const Eigen::VectorXd own = fit.parameters.tail(static_cast<Eigen::Index>(function_count(smooth)));
   double sway = 0.0;
   for (const double share : {0.5, 1.0}) {
     vehicle::StepContext c;
     c.turn_acceleration_before.fill(share * strongest);
     c.turn_acceleration_after = c.turn_acceleration_before;
-    const terms::BasisValues functions = functions_of(curve, c);
+    const terms::BasisValues functions = functions_of(smooth, c);
     sway = std::max(sway, std::abs(std::inner_product(functions.begin(), functions.end(), own.data(), 0.0)));
   }
   return sway < kAtLeast * hidden;
@@ -104,12 +104,12 @@ bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& bef
   return false;
 }
 
-bool curve_spoils_base(const vehicle::Effect& curve, const estimation::FitResult& before,
-                       const estimation::FitResult& after) {
+bool smooth_spoils_base(const vehicle::Effect& smooth, const estimation::FitResult& before,
+                        const estimation::FitResult& after) {
   constexpr double kFar = 0.25;
   for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth})
     if (std::abs(after.parameters(k) - before.parameters(k)) > kFar * before.parameters(k)) return true;
-  return spoils_base(curve, before, after);
+  return spoils_base(smooth, before, after);
 }
 
 bool is_superfluous(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit) {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "calib/estimation/joint.hpp"
-#include "calib/terms/curve.hpp"
+#include "calib/terms/smooth_term.hpp"
 
 namespace odomcalib::calib::selection {
 
@@ -22,9 +22,9 @@ bool is_held_back(const vehicle::Effect& effect, const estimation::FitResult& fi
 bool is_negligible(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit);
 bool is_negligible(const vehicle::Effect& effect, const estimation::FitResult& fit);
 
-/// A sway of the sensor, the curve's coefficients being the fit's last, that is no larger than what ticks
-/// hide: what a turn that speeds up does between two of them, and the step of a count.
-bool is_hidden_by_ticks(const terms::Curve& curve, const estimation::FitResult& fit,
+/// A sway of the sensor, the smooth term's coefficients being the fit's last, that is no larger than what
+/// ticks hide: what a turn that speeds up does between two of them, and the step of a count.
+bool is_hidden_by_ticks(const terms::SmoothTerm& smooth, const estimation::FitResult& fit,
                         std::span<const vehicle::DriveModel* const> models);
 
 /// This drive cannot tell the addition from the wheels: it would trade a known geometry for a guess. (With
@@ -35,8 +35,8 @@ bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& bef
 
 /// Or it makes other lengths of them by a quarter, which a name may have to (a track that scrubs) but no law
 /// without one should be believed.
-bool curve_spoils_base(const vehicle::Effect& curve, const estimation::FitResult& before,
-                       const estimation::FitResult& after);
+bool smooth_spoils_base(const vehicle::Effect& smooth, const estimation::FitResult& before,
+                        const estimation::FitResult& after);
 
 /// The effect, whose parameters begin at `first`, is no longer needed beside what was added after it: its
 /// Wald statistic is not significant at 5 %.

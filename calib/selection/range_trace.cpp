@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "calib/terms/lidar_curve.hpp"
+#include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -22,22 +22,22 @@ struct Adjusted {
   measurement::RangeEvidence evidence;  ///< what is left
 };
 
-using Step = measurement::RangeLaw (*)(const measurement::RangeEvidence&);
+using Step = measurement::RangeErrorTerms (*)(const measurement::RangeEvidence&);
 
-measurement::RangeLaw offset_step(const measurement::RangeEvidence& evidence) {
-  return evidence.offset_alone * measurement::RangeLaw::Unit(0);
+measurement::RangeErrorTerms offset_step(const measurement::RangeEvidence& evidence) {
+  return evidence.offset_alone * measurement::RangeErrorTerms::Unit(0);
 }
 
 /// The offset stays what it is: it was asked first.
-measurement::RangeLaw slant_step(const measurement::RangeEvidence& evidence) {
-  measurement::RangeLaw step = evidence.values;
+measurement::RangeErrorTerms slant_step(const measurement::RangeEvidence& evidence) {
+  measurement::RangeErrorTerms step = evidence.values;
   step(0) = 0.0;
   return step;
 }
 
 Adjusted adjusted_with(Step step, Adjusted state, measurement::PlacedBeams used) {
   for (int pass = 0; pass < kPasses; ++pass) {
-    const measurement::RangeLaw change = step(state.evidence);
+    const measurement::RangeErrorTerms change = step(state.evidence);
     state.options.range_error += change;
     state.evidence = adjust_map(used.beams, state.options, state.map, used.places);
     if (change.cwiseAbs().maxCoeff() < kSettled) break;
@@ -63,12 +63,12 @@ Misfit misfit_of(const Adjusted& state, const std::vector<measurement::Beam>& be
   return misfit;
 }
 
-struct Proof {
+struct CrossValidation {
   double before = 0.0, after = 0.0;  ///< m, RMS of the readings against the map
   double z = 0.0;                    ///< mean gain per scan in its standard deviations
 };
 
-Proof prove(const Adjusted& before, const Adjusted& after, const measurement::PlacedBeams& others) {
+CrossValidation prove(const Adjusted& before, const Adjusted& after, const measurement::PlacedBeams& others) {
   Misfit all_before, all_after;
   double sum = 0.0, squares = 0.0, count = 0.0;
   for (std::size_t k = 0; k < others.beams.size(); ++k) {
@@ -89,14 +89,15 @@ Proof prove(const Adjusted& before, const Adjusted& after, const measurement::Pl
           sum / count / std::sqrt(std::max(variance, std::numeric_limits<double>::min()) / count)};
 }
 
-terms::LidarFinding finding_of(terms::LidarEffectPtr effect, double p_value, const Proof& proof,
-                               const Eigen::VectorXd& values, const Eigen::VectorXd& deviations) {
+terms::LidarFinding finding_of(terms::LidarEffectPtr effect, double p_value,
+                               const CrossValidation& validation, const Eigen::VectorXd& values,
+                               const Eigen::VectorXd& deviations) {
   return {std::move(effect),
           {values.begin(), values.end()},
           {deviations.begin(), deviations.end()},
           p_value,
-          proof.before,
-          proof.after};
+          validation.before,
+          validation.after};
 }
 
 /// What allowing for the incidence would change counts as unknown too.
@@ -129,9 +130,9 @@ class Trace {
     Adjusted better = adjusted_with(offset_step, state_, used_);
     const double value = better.options.range_error(0), deviation = deviation_of_offset(better.evidence);
     if (std::abs(value) < kClear * deviation) return {};
-    const auto proof = advance(std::move(better));
-    if (!proof) return {};
-    return {finding_of(terms::make_range_bias(), p_value, *proof, Eigen::VectorXd::Constant(1, value),
+    const auto validation = advance(std::move(better));
+    if (!validation) return {};
+    return {finding_of(terms::make_range_bias(), p_value, *validation, Eigen::VectorXd::Constant(1, value),
                        Eigen::VectorXd::Constant(1, deviation))};
   }
 
@@ -140,20 +141,20 @@ class Trace {
     const double p_value = p_value_of_slant(state_.evidence);
     Adjusted better = adjusted_with(slant_step, state_, used_);
     if (!measurement::matters_at_a_slant(better.options.range_error)) return {};
-    const auto proof = advance(std::move(better));
-    if (!proof) return {};
-    const measurement::RangeLaw deviations = state_.evidence.covariance.diagonal().cwiseSqrt();
-    return {finding_of(terms::make_incidence_error(), p_value, *proof,
+    const auto validation = advance(std::move(better));
+    if (!validation) return {};
+    const measurement::RangeErrorTerms deviations = state_.evidence.covariance.diagonal().cwiseSqrt();
+    return {finding_of(terms::make_incidence_error(), p_value, *validation,
                        state_.options.range_error.tail<measurement::kRangeCoefficients - 1>(),
                        deviations.tail<measurement::kRangeCoefficients - 1>())};
   }
 
   /// To a state that scans that were not used confirm.
-  std::optional<Proof> advance(Adjusted better) {
-    const Proof proof = prove(state_, better, others_);
-    if (proof.z < kHeldOutZ) return std::nullopt;
+  std::optional<CrossValidation> advance(Adjusted better) {
+    const CrossValidation validation = prove(state_, better, others_);
+    if (validation.z < kHeldOutZ) return std::nullopt;
     state_ = std::move(better);
-    return proof;
+    return validation;
   }
 
   Adjusted state_;

@@ -14,12 +14,12 @@ namespace {
 constexpr std::size_t kBins = 16;
 constexpr std::size_t kMostPoints = 300;
 constexpr double kWorthDividing = 0.1;   ///< gain of the correlation ratio that a division must bring
-constexpr double kWorthChanging = 0.02;  ///< ... and a less simple variable
+constexpr double kWorthChanging = 0.02;  ///< ... and a less simple covariate
 constexpr double kFarBack = 20.0;        ///< rad; a reversal farther back is forgotten
 
-/// A variable that a defect may depend on: its mean or sum over a measured motion, or its value at the
+/// A covariate that a defect may depend on: its mean or sum over a measured motion, or its value at the
 /// middle. Simple ones first: they are preferred.
-struct Variable {
+struct Covariate {
   const char* name;
   const char* unit;
   enum Over { mean, middle, sum } over;
@@ -35,67 +35,69 @@ double right_reversal(const vehicle::StepContext& c) {
   return c.right_lost[kUsualPlay] / vehicle::kPlays[kUsualPlay];
 }
 
-constexpr std::array kVariables = {
-    Variable{"speed", "m/s", Variable::mean, [](const vehicle::StepContext& c) { return c.speed; }},
-    Variable{"turn rate", "rad/s", Variable::mean, [](const vehicle::StepContext& c) { return c.turn_rate; }},
-    Variable{"left wheel speed", "m/s", Variable::mean,
-             [](const vehicle::StepContext& c) { return c.left_speed; }},
-    Variable{"right wheel speed", "m/s", Variable::mean,
-             [](const vehicle::StepContext& c) { return c.right_speed; }},
-    Variable{"lateral acceleration", "m/s^2", Variable::mean,
-             [](const vehicle::StepContext& c) { return c.speed * c.turn_rate; }},
-    Variable{
-        "acceleration", "m/s^2", Variable::mean,
+constexpr std::array kCovariates = {
+    Covariate{"speed", "m/s", Covariate::mean, [](const vehicle::StepContext& c) { return c.speed; }},
+    Covariate{"turn rate", "rad/s", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.turn_rate; }},
+    Covariate{"left wheel speed", "m/s", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.left_speed; }},
+    Covariate{"right wheel speed", "m/s", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.right_speed; }},
+    Covariate{"lateral acceleration", "m/s^2", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.speed * c.turn_rate; }},
+    Covariate{
+        "acceleration", "m/s^2", Covariate::mean,
         [](const vehicle::StepContext& c) { return 0.5 * (c.left_acceleration + c.right_acceleration); }},
-    Variable{"left wheel acceleration", "m/s^2", Variable::mean,
-             [](const vehicle::StepContext& c) { return c.left_acceleration; }},
-    Variable{"right wheel acceleration", "m/s^2", Variable::mean,
-             [](const vehicle::StepContext& c) { return c.right_acceleration; }},
-    Variable{"difference of wheel accelerations", "m/s^2", Variable::mean,
-             [](const vehicle::StepContext& c) { return c.right_acceleration - c.left_acceleration; }},
-    Variable{"left wheel angle", "rad", Variable::middle,
-             [](const vehicle::StepContext& c) { return c.left_angle; }},
-    Variable{"right wheel angle", "rad", Variable::middle,
-             [](const vehicle::StepContext& c) { return c.right_angle; }},
-    Variable{"reversals of the left wheel", "", Variable::sum, left_reversal},
-    Variable{"reversals of the right wheel", "", Variable::sum, right_reversal},
-    Variable{"reversals of both wheels", "", Variable::sum,
-             [](const vehicle::StepContext& c) { return left_reversal(c) + right_reversal(c); }},
-    Variable{"reversals, right less left wheel", "", Variable::sum,
-             [](const vehicle::StepContext& c) { return right_reversal(c) - left_reversal(c); }},
-    Variable{"distance since reversal", "m", Variable::mean,
-             [](const vehicle::StepContext& c) { return c.direction * std::min(c.since_reversal, 0.5); }},
-    Variable{
-        "distance since a stop", "m", Variable::mean,
+    Covariate{"left wheel acceleration", "m/s^2", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.left_acceleration; }},
+    Covariate{"right wheel acceleration", "m/s^2", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.right_acceleration; }},
+    Covariate{"difference of wheel accelerations", "m/s^2", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.right_acceleration - c.left_acceleration; }},
+    Covariate{"left wheel angle", "rad", Covariate::middle,
+              [](const vehicle::StepContext& c) { return c.left_angle; }},
+    Covariate{"right wheel angle", "rad", Covariate::middle,
+              [](const vehicle::StepContext& c) { return c.right_angle; }},
+    Covariate{"reversals of the left wheel", "", Covariate::sum, left_reversal},
+    Covariate{"reversals of the right wheel", "", Covariate::sum, right_reversal},
+    Covariate{"reversals of both wheels", "", Covariate::sum,
+              [](const vehicle::StepContext& c) { return left_reversal(c) + right_reversal(c); }},
+    Covariate{"reversals, right less left wheel", "", Covariate::sum,
+              [](const vehicle::StepContext& c) { return right_reversal(c) - left_reversal(c); }},
+    Covariate{"distance since reversal", "m", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.direction * std::min(c.since_reversal, 0.5); }},
+    Covariate{
+        "distance since a stop", "m", Covariate::mean,
         [](const vehicle::StepContext& c) { return std::min(c.since_stop[vehicle::kUsualMemory], 0.5); }},
-    Variable{"stop after a straight motion", "", Variable::sum,
-             [](const vehicle::StepContext& c) { return c.unwound[0].way; }},
-    Variable{"stop after a turn", "", Variable::sum,
-             [](const vehicle::StepContext& c) { return c.unwound[0].turn; }},
-    Variable{"growth of the left wheel's pace", "m/s^2", Variable::mean,
-             [](const vehicle::StepContext& c) {
-               return vehicle::growth_of_pace(c.left_acceleration, c.left_speed);
-             }},
-    Variable{"growth of the right wheel's pace", "m/s^2", Variable::mean,
-             [](const vehicle::StepContext& c) {
-               return vehicle::growth_of_pace(c.right_acceleration, c.right_speed);
-             }},
-    Variable{"growth of the pace", "m/s^2", Variable::mean,
-             [](const vehicle::StepContext& c) {
-               return vehicle::growth_of_pace(0.5 * (c.left_acceleration + c.right_acceleration), c.speed);
-             }},
-    Variable{"last turn", "", Variable::mean,
-             [](const vehicle::StepContext& c) { return c.previous_turn[vehicle::kUsualMemory]; }},
-    Variable{"last push", "", Variable::mean,
-             [](const vehicle::StepContext& c) { return c.previous_push[vehicle::kUsualMemory]; }},
-    Variable{"place, x", "m", Variable::mean, [](const vehicle::StepContext& c) { return c.x; }},
-    Variable{"place, y", "m", Variable::mean, [](const vehicle::StepContext& c) { return c.y; }},
-    Variable{"left wheel since reversal", "rad", Variable::mean,
-             [](const vehicle::StepContext& c) { return std::min(c.left_since_reversal, kFarBack); }},
-    Variable{"right wheel since reversal", "rad", Variable::mean,
-             [](const vehicle::StepContext& c) { return std::min(c.right_since_reversal, kFarBack); }},
-    Variable{"time", "s", Variable::mean, [](const vehicle::StepContext& c) { return c.t; }},
-    Variable{"heading", "rad", Variable::middle, [](const vehicle::StepContext& c) { return c.heading; }},
+    Covariate{"stop after a straight motion", "", Covariate::sum,
+              [](const vehicle::StepContext& c) { return c.unwound[0].way; }},
+    Covariate{"stop after a turn", "", Covariate::sum,
+              [](const vehicle::StepContext& c) { return c.unwound[0].turn; }},
+    Covariate{"growth of the left wheel's pace", "m/s^2", Covariate::mean,
+              [](const vehicle::StepContext& c) {
+                return vehicle::growth_of_speed_magnitude(c.left_acceleration, c.left_speed);
+              }},
+    Covariate{"growth of the right wheel's pace", "m/s^2", Covariate::mean,
+              [](const vehicle::StepContext& c) {
+                return vehicle::growth_of_speed_magnitude(c.right_acceleration, c.right_speed);
+              }},
+    Covariate{"growth of the pace", "m/s^2", Covariate::mean,
+              [](const vehicle::StepContext& c) {
+                return vehicle::growth_of_speed_magnitude(0.5 * (c.left_acceleration + c.right_acceleration),
+                                                          c.speed);
+              }},
+    Covariate{"last turn", "", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.previous_turn[vehicle::kUsualMemory]; }},
+    Covariate{"last push", "", Covariate::mean,
+              [](const vehicle::StepContext& c) { return c.previous_push[vehicle::kUsualMemory]; }},
+    Covariate{"place, x", "m", Covariate::mean, [](const vehicle::StepContext& c) { return c.x; }},
+    Covariate{"place, y", "m", Covariate::mean, [](const vehicle::StepContext& c) { return c.y; }},
+    Covariate{"left wheel since reversal", "rad", Covariate::mean,
+              [](const vehicle::StepContext& c) { return std::min(c.left_since_reversal, kFarBack); }},
+    Covariate{"right wheel since reversal", "rad", Covariate::mean,
+              [](const vehicle::StepContext& c) { return std::min(c.right_since_reversal, kFarBack); }},
+    Covariate{"time", "s", Covariate::mean, [](const vehicle::StepContext& c) { return c.t; }},
+    Covariate{"heading", "rad", Covariate::middle, [](const vehicle::StepContext& c) { return c.heading; }},
 };
 
 /// What a residual is divided by: nothing, the distance driven, or the angle turned.
@@ -117,20 +119,20 @@ constexpr std::array kAxes = {"forward", "sideways", "heading"};
 struct Samples {
   std::vector<math::Pose> motion;                     ///< measured, of the base
   std::vector<std::array<double, 3>> after, pattern;  ///< residual of the full model; what the effect adds
-  std::vector<std::array<double, kVariables.size()>> variables;
+  std::vector<std::array<double, kCovariates.size()>> covariates;
 };
 
-std::array<double, kVariables.size()> variables_of(const vehicle::DriveModel& model,
-                                                   const vehicle::Interval& interval) {
+std::array<double, kCovariates.size()> covariates_of(const vehicle::DriveModel& model,
+                                                     const vehicle::Interval& interval) {
   const auto context = model.context_within(interval);
-  std::array<double, kVariables.size()> values{};
-  for (std::size_t v = 0; v < kVariables.size(); ++v) {
-    if (kVariables.at(v).over == Variable::middle) {
-      values.at(v) = math::angle_of_turn(kVariables.at(v).of(context[(context.size() - 1) / 2]));
+  std::array<double, kCovariates.size()> values{};
+  for (std::size_t v = 0; v < kCovariates.size(); ++v) {
+    if (kCovariates.at(v).over == Covariate::middle) {
+      values.at(v) = math::angle_of_turn(kCovariates.at(v).of(context[(context.size() - 1) / 2]));
       continue;
     }
-    for (const vehicle::StepContext& c : context) values.at(v) += kVariables.at(v).of(c);
-    if (kVariables.at(v).over == Variable::mean) values.at(v) /= static_cast<double>(context.size());
+    for (const vehicle::StepContext& c : context) values.at(v) += kCovariates.at(v).of(c);
+    if (kCovariates.at(v).over == Covariate::mean) values.at(v) /= static_cast<double>(context.size());
   }
   return values;
 }
@@ -155,7 +157,7 @@ Samples samples_of(std::span<const measurement::FitData> data, const vehicle::Ef
       samples.motion.push_back(measured);
       samples.after.push_back(difference(measured, with_effect));
       samples.pattern.push_back(difference(with_effect, conjugate(plain[k], back)));
-      samples.variables.push_back(variables_of(*d.model, intervals[k]));
+      samples.covariates.push_back(covariates_of(*d.model, intervals[k]));
     }
   }
   return samples;
@@ -167,7 +169,7 @@ double mean_square(const std::vector<std::array<double, 3>>& rows, std::size_t a
   return sum / std::max(static_cast<double>(rows.size()), 1.0);
 }
 
-/// One way to draw the trace: indices of the samples in the order of the variable.
+/// One way to draw the trace: indices of the samples in the order of the covariate.
 struct View {
   std::size_t variable = 0, divisor = 0, axis = 0;
   std::vector<std::size_t> order;
@@ -176,7 +178,7 @@ struct View {
 
 std::size_t bin_begin(std::size_t bin, std::size_t count) { return bin * count / kBins; }
 
-/// Share of the pattern's variation that a function of the variable describes (correlation ratio).
+/// Share of the pattern's variation that a function of the covariate describes (correlation ratio).
 double correlation_ratio(const Samples& samples, const View& view) {
   const Divisor& divisor = kDivisors.at(view.divisor);
   const auto value = [&](std::size_t i) {
@@ -209,7 +211,7 @@ View make_view(const Samples& samples, std::size_t variable, std::size_t divisor
     if (std::abs(kDivisors.at(divisor).of(samples.motion[i])) >= kDivisors.at(divisor).least)
       view.order.push_back(i);
   std::stable_sort(view.order.begin(), view.order.end(), [&](std::size_t a, std::size_t b) {
-    return samples.variables[a].at(variable) < samples.variables[b].at(variable);
+    return samples.covariates[a].at(variable) < samples.covariates[b].at(variable);
   });
   if (view.order.size() >= 2 * kBins) view.explained = correlation_ratio(samples, view);
   return view;
@@ -232,7 +234,7 @@ View best_view(const Samples& samples) {
   const std::size_t axis = loudest_axis(samples);
   View best = make_view(samples, 0, 0, axis);
   for (std::size_t divisor = 0; divisor < kDivisors.size(); ++divisor)
-    for (std::size_t variable = 0; variable < kVariables.size(); ++variable) {
+    for (std::size_t variable = 0; variable < kCovariates.size(); ++variable) {
       View view = make_view(samples, variable, divisor, axis);
       const double lead = divisor == best.divisor ? kWorthChanging : kWorthDividing;
       if (view.explained > best.explained + lead) best = std::move(view);
@@ -279,8 +281,8 @@ std::vector<std::pair<std::size_t, std::size_t>> bins_of(const std::vector<Resid
 ResidualTrace drawn(const Samples& samples, const View& view) {
   const Divisor& divisor = kDivisors.at(view.divisor);
   ResidualTrace trace;
-  trace.variable = kVariables.at(view.variable).name;
-  trace.variable_unit = kVariables.at(view.variable).unit;
+  trace.variable = kCovariates.at(view.variable).name;
+  trace.variable_unit = kCovariates.at(view.variable).unit;
   trace.residual = kAxes.at(view.axis);
   trace.residual_unit = view.axis == 2 ? divisor.angle_unit : divisor.length_unit;
   trace.explained = view.explained;
@@ -288,7 +290,7 @@ ResidualTrace drawn(const Samples& samples, const View& view) {
   for (const std::size_t i : view.order) {
     const double scale = divisor.of(samples.motion[i]);
     const double after = samples.after[i].at(view.axis);
-    points.push_back({samples.variables[i].at(view.variable),
+    points.push_back({samples.covariates[i].at(view.variable),
                       (after + samples.pattern[i].at(view.axis)) / scale, after / scale});
   }
   for (const auto& [first, last] : bins_of(points))
@@ -319,13 +321,13 @@ std::optional<Eigen::VectorXd> fitted_without(std::span<const measurement::FitDa
 std::vector<ResidualTrace> residual_traces(std::span<const measurement::FitData> data,
                                            const vehicle::EffectList& effects,
                                            const estimation::FitResult& fit, const std::vector<bool>& fixed,
-                                           const vehicle::EffectList& quiet) {
+                                           const vehicle::EffectList& nuisance) {
   std::vector<ResidualTrace> traces;
   std::size_t next = vehicle::kBaseCount;
   for (const auto& effect : effects) {
     const std::size_t first = next;
     next += effect->parameters().size();
-    if (std::find(quiet.begin(), quiet.end(), effect) != quiet.end()) continue;
+    if (std::find(nuisance.begin(), nuisance.end(), effect) != nuisance.end()) continue;
     const auto without = fitted_without(data, effects, fit, fixed, first, *effect);
     if (!without) continue;
     const Samples samples = samples_of(data, effects, fit, *without);

@@ -1,4 +1,4 @@
-// What an effect looks like in the data: residual with and without it, against the variable it acts by.
+// What an effect looks like in the data: residual with and without it, against the covariate it acts by.
 #pragma once
 
 #include <span>
@@ -11,11 +11,11 @@ namespace odomcalib::calib::selection {
 
 /// One trace per effect but the quiet ones, which are in the model and too small to be told. "Before" is the
 /// model refitted without that effect, "after" the full one; the difference of the two predictions is the
-/// effect's pattern. The variable is the one of all observed variables that describes most of the pattern
+/// effect's pattern. The covariate is the one of all observed covariates that describes most of the pattern
 /// (correlation ratio over quantile bins), and so is the axis: a new effect needs no entry here.
 std::vector<ResidualTrace> residual_traces(std::span<const measurement::FitData> data,
                                            const vehicle::EffectList& effects,
                                            const estimation::FitResult& fit, const std::vector<bool>& fixed,
-                                           const vehicle::EffectList& quiet = {});
+                                           const vehicle::EffectList& nuisance = {});
 
 }  // namespace odomcalib::calib::selection

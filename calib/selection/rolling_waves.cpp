@@ -13,31 +13,31 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr double kShortest = 0.2;      ///< m; less than a pair of scans is long
-constexpr double kLongest = 1.5;       ///< m; what changes slower may be anything
-constexpr double kStep = 0.5;          ///< cycles over the whole way
-constexpr double kMostWaves = 3000;    ///< the shortest are left out where there would be more
-constexpr double kBeyondDoubt = 1e-4;  ///< of a peak as high anywhere, in noise
+constexpr double kShortest = 0.2;    ///< m; less than a pair of scans is long
+constexpr double kLongest = 1.5;     ///< m; what changes slower may be anything
+constexpr double kStep = 0.5;        ///< cycles over the whole way
+constexpr double kMostWaves = 3000;  ///< the shortest are left out where there would be more
+constexpr double kDecisive = 1e-4;   ///< of a peak as high anywhere, in noise
 
 /// Something that rolls.
 struct Roller {
-  vehicle::Law law;  ///< what its defect does
-  double metre;      ///< of its variable, for a metre of way
+  vehicle::Dependence dependence;  ///< what its defect does
+  double metre;                    ///< of its covariate, for a metre of way
 };
 
 std::array<Roller, 3> rollers(const estimation::FitResult& fit) {
-  return {{{{vehicle::Variable::distance, vehicle::Carrier::yaw_path}, 1.0},
-           {{vehicle::Variable::left_phase, vehicle::Carrier::left_travel},
+  return {{{{vehicle::Covariate::distance, vehicle::Channel::yaw_path}, 1.0},
+           {{vehicle::Covariate::left_phase, vehicle::Channel::left_travel},
             1.0 / fit.parameters(vehicle::kLeftRadius)},
-           {{vehicle::Variable::right_phase, vehicle::Carrier::right_travel},
+           {{vehicle::Covariate::right_phase, vehicle::Channel::right_travel},
             1.0 / fit.parameters(vehicle::kRightRadius)}}};
 }
 
 /// Whitened derivative of the residual by a defect that is the same everywhere: a wave without an end.
-Eigen::VectorXd steady_column(const vehicle::Law& law, std::span<const measurement::FitData> data,
-                              const FittedModel& model) {
+Eigen::VectorXd steady_column(const vehicle::Dependence& dependence,
+                              std::span<const measurement::FitData> data, const FittedModel& model) {
   constexpr double kEndless = 1e12;
-  const std::vector<Candidate> steady{candidate_of(on_basis({law, 0.0, 1.0}, terms::Cycle{kEndless}))};
+  const std::vector<Candidate> steady{candidate_of(on_basis({dependence, 0.0, 1.0}, terms::Cycle{kEndless}))};
   return candidate_columns(data, model.effects, model.fit, steady).front().col(0);
 }
 
@@ -47,12 +47,12 @@ struct Rolled {
   double all = 0.0;
 };
 
-Rolled rolled(const measurement::FitData& data, vehicle::Variable variable) {
+Rolled rolled(const measurement::FitData& data, vehicle::Covariate covariate) {
   Rolled out;
   for (const measurement::SensorPair& pair : data.pairs) {
     const auto context = data.model->context_within(pair.interval);
-    out.begin.push_back(value_of(variable, context.front()));
-    out.end.push_back(value_of(variable, context.back()));
+    out.begin.push_back(value_of(covariate, context.front()));
+    out.end.push_back(value_of(covariate, context.back()));
     out.all += std::abs(out.end.back() - out.begin.back());
   }
   return out;
@@ -79,7 +79,7 @@ class Periodogram {
   }
 
   /// Chi-squared with two degrees of freedom in noise.
-  /// @param frequency cycles per unit of the variable
+  /// @param frequency cycles per unit of the covariate
   [[nodiscard]] double statistic(double frequency) const {
     Eigen::Vector2d score = Eigen::Vector2d::Zero();
     Eigen::Matrix2d gram = 1e-12 * Eigen::Matrix2d::Identity();
@@ -100,7 +100,7 @@ class Periodogram {
 
 /// Frequency of the wave that stands out of all that a roller may make, between which kStep cycles lie; its
 /// place in between a tenth as far.
-/// @param metre of the variable, for a metre of way
+/// @param metre of the covariate, for a metre of way
 std::optional<double> outstanding(double metre, const Periodogram& periodogram, double whole_way) {
   const double lowest = 1.0 / (kLongest * metre), step = kStep / whole_way;
   if (!(step < lowest)) return std::nullopt;
@@ -114,15 +114,15 @@ std::optional<double> outstanding(double metre, const Periodogram& periodogram, 
   const double coarse = best_of(lowest, highest, step)[0];
   const auto [frequency, statistic] = best_of(coarse - step, coarse + step, 0.1 * step);
   const double tried = 3.0 * (highest - lowest) / step;
-  return chi_squared_tail(statistic, 2) * tried < kBeyondDoubt ? std::optional(frequency) : std::nullopt;
+  return chi_squared_tail(statistic, 2) * tried < kDecisive ? std::optional(frequency) : std::nullopt;
 }
 
 /// Once round with each turn of a wheel has a name; it competes with the wave.
 std::vector<Candidate> with_their_names(std::vector<Candidate> waves, const vehicle::EffectList& present) {
   const std::size_t count = waves.size();
   for (const Candidate& name : names_missing(present, true)) {
-    const auto laws = name.effect->laws();
-    const auto is_its = [&](const Candidate& wave) { return contains(laws, wave.curve->law); };
+    const auto dependences = name.effect->dependences();
+    const auto is_its = [&](const Candidate& wave) { return contains(dependences, wave.smooth->dependence); };
     const auto end = waves.begin() + static_cast<std::ptrdiff_t>(count);
     if (std::any_of(waves.begin(), end, is_its)) waves.push_back(name);
   }
@@ -136,12 +136,12 @@ std::vector<Candidate> rolling_waves(std::span<const measurement::FitData> data,
   if (data.size() != 1) return candidates;
   const Eigen::VectorXd residual = clipped(model.fit.whitened_residual);
   for (const Roller& roller : rollers(model.fit)) {
-    const Rolled way = rolled(data.front(), roller.law.variable);
-    const Periodogram periodogram(steady_column(roller.law, data, model), way, residual);
+    const Rolled way = rolled(data.front(), roller.dependence.covariate);
+    const Periodogram periodogram(steady_column(roller.dependence, data, model), way, residual);
     const auto frequency = outstanding(roller.metre, periodogram, way.all);
     if (frequency)
       candidates.push_back(
-          candidate_of(on_basis({roller.law, 0.0, way.all}, terms::Cycle{1.0 / *frequency})));
+          candidate_of(on_basis({roller.dependence, 0.0, way.all}, terms::Cycle{1.0 / *frequency})));
   }
   return with_their_names(std::move(candidates), model.effects);
 }

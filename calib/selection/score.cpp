@@ -165,7 +165,7 @@ double ScoreTable::family_p_value(double statistic, std::size_t degrees) const {
   // effect itself hardly stands out. Bonferroni's bound on the model's tail probability, far beyond any
   // doubt, needs no draws.
   const double bound = chi_squared_tail(statistic, degrees) * static_cast<double>(block_scores_.size());
-  if (bound < settings::kBeyondDoubt) return 1.0 / (1.0 + settings::kSignDraws);
+  if (bound < settings::kDecisive) return 1.0 / (1.0 + settings::kSignDraws);
   const auto above = largest_.end() - std::lower_bound(largest_.begin(), largest_.end(), own);
   return (1.0 + static_cast<double>(above)) / (1.0 + settings::kSignDraws);
 }

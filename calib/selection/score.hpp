@@ -9,7 +9,7 @@
 
 #include "calib/estimation/joint.hpp"
 #include "calib/selection/candidate.hpp"
-#include "calib/selection/stretch_errors.hpp"
+#include "calib/selection/window_errors.hpp"
 
 namespace odomcalib::calib::selection {
 

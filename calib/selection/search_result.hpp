@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/selection/cross_validation.hpp"
 #include "calib/selection/fitted_model.hpp"
-#include "calib/selection/proof.hpp"
-#include "calib/terms/curve.hpp"
+#include "calib/terms/smooth_term.hpp"
 #include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::calib::selection {
@@ -15,19 +15,19 @@ namespace odomcalib::calib::selection {
 struct Finding {
   std::shared_ptr<const vehicle::Effect> effect;
   std::vector<std::string> aliases;  ///< candidates the data cannot tell from it
-  Proof proof;
+  CrossValidation validation;
 };
 
-/// A curve that the search added to the model.
-struct AddedCurve {
+/// A smooth term that the search added to the model.
+struct AddedSmoothTerm {
   std::shared_ptr<const vehicle::Effect> effect;
-  terms::Curve curve;
-  Proof proof;
-  /// The named effect whose law the curve completes: the data want another law than the textbook's. Null:
-  /// nothing in the catalogue explains it.
-  std::shared_ptr<const vehicle::Effect> law_of;
-  /// Variables that moved together with the curve's own in this drive, so that either may be meant.
-  std::vector<vehicle::Variable> alike = {};
+  terms::SmoothTerm smooth;
+  CrossValidation validation;
+  /// The named effect whose law the smooth term completes: the data want another law than the textbook's.
+  /// Null: nothing in the catalogue explains it.
+  std::shared_ptr<const vehicle::Effect> named_term;
+  /// Covariates that moved together with the smooth term's own in this drive, so that either may be meant.
+  std::vector<vehicle::Covariate> alike = {};
 };
 
 /// A candidate that passed the score test, and what became of it.
@@ -36,28 +36,28 @@ struct Considered {
   double statistic = 0.0;
   double family_p_value = 1.0;
   std::string outcome;
-  std::vector<vehicle::Variable> depends_on =
-      {};  ///< of a curve: its variable, and those that would do as well
+  std::vector<vehicle::Covariate> depends_on =
+      {};  ///< of a smooth term: its covariate, and those that would do as well
 };
 
 struct SearchResult {
   FittedModel model;  ///< effects given, then what was added
   std::vector<Finding> findings;
-  std::vector<AddedCurve> curves;
-  vehicle::EffectList quiet;           ///< in the model, but too small to be told
+  std::vector<AddedSmoothTerm> smooths;
+  vehicle::EffectList nuisance;        ///< in the model, but too small to be told
   std::vector<Considered> considered;  ///< in the order tried
   std::vector<Detectable> detectable;  ///< of the names that are not in the model
   /// What nobody knows about a law is unknown of the base parameters too: by how much they move with another
   /// shape, another zero or another name of the set, by extrapolation to where no effect is, and with what
   /// was too small to be told.
-  std::vector<Eigen::VectorXd> doubts;
+  std::vector<Eigen::VectorXd> model_uncertainties;
 
   [[nodiscard]] bool has_unnamed() const;
-  /// The finding whose law a curve of that law would replace or complete; null if there is none.
-  [[nodiscard]] std::shared_ptr<const vehicle::Effect> owner_of(const vehicle::Law& law) const;
-  /// A law that was completed shares its ground with the curve, and keeps its name.
+  /// The finding whose law a smooth term of that law would replace or complete; null if there is none.
+  [[nodiscard]] std::shared_ptr<const vehicle::Effect> owner_of(const vehicle::Dependence& dependence) const;
+  /// A law that was completed shares its ground with the smooth term, and keeps its name.
   [[nodiscard]] bool is_completed(const std::shared_ptr<const vehicle::Effect>& name) const;
-  /// No longer told, as a name or as a curve; curves that completed its law stand for
+  /// No longer told, as a name or as a smooth term; smooth terms that completed its law stand for
   /// all of it then.
   void forget(const std::shared_ptr<const vehicle::Effect>& effect);
 };

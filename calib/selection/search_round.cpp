@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "calib/selection/law_shape.hpp"
-#include "calib/selection/likeness.hpp"
+#include "calib/selection/equivalent_models.hpp"
+#include "calib/selection/hyperparameters.hpp"
 #include "calib/selection/plausibility.hpp"
 #include "calib/selection/settings.hpp"
 
@@ -12,7 +12,8 @@ namespace odomcalib::calib::selection {
 namespace {
 
 constexpr double kAmbiguity = 6.0;  ///< units of BIC
-constexpr double kSameLaw = 0.5;    ///< share of a curve's statistic that a name with that law must reach
+constexpr double kSameDependence =
+    0.5;  ///< share of a smooth term's statistic that a name with that law must reach
 
 }  // namespace
 
@@ -27,8 +28,8 @@ double SearchRound::penalty(std::size_t degrees) const {
 }
 
 double SearchRound::penalised(std::size_t candidate) const {
-  const auto& curve = candidates_[candidate].curve;
-  const std::size_t chosen = curve && happens_at_once(*curve) ? 1 : 0;  // its moment
+  const auto& smooth = candidates_[candidate].smooth;
+  const std::size_t chosen = smooth && happens_at_once(*smooth) ? 1 : 0;  // its moment
   return score(candidate).statistic - penalty(score(candidate).degrees + chosen);
 }
 
@@ -78,15 +79,16 @@ std::vector<std::size_t> SearchRound::by_score(const Wanted& wanted) const {
   return order;
 }
 
-bool SearchRound::curve_beats(std::size_t curve, std::size_t name) const {
-  if (penalised(curve) - penalised(name) <= kAmbiguity) return false;
-  const bool same_ground = contains(candidates_[name].effect->laws(), candidates_[curve].curve->law) ||
-                           table_.correlation(name, curve) > kAlias;
+bool SearchRound::smooth_beats(std::size_t smooth, std::size_t name) const {
+  if (penalised(smooth) - penalised(name) <= kAmbiguity) return false;
+  const bool same_ground =
+      contains(candidates_[name].effect->dependences(), candidates_[smooth].smooth->dependence) ||
+      table_.correlation(name, smooth) > kAlias;
   const auto has_key_of_name = [&](std::size_t k) { return candidates_[k].key == candidates_[name].key; };
   const double of_best_shape = score(by_score(has_key_of_name).front()).statistic;
-  const double of_curve = score(curve).statistic;
+  const double of_smooth = score(smooth).statistic;
   return !(same_ground &&
-           (score(name).statistic > kSameLaw * of_curve || of_best_shape > kNearlyAll * of_curve));
+           (score(name).statistic > kSameDependence * of_smooth || of_best_shape > kNearlyAll * of_smooth));
 }
 
 std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {
@@ -94,24 +96,24 @@ std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {
   for (const Trial& trial : trials_)
     if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity) rivals.push_back(trial.candidate);
   for (std::size_t k = 0; k < candidates_.size(); ++k)
-    if (is_open(k) && !candidates_[k].curve && score(k).family_p_value <= settings::kNamedLevel &&
+    if (is_open(k) && !candidates_[k].smooth && score(k).family_p_value <= settings::kNamedLevel &&
         are_too_close(table_, best.candidate, k))
       rivals.push_back(k);
   return rivals;
 }
 
-std::vector<Eigen::VectorXd> SearchRound::doubts_of(const std::vector<std::size_t>& rivals,
-                                                    const Trial& best) {
+std::vector<Eigen::VectorXd> SearchRound::model_uncertainties_of(const std::vector<std::size_t>& rivals,
+                                                                 const Trial& best) {
   const std::string name = candidates_[best.candidate].effect->name();
   for (const std::size_t rival : rivals) try_out(rival);
-  std::vector<Eigen::VectorXd> doubts;
+  std::vector<Eigen::VectorXd> model_uncertainties;
   for (const Trial& trial : trials_) {
     const vehicle::Effect& effect = *candidates_[trial.candidate].effect;
     const bool is_rival = std::find(rivals.begin(), rivals.end(), trial.candidate) != rivals.end();
     if (is_rival && effect.name() != name && impossibility(effect, trial.model.fit).empty())
-      doubts.emplace_back(trial.model.base() - best.model.base());
+      model_uncertainties.emplace_back(trial.model.base() - best.model.base());
   }
-  return doubts;
+  return model_uncertainties;
 }
 
 }  // namespace odomcalib::calib::selection

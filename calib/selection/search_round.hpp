@@ -47,15 +47,16 @@ class SearchRound {
 
   /// Candidates that are left and wanted, the most promising first.
   [[nodiscard]] std::vector<std::size_t> by_score(const Wanted& wanted) const;
-  /// A curve on the name's own ground that explains no more than about twice as much is the same finding with
-  /// a freer law; so is one that explains hardly more than the name in another shape than it was refitted
-  /// from.
-  [[nodiscard]] bool curve_beats(std::size_t curve, std::size_t name) const;
+  /// A smooth term on the name's own ground that explains no more than about twice as much is the same
+  /// finding with a freer law; so is one that explains hardly more than the name in another shape than it was
+  /// refitted from.
+  [[nodiscard]] bool smooth_beats(std::size_t smooth, std::size_t name) const;
 
   /// Names within a few units of BIC of the best.
   [[nodiscard]] std::vector<std::size_t> rivals_of(const Trial& best) const;
   /// What each name that may be the right one instead would make of the base parameters.
-  std::vector<Eigen::VectorXd> doubts_of(const std::vector<std::size_t>& rivals, const Trial& best);
+  std::vector<Eigen::VectorXd> model_uncertainties_of(const std::vector<std::size_t>& rivals,
+                                                      const Trial& best);
 
   /// Candidates refitted jointly per step.
   static constexpr std::size_t kRefits = 4;

@@ -4,21 +4,21 @@
 #include <optional>
 
 #include "calib/selection/candidate.hpp"
-#include "calib/selection/law_shape.hpp"
-#include "calib/selection/proof.hpp"
+#include "calib/selection/cross_validation.hpp"
+#include "calib/selection/hyperparameters.hpp"
 
 namespace odomcalib::calib::selection {
 
-/// A curve in the best of its shapes, proved against the model without it.
-struct FreeLaw {
-  Reshaped law;
-  Proof proof;
+/// A smooth term in the best of its shapes, proved against the model without it.
+struct FreeTerm {
+  Reshaped dependence;
+  CrossValidation validation;
 };
 
-/// The candidate's curve in the name's place, if the name leaves more than a little to it and foretells
+/// The candidate's smooth term in the name's place, if the name leaves more than a little to it and foretells
 /// held-out data worse.
 /// @param index of the name's effect in the model
-std::optional<FreeLaw> free_law_instead_of(const FitTask& task, const FittedModel& model, std::size_t index,
-                                           const Candidate& candidate);
+std::optional<FreeTerm> free_term_instead_of(const FitTask& task, const FittedModel& model, std::size_t index,
+                                             const Candidate& candidate);
 
 }  // namespace odomcalib::calib::selection

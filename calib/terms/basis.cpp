@@ -2,14 +2,14 @@
 
 namespace odomcalib::calib::terms {
 
-Basis usual_basis(const vehicle::Law& law, std::size_t memory) {
-  if (law.carrier == vehicle::Carrier::sensor_yaw) return Sway{};
-  if (is_angle(law.variable)) return Harmonics{};
-  if (is_distance_since(law.variable)) return FadingSince{};
-  if (is_relay(law.variable, memory)) return Relay{};
-  if (law.variable == vehicle::Variable::position) return Surface{};
-  if (!is_signed_speed(law.variable)) return Polynomials{};
-  return law.carrier == vehicle::Carrier::turn_path ? Basis(TurnPath{}) : Basis(SpeedHats{});
+Basis usual_basis(const vehicle::Dependence& dependence, std::size_t memory) {
+  if (dependence.channel == vehicle::Channel::sensor_yaw) return Sway{};
+  if (is_angle(dependence.covariate)) return Harmonics{};
+  if (is_distance_since(dependence.covariate)) return FadingSince{};
+  if (is_relay(dependence.covariate, memory)) return Relay{};
+  if (dependence.covariate == vehicle::Covariate::position) return Surface{};
+  if (!is_signed_speed(dependence.covariate)) return Polynomials{};
+  return dependence.channel == vehicle::Channel::turn_path ? Basis(TurnPath{}) : Basis(SpeedHats{});
 }
 
 }  // namespace odomcalib::calib::terms

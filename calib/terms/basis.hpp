@@ -1,4 +1,4 @@
-// What a curve may be a sum of: a closed set of bases, each with its own settings.
+// What a smooth term may be a sum of: a closed set of bases, each with its own settings.
 #pragma once
 
 #include <variant>
@@ -27,6 +27,6 @@ using Basis = std::variant<Polynomials, SpeedHats, Splines, TurnPath, Harmonics,
 
 /// The plainest basis for a law, in which it is sought first.
 /// @param memory which way to understand what happened before, see vehicle::memories_of
-Basis usual_basis(const vehicle::Law& law, std::size_t memory);
+Basis usual_basis(const vehicle::Dependence& dependence, std::size_t memory);
 
 }  // namespace odomcalib::calib::terms

@@ -36,7 +36,7 @@ struct LidarParameter {
 class LidarEffect {
  public:
   virtual ~LidarEffect() = default;
-  /// Of an unnamed dependence, the variable.
+  /// Of an unnamed dependence, the covariate.
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual bool is_named() const { return true; }
   /// Whether scans may be corrected by it. What is nearly a common scale no scan shows well enough: it is
@@ -47,11 +47,11 @@ class LidarEffect {
   /// Share of the squared disagreement between scans that it may leave, at most, to be worth its freedom.
   [[nodiscard]] virtual double may_leave() const { return 0.9965; }
   /// How many deviations the mean gain on held-out pairs must lie above zero.
-  [[nodiscard]] virtual double proof_wanted() const { return 2.5; }
-  /// Share of the statistic of a free law of its variable that it must reach to be taken instead.
-  [[nodiscard]] virtual double share_of_free_law() const { return 0.5; }
-  /// The variable it depends on. A rest that depends on the same one is the same effect with another law.
-  [[nodiscard]] virtual std::string variable() const = 0;
+  [[nodiscard]] virtual double least_z() const { return 2.5; }
+  /// Share of the statistic of a free law of its covariate that it must reach to be taken instead.
+  [[nodiscard]] virtual double share_of_free_term() const { return 0.5; }
+  /// The covariate it depends on. A rest that depends on the same one is the same effect with another law.
+  [[nodiscard]] virtual std::string covariate() const = 0;
   [[nodiscard]] virtual std::vector<LidarParameter> parameters() const = 0;
   /// Shift per unit of each parameter: errors are linear in them to first order.
   [[nodiscard]] virtual std::vector<BeamShift> shifts(const Sighting& sighting) const = 0;

@@ -6,7 +6,7 @@ namespace odomcalib::calib::terms {
 
 bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all) {
   return !finding.effect->is_named() && std::any_of(all.begin(), all.end(), [&](const LidarFinding& other) {
-    return other.effect->is_named() && other.effect->variable() == finding.effect->variable();
+    return other.effect->is_named() && other.effect->covariate() == finding.effect->covariate();
   });
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/vehicle/carrier.hpp"
+#include "calib/vehicle/channel.hpp"
 #include "calib/vehicle/motion_step.hpp"
 
 namespace odomcalib::calib::vehicle {
@@ -60,9 +60,9 @@ class Effect {
   [[nodiscard]] virtual std::string manoeuvre() const { return {}; }
   /// The same effect with other shapes to start from; a search tries them all and keeps the best.
   [[nodiscard]] virtual std::vector<std::shared_ptr<const Effect>> variants() const { return {}; }
-  /// Where its signature lies. A rest that depends on these variables on these carriers is the same effect
+  /// Where its signature lies. A rest that depends on these covariates on these channels is the same effect
   /// with another law than the textbook's.
-  [[nodiscard]] virtual std::vector<Law> laws() const { return {}; }
+  [[nodiscard]] virtual std::vector<Dependence> dependences() const { return {}; }
   [[nodiscard]] virtual Storage storage() const { return Storage::host; }
   /// Whether it distorts the sweeps of the sensor: a comparison with the reference needs it, dead reckoning
   /// must not have it.
@@ -70,9 +70,9 @@ class Effect {
   /// Whether the next drive begins with it as this one ended.
   [[nodiscard]] virtual bool carries_over() const { return false; }
   [[nodiscard]] virtual ClockPart clock_part() const { return ClockPart::none; }
-  /// Whether a free curve of that law would describe the same once more where this effect was found.
-  [[nodiscard]] virtual bool excludes(const Law& law) const {
-    (void)law;
+  /// Whether a free smooth term of that law would describe the same once more where this effect was found.
+  [[nodiscard]] virtual bool excludes(const Dependence& dependence) const {
+    (void)dependence;
     return false;
   }
   /// Why no mechanism makes these values together, each of them possible; empty when one does.

@@ -19,7 +19,7 @@ struct WheelStep {
 
 /// Of an acceleration, how fast the speed or turn rate grows in magnitude: negative while it is braked,
 /// whichever way the motion goes.
-inline double growth_of_pace(double acceleration, double speed) {
+inline double growth_of_speed_magnitude(double acceleration, double speed) {
   return std::copysign(acceleration, acceleration * speed);
 }
 

@@ -124,8 +124,8 @@ void fill_changes_of_acceleration(std::vector<StepContext>& contexts) {
 
 /// A robot that slows down ever more gently stands from no certain time on, but passes a slow speed at one; a
 /// count or two by which its wheels settle are no motion.
-void fill_paces(std::vector<StepContext>& contexts, const wheels::WheelTrack& track, std::size_t first,
-                const wheels::BaseParameters& base) {
+void fill_speed_magnitudes(std::vector<StepContext>& contexts, const wheels::WheelTrack& track,
+                           std::size_t first, const wheels::BaseParameters& base) {
   constexpr double kSlow = 0.003;        // m/s
   constexpr std::size_t kIntervals = 3;  // the last of them the one in question: odometry knows no later ones
   constexpr double kFew = 1.5;           // counts in them, mean of both wheels
@@ -227,7 +227,7 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
   fill_accelerations_at_ends(contexts, track, first, base);
   fill_changes_of_acceleration(contexts);
   fill_pushes(contexts, track, first, base);
-  fill_paces(contexts, track, first, base);
+  fill_speed_magnitudes(contexts, track, first, base);
   delay_sways(contexts);
   return contexts;
 }

@@ -10,7 +10,7 @@
 
 namespace odomcalib::calib::vehicle {
 
-/// Observable variables of each tick interval, from smoothed wheel angles and a geometry that is nearly
+/// Observable covariates of each tick interval, from smoothed wheel angles and a geometry that is nearly
 /// right; but for what depends on the drive before.
 /// @param first interval that is wanted; the first of them takes its acceleration's change from itself alone
 std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,

@@ -8,7 +8,7 @@ namespace odomcalib::calib::terms {
 
 /// One cosine and one sine of time, of a distance, or of a wheel's angle.
 struct Cycle {
-  double period = 1.0;  ///< in the unit of the variable, positive
+  double period = 1.0;  ///< in the unit of the covariate, positive
   [[nodiscard]] BasisValues values(const Argument& at) const;
   friend bool operator==(const Cycle&, const Cycle&) = default;
 };

@@ -9,8 +9,8 @@ constexpr double kNearestAngle = 0.2;    ///< rad of a wheel
 }  // namespace
 
 BasisValues FadingSince::values(const Argument& at) const {
-  const bool of_wheel = at.law.variable == vehicle::Variable::left_since_reversal ||
-                        at.law.variable == vehicle::Variable::right_since_reversal;
+  const bool of_wheel = at.dependence.covariate == vehicle::Covariate::left_since_reversal ||
+                        at.dependence.covariate == vehicle::Covariate::right_since_reversal;
   const double nearest = of_wheel ? kNearestAngle : kNearestLength;
   const double place = std::log2(std::max(at.z, nearest) / nearest);
   BasisValues functions;

@@ -12,7 +12,7 @@ inline constexpr int kHarmonics = 3;
 /// Cosines and sines of the first to the last multiple of an angle, by rotating on from one to the next.
 BasisValues harmonics(double angle, int first, int last);
 
-/// Cosine and sine of the first three multiples of the variable, or of a single one.
+/// Cosine and sine of the first three multiples of the covariate, or of a single one.
 struct Harmonics {
   int only = 0;           ///< which multiple alone; 0: the first three
   bool constant = false;  ///< with a constant as the first function

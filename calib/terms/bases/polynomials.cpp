@@ -22,7 +22,7 @@ BasisValues legendre(double x, int highest) {
 
 BasisValues Polynomials::values(const Argument& at) const {
   BasisValues functions = legendre(at.scaled(at.z), degree);
-  if (at.law.variable == vehicle::Variable::time) return functions;
+  if (at.dependence.covariate == vehicle::Covariate::time) return functions;
   const BasisValues at_rest = legendre(at.scaled(0.0), degree);
   for (std::size_t k = 0; k < functions.size(); ++k) functions[k] -= at_rest[k];
   return functions;

@@ -9,8 +9,8 @@ namespace odomcalib::calib::terms {
 /// Highest degree of the polynomials of a law; one that was found may be as plain as the least.
 inline constexpr int kDegrees = 4, kPlainest = 1;
 
-/// Degree 1 to `degree` on the variable's range, clamped outside. Zero at rest where the variable has a rest,
-/// so that the base parameters keep their meaning of slow, steady motion; time has none.
+/// Degree 1 to `degree` on the covariate's range, clamped outside. Zero at rest where the covariate has a
+/// rest, so that the base parameters keep their meaning of slow, steady motion; time has none.
 struct Polynomials {
   int degree = kDegrees;
   [[nodiscard]] BasisValues values(const Argument& at) const;

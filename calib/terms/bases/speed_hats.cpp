@@ -3,17 +3,17 @@
 namespace odomcalib::calib::terms {
 namespace {
 
-/// Whether direction times the carrier's unsigned way is the signed one, which the base parameters scale.
-bool goes_the_way_of(const vehicle::Law& law) {
-  switch (law.carrier) {
-    case vehicle::Carrier::left_path:
-      return law.variable == vehicle::Variable::left_speed;
-    case vehicle::Carrier::right_path:
-      return law.variable == vehicle::Variable::right_speed;
-    case vehicle::Carrier::both_path:
-    case vehicle::Carrier::sideways_path:
-    case vehicle::Carrier::yaw_path:
-      return law.variable == vehicle::Variable::speed;
+/// Whether direction times the channel's unsigned way is the signed one, which the base parameters scale.
+bool goes_the_way_of(const vehicle::Dependence& dependence) {
+  switch (dependence.channel) {
+    case vehicle::Channel::left_path:
+      return dependence.covariate == vehicle::Covariate::left_speed;
+    case vehicle::Channel::right_path:
+      return dependence.covariate == vehicle::Covariate::right_speed;
+    case vehicle::Channel::both_path:
+    case vehicle::Channel::sideways_path:
+    case vehicle::Channel::yaw_path:
+      return dependence.covariate == vehicle::Covariate::speed;
     default:
       return false;
   }
@@ -25,7 +25,7 @@ double direction_of(double relative) { return std::tanh(relative / 0.03); }
 
 void add_direction(const Argument& at, BasisValues& functions) {
   const double relative = at.relative();
-  functions.push_back(goes_the_way_of(at.law) ? 1.0 : direction_of(relative));
+  functions.push_back(goes_the_way_of(at.dependence) ? 1.0 : direction_of(relative));
   functions.push_back(relative);
 }
 

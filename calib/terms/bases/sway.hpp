@@ -6,7 +6,7 @@
 
 namespace odomcalib::calib::terms {
 
-/// The variable and its signed square: both directions alike, more than linear at most by a square.
+/// The covariate and its signed square: both directions alike, more than linear at most by a square.
 struct Sway {
   [[nodiscard]] BasisValues values(const Argument& at) const;
   friend bool operator==(const Sway&, const Sway&) = default;

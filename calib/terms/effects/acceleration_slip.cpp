@@ -24,11 +24,11 @@ class AccelerationSlip final : public StepEffect<AccelerationSlip> {
     for (const double side : {0.0, -1.0, 1.0}) all.push_back(std::make_shared<AccelerationSlip>(side));
     return all;
   }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::left_acceleration, vehicle::Carrier::left_path},
-            {vehicle::Variable::right_acceleration, vehicle::Carrier::right_path},
-            {vehicle::Variable::left_acceleration, vehicle::Carrier::left_travel},
-            {vehicle::Variable::right_acceleration, vehicle::Carrier::right_travel}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::left_acceleration, vehicle::Channel::left_path},
+            {vehicle::Covariate::right_acceleration, vehicle::Channel::right_path},
+            {vehicle::Covariate::left_acceleration, vehicle::Channel::left_travel},
+            {vehicle::Covariate::right_acceleration, vehicle::Channel::right_travel}};
   }
 
   template <typename T>
@@ -40,7 +40,7 @@ class AccelerationSlip final : public StepEffect<AccelerationSlip> {
  private:
   /// Growth of the pace, m/s^2; of the other side zero.
   static double push(double acceleration, double speed, double side) {
-    const double growth = vehicle::growth_of_pace(acceleration, speed);
+    const double growth = vehicle::growth_of_speed_magnitude(acceleration, speed);
     return growth * side < 0.0 ? 0.0 : growth;
   }
 

@@ -11,7 +11,7 @@ class AngleScale final : public LidarEffect {
  public:
   explicit AngleScale(bool all_round) : all_round_(all_round) {}
   [[nodiscard]] std::string name() const override { return "angle_scale"; }
-  [[nodiscard]] std::string variable() const override { return "bearing"; }
+  [[nodiscard]] std::string covariate() const override { return "bearing"; }
   [[nodiscard]] std::vector<LidarParameter> parameters() const override {
     return {{"epsilon", "1", 5e-4, 0.1}};
   }
@@ -20,9 +20,9 @@ class AngleScale final : public LidarEffect {
   }
   /// Few pairs of scans, those of wide views, show what it does: most readings stay nearly where they were.
   [[nodiscard]] double may_leave() const override { return all_round_ ? 0.85 : 0.998; }
-  [[nodiscard]] double proof_wanted() const override { return all_round_ ? 5.0 : 1.5; }
-  [[nodiscard]] double share_of_free_law() const override {
-    return all_round_ ? 1.0 : LidarEffect::share_of_free_law();
+  [[nodiscard]] double least_z() const override { return all_round_ ? 5.0 : 1.5; }
+  [[nodiscard]] double share_of_free_term() const override {
+    return all_round_ ? 1.0 : LidarEffect::share_of_free_term();
   }
   [[nodiscard]] std::vector<std::string> aliases() const override { return {"track_width"}; }
 

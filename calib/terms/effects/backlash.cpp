@@ -31,9 +31,9 @@ class Backlash final : public StepEffect<Backlash> {
     for (const double spread : {0.0, 0.05, 0.15}) all.push_back(std::make_shared<Backlash>(spread));
     return all;
   }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::left_since_reversal, vehicle::Carrier::left_travel},
-            {vehicle::Variable::right_since_reversal, vehicle::Carrier::right_travel}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::left_since_reversal, vehicle::Channel::left_travel},
+            {vehicle::Covariate::right_since_reversal, vehicle::Channel::right_travel}};
   }
 
   template <typename T>

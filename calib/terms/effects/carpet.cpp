@@ -16,9 +16,9 @@ class Carpet final : public StepEffect<Carpet> {
   [[nodiscard]] std::string separating_motion() const override { return "straight lines on four headings"; }
   [[nodiscard]] std::string manoeuvre() const override { return "headings"; }
   [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::nowhere; }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::heading, vehicle::Carrier::both_path},
-            {vehicle::Variable::heading, vehicle::Carrier::sideways_path}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::heading, vehicle::Channel::both_path},
+            {vehicle::Covariate::heading, vehicle::Channel::sideways_path}};
   }
 
   template <typename T>

@@ -37,8 +37,8 @@ class CasterKick final : public StepEffect<CasterKick> {
         all.push_back(std::make_shared<CasterKick>(length, 0.0, lean));
     return all;
   }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::since_reversal, vehicle::Carrier::yaw_path}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::since_reversal, vehicle::Channel::yaw_path}};
   }
 
   template <typename T>

@@ -19,14 +19,14 @@ class DirectionDependentDiameter final : public StepEffect<DirectionDependentDia
     return "straight lines forward and backward at the same speed, and spins both ways";
   }
   [[nodiscard]] std::string manoeuvre() const override { return "straights"; }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
     return {vehicle::kOfEachWheel,
-            {vehicle::Variable::left_speed, vehicle::Carrier::left_travel},
-            {vehicle::Variable::right_speed, vehicle::Carrier::right_travel},
-            {vehicle::Variable::speed, vehicle::Carrier::both_travel},
-            {vehicle::Variable::left_since_reversal, vehicle::Carrier::left_travel},
-            {vehicle::Variable::right_since_reversal, vehicle::Carrier::right_travel},
-            {vehicle::Variable::since_reversal, vehicle::Carrier::both_travel}};
+            {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
+            {vehicle::Covariate::right_speed, vehicle::Channel::right_travel},
+            {vehicle::Covariate::speed, vehicle::Channel::both_travel},
+            {vehicle::Covariate::left_since_reversal, vehicle::Channel::left_travel},
+            {vehicle::Covariate::right_since_reversal, vehicle::Channel::right_travel},
+            {vehicle::Covariate::since_reversal, vehicle::Channel::both_travel}};
   }
 
   template <typename T>

@@ -28,10 +28,10 @@ class DriftWithTime final : public StepEffect<DriftWithTime> {
       all.push_back(std::make_shared<DriftWithTime>(time_constant));
     return all;
   }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::time, vehicle::Carrier::left_travel},
-            {vehicle::Variable::time, vehicle::Carrier::right_travel},
-            {vehicle::Variable::time, vehicle::Carrier::both_travel}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::time, vehicle::Channel::left_travel},
+            {vehicle::Covariate::time, vehicle::Channel::right_travel},
+            {vehicle::Covariate::time, vehicle::Channel::both_travel}};
   }
 
   template <typename T>

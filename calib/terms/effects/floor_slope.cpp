@@ -18,8 +18,8 @@ class FloorSlope final : public StepEffect<FloorSlope> {
   }
   [[nodiscard]] std::string manoeuvre() const override { return "headings"; }
   [[nodiscard]] vehicle::Storage storage() const override { return vehicle::Storage::nowhere; }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::heading, vehicle::Carrier::both_path}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::heading, vehicle::Channel::both_path}};
   }
 
   template <typename T>

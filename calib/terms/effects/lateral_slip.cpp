@@ -25,10 +25,10 @@ class LateralSlip final : public StepEffect<LateralSlip> {
     for (const double way : vehicle::kRelaxations) all.push_back(std::make_shared<LateralSlip>(way));
     return all;
   }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::lateral_acceleration, vehicle::Carrier::sideways_path},
-            {vehicle::Variable::lateral_acceleration, vehicle::Carrier::sideways},
-            {vehicle::Variable::turn_rate, vehicle::Carrier::sideways}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::lateral_acceleration, vehicle::Channel::sideways_path},
+            {vehicle::Covariate::lateral_acceleration, vehicle::Channel::sideways},
+            {vehicle::Covariate::turn_rate, vehicle::Channel::sideways}};
   }
 
   template <typename T>

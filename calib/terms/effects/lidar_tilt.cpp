@@ -11,7 +11,7 @@ namespace {
 class LidarTilt final : public LidarEffect {
  public:
   [[nodiscard]] std::string name() const override { return "lidar_tilt"; }
-  [[nodiscard]] std::string variable() const override { return "bearing"; }
+  [[nodiscard]] std::string covariate() const override { return "bearing"; }
   [[nodiscard]] std::vector<LidarParameter> parameters() const override {
     constexpr double kNegligible = 2.5e-4;  // 1.8 degrees
     return {{"stretch_cos", "1", kNegligible, 0.02}, {"stretch_sin", "1", kNegligible, 0.02}};

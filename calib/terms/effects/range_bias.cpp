@@ -10,7 +10,7 @@ class RangeBias final : public LidarEffect {
  public:
   [[nodiscard]] std::string name() const override { return "range_bias"; }
   [[nodiscard]] bool is_judged_in_map() const override { return true; }
-  [[nodiscard]] std::string variable() const override { return "range"; }
+  [[nodiscard]] std::string covariate() const override { return "range"; }
   [[nodiscard]] std::vector<LidarParameter> parameters() const override {
     return {{"offset", "m", 0.008, 0.2}};
   }

@@ -20,16 +20,16 @@ class ScanSkew final : public StepEffect<ScanSkew> {
     return "turns left and right at two or more rates of at least 1:3, and single-wheel turns";
   }
   [[nodiscard]] std::string manoeuvre() const override { return "turns"; }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::turn_rate, vehicle::Carrier::track}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::turn_rate, vehicle::Channel::track}};
   }
   [[nodiscard]] bool bends_scans() const override { return true; }
   /// Scans whose beams were sent at other times than stated are bent by turning, and matches of them find
   /// other ways the faster the robot drives and turns: what looks like a law of turning is no more the
   /// wheels'.
-  [[nodiscard]] bool excludes(const vehicle::Law& law) const override {
-    return law.variable == vehicle::Variable::lateral_acceleration ||
-           law.variable == vehicle::Variable::turn_rate;
+  [[nodiscard]] bool excludes(const vehicle::Dependence& dependence) const override {
+    return dependence.covariate == vehicle::Covariate::lateral_acceleration ||
+           dependence.covariate == vehicle::Covariate::turn_rate;
   }
 
   template <typename T>

@@ -30,11 +30,11 @@ class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
       all.push_back(std::make_shared<SpeedDependentRadius>(half_speed));
     return all;
   }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
     return {vehicle::kOfEachWheel,
-            {vehicle::Variable::left_speed, vehicle::Carrier::left_travel},
-            {vehicle::Variable::right_speed, vehicle::Carrier::right_travel},
-            {vehicle::Variable::speed, vehicle::Carrier::both_travel}};
+            {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
+            {vehicle::Covariate::right_speed, vehicle::Channel::right_travel},
+            {vehicle::Covariate::speed, vehicle::Channel::both_travel}};
   }
 
   template <typename T>

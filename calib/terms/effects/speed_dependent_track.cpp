@@ -18,8 +18,8 @@ class SpeedDependentTrack final : public StepEffect<SpeedDependentTrack> {
     return "spins at three rates, and arcs at the same turn rate and different speeds";
   }
   [[nodiscard]] std::string manoeuvre() const override { return "turns"; }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::turn_rate, vehicle::Carrier::track}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::turn_rate, vehicle::Channel::track}};
   }
 
   template <typename T>

@@ -31,9 +31,9 @@ class StopSettling final : public StepEffect<StopSettling> {
       for (const double speed : {0.0, kSpeed}) all.push_back(std::make_shared<StopSettling>(lasting, speed));
     return all;
   }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::since_stop, vehicle::Carrier::both_travel},
-            {vehicle::Variable::since_stop, vehicle::Carrier::yaw_path}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::since_stop, vehicle::Channel::both_travel},
+            {vehicle::Covariate::since_stop, vehicle::Channel::yaw_path}};
   }
 
   template <typename T>

@@ -29,10 +29,10 @@ class TickLoss final : public StepEffect<TickLoss> {
       all.push_back(std::make_shared<TickLoss>(threshold));
     return all;
   }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
     return {vehicle::kOfEachWheel,
-            {vehicle::Variable::left_speed, vehicle::Carrier::left_travel},
-            {vehicle::Variable::right_speed, vehicle::Carrier::right_travel}};
+            {vehicle::Covariate::left_speed, vehicle::Channel::left_travel},
+            {vehicle::Covariate::right_speed, vehicle::Channel::right_travel}};
   }
 
   template <typename T>

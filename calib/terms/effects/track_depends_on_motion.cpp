@@ -26,9 +26,9 @@ class TrackDependsOnMotion final : public StepEffect<TrackDependsOnMotion> {
     for (const double arm : {0.5, 0.25, 1.0, 2.0}) all.push_back(std::make_shared<TrackDependsOnMotion>(arm));
     return all;
   }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::turn_rate, vehicle::Carrier::track},
-            {vehicle::Variable::speed, vehicle::Carrier::track}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::turn_rate, vehicle::Channel::track},
+            {vehicle::Covariate::speed, vehicle::Channel::track}};
   }
 
   template <typename T>

@@ -20,8 +20,8 @@ class TurnDirectionAsymmetry final : public StepEffect<TurnDirectionAsymmetry> {
   }
   [[nodiscard]] std::string manoeuvre() const override { return "turns"; }
   [[nodiscard]] bool has_two_states() const override { return true; }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    return {{vehicle::Variable::turn_rate, vehicle::Carrier::track}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    return {{vehicle::Covariate::turn_rate, vehicle::Channel::track}};
   }
 
   template <typename T>

@@ -23,9 +23,9 @@ class WheelEccentricity final : public StepEffect<WheelEccentricity> {
     return "slow straight lines of five or more wheel turns";
   }
   [[nodiscard]] std::string manoeuvre() const override { return "slow_straights"; }
-  [[nodiscard]] std::vector<vehicle::Law> laws() const override {
-    if (side_ == Side::left) return {{vehicle::Variable::left_phase, vehicle::Carrier::left_travel}};
-    return {{vehicle::Variable::right_phase, vehicle::Carrier::right_travel}};
+  [[nodiscard]] std::vector<vehicle::Dependence> dependences() const override {
+    if (side_ == Side::left) return {{vehicle::Covariate::left_phase, vehicle::Channel::left_travel}};
+    return {{vehicle::Covariate::right_phase, vehicle::Channel::right_travel}};
   }
 
   template <typename T>

@@ -54,8 +54,8 @@ TEST(Noise, tells_time_stamps_from_wheels) {
   const Chain chain = make_chain(3000, 1e-3, 2e-3, 0.015);
   const NoiseModel noise = estimate_noise(chain.pairs, chain.states, chain.residuals, {});
   EXPECT_NEAR(noise.stamp_jitter, 0.015, 0.004);
-  const Chain quiet = make_chain(3000, 1e-3, 2e-3, 0.0);
-  EXPECT_LT(estimate_noise(quiet.pairs, quiet.states, quiet.residuals, {}).stamp_jitter, 0.002);
+  const Chain nuisance = make_chain(3000, 1e-3, 2e-3, 0.0);
+  EXPECT_LT(estimate_noise(nuisance.pairs, nuisance.states, nuisance.residuals, {}).stamp_jitter, 0.002);
 }
 
 TEST(Noise, scans_shared_by_neighbours_give_negative_correlation) {

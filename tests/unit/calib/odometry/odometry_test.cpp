@@ -5,7 +5,7 @@
 
 #include "calib/odometry/predict.hpp"
 #include "calib/report/next_test.hpp"
-#include "calib/selection/tracing_json.hpp"
+#include "calib/selection/selection_json.hpp"
 #include "calib/terms/catalogue.hpp"
 
 namespace odomcalib::calib::odometry {
@@ -119,22 +119,23 @@ TEST(Odometry, a_curve_of_time_acts_where_the_time_is_known) {
   Calibration bent = nominal_calibration(kRobot);
   bent.data.resize(1);
   bent.data[0].duration = 200.0;
-  const auto set_curve = [&bent](double period, const std::string& law_of) {
-    const terms::Curve steady{{vehicle::Variable::time, vehicle::Carrier::both_travel}, 0.0, 200.0};
-    const terms::Curve curve = period > 0.0 ? on_basis(steady, terms::Cycle{period}) : steady;
-    std::vector<double> coefficients(function_count(curve), 0.0);
+  const auto set_smooth = [&bent](double period, const std::string& named_term) {
+    const terms::SmoothTerm steady{{vehicle::Covariate::time, vehicle::Channel::both_travel}, 0.0, 200.0};
+    const terms::SmoothTerm smooth = period > 0.0 ? on_basis(steady, terms::Cycle{period}) : steady;
+    std::vector<double> coefficients(function_count(smooth), 0.0);
     coefficients[0] = 0.01;
-    bent.extensions[selection::kCurvesMember] = selection::curves_to_json({{curve, coefficients, law_of}});
+    bent.extensions[selection::kSmoothTermsMember] =
+        selection::smooth_terms_to_json({{smooth, coefficients, named_term}});
   };
-  set_curve(0.0, "");
+  set_smooth(0.0, "");
   expect_as_larger(bent, 0.0, "another clock");
   EXPECT_EQ(effect_placements(bent).front().place, Place::odometry);
   bent.data[0].begin = -300.0;
   expect_as_larger(bent, 0.01, "as at the end");
-  set_curve(100.0, "");
+  set_smooth(100.0, "");
   expect_as_larger(bent, 0.0, "up and down");
   EXPECT_EQ(effect_placements(bent).front().place, Place::nowhere);
-  set_curve(100.0, "drift_with_time");
+  set_smooth(100.0, "drift_with_time");
   expect_as_larger(bent, 0.01, "what is left of a drift, as at the end");
 }
 
@@ -144,14 +145,15 @@ TEST(Odometry, what_a_lidar_did_in_time_is_not_followed) {
   lidars.data.resize(1);
   lidars.data[0].duration = 200.0;
   lidars.data[0].begin = 0.0;
-  for (const auto carrier :
-       {vehicle::Carrier::sideways, vehicle::Carrier::scale, vehicle::Carrier::way_turned}) {
-    terms::Curve curve{{vehicle::Variable::time, carrier}, 0.0, 200.0};
-    curve.basis = terms::ChangePoint{100.0};
-    const std::vector<double> coefficients(function_count(curve), 0.01);
-    lidars.extensions[selection::kCurvesMember] = selection::curves_to_json({{curve, coefficients, ""}});
-    expect_as_larger(lidars, 0.0, to_string(carrier).c_str());
-    EXPECT_EQ(effect_placements(lidars).front().place, Place::reference) << to_string(carrier);
+  for (const auto channel :
+       {vehicle::Channel::sideways, vehicle::Channel::scale, vehicle::Channel::way_turned}) {
+    terms::SmoothTerm smooth{{vehicle::Covariate::time, channel}, 0.0, 200.0};
+    smooth.basis = terms::ChangePoint{100.0};
+    const std::vector<double> coefficients(function_count(smooth), 0.01);
+    lidars.extensions[selection::kSmoothTermsMember] =
+        selection::smooth_terms_to_json({{smooth, coefficients, ""}});
+    expect_as_larger(lidars, 0.0, to_string(channel).c_str());
+    EXPECT_EQ(effect_placements(lidars).front().place, Place::reference) << to_string(channel);
   }
 }
 

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "calib/selection/event_text.hpp"
-#include "calib/selection/tracing_json.hpp"
-#include "calib/selection/vain_curves.hpp"
-#include "calib/terms/candidate_curves.hpp"
+#include "calib/selection/selection_json.hpp"
+#include "calib/selection/unhelpful_smooths.hpp"
+#include "calib/terms/candidate_smooths.hpp"
 #include "calib/terms/catalogue.hpp"
-#include "calib/terms/curve_effect.hpp"
-#include "calib/terms/curve_on_drives.hpp"
 #include "calib/terms/effects/step_effect.hpp"
+#include "calib/terms/smooth_term_effect.hpp"
+#include "calib/terms/smooth_term_on_drives.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
 namespace odomcalib::calib::selection {
@@ -23,13 +23,15 @@ namespace {
 
 constexpr double kDuration = 240.0;  // s, of the drives
 
-terms::Curve event_at(double moment, vehicle::Carrier carrier) {
-  terms::Curve curve{{vehicle::Variable::time, carrier}, 0.0, kDuration};
-  curve.basis = terms::ChangePoint{moment};
-  return curve;
+terms::SmoothTerm event_at(double moment, vehicle::Channel channel) {
+  terms::SmoothTerm smooth{{vehicle::Covariate::time, channel}, 0.0, kDuration};
+  smooth.basis = terms::ChangePoint{moment};
+  return smooth;
 }
 
-double moment_of(const terms::Curve& event) { return std::get<terms::ChangePoint>(event.basis).moment; }
+double change_point_of(const terms::SmoothTerm& event) {
+  return std::get<terms::ChangePoint>(event.basis).moment;
+}
 
 vehicle::StepContext at(double t) {
   vehicle::StepContext c;
@@ -41,8 +43,8 @@ vehicle::StepContext at(double t) {
 }
 
 TEST(Event, of_the_wheels_has_one_size_for_each) {
-  const terms::Curve curve = event_at(100.0, vehicle::Carrier::both_travel);
-  const auto effect = make_curve_effect(curve);
+  const terms::SmoothTerm smooth = event_at(100.0, vehicle::Channel::both_travel);
+  const auto effect = make_smooth_term_effect(smooth);
   const std::vector<double> sizes = {0.01, -0.02};
   for (const double t : {99.0, 101.0}) {
     vehicle::WheelStep<double> step{1.0, 1.0};
@@ -55,8 +57,8 @@ TEST(Event, of_the_wheels_has_one_size_for_each) {
 TEST(Event, of_the_wheels_about_its_mean_leaves_each_wheel_what_it_was_over_the_drive) {
   const vehicle::DriveModel model = lively_model();
   const std::vector<const vehicle::DriveModel*> models{&model};
-  const terms::Curve curve = as_of_the_drive(event_at(60.0, vehicle::Carrier::both_travel), models);
-  const auto effect = make_curve_effect(curve);
+  const terms::SmoothTerm smooth = as_of_the_drive(event_at(60.0, vehicle::Channel::both_travel), models);
+  const auto effect = make_smooth_term_effect(smooth);
   double left = 0.0, right = 0.0, way = 0.0;
   for (const vehicle::StepContext& c : model.context()) {
     vehicle::WheelStep<double> step{c.left_delta, c.right_delta};
@@ -79,7 +81,7 @@ TEST(Event, of_the_sensor_is_another_mount_before_the_moment) {
   wheels::BaseParameters old = kBase;
   old.mount = compose({-moved.x, -moved.y, -moved.yaw}, kBase.mount);
   const auto seen = model.predict(vehicle::as_span(vehicle::to_vector(old)), {}, intervals);
-  const vehicle::EffectList bump = {make_curve_effect(event_at(150.0, vehicle::Carrier::way_turned))};
+  const vehicle::EffectList bump = {make_smooth_term_effect(event_at(150.0, vehicle::Channel::way_turned))};
   Eigen::VectorXd parameters = vehicle::to_vector(kBase, 3);
   parameters.tail<3>() << moved.x, moved.y, moved.yaw;
   const auto told = model.predict(vehicle::as_span(parameters), bump, intervals);
@@ -95,36 +97,37 @@ TEST(Event, of_the_sensor_is_another_mount_before_the_moment) {
 }
 
 TEST(Event, is_sought_close_to_where_it_was_found) {
-  const terms::Curve curve = event_at(100.0, vehicle::Carrier::track);
-  const auto shapes = other_shapes(curve, {});
+  const terms::SmoothTerm smooth = event_at(100.0, vehicle::Channel::track);
+  const auto shapes = other_shapes(smooth, {});
   ASSERT_FALSE(shapes.empty());
-  for (const terms::Curve& shape : shapes) {
-    EXPECT_NE(moment_of(shape), moment_of(curve));
-    EXPECT_LT(std::abs(moment_of(shape) - moment_of(curve)), kDuration / terms::kMoments);
+  for (const terms::SmoothTerm& shape : shapes) {
+    EXPECT_NE(change_point_of(shape), change_point_of(smooth));
+    EXPECT_LT(std::abs(change_point_of(shape) - change_point_of(smooth)), kDuration / terms::kChangePoints);
   }
 }
 
 TEST(Event, and_what_fades_survive_the_calibration_file_on_time_alone) {
-  terms::Curve fading{{vehicle::Variable::time, vehicle::Carrier::scale}, 0.0, kDuration};
+  terms::SmoothTerm fading{{vehicle::Covariate::time, vehicle::Channel::scale}, 0.0, kDuration};
   fading.basis = terms::Decay{40.0};
-  const terms::Curve event = event_at(100.0, vehicle::Carrier::both_travel);
-  const auto read = curves_from_json(curves_to_json({{event, {0.01, -0.02}, ""}, {fading, {0.01}, ""}}));
+  const terms::SmoothTerm event = event_at(100.0, vehicle::Channel::both_travel);
+  const auto read =
+      smooth_terms_from_json(smooth_terms_to_json({{event, {0.01, -0.02}, ""}, {fading, {0.01}, ""}}));
   ASSERT_EQ(read.size(), 2U);
-  EXPECT_EQ(read[0].curve, event);
-  EXPECT_EQ(read[1].curve, fading);
-  terms::Curve nonsense = event;
-  nonsense.law.variable = vehicle::Variable::speed;
-  EXPECT_TRUE(curves_from_json(curves_to_json({{nonsense, {0.01, -0.02}, ""}})).empty());
+  EXPECT_EQ(read[0].smooth, event);
+  EXPECT_EQ(read[1].smooth, fading);
+  terms::SmoothTerm nonsense = event;
+  nonsense.dependence.covariate = vehicle::Covariate::speed;
+  EXPECT_TRUE(smooth_terms_from_json(smooth_terms_to_json({{nonsense, {0.01, -0.02}, ""}})).empty());
 }
 
 TEST(Event, a_load_that_slips_is_found_with_its_moment) {
   const vehicle::DriveModel model = lively_model();
-  const terms::Curve slip = event_at(131.0, vehicle::Carrier::both_travel);
-  const SearchResult result = searched(measured(model, {make_curve_effect(slip)}, {-0.008, 0.005}));
-  ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
+  const terms::SmoothTerm slip = event_at(131.0, vehicle::Channel::both_travel);
+  const SearchResult result = searched(measured(model, {make_smooth_term_effect(slip)}, {-0.008, 0.005}));
+  ASSERT_EQ(result.smooths.size(), 1U) << "seed " << kSeed;
   EXPECT_TRUE(result.findings.empty()) << "no drift";
-  EXPECT_EQ(result.curves[0].curve.law, slip.law);
-  EXPECT_NEAR(moment_of(result.curves[0].curve), 131.0, 1.0);
+  EXPECT_EQ(result.smooths[0].smooth.dependence, slip.dependence);
+  EXPECT_NEAR(change_point_of(result.smooths[0].smooth), 131.0, 1.0);
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kBaseCount), -0.008, 4e-4);
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kBaseCount + 1), 0.005, 4e-4);
 }
@@ -142,12 +145,13 @@ TEST(Event, what_changes_bit_by_bit_keeps_its_name) {
 
 TEST(Event, a_lidar_that_was_knocked_is_where_it_is_now) {
   const vehicle::DriveModel model = lively_model();
-  const terms::Curve bump = event_at(87.0, vehicle::Carrier::way_turned);
-  const SearchResult result = searched(measured(model, {make_curve_effect(bump)}, {0.012, -0.005, 0.04}));
-  ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
-  EXPECT_TRUE(is_bump(result.curves[0].curve));
-  EXPECT_NEAR(moment_of(result.curves[0].curve), 87.0, 1.0);
-  EXPECT_EQ(result.curves[0].effect->storage(), vehicle::Storage::driver) << "wheels do not crab";
+  const terms::SmoothTerm bump = event_at(87.0, vehicle::Channel::way_turned);
+  const SearchResult result =
+      searched(measured(model, {make_smooth_term_effect(bump)}, {0.012, -0.005, 0.04}));
+  ASSERT_EQ(result.smooths.size(), 1U) << "seed " << kSeed;
+  EXPECT_TRUE(is_bump(result.smooths[0].smooth));
+  EXPECT_NEAR(change_point_of(result.smooths[0].smooth), 87.0, 1.0);
+  EXPECT_EQ(result.smooths[0].effect->storage(), vehicle::Storage::driver) << "wheels do not crab";
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kMountX), kBase.mount.x, 5e-4);
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kMountYaw), kBase.mount.yaw, 5e-4);
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kLeftRadius), kBase.left_radius, 5e-5);
@@ -155,17 +159,17 @@ TEST(Event, a_lidar_that_was_knocked_is_where_it_is_now) {
 
 TEST(Event, a_lidar_that_warms_up_leaves_the_lengths_of_a_warm_one) {
   const vehicle::DriveModel model = lively_model();
-  terms::Curve warming{{vehicle::Variable::time, vehicle::Carrier::scale}, 0.0, kDuration};
+  terms::SmoothTerm warming{{vehicle::Covariate::time, vehicle::Channel::scale}, 0.0, kDuration};
   warming.basis = terms::Decay{45.0};
-  const SearchResult result = searched(measured(model, {make_curve_effect(warming)}, {0.01}));
-  ASSERT_EQ(result.curves.size(), 1U) << "seed " << kSeed;
-  EXPECT_EQ(result.curves[0].curve.law, warming.law);
-  EXPECT_NEAR(std::get<terms::Decay>(result.curves[0].curve.basis).time_constant, 45.0, 15.0);
+  const SearchResult result = searched(measured(model, {make_smooth_term_effect(warming)}, {0.01}));
+  ASSERT_EQ(result.smooths.size(), 1U) << "seed " << kSeed;
+  EXPECT_EQ(result.smooths[0].smooth.dependence, warming.dependence);
+  EXPECT_NEAR(std::get<terms::Decay>(result.smooths[0].smooth.basis).time_constant, 45.0, 15.0);
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kTrackWidth), kBase.track_width, 5e-4);
 }
 
 TEST(EventText, says_what_changed_when_and_for_which_state_the_values_stand) {
-  const FittedCurve slip{event_at(121.75, vehicle::Carrier::both_travel), {-0.0109, 0.0042}, ""};
+  const FittedSmoothTerm slip{event_at(121.75, vehicle::Channel::both_travel), {-0.0109, 0.0042}, ""};
   EXPECT_NE(
       event_to_text(slip, {}).find("121.8 s after the beginning the wheels changed at once (left -1.09 %, "
                                    "right +0.42 %)"),
@@ -174,12 +178,12 @@ TEST(EventText, says_what_changed_when_and_for_which_state_the_values_stand) {
   // Turned to the left about itself, a quarter of a metre ahead of the axle, and moved 12 mm ahead.
   const math::Pose mount{0.25, 0.0, 0.05};
   const math::Pose before = compose({-0.01, -0.005, -0.05}, mount);
-  const FittedCurve knock{event_at(60.0, vehicle::Carrier::way_turned), {0.01, 0.005, 0.05}, ""};
+  const FittedSmoothTerm knock{event_at(60.0, vehicle::Channel::way_turned), {0.01, 0.005, 0.05}, ""};
   std::ostringstream place;
   place << std::showpos << std::fixed << std::setprecision(1) << "x " << 1e3 * (mount.x - before.x)
         << " mm, y " << 1e3 * (mount.y - before.y) << " mm, yaw +2.86 deg";
   EXPECT_NE(event_to_text(knock, mount).find(place.str()), std::string::npos) << event_to_text(knock, mount);
-  const FittedCurve patch{event_at(60.0, vehicle::Carrier::track), {0.01}, ""};
+  const FittedSmoothTerm patch{event_at(60.0, vehicle::Channel::track), {0.01}, ""};
   EXPECT_NE(event_to_text(patch, {}).find("track width changed at once (+1.00 %)"), std::string::npos);
 }
 
@@ -196,7 +200,7 @@ class Drag final : public terms::StepEffect<Drag> {
   }
 };
 
-TEST(VainCurves, are_those_that_leave_more_than_half_of_the_error) {
+TEST(UnhelpfulSmooths, are_those_that_leave_more_than_half_of_the_error) {
   const vehicle::DriveModel model = lively_model();
   const auto drag = std::make_shared<Drag>();
   measurement::FitData data = measured(model, {drag}, {0.02});
@@ -207,10 +211,10 @@ TEST(VainCurves, are_those_that_leave_more_than_half_of_the_error) {
     EXPECT_TRUE(fit) << "seed " << kSeed;
     return FittedModel{effects, *fit};
   };
-  const terms::Curve of_time{{vehicle::Variable::time, vehicle::Carrier::left_travel}, 0.0, kDuration};
+  const terms::SmoothTerm of_time{{vehicle::Covariate::time, vehicle::Channel::left_travel}, 0.0, kDuration};
   const FittedModel plain = fitted({});
   EXPECT_FALSE(explain_too_little(task, fitted({drag}), plain));
-  EXPECT_TRUE(explain_too_little(task, fitted({make_curve_effect(of_time)}), plain));
+  EXPECT_TRUE(explain_too_little(task, fitted({make_smooth_term_effect(of_time)}), plain));
   EXPECT_TRUE(explain_too_little(task, plain, plain));
 }
 

@@ -37,7 +37,7 @@ TEST(OutlierTrace, says_when_something_happened) {
   ASSERT_TRUE(trace);
   EXPECT_EQ(trace->outliers, 30U);
   ASSERT_FALSE(trace->depends_on.empty());
-  EXPECT_EQ(trace->depends_on.front(), vehicle::Variable::time);
+  EXPECT_EQ(trace->depends_on.front(), vehicle::Covariate::time);
   EXPECT_NEAR(trace->begin, 100.0, 2.0);
   EXPECT_NEAR(trace->end, 115.0, 2.0);
   EXPECT_NE(to_text(*trace).find("30 of 475"), std::string::npos) << to_text(*trace);
@@ -59,7 +59,7 @@ TEST(OutlierTrace, names_the_motion_that_goes_wrong) {
   const auto trace = traced(model, fast);
   ASSERT_TRUE(trace);
   ASSERT_FALSE(trace->depends_on.empty());
-  EXPECT_EQ(trace->depends_on.front(), vehicle::Variable::turn_rate) << to_text(*trace);
+  EXPECT_EQ(trace->depends_on.front(), vehicle::Covariate::turn_rate) << to_text(*trace);
 }
 
 /// Where the scans of these pairs were taken.

@@ -5,27 +5,27 @@
 #include <cmath>
 
 #include "calib/selection/candidate.hpp"
+#include "calib/selection/cross_validation.hpp"
 #include "calib/selection/held_out.hpp"
 #include "calib/selection/plausibility.hpp"
-#include "calib/selection/proof.hpp"
 #include "calib/selection/score.hpp"
-#include "calib/selection/stretch_errors.hpp"
+#include "calib/selection/window_errors.hpp"
 #include "calib/terms/catalogue.hpp"
-#include "calib/terms/curve_effect.hpp"
+#include "calib/terms/smooth_term_effect.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
 TEST(Candidate, what_must_help_over_ten_seconds) {
-  const auto ratio = [](vehicle::Variable variable, vehicle::Carrier carrier) {
-    const terms::Curve curve{{variable, carrier}, -1.0, 1.0};
-    return largest_ratio({make_curve_effect(curve), curve, ""});
+  const auto ratio = [](vehicle::Covariate covariate, vehicle::Channel channel) {
+    const terms::SmoothTerm smooth{{covariate, channel}, -1.0, 1.0};
+    return largest_ratio({make_smooth_term_effect(smooth), smooth, ""});
   };
-  EXPECT_LT(ratio(vehicle::Variable::speed, vehicle::Carrier::both_travel), 1.0);
-  EXPECT_LT(ratio(vehicle::Variable::heading, vehicle::Carrier::both_travel),
-            ratio(vehicle::Variable::speed, vehicle::Carrier::both_travel));
-  EXPECT_GT(ratio(vehicle::Variable::left_phase, vehicle::Carrier::left_travel), 1.0)
+  EXPECT_LT(ratio(vehicle::Covariate::speed, vehicle::Channel::both_travel), 1.0);
+  EXPECT_LT(ratio(vehicle::Covariate::heading, vehicle::Channel::both_travel),
+            ratio(vehicle::Covariate::speed, vehicle::Channel::both_travel));
+  EXPECT_GT(ratio(vehicle::Covariate::left_phase, vehicle::Channel::left_travel), 1.0)
       << "cancels over whole turns of the wheel";
 }
 
@@ -86,7 +86,7 @@ TEST(Improvement, is_plain_where_nine_of_ten_drives_gain) {
   EXPECT_FALSE((Improvement{1.0, 1.0, 1.0}).is_plain());
 }
 
-TEST(Proof, what_makes_drives_worse_is_refused) {
+TEST(CrossValidation, what_makes_drives_worse_is_refused) {
   const vehicle::DriveModel model = lively_model();
   measurement::FitData data = measured(model, {}, {});
   for (measurement::SensorPair& pair : data.pairs) pair.follows_previous = &pair != &data.pairs.front();
@@ -129,15 +129,15 @@ TEST(HeldOut, outliers_make_no_model_look_better) {
   EXPECT_NEAR(of_some->bounded[0], 1e-3 * std::sqrt(0.8 * 0.81 + 0.2 * 36.0), 1e-12);
 }
 
-TEST(StretchErrors, a_fold_that_would_not_have_chosen_keeps_its_error) {
-  StretchErrors before, after;
+TEST(WindowErrors, a_fold_that_would_not_have_chosen_keeps_its_error) {
+  WindowErrors before, after;
   before.position = {1.0, 2.0, 3.0};
   before.heading = {0.1, 0.2, 0.3};
   before.fold = {0, 1, 4};
   before.block = {0, 1, 2};
   after = before;
   after.position = {0.1, 0.2, 0.3};
-  const StretchErrors mixed = where_selected(before, after, {true, false, true, true, false});
+  const WindowErrors mixed = where_selected(before, after, {true, false, true, true, false});
   EXPECT_EQ(mixed.position, (std::vector<double>{0.1, 2.0, 3.0}));
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "calib/terms/lidar_curve.hpp"
+#include "calib/terms/lidar_smooth_term.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
 namespace odomcalib::calib::selection {

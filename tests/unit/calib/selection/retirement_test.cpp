@@ -1,9 +1,9 @@
 // What is taken out of the model again once something else was added.
-#include "calib/selection/retirement.hpp"
+#include "calib/selection/backward_elimination.hpp"
 
 #include <gtest/gtest.h>
 
-#include "calib/selection/law_shape.hpp"
+#include "calib/selection/hyperparameters.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
@@ -12,9 +12,9 @@ namespace {
 
 /// A scrub that is plain, and one wheel that rolls a little shorter backwards: too little for Schwarz's
 /// criterion.
-class Retirement : public ::testing::Test {
+class BackwardElimination : public ::testing::Test {
  protected:
-  Retirement() { data_ = measured(model_, {plain_, slight_}, {2e-3, 3e-5, 0.0}); }
+  BackwardElimination() { data_ = measured(model_, {plain_, slight_}, {2e-3, 3e-5, 0.0}); }
 
   /// Both found, in this order.
   SearchResult found(const vehicle::EffectList& order) const {
@@ -36,15 +36,15 @@ class Retirement : public ::testing::Test {
   measurement::FitData data_;
 };
 
-TEST_F(Retirement, spares_what_was_just_proved) {
+TEST_F(BackwardElimination, spares_what_was_just_proved) {
   SearchResult result = found({plain_, slight_});
-  EXPECT_FALSE(retire_superfluous(task(), schwarz(result.model.fit), result));
+  EXPECT_FALSE(eliminate_superfluous(task(), schwarz(result.model.fit), result));
   EXPECT_EQ(result.findings.size(), 2U);
 }
 
-TEST_F(Retirement, takes_out_what_is_not_worth_its_parameters_any_more) {
+TEST_F(BackwardElimination, takes_out_what_is_not_worth_its_parameters_any_more) {
   SearchResult result = found({slight_, plain_});
-  EXPECT_TRUE(retire_superfluous(task(), schwarz(result.model.fit), result));
+  EXPECT_TRUE(eliminate_superfluous(task(), schwarz(result.model.fit), result));
   ASSERT_EQ(result.findings.size(), 1U);
   EXPECT_EQ(result.findings.front().effect, plain_);
   EXPECT_EQ(result.model.effects.size(), 1U);

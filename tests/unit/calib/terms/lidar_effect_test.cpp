@@ -8,8 +8,8 @@
 
 #include "calib/ingest/scan_span.hpp"
 #include "calib/selection/lidar_trace.hpp"
-#include "calib/selection/metre.hpp"
-#include "calib/terms/lidar_curve.hpp"
+#include "calib/selection/range_scale.hpp"
+#include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::terms {
 namespace {
@@ -23,7 +23,7 @@ std::vector<double> front_view() {
 
 std::vector<LidarEffectPtr> all_effects() {
   std::vector<LidarEffectPtr> all = lidar_catalogue(false);
-  for (const auto& curve : lidar_curves()) all.push_back(curve);
+  for (const auto& smooth : lidar_smooths()) all.push_back(smooth);
   all.push_back(make_sector_error(front_view()));
   return all;
 }
@@ -126,17 +126,17 @@ TEST(LidarEffect, that_bends_ranges_leaves_the_metre_in_doubt) {
   Recording recording;
   recording.scans.resize(1);
   recording.scans.front().ranges.assign(100, 1.5F);
-  const auto of_range = lidar_curves()[2];
-  ASSERT_EQ(of_range->variable(), "range");
-  const auto doubt = [&](const LidarEffectPtr& effect, const std::vector<double>& values) {
-    return selection::metre_in_doubt({{effect, values, {}, 0.0, 0.0, 0.0}}, {&recording, 1});
+  const auto of_range = lidar_smooths()[2];
+  ASSERT_EQ(of_range->covariate(), "range");
+  const auto uncertainty = [&](const LidarEffectPtr& effect, const std::vector<double>& values) {
+    return selection::range_scale_uncertainty({{effect, values, {}, 0.0, 0.0, 0.0}}, {&recording, 1});
   };
   // Hats over log2 of the range: 10 mm at 1 m, none at 2 m.
   const double slope = -0.01 / (1.5 * std::numbers::ln2);
-  EXPECT_NEAR(doubt(of_range, {0.0, 0.01, 0.0, 0.0}), 0.5 * std::abs(slope), 1e-5);
-  EXPECT_NEAR(doubt(of_range, {0.01, 0.01, 0.01, 0.01}), 0.0, 1e-9);
-  EXPECT_EQ(doubt(make_lidar_tilt(), {0.1, 0.1}), 0.0);
-  EXPECT_EQ(selection::metre_in_doubt({}, {&recording, 1}), 0.0);
+  EXPECT_NEAR(uncertainty(of_range, {0.0, 0.01, 0.0, 0.0}), 0.5 * std::abs(slope), 1e-5);
+  EXPECT_NEAR(uncertainty(of_range, {0.01, 0.01, 0.01, 0.01}), 0.0, 1e-9);
+  EXPECT_EQ(uncertainty(make_lidar_tilt(), {0.1, 0.1}), 0.0);
+  EXPECT_EQ(selection::range_scale_uncertainty({}, {&recording, 1}), 0.0);
 }
 
 TEST(LidarEffect, a_turn_that_begins_anywhere_is_seen_as_one) {

@@ -1,0 +1,67 @@
+#include "calib/selection/change_point.hpp"
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "calib/selection/hyperparameters.hpp"
+#include "calib/selection/settings.hpp"
+#include "calib/terms/smooth_term.hpp"
+#include "calib/terms/smooth_term_effect.hpp"
+#include "calib/terms/smooth_term_on_drives.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+terms::SmoothTerm at_change_point(const FitTask& task, terms::SmoothTerm event, double moment) {
+  return as_of_the_drive(on_basis(std::move(event), terms::ChangePoint{moment}), task.models());
+}
+
+/// Sought ever closer, from half a step between candidates on.
+/// @param now whose model ends with the event
+Reshaped at_best_change_point(const FitTask& task, Reshaped now) {
+  constexpr int kEachWay = 2, kRounds = 4;
+  double step = 0.5 * now.smooth.high / terms::kChangePoints;
+  for (int round = 0; round < kRounds; ++round, step /= kEachWay) {
+    std::vector<terms::SmoothTerm> others;
+    for (int k = -kEachWay; k <= kEachWay; ++k) {
+      const double moment = std::get<terms::ChangePoint>(now.smooth.basis).moment + k * step;
+      if (k != 0 && moment > 0.0 && moment < now.smooth.high)
+        others.push_back(at_change_point(task, now.smooth, moment));
+    }
+    for (Reshaped& other : reshaped(task, now, others))
+      if (other.model.fit.cost < now.model.fit.cost) now = std::move(other);
+  }
+  return now;
+}
+
+std::optional<Reshaped> likeliest(const FitTask& task, const FittedModel& model,
+                                  const terms::SmoothTerm& event) {
+  auto with_event = with_effect(task, model, make_smooth_term_effect(event), model.fit.noise);
+  if (!with_event) return std::nullopt;
+  return at_best_change_point(task, {event, std::move(*with_event)});
+}
+
+}  // namespace
+
+terms::SmoothTerm at_likeliest_change_point(const FitTask& task, const FittedModel& model,
+                                            const terms::SmoothTerm& event) {
+  const auto best = likeliest(task, model, event);
+  return best ? best->smooth : event;
+}
+
+std::optional<std::size_t> event_instead_of(const FitTask& task, const SearchRound& round,
+                                            const Trial& name) {
+  const auto events = round.by_score([&](std::size_t k) {
+    const auto& smooth = round.candidate(k).smooth;
+    return smooth && happens_at_once(*smooth) && acts_on(*smooth).size() > 1 &&
+           round.score(k).family_p_value <= settings::kNamedLevel;
+  });
+  if (events.empty()) return std::nullopt;
+  const auto best = likeliest(task, round.basis(), *round.candidate(events.front()).smooth);
+  // Its moment is one more choice.
+  const bool is_better = best && best->model.fit.cost + schwarz(name.model.fit) < name.model.fit.cost;
+  return is_better ? std::optional(events.front()) : std::nullopt;
+}
+
+}  // namespace odomcalib::calib::selection

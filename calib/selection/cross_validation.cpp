@@ -1,0 +1,98 @@
+#include "calib/selection/cross_validation.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "calib/selection/settings.hpp"
+
+namespace odomcalib::calib::selection {
+
+HeldOutGain compared_on_held_out(const FitTask& task, const FittedModel& before, const FittedModel& after,
+                                 const FoldFlags& selected) {
+  std::vector<double> weights(after.fit.weights.size());
+  std::transform(after.fit.weights.begin(), after.fit.weights.end(), before.fit.weights.begin(),
+                 weights.begin(), [](double a, double b) { return std::max(a, b); });
+  return held_out_gain(task.data, with_weights(task.data, before.effects, before.fit, weights),
+                       task.fixed(before.effects), with_weights(task.data, after.effects, after.fit, weights),
+                       task.fixed(after.effects), selected);
+}
+
+namespace {
+
+/// Both models over the same windows.
+struct Comparison {
+  WindowErrors without, with;
+};
+
+/// Too few of a kind say nothing.
+/// @param measured pairs that windows may cross
+std::optional<Comparison> compared(WindowKind kind, const FitTask& task, const FittedModel& before,
+                                   const FittedModel& after, const std::vector<bool>& measured) {
+  const auto windows = find_windows(kind, task.data, folds_of(task.data), before.fit, measured);
+  if (windows.size() < settings::kFewestWindows) return std::nullopt;
+  const auto error_of = [&](const FittedModel& model) {
+    return window_errors(task.data, windows, model.effects, model.fit, task.fixed(model.effects));
+  };
+  return Comparison{error_of(before), error_of(after)};
+}
+
+/// Errors over ten seconds, after only where the other folds point to the candidate.
+struct Gain {
+  double before = 0.0, after = 0.0;
+  Improvement improvement;
+  [[nodiscard]] bool is_proved(double largest_ratio) const {
+    return improvement.upper < 1.0 && improvement.ratio <= largest_ratio;
+  }
+};
+
+std::optional<Gain> gain_over(const FitTask& task, const FittedModel& before, const FittedModel& after,
+                              const FoldFlags& selected, const std::vector<bool>& measured) {
+  const auto windows = compared(WindowKind::open_loop, task, before, after, measured);
+  if (!windows) return std::nullopt;
+  const WindowErrors mixed = where_selected(windows->without, windows->with, selected);
+  return Gain{windows->without.rms_position(), mixed.rms_position(), compare(windows->without, mixed)};
+}
+
+/// What happens seldom shows only where a fit takes pairs for failed matches, and what always acts is drowned
+/// there: either may prove a candidate.
+std::optional<Gain> best_gain(const FitTask& task, const FittedModel& before, const FittedModel& after,
+                              const FoldFlags& selected, double largest_ratio) {
+  const auto trusted = trusted_pairs(before.fit, after.fit);
+  const auto usual = gain_over(task, before, after, selected, trusted);
+  if (usual && usual->is_proved(largest_ratio)) return usual;
+  const auto measured = measured_pairs(task.data, trusted);
+  if (measured == trusted) return usual;
+  const auto all = gain_over(task, before, after, selected, measured);
+  return all && all->is_proved(largest_ratio) ? all : usual;
+}
+
+}  // namespace
+
+DriveChange change_of_drives(const FitTask& task, const FittedModel& before, const FittedModel& after) {
+  const auto trusted = trusted_pairs(before.fit, after.fit);
+  DriveChange change;
+  for (const auto kind : {WindowKind::open_loop, WindowKind::turn, WindowKind::straight}) {
+    const auto errors = compared(kind, task, before, after, trusted);
+    if (!errors) continue;
+    const Improvement improvement = compare(errors->without, errors->with);
+    if (kind == WindowKind::open_loop) change.ratio = improvement.ratio;
+    change.is_spoilt = change.is_spoilt || improvement.lower > settings::kTolerated;
+  }
+  return change;
+}
+
+std::string objection(const FitTask& task, const FittedModel& before, const FittedModel& after,
+                      const FoldFlags& selected, double largest_ratio, CrossValidation& validation) {
+  if (const auto gain = best_gain(task, before, after, selected, largest_ratio)) {
+    validation.before = gain->before;
+    validation.after = gain->after;
+    validation.improvement = gain->improvement;
+    if (validation.improvement.ratio > largest_ratio)
+      return "too small a gain: error times " + std::to_string(validation.improvement.ratio).substr(0, 5);
+    if (validation.improvement.upper < 1.0) return {};
+    if (validation.improvement.lower > 1.0) return "held-out error rises";
+  }
+  return compared_on_held_out(task, before, after, selected).lower > 0.0 ? "" : "no gain on held-out data";
+}
+
+}  // namespace odomcalib::calib::selection

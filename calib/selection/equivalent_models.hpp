@@ -1,0 +1,30 @@
+// Which candidates the data cannot tell apart.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/selection/candidate.hpp"
+#include "calib/selection/score.hpp"
+
+namespace odomcalib::calib::selection {
+
+/// Canonical correlation that counts as indistinguishable.
+inline constexpr double kAlias = 0.9;
+
+/// Whether the gap of -2 log L that this data would show between both is too small to tell them apart.
+/// @param a, b candidates of the table, `a` the one believed to be there
+bool are_too_close(const ScoreTable& table, std::size_t a, std::size_t b);
+
+/// Covariates, other than the smooth term's own, whose smooth terms would have explained most of what it
+/// explains.
+/// @param index of a smooth term
+std::vector<vehicle::Covariate> covariates_like(const std::vector<Candidate>& candidates,
+                                                const ScoreTable& table, std::size_t index);
+
+/// Names that may be meant instead of a candidate's: those of its rivals, and those that no motion tells from
+/// it.
+std::vector<std::string> aliases_among(const std::vector<Candidate>& candidates, std::size_t candidate,
+                                       const std::vector<std::size_t>& rivals);
+
+}  // namespace odomcalib::calib::selection

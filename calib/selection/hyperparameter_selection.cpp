@@ -1,0 +1,102 @@
+#include "calib/selection/hyperparameter_selection.hpp"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "calib/selection/hyperparameters.hpp"
+#include "calib/terms/candidate_smooths.hpp"
+#include "calib/terms/smooth_term.hpp"
+#include "calib/terms/smooth_term_effect.hpp"
+
+namespace odomcalib::calib::selection {
+namespace {
+
+/// Costs compare on the same noise only; while noise was estimated, that of the step before was used.
+void fit_anew_on_own_noise(const FitTask& task, FittedModel& model) {
+  if (auto again = task.fit(model.effects, model.fit.parameters, model.fit.noise))
+    model.fit = std::move(*again);
+}
+
+/// A law of a speed or a force has a peak or a step, not one bend after the other: those stand for the single
+/// manoeuvres of this drive. Bends of less than a quarter of all that the law spans are none.
+bool bends_too_often(const Reshaped& shape) {
+  constexpr double kPlain = 0.25;
+  constexpr int kMost = 3;
+  if (terms::basis_as<terms::Cycle>(shape.smooth) ||
+      shape.smooth.dependence.covariate == vehicle::Covariate::time)
+    return false;
+  const auto count = static_cast<Eigen::Index>(function_count(shape.smooth));
+  const Eigen::VectorXd values = shape.model.fit.parameters.tail(count);
+  const double plain = kPlain * (values.maxCoeff() - values.minCoeff());
+  int bends = 0;
+  double from = values(0), way = 0.0;  // of the last plain rise or fall
+  for (Eigen::Index k = 1; k < count; ++k) {
+    const double change = values(k) - from;
+    if (std::abs(change) <= plain) continue;
+    if (change * way < 0.0) ++bends;
+    way = change;
+    from = values(k);
+  }
+  return bends > kMost;
+}
+
+void take_shape(const Reshaped& shape, SearchResult& result) {
+  result.model = shape.model;
+  result.smooths.back().smooth = shape.smooth;
+  result.smooths.back().effect = shape.model.effects.back();
+}
+
+/// On noise that is estimated anew: the coarser shape's misfit was a part of it.
+void fit_anew_on_estimated_noise(const FitTask& task, FittedModel& model) {
+  if (auto again = task.fit(model.effects, model.fit.parameters, {})) model.fit = std::move(*again);
+  fit_anew_on_own_noise(task, model);
+}
+
+/// A law's splines are smooth all alike at first, then each bend as it was found.
+std::vector<terms::SmoothTerm> shapes_to_try(const FitTask& task, const Reshaped& now) {
+  const auto* splines = terms::basis_as<terms::Splines>(now.smooth);
+  if (!splines || splines->roughness.empty()) return other_shapes(now.smooth, task.models());
+  return as_rough_as(now.smooth, vehicle::as_span(now.model.fit.parameters).last(function_count(now.smooth)));
+}
+
+bool take_best_shape(const FitTask& task, const std::vector<Reshaped>& shapes, SearchResult& result) {
+  bool is_new = false;
+  for (const Reshaped& other : shapes) {
+    if (bends_too_often(other) || !is_better(task, result.model, other.model, kAkaike)) continue;
+    take_shape(other, result);
+    is_new = true;
+  }
+  return is_new;
+}
+
+/// Shape and noise settle each other.
+/// @return the shapes that were tried last, the one before them at the end
+std::vector<Reshaped> select_hyperparameters(const FitTask& task, SearchResult& result) {
+  constexpr int kRounds = 3;
+  std::vector<Reshaped> shapes;
+  for (int round = 0; round < kRounds; ++round) {
+    const Reshaped now{result.smooths.back().smooth, result.model};
+    shapes = reshaped(task, now, shapes_to_try(task, now));
+    const bool is_new = take_best_shape(task, shapes, result);
+    shapes.push_back(now);
+    if (!is_new) break;
+    fit_anew_on_estimated_noise(task, result.model);
+  }
+  return shapes;
+}
+
+}  // namespace
+
+void select_hyperparameters_of_newest(const FitTask& task, SearchResult& result) {
+  fit_anew_on_own_noise(task, result.model);
+  const std::vector<Reshaped> shapes = select_hyperparameters(task, result);
+  if (takes_an_event(result.smooths.back().smooth))
+    take_shape(most_sensible_event(shapes, result.model.fit.cost + kAkaike), result);
+  for (const Reshaped& other : shapes)
+    if (other.model.fit.cost < result.model.fit.cost + schwarz(result.model.fit))
+      result.model_uncertainties.emplace_back(other.model.base() - result.model.base());
+  result.model_uncertainties.push_back(uncertainty_of_zero(task, result.model, result.smooths.back().smooth));
+}
+
+}  // namespace odomcalib::calib::selection

@@ -1,0 +1,228 @@
+#include "calib/terms/candidate_smooths.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "calib/terms/smooth_term_on_drives.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+constexpr std::size_t kEvery = 3;    ///< relay is asked for: the others are found by their neighbours
+constexpr int kHighestHarmonic = 8;  ///< poles of encoder magnets, lugs, spokes
+
+using Channels = std::vector<vehicle::Channel>;
+
+/// In drives both ways a defect of the signed way and one of the unsigned way are two laws. What one wheel
+/// does moves the base sideways by no mechanism: such a law, found in straights and spins, was nonsense in
+/// circles.
+Channels channels_of(vehicle::Covariate covariate) {
+  using enum vehicle::Channel;
+  switch (covariate) {
+    case vehicle::Covariate::left_speed:
+      return {left_travel, left_path, right_travel, right_path};
+    case vehicle::Covariate::right_speed:
+      return {right_travel, right_path, left_travel, left_path};
+    case vehicle::Covariate::wheel_speed:
+      return {both_travel};
+    case vehicle::Covariate::left_phase:
+    case vehicle::Covariate::left_since_reversal:
+      return {left_travel};
+    case vehicle::Covariate::right_phase:
+    case vehicle::Covariate::right_since_reversal:
+      return {right_travel};
+    case vehicle::Covariate::left_acceleration:
+      return {left_travel, left_path};
+    case vehicle::Covariate::right_acceleration:
+      return {right_travel, right_path};
+    case vehicle::Covariate::acceleration:
+      return {both_travel, both_path, track, sideways_path, yaw_path};
+    case vehicle::Covariate::turn_acceleration:
+      return {sensor_yaw};
+    case vehicle::Covariate::speed:
+      return {both_travel, left_travel, right_travel,  track,   sideways,
+              turn_side,   both_path,   sideways_path, yaw_path};
+    case vehicle::Covariate::turn_rate:
+      return {both_travel, left_travel, right_travel, track,      sideways,      turn_path,
+              turn_side,   both_path,   left_path,    right_path, sideways_path, yaw_path};
+    case vehicle::Covariate::lateral_acceleration:
+      return {sideways, sideways_path, track, both_travel, left_travel, right_travel, both_path, yaw_path};
+    case vehicle::Covariate::time:
+      return {both_travel, left_travel, right_travel, track, sideways, turn_side, scale, yaw_path};
+    case vehicle::Covariate::heading:
+    case vehicle::Covariate::position:
+      return {both_travel, left_travel, right_travel, both_path, sideways_path, yaw_path};
+    case vehicle::Covariate::since_reversal:
+    case vehicle::Covariate::since_stop:
+    case vehicle::Covariate::previous_turn:
+      return {both_travel, left_travel, right_travel, track, sideways_path, yaw_path};
+    case vehicle::Covariate::distance:
+      return {};
+    case vehicle::Covariate::previous_push:
+      return {both_travel, left_travel, right_travel, track};
+  }
+  return {};
+}
+
+bool is_unsigned(vehicle::Channel channel) {
+  return channel == vehicle::Channel::both_path || channel == vehicle::Channel::sideways_path ||
+         channel == vehicle::Channel::yaw_path;
+}
+
+/// Of both wheels, as the day goes, of one, as its brake or its motor does, or of the heading, as the wind
+/// turns it. Periods closer than kStep cycles per recording look alike.
+void add_periods(double duration, std::vector<SmoothTerm>& smooths) {
+  constexpr double kShortest = 8.0;  // s
+  constexpr double kFewestCycles = 1.5;
+  constexpr double kStep = 0.7;  // cycles
+  for (double cycles = kFewestCycles; duration / cycles > kShortest; cycles += kStep)
+    for (const auto channel : {vehicle::Channel::both_travel, vehicle::Channel::left_travel,
+                               vehicle::Channel::right_travel, vehicle::Channel::yaw_path})
+      smooths.push_back(
+          on_basis({{vehicle::Covariate::time, channel}, 0.0, duration}, Cycle{duration / cycles}));
+}
+
+/// A load that is taken up or slips, a tyre that lets its air out, a lidar that is knocked: from one moment
+/// on all is different. Where it leaves little of the drive, that would hang on a few scans.
+void add_change_points(double duration, std::vector<SmoothTerm>& smooths) {
+  constexpr int kLeast = 2;  // parts of the drive
+  for (int k = kLeast; k <= kChangePoints - kLeast; ++k)
+    for (const auto channel :
+         {vehicle::Channel::both_travel, vehicle::Channel::track, vehicle::Channel::way_turned})
+      smooths.push_back(on_basis({{vehicle::Covariate::time, channel}, 0.0, duration},
+                                 ChangePoint{duration * k / kChangePoints}));
+}
+
+/// A lidar's metre as it warms up, which is a matter of minutes.
+void add_fading(double duration, std::vector<SmoothTerm>& smooths) {
+  for (const double time_constant : {30.0, 100.0})
+    smooths.push_back(
+        on_basis({{vehicle::Covariate::time, vehicle::Channel::scale}, 0.0, duration}, Decay{time_constant}));
+}
+
+void add_time_constants_about(const SmoothTerm& smooth, const Decay& decay, std::vector<SmoothTerm>& shapes) {
+  for (const double factor : {0.5, 0.71, 1.41, 2.0})
+    shapes.push_back(on_basis(smooth, Decay{decay.time_constant * factor}));
+}
+
+/// Close to where it was found.
+void add_change_points_about(const SmoothTerm& smooth, const ChangePoint& event,
+                             std::vector<SmoothTerm>& shapes) {
+  for (int k = 3; k <= 5; ++k)
+    for (const double way : {-1.0, 1.0})
+      shapes.push_back(
+          on_basis(smooth, ChangePoint{event.moment + std::ldexp(way * smooth.high / kChangePoints, -k)}));
+}
+
+void add_degrees_beside(const SmoothTerm& smooth, const Polynomials& found, std::vector<SmoothTerm>& shapes) {
+  for (int degree = kPlainest; degree <= kDegrees; ++degree)
+    if (degree != found.degree) shapes.push_back(on_basis(smooth, Polynomials{degree}));
+}
+
+/// The range of the covariate hangs on how it is understood.
+void add_memories_beside(const SmoothTerm& smooth, std::span<const vehicle::DriveModel* const> models,
+                         std::vector<SmoothTerm>& shapes) {
+  const std::size_t memories = vehicle::memories_of(smooth.dependence.covariate);
+  for (std::size_t memory = 0; memories > vehicle::kUsualMemory + 1 && memory < memories; ++memory) {
+    if (memory == smooth.memory) continue;
+    SmoothTerm shape = smooth;
+    shape.memory = memory;
+    std::tie(shape.low, shape.high) = range_of(smooth.dependence.covariate, models, memory);
+    const bool is_as_before =
+        is_relay(smooth.dependence.covariate, memory) == (basis_as<Relay>(smooth) != nullptr);
+    if (!is_as_before) shape.basis = usual_basis(shape.dependence, memory);
+    shapes.push_back(std::move(shape));
+  }
+}
+
+/// Of what lies on the floor; wheels sink in, both alike.
+void add_patches(double low, double high, std::vector<SmoothTerm>& smooths) {
+  smooths.push_back(
+      on_basis({{vehicle::Covariate::position, vehicle::Channel::both_travel}, low, high}, Patches{}));
+}
+
+void add_harmonics(const SmoothTerm& smooth, int first, int last, std::vector<SmoothTerm>& smooths) {
+  for (int harmonic = first; harmonic <= last; ++harmonic)
+    smooths.push_back(on_basis(smooth, Harmonics{harmonic}));
+}
+
+/// What drives a wheel and what brakes it need not slip alike, whichever way it goes.
+void add_terms_of_speed_magnitude(std::span<const vehicle::DriveModel* const> models,
+                                  std::vector<SmoothTerm>& smooths) {
+  for (const vehicle::Dependence& dependence :
+       {vehicle::Dependence{vehicle::Covariate::acceleration, vehicle::Channel::both_travel},
+        {vehicle::Covariate::left_acceleration, vehicle::Channel::left_travel},
+        {vehicle::Covariate::right_acceleration, vehicle::Channel::right_travel},
+        {vehicle::Covariate::turn_acceleration, vehicle::Channel::track}}) {
+    const auto [low, high] = range_of(dependence.covariate, models);
+    const double most = std::max(-low, high);
+    if (!(most > 1e-6)) continue;
+    smooths.push_back({dependence, -most, most});
+    smooths.back().with_motion = true;
+  }
+}
+
+bool may_have_knots(const vehicle::Dependence& dependence) {
+  return (is_signed_speed(dependence.covariate) && dependence.channel != vehicle::Channel::turn_path) ||
+         is_acceleration(dependence.covariate);
+}
+
+}  // namespace
+
+std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* const> models) {
+  std::vector<SmoothTerm> smooths;
+  const bool both_ways = goes_both_ways(models);
+  for (int v = 0; v <= static_cast<int>(vehicle::kLastCovariate); ++v) {
+    const auto covariate = static_cast<vehicle::Covariate>(v);
+    if (models.size() > 1 && (begins_with_the_recording(covariate) || is_memory(covariate))) continue;
+    const auto [low, high] = range_of(covariate, models);
+    if (!(high - low > 1e-6)) continue;
+    for (const vehicle::Channel channel : channels_of(covariate)) {
+      const SmoothTerm smooth{{covariate, channel}, low, high};
+      const bool has_constant = covariate == vehicle::Covariate::heading && is_unsigned(channel) && both_ways;
+      smooths.push_back(has_constant ? on_basis(smooth, Harmonics{0, true}) : smooth);
+      if (is_phase(covariate)) add_harmonics(smooth, kHarmonics + 1, kHighestHarmonic, smooths);
+      if (covariate ==
+          vehicle::Covariate::turn_acceleration) {  // what comes late may look like what went before
+        smooths.push_back(smooth);
+        smooths.back().memory = vehicle::kSwayLags.size() - 1;
+      }
+      // What stays until the opposite push hardly resembles what fades.
+      for (std::size_t memory = 0; memory < memories_of(covariate); ++memory)
+        if (is_relay(covariate, memory) && (memory - vehicle::kMemorySpans.size()) % kEvery == 0) {
+          smooths.push_back(on_basis(smooth, Relay{}));
+          smooths.back().memory = memory;
+        }
+      // A drive seldom shows all headings; one wave round the circle is what few of them can tell.
+      if (covariate == vehicle::Covariate::heading) add_harmonics(smooth, 1, 1, smooths);
+    }
+    if (covariate == vehicle::Covariate::time) {
+      add_periods(high - low, smooths);
+      add_change_points(high, smooths);
+      add_fading(high, smooths);
+    }
+    if (covariate == vehicle::Covariate::position) add_patches(low, high, smooths);
+  }
+  add_terms_of_speed_magnitude(models, smooths);
+  return smooths;
+}
+
+std::vector<SmoothTerm> other_shapes(const SmoothTerm& smooth,
+                                     std::span<const vehicle::DriveModel* const> models) {
+  std::vector<SmoothTerm> shapes;
+  for (const double roughness : kRoughness) {
+    if (!may_have_knots(smooth.dependence)) continue;
+    shapes.push_back(on_basis(smooth, Splines{kMostKnots, std::vector<double>(kMostKnots - 1, roughness)}));
+  }
+  if (const auto* event = basis_as<ChangePoint>(smooth)) add_change_points_about(smooth, *event, shapes);
+  if (const auto* decay = basis_as<Decay>(smooth)) add_time_constants_about(smooth, *decay, shapes);
+  if (const auto* found = basis_as<Polynomials>(smooth)) add_degrees_beside(smooth, *found, shapes);
+  if (basis_as<Surface>(smooth)) shapes.push_back(on_basis(smooth, Patches{}));
+  add_memories_beside(smooth, models, shapes);
+  for (SmoothTerm& shape : shapes)
+    if (!shape.mean.empty()) shape = centred(std::move(shape), models);
+  return shapes;
+}
+
+}  // namespace odomcalib::calib::terms

@@ -1,0 +1,182 @@
+#include "calib/terms/lidar_smooth_term.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numeric>
+#include <string>
+
+#include "calib/math/median.hpp"
+#include "calib/math/se2.hpp"
+
+namespace odomcalib::calib::terms {
+namespace {
+
+constexpr double kSmallShift = 3e-3;   // m
+constexpr double kSmallAngle = 2e-3;   // rad
+constexpr double kLargestShift = 0.2;  // m
+constexpr double kLargestAngle = 0.1;  // rad
+
+class UnnamedError : public LidarEffect {
+ public:
+  UnnamedError(std::string covariate, bool radial, std::size_t size)
+      : covariate_(std::move(covariate)), radial_(radial), size_(size) {}
+  [[nodiscard]] std::string name() const override { return covariate_; }
+  [[nodiscard]] bool is_named() const override { return false; }
+  [[nodiscard]] std::string covariate() const override { return covariate_; }
+  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
+    const LidarParameter one = radial_ ? LidarParameter{"radial", "m", kSmallShift, kLargestShift}
+                                       : LidarParameter{"angular", "rad", kSmallAngle, kLargestAngle};
+    std::vector<LidarParameter> all(size_, one);
+    for (std::size_t k = 0; k < size_; ++k) all[k].name += std::to_string(k + 1);
+    return all;
+  }
+  [[nodiscard]] std::vector<BeamShift> shifts(const Sighting& sighting) const override {
+    std::vector<BeamShift> all;
+    all.reserve(size_ + 1);
+    for (const double f : functions(sighting)) all.push_back(radial_ ? BeamShift{f, 0.0} : BeamShift{0.0, f});
+    return all;
+  }
+
+ protected:
+  [[nodiscard]] virtual std::vector<double> functions(const Sighting& sighting) const = 0;
+
+ private:
+  std::string covariate_;
+  bool radial_;
+  std::size_t size_;
+};
+
+/// Three harmonics.
+class OfBearing final : public UnnamedError {
+ public:
+  explicit OfBearing(bool radial) : UnnamedError("bearing", radial, 6) {}
+
+ private:
+  [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
+    std::vector<double> all;
+    all.reserve(6);
+    const std::complex<double> turn = std::polar(1.0, s.bearing);
+    std::complex<double> here = turn;
+    for (int k = 1; k <= 3; ++k, here *= turn) {
+      all.push_back(here.real());
+      all.push_back(here.imag());
+    }
+    return all;
+  }
+};
+
+/// Hats every 15 degrees, less the mean of all that are seen, which is an offset: what a cover, a post or a
+/// reflection does to part of the view, harmonics would spread over all of it.
+class OfSector final : public UnnamedError {
+ public:
+  /// @param knots that are seen, two at least
+  explicit OfSector(std::vector<std::size_t> knots)
+      : UnnamedError("bearing", true, knots.size() - 1), knots_(std::move(knots)) {}
+  [[nodiscard]] std::vector<LidarParameter> parameters() const override {
+    std::vector<LidarParameter> all = UnnamedError::parameters();
+    for (std::size_t k = 0; k < all.size(); ++k)
+      all[k].name = "radial_at_" + std::to_string(360 / kKnots * knots_[k + 1]);
+    return all;
+  }
+
+  /// What hides part of a view is no small thing; small bends of the whole are harmonics.
+  [[nodiscard]] double may_leave() const override { return 0.85; }
+  /// What all parts have in common no scan shows well: most of the view is taken to be right.
+  [[nodiscard]] BeamShift total(const Sighting& sighting, std::span<const double> values) const override {
+    std::vector<double> at_knots{0.0};
+    at_knots.insert(at_knots.end(), values.begin(), values.end());
+    const double mean =
+        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(at_knots.size());
+    BeamShift shift = UnnamedError::total(sighting, values);
+    shift.radial -= math::median_of(std::move(at_knots)) - mean;
+    return shift;
+  }
+
+  static constexpr std::size_t kKnots = 24;
+  static double place_of(double bearing) {
+    return static_cast<double>(kKnots) * math::angle_of_turn(bearing) / (2.0 * math::kPi);
+  }
+
+ private:
+  static double hat(double place, std::size_t knot) {
+    const double apart = std::abs(place - static_cast<double>(knot));
+    return std::max(0.0, 1.0 - std::min(apart, static_cast<double>(kKnots) - apart));
+  }
+  [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
+    const double place = place_of(s.bearing);
+    std::vector<double> all;
+    all.reserve(knots_.size());
+    double mean = 0.0;
+    for (const std::size_t knot : knots_) {
+      all.push_back(hat(place, knot));
+      mean += all.back() / static_cast<double>(knots_.size());
+    }
+    all.erase(all.begin());
+    for (double& f : all) f -= mean;
+    return all;
+  }
+
+  std::vector<std::size_t> knots_;
+};
+
+/// Hats over the logarithm of the range, of equal height from the nearest knot inwards and the farthest
+/// outwards. What they have in common with a scale no scan shows.
+class OfRange final : public UnnamedError {
+ public:
+  OfRange() : UnnamedError("range", true, kKnots) {}
+  [[nodiscard]] bool is_correctable() const override { return false; }
+
+ private:
+  static constexpr std::size_t kKnots = 4;
+  static constexpr double kNearest = 0.5;  // m; the next ones at 1, 2, 4 m
+  [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
+    const double place =
+        std::clamp(std::log2(std::max(s.range, 1e-3) / kNearest), 0.0, static_cast<double>(kKnots - 1));
+    std::vector<double> all;
+    for (std::size_t k = 0; k < kKnots; ++k)
+      all.push_back(std::max(0.0, 1.0 - std::abs(place - static_cast<double>(k))));
+    return all;
+  }
+};
+
+class OfIncidence final : public UnnamedError {
+ public:
+  OfIncidence() : UnnamedError("incidence", true, 4) {}
+  [[nodiscard]] bool is_judged_in_map() const override { return true; }
+  [[nodiscard]] bool is_correctable() const override { return false; }
+
+ private:
+  [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
+    const auto values = slants(s);
+    return {values.begin(), values.end()};
+  }
+};
+
+}  // namespace
+
+std::array<double, 4> slants(const Sighting& s) {
+  const double slant = std::clamp(std::tan(s.incidence), -3.0, 3.0);
+  return {std::abs(slant), slant, std::abs(slant) * s.range, slant * s.range};
+}
+
+LidarEffectPtr make_incidence_error() { return std::make_shared<OfIncidence>(); }
+
+LidarEffectPtr make_sector_error(const std::vector<double>& bearings) {
+  constexpr std::size_t kFewest = 30;
+  std::array<std::size_t, OfSector::kKnots> seen{};
+  for (const double bearing : bearings)
+    ++seen.at(static_cast<std::size_t>(std::round(OfSector::place_of(bearing))) % OfSector::kKnots);
+  std::vector<std::size_t> knots;
+  for (std::size_t k = 0; k < seen.size(); ++k)
+    if (seen.at(k) >= kFewest) knots.push_back(k);
+  return knots.size() < 2 ? nullptr : std::make_shared<OfSector>(std::move(knots));
+}
+
+std::vector<LidarEffectPtr> lidar_smooths() {
+  return {std::make_shared<OfBearing>(true), std::make_shared<OfBearing>(false), std::make_shared<OfRange>(),
+          make_incidence_error()};
+}
+
+}  // namespace odomcalib::calib::terms
