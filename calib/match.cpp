@@ -7,7 +7,7 @@ namespace odomcalib::calib {
 namespace {
 
 constexpr double kConvincing = 0.8;         ///< overlap above which no better pose is looked for
-constexpr std::size_t kSearchPoints = 150;  ///< of the scan; more tell little on cells of 10 cm
+constexpr std::size_t kSearchPoints = 150;  ///< of the scan; more add little on cells of 10 cm
 
 matching::MatchResult match_after_search(const matching::MatchReference& reference,
                                          const matching::MatchReference& scan, const math::Pose& guess,
@@ -27,7 +27,7 @@ matching::MatchResult match_best(const matching::MatchReference& reference,
   if (first.status == matching::MatchStatus::too_few_points) return first;
   if (first.is_usable() && first.overlap >= kConvincing) return first;
   matching::MatchResult second = match_after_search(reference, scan, guess, options);
-  // Refused or not, the pose with more agreement tells more about the pair.
+  // Refused or not, the pose with more agreement says more about the pair.
   return second.inliers > first.inliers ? second : first;
 }
 

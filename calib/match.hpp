@@ -15,7 +15,7 @@ struct ScanMatch {
   std::array<double, 3> pose{};          ///< of the second scan in the frame of the first: m, m, rad
   std::array<std::array<double, 3>, 3> covariance{};  ///< x, y, yaw: m^2, m rad, rad^2
   std::array<double, 2> weak_direction{};  ///< of a degenerate match: unit vector in the frame of the first
-                                           ///< scan, along which the motion cannot be told
+                                           ///< scan, along which the motion is not determined
   std::size_t inliers = 0;
   [[nodiscard]] bool ok() const { return status == "ok"; }
 };

@@ -1,4 +1,4 @@
-// Do the wheels and the reference tell of the same motion? Exchanged sides, counts that run backwards and a
+// Do the wheels and the reference measure the same motion? Exchanged sides, counts that run backwards and a
 // lidar that is upside down change nothing but signs, and signs need no fit to be seen.
 #pragma once
 
@@ -17,7 +17,7 @@ inline constexpr double kFarYaw = math::kPi / 9.0;
 /// Refused when wheels turned and the reference stood still, or when diameters and track width can be
 /// positive only with wires exchanged or counts inverted; says which, as few as explain everything. When the
 /// robot's lidar pose is known, a heading on the other side of it counts as one more fault. What a mirror
-/// cannot tell apart (exchanged sides, a lidar upside down) is named together. nullopt also when the motion
+/// cannot separate (exchanged sides, a lidar upside down) is named together. nullopt also when the motion
 /// does not determine the signs.
 /// @param motions with any delay of the reference taken out
 /// @param of_base the reference is the base itself, not a lidar

@@ -22,7 +22,7 @@ struct Fit {
 /// One joint fit to the pairs as they are. Failures: those of fit_joint.
 Fit fit_once(measurement::Dataset dataset, const vehicle::VehicleModel& start);
 
-/// What a fit that goes on until it has settled needs to be told.
+/// Options of a fit that goes on until it has settled.
 struct Settling {
   double negligible_delay = 0.0;  ///< s, of the clocks: a delay that moves by no more has settled
   /// The model without what it turns out not to need.

@@ -23,8 +23,8 @@ ClockStart search_clock(std::span<const measurement::FitData> data);
 /// Nominal values where they exist; the closed form supplies what the recording does not state.
 wheels::BaseParameters start_values(const measurement::Dataset& dataset, double delay);
 
-/// Where the fit begins: what was asked for and, where that is automatic and times are known, a delay between
-/// the clocks. Errors: those of check_signs, which is asked before anything is fitted.
+/// Where the fit begins: what was requested and, where that is automatic and times are known, a delay between
+/// the clocks. Errors: those of check_signs, which runs before anything is fitted.
 /// @param rough measured roughly
 Result<vehicle::VehicleModel> start_model(const measurement::Dataset& rough, const terms::Request& request);
 

@@ -11,11 +11,12 @@ namespace odomcalib::calib::ingest {
 namespace {
 
 constexpr std::size_t kFewest = 50;
-constexpr double kEven = 3e-4;        // s; nothing moves so fast that it mattered
-constexpr std::size_t kReach = 30;    // samples to either side
-constexpr std::size_t kLong = 100;    // samples over which a period is measured
-constexpr double kFewLost = 3.0;      // times the usual interval: what the mean one may be to count lost ones
-constexpr double kUnambiguous = 0.2;  // of an interval: spread that leaves no doubt how many it spans
+constexpr double kEven = 3e-4;      // s; nothing moves so fast that it mattered
+constexpr std::size_t kReach = 30;  // samples to either side
+constexpr std::size_t kLong = 100;  // samples over which a period is measured
+constexpr double kFewLost = 3.0;    // times the usual interval: what the mean one may be to count lost ones
+constexpr double kUnambiguous =
+    0.2;  // of an interval: spread up to which the number that it spans is certain
 
 /// Of an index, over long stretches.
 double period_of(const std::vector<double>& stamps, const std::vector<double>& index) {
@@ -50,7 +51,7 @@ std::vector<double> steps_of(const std::vector<double>& intervals, double usual)
   return steps;
 }
 
-/// Counts lost samples in where intervals are regular enough to tell; otherwise one after the other.
+/// Counts lost samples in where intervals are regular enough for it; otherwise one after the other.
 std::vector<double> indices_of(const std::vector<double>& stamps) {
   std::vector<double> index = numbered(stamps.size());
   const std::vector<double> intervals = math::differences_of(stamps);

@@ -14,7 +14,7 @@ struct EvenStamps {
 
 /// Spreads stamps evenly: index times period, and a running robust mean of what is left, which follows a
 /// clock that wanders and keeps lost samples and pauses as the steps they are. Late by the mean delay.
-/// Whether the device really sampled so, stamps alone do not tell: see StampContest.
+/// Whether the device really sampled so, stamps alone do not show: see StampContest.
 /// @param stamps s, in time order
 /// @return nothing when there are fewer than 50, or when they are even to 0.3 ms
 std::optional<EvenStamps> even_stamps(const std::vector<double>& stamps);

@@ -1,4 +1,4 @@
-// Units, clocks and idle streams of recordings, told by name before anything is measured with them.
+// Units, clocks and idle streams of recordings, named before anything is measured with them.
 #pragma once
 
 #include <optional>

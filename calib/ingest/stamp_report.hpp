@@ -1,4 +1,4 @@
-// What a user is told of stamps that were not believed.
+// What is reported of stamps that were not believed.
 #pragma once
 
 #include <string>

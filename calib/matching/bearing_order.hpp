@@ -26,7 +26,7 @@ class BearingOrder {
   struct Entry {
     Eigen::Vector2d position;
     Eigen::Vector2d direction;  ///< of length 1
-    double bearing = 0.0;       ///< as `pseudo_angle` tells it
+    double bearing = 0.0;       ///< as given by `pseudo_angle`
     std::size_t index = 0;      ///< among the points given
   };
   [[nodiscard]] std::size_t place_of(double bearing) const;

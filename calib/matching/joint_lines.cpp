@@ -16,7 +16,8 @@ constexpr double kSettled = 0.02;  ///< sigma, a step that no longer matters
 /// Normal equations of the motion with the two parameters of every line eliminated.
 struct Reduced {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d spurious = Eigen::Matrix3d::Zero();  ///< what noisy directions of lines seem to tell
+  Eigen::Matrix3d spurious =
+      Eigen::Matrix3d::Zero();  ///< information that noisy directions of lines only seem to have
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
 };
 

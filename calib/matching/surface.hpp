@@ -36,7 +36,7 @@ double far_limit(double range_max, double range_noise);
 /// Motion of the sensor from the scan's reference time to the time of a beam, s after Scan::t.
 using BeamMotion = std::function<math::Pose(double seconds_after_first_beam)>;
 
-/// Time of a beam after Scan::t in s; 0 when the recording does not tell.
+/// Time of a beam after Scan::t in s; 0 when the recording has none.
 double beam_time(const Scan& scan, std::size_t beam);
 
 /// Middle of the sweep after Scan::t in s: the scan's reference time; 0 when beam times are unknown.

@@ -84,7 +84,7 @@ bool is_straight(const Wall& wall) {
          wall.line.angle_variance < kMaxAngleSigma * kMaxAngleSigma;
 }
 
-/// A slight arc hides in the noise of all readings, and shows where it is asked for: by the coefficient of
+/// A slight arc hides in the noise of all readings, and shows in a fit of its own: by the coefficient of
 /// s^2 beside offset and slope.
 bool is_bent(const Surface& surface, const Piece& piece, const FittedLine& line, double range_noise) {
   constexpr double kPlain = 5.0;  // deviations
@@ -203,7 +203,7 @@ void take(const JoinedPieces& pieces, const Surface& surface, double range_noise
   }
   if (wall.sums.count < kMinWallPoints) return;
   wall.line = fit_line(wall.sums);
-  // The ends are told from the line's centre, which has moved with the readings left out.
+  // The ends are measured from the line's centre, which has moved with the readings left out.
   const double moved = line.direction().dot(wall.line.centre - line.centre);
   const bool turned = line.direction().dot(wall.line.direction()) < 0.0;
   const double low = wall.low - moved, high = wall.high - moved;

@@ -42,7 +42,7 @@ class Choice {
   Choice(const ScanSurfaces& scans, std::size_t most)
       : scans_(scans), most_(most), used_(scans.times().size(), false) {}
 
-  /// All turns in equal numbers; a drive that has too few of some is asked for any of them.
+  /// All turns in equal numbers; a drive that has too few of some gives any of them.
   std::vector<HeadingPair> run() {
     go_through([&](std::size_t from) { add(from, kTurns[chosen_.size() % kTurns.size()]); });
     go_through([&](std::size_t from) {
@@ -87,7 +87,7 @@ struct Plane {
   }
 };
 
-/// A beam of the second scan on a wall of the first. Everything but the distance is told from where beams
+/// A beam of the second scan on a wall of the first. Everything but the distance follows from where beams
 /// meet the wall: single readings' noise would choose the partner, and the product of both would look like an
 /// error of the lidar.
 class Meeting {

@@ -1,4 +1,4 @@
-// How large the noise of a recording is: matcher, wheels and time stamps told apart by how the residuals
+// How large the noise of a recording is: matcher, wheels and time stamps separated by how the residuals
 // spread.
 #pragma once
 

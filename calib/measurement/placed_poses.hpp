@@ -1,5 +1,5 @@
 // Poses of an external reference (motion capture, a localiser) as places of the sensor: each is noisy, many
-// are known, and the wheels tell how one follows from the other.
+// are known, and the wheels measure how one follows from the other.
 #pragma once
 
 #include <span>

@@ -26,8 +26,8 @@ struct PlacedMotion {
 /// First order; the two places err independently.
 PlacedMotion motion_between(const PlacedScan& begin, const PlacedScan& end);
 
-/// Pose of the sensor as the wheels tell, by time (s, on the sensor's clock): it carries places over the time
-/// to a scan.
+/// Pose of the sensor as the wheels have it, by time (s, on the sensor's clock): it carries places over the
+/// time to a scan.
 using PathOfWheels = std::function<math::Pose(double)>;
 /// @param trajectory must outlive it
 PathOfWheels path_of_wheels(const vehicle::Trajectory& trajectory);

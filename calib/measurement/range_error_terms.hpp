@@ -11,7 +11,7 @@ namespace odomcalib::calib::measurement {
 inline constexpr Eigen::Index kRangeCoefficients = 5;
 
 /// Coefficients: an offset, m, and those of slants(). Both bend a wall nearly alike, 1 / cos(incidence)
-/// against its tangent, so that neither can be told without the other.
+/// against its tangent, so that neither is determined without the other.
 using RangeErrorTerms = Eigen::Matrix<double, kRangeCoefficients, 1>;
 
 /// Derivatives of a reading by the coefficients.

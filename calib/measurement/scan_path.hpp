@@ -17,7 +17,7 @@ struct ScanPath {
   std::vector<PlacedScan> scans;  ///< in time order
   std::size_t lost = 0;           ///< scans that could not be placed
   WallMap map;
-  std::vector<terms::LidarFinding> lidar;  ///< errors of the ranges, if asked for
+  std::vector<terms::LidarFinding> lidar;  ///< errors of the ranges, if requested
   /// Lost scans are few enough for the others to be trusted.
   [[nodiscard]] bool is_usable() const;
 };

@@ -9,7 +9,7 @@ namespace odomcalib::calib::measurement {
 
 /// Motion by odometry from the middle of the sweep, linear between poses every few milliseconds.
 /// @param mount of the sensor on the base
-/// @return motion that refers to neither argument; none when the recording does not tell the beams' times
+/// @return motion that refers to neither argument; none when the recording lacks the beams' times
 matching::BeamMotion motion_in_sweep(const vehicle::Trajectory& trajectory, const math::Pose& mount,
                                      const Scan& scan);
 

@@ -22,7 +22,7 @@ class DriveClock {
 
  private:
   double duration_ = 0.0;
-  std::optional<double> begin_;  ///< of the calibration's drive, where it tells the time of this one
+  std::optional<double> begin_;  ///< of the calibration's drive, where its clock is also that of this one
 };
 
 }  // namespace odomcalib::calib::odometry

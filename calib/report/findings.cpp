@@ -36,7 +36,7 @@ struct BaseEstimate {
 };
 
 /// Matches of keyframes are not free of bias; neither is a model with a law that was found to fit, whose true
-/// shape nobody knows (a delay may be a filter). Places in a map are, as far as simulated drives tell.
+/// shape nobody knows (a delay may be a filter). Places in a map are, as far as simulated drives show.
 double scale_deviation(const Findings& found) {
   const measurement::Dataset& dataset = found.fit.dataset;
   if (!dataset.reference_is_scans()) return 0.0;
@@ -114,7 +114,7 @@ Outliers outliers_of(const Findings& found) {
 }
 
 /// Smooth terms without a name; without these, of what was searched, what goes with outliers; and where
-/// nothing at all is told although odometry is plainly off, what failed its proof.
+/// nothing at all is reported although odometry is plainly off, what failed cross-validation.
 std::optional<Unexplained> unexplained(const Findings& found, const Outliers& outliers, bool has_effects,
                                        const std::vector<DriveError>& drive_errors) {
   if (const auto smooths = unnamed_smooths(found)) return smooths;

@@ -30,7 +30,7 @@ bool is_nuisance(const selection::SearchResult& outcome, const EffectPtr& effect
   return std::find(outcome.nuisance.begin(), outcome.nuisance.end(), effect) != outcome.nuisance.end();
 }
 
-/// Evidence for an effect that the search did not add: the delay found before it, or what the user asked for.
+/// Evidence for an effect that the search did not add: the delay found before it, or what the user requested.
 /// @param z standard deviations from zero
 Evidence evidence_against(const std::optional<estimation::FitResult>& plain, const Findings& found,
                           double z) {

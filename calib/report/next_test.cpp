@@ -10,7 +10,7 @@ namespace {
 /// Relative deviation of a length that more driving hardly improves: scan matching in one room is no better.
 constexpr double kGoodEnough = 5e-4;
 
-/// Aliases that some motion can tell from the effect.
+/// Aliases that some motion separates from the effect.
 std::vector<std::string> separable(const EffectResult& result, const vehicle::Effect& effect) {
   std::vector<std::string> names = result.aliases;
   for (const std::string& alike : effect.always_alike()) std::erase(names, alike);

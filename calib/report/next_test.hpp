@@ -13,8 +13,8 @@ struct NextTest {
   std::string why;        ///< a sentence for people
 };
 
-/// In this order: the motion that separates an effect from those that the data cannot tell from it; more of
-/// the motion that an unnamed defect depends on; the motion that determines the least certain dimension,
+/// In this order: the motion that separates an effect from those that the data cannot separate from it; more
+/// of the motion that an unnamed defect depends on; the motion that determines the least certain dimension,
 /// unless it is certain to what scan matching allows. nullopt: nothing to gain.
 std::optional<NextTest> next_test(const Calibration& calibration);
 

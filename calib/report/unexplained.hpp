@@ -14,10 +14,10 @@ namespace odomcalib::calib::report {
 /// found.
 std::optional<Unexplained> unnamed_smooths(const Findings& found);
 
-/// Where nothing is told of a recording but what goes with its outliers: a defect that is not compensated.
+/// Where the only finding of a recording is what goes with its outliers: a defect that is not compensated.
 std::optional<Unexplained> flagged_outliers(const selection::OutlierTrace& outliers);
 
-/// What goes with odometry's error although no law of it foretells anything: it is not compensated.
+/// What goes with odometry's error although no function of it predicts anything: it is not compensated.
 std::optional<Unexplained> failed_validation(const selection::SearchResult& outcome);
 
 }  // namespace odomcalib::calib::report

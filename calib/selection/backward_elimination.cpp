@@ -18,7 +18,7 @@ bool shares_its_ground(const SearchResult& result, const std::shared_ptr<const v
   });
 }
 
-/// What was added last was just proved.
+/// What was added last was just cross-validated.
 bool may_eliminate(const SearchResult& result, const std::shared_ptr<const vehicle::Effect>& effect) {
   if (effect == result.model.effects.back()) return false;
   const auto is_it = [&](const auto& added) { return added.effect == effect; };

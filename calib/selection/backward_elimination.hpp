@@ -5,7 +5,7 @@
 
 namespace odomcalib::calib::selection {
 
-/// Takes names and smooth terms that are no longer needed out of the model and of what is told, one after the
+/// Takes names and smooth terms that are no longer needed out of the model and of the report, one after the
 /// other. What was added last stays.
 /// @param per_parameter that an effect has to take off -2 log L for each of its own
 /// @return whether the model has changed

@@ -1,4 +1,4 @@
-// What the search may add to the model, and what it asks of each.
+// What the search may add to the model, and what each has to meet.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ struct Candidate {
   std::shared_ptr<const vehicle::Effect> effect;
   std::optional<terms::SmoothTerm> smooth;
   std::string key;      ///< variants of one effect share it
-  bool struck = false;  ///< added, or failed its proof: not asked again
+  bool struck = false;  ///< added, or failed cross-validation: not tried again
 };
 
 /// The catalogue without what the model has already, each effect in all its shapes.
@@ -31,7 +31,8 @@ std::vector<Candidate> all_candidates(const vehicle::EffectList& present,
 
 Candidate candidate_of(const terms::SmoothTerm& smooth);
 
-/// Floors that repeat themselves: tiles, planks, joints. Many, so that they are tried when all else is told.
+/// Floors that repeat themselves: tiles, planks, joints. Many, so that they are tried when all else is in the
+/// model.
 std::vector<Candidate> floor_waves(std::span<const vehicle::DriveModel* const> models);
 
 bool contains(const std::vector<vehicle::Dependence>& dependences, const vehicle::Dependence& dependence);

@@ -49,7 +49,7 @@ bool is_sliding(double drift);
 /// The same parameter by two methods from the same data.
 struct Comparison {
   Estimate before, after;
-  bool adds_to_gain = false;  ///< a parameter for whose sake the other method is asked
+  bool adds_to_gain = false;  ///< a parameter for whose sake the other method is used
 };
 
 /// Both estimates agree: the square of their difference against the sum of their variances.

@@ -54,7 +54,7 @@ std::optional<Gain> gain_over(const FitTask& task, const FittedModel& before, co
 }
 
 /// What happens seldom shows only where a fit takes pairs for failed matches, and what always acts is drowned
-/// there: either may prove a candidate.
+/// there: a candidate may pass by either.
 std::optional<Gain> best_gain(const FitTask& task, const FittedModel& before, const FittedModel& after,
                               const FoldFlags& selected, double largest_ratio) {
   const auto trusted = trusted_pairs(before.fit, after.fit);

@@ -1,4 +1,4 @@
-// Held-out proof that an addition to the model is worth its place.
+// Cross-validation of an addition to the model.
 #pragma once
 
 #include <optional>

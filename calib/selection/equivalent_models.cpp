@@ -5,7 +5,7 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr double kSeparable = 10.0;  ///< expected gap of -2 log L that tells two candidates apart
+constexpr double kSeparable = 10.0;  ///< expected gap of -2 log L that separates two candidates
 constexpr double kMost = 0.6;        ///< of a smooth term's statistic
 
 template <typename T>

@@ -1,4 +1,4 @@
-// Which candidates the data cannot tell apart.
+// Which candidates the data cannot separate.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace odomcalib::calib::selection {
 /// Canonical correlation that counts as indistinguishable.
 inline constexpr double kAlias = 0.9;
 
-/// Whether the gap of -2 log L that this data would show between both is too small to tell them apart.
+/// Whether the gap of -2 log L that this data would show between both is too small to separate them.
 /// @param a, b candidates of the table, `a` the one believed to be there
 bool are_too_close(const ScoreTable& table, std::size_t a, std::size_t b);
 
@@ -22,8 +22,8 @@ bool are_too_close(const ScoreTable& table, std::size_t a, std::size_t b);
 std::vector<vehicle::Covariate> covariates_like(const std::vector<Candidate>& candidates,
                                                 const ScoreTable& table, std::size_t index);
 
-/// Names that may be meant instead of a candidate's: those of its rivals, and those that no motion tells from
-/// it.
+/// Names that may be meant instead of a candidate's: those of its rivals, and those that no motion separates
+/// from it.
 std::vector<std::string> aliases_among(const std::vector<Candidate>& candidates, std::size_t candidate,
                                        const std::vector<std::size_t>& rivals);
 

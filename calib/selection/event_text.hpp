@@ -1,4 +1,4 @@
-// Events, told to a user.
+// Change points in words for a user.
 #pragma once
 
 #include <string>

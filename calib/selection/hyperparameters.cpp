@@ -90,7 +90,7 @@ std::span<const double> values_of(const FittedModel& model, std::size_t index) {
   return vehicle::as_span(model.fit.parameters).subspan(first, model.effects[index]->parameters().size());
 }
 
-/// The drive can tell it from the wheels, and robots may be that bad.
+/// The drive can separate it from the wheels, and robots may be that bad.
 bool is_credible(const vehicle::Effect& smooth, const estimation::FitResult& before,
                  const estimation::FitResult& after) {
   return !smooth_spoils_base(smooth, before, after) && impossibility(smooth, after).empty();
@@ -152,7 +152,7 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
                                       const terms::SmoothTerm& smooth,
                                       const std::vector<measurement::NoiseModel>& noise) {
   std::vector<terms::SmoothTerm> shapes = other_shapes(smooth, task.models());
-  // What is as plain as a name proves nothing against it.
+  // What is as plain as a name is no evidence against it.
   std::erase_if(shapes, [&](const terms::SmoothTerm& shape) { return is_plainer(shape, smooth); });
   shapes.push_back(smooth);
   std::optional<Reshaped> best;

@@ -1,4 +1,5 @@
-// Errors of the lidar show between scans, before any wheel is asked; they are taken out of the scans.
+// Errors of the lidar show between scans, before any term of the wheels is scored; they are taken out of the
+// scans.
 #pragma once
 
 #include <vector>
@@ -16,7 +17,7 @@ struct LidarCorrection {
 };
 
 /// First wrong angles; then wrong ranges, in a map of walls; then the others, and these too where there is no
-/// map, in pairs of scans. A correction that nobody asked for and that the wheels contradict is taken back.
+/// map, in pairs of scans. A correction that nobody requested and that the wheels contradict is rejected.
 /// @param request names errors that are fitted whether they are significant or not; automatic: looked for
 LidarCorrection correct_lidar(estimation::Fit fit, const terms::Request& request,
                               const estimation::Settling& how);

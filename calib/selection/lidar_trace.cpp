@@ -9,7 +9,7 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr std::size_t kFewestPairs = 25;  // sign flips of fewer cannot tell
+constexpr std::size_t kFewestPairs = 25;  // sign flips of fewer cannot be significant
 constexpr std::size_t kMostFindings = 2;
 constexpr double kLevel = 0.001;  // family-wise
 

@@ -1,4 +1,5 @@
-// Looks for errors of the lidar itself before any wheel is asked, and takes them out of the scans.
+// Looks for errors of the lidar itself before any term of the wheels is scored, and takes them out of the
+// scans.
 #pragma once
 
 #include <vector>

@@ -24,7 +24,7 @@ std::optional<Trial> best_name_beside(std::optional<std::size_t> smooth, SearchR
                                       const SearchResult& found);
 
 /// Where motions begin, clocks that disagree look like anything that goes with beginnings. A clock cannot
-/// spoil odometry, so it is asked first.
+/// spoil odometry, so it is tried first.
 std::optional<Trial> best_clock(const SearchRound& round);
 
 }  // namespace odomcalib::calib::selection

@@ -8,7 +8,7 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-/// A mean that is told only where chance does not make it.
+/// A mean that is reported only where chance does not make it.
 class PlainMean {
  public:
   void add(double value) {

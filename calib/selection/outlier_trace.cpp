@@ -198,7 +198,7 @@ class Tracer {
   std::vector<std::size_t> order_;
 };
 
-/// Whose fault they are, as far as a map tells.
+/// Whose fault they are, as far as a map shows.
 std::string to_text(const OutlierCause& cause) {
   if (cause.confirmed == 0) return "";
   std::ostringstream out;

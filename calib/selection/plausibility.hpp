@@ -27,9 +27,9 @@ bool is_negligible(const vehicle::Effect& effect, const estimation::FitResult& f
 bool is_hidden_by_ticks(const terms::SmoothTerm& smooth, const estimation::FitResult& fit,
                         std::span<const vehicle::DriveModel* const> models);
 
-/// This drive cannot tell the addition from the wheels: it would trade a known geometry for a guess. (With
-/// what changes by the day the wheels of one moment are less well known than their mean, which up to ten
-/// times is no fault; nor is a length that is still known to a thousandth.)
+/// This drive cannot separate the addition from the wheels: it would trade a known geometry for a guess.
+/// (With what changes by the day the wheels of one moment are less well known than their mean, which up to
+/// ten times is no fault; nor is a length that is still known to a thousandth.)
 bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& before,
                  const estimation::FitResult& after);
 

@@ -28,7 +28,7 @@ measurement::RangeErrorTerms offset_step(const measurement::RangeEvidence& evide
   return evidence.offset_alone * measurement::RangeErrorTerms::Unit(0);
 }
 
-/// The offset stays what it is: it was asked first.
+/// The offset stays what it is: it was fitted first.
 measurement::RangeErrorTerms slant_step(const measurement::RangeEvidence& evidence) {
   measurement::RangeErrorTerms step = evidence.values;
   step(0) = 0.0;

@@ -1,5 +1,5 @@
-// Looks for an error of the ranges in a map of walls, and proves it on scans that the map was not adjusted
-// to.
+// Looks for an error of the ranges in a map of walls, and cross-validates it on scans that the map was not
+// adjusted to.
 #pragma once
 
 #include "calib/measurement/range_tracer.hpp"

@@ -9,8 +9,8 @@
 
 namespace odomcalib::calib::selection {
 
-/// One trace per effect but the quiet ones, which are in the model and too small to be told. "Before" is the
-/// model refitted without that effect, "after" the full one; the difference of the two predictions is the
+/// One trace per effect but nuisance terms, which are in the model and too small to be reported. "Before" is
+/// the model refitted without that effect, "after" the full one; the difference of the two predictions is the
 /// effect's pattern. The covariate is the one of all observed covariates that describes most of the pattern
 /// (correlation ratio over quantile bins), and so is the axis: a new effect needs no entry here.
 std::vector<ResidualTrace> residual_traces(std::span<const measurement::FitData> data,

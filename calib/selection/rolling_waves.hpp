@@ -10,7 +10,7 @@
 namespace odomcalib::calib::selection {
 
 /// Waves of 0.2 to 1.5 m over the way of the base, which turn it, and over that of each wheel, which scale
-/// its travel: of each the one that stands out of the residual, if one does beyond doubt. None of more than
+/// its travel: of each the one that stands out of the residual, if one does decisively. None of more than
 /// one recording, whose phases have no common origin. Odometry cannot follow them: what rolls on its own
 /// begins at an unknown angle the next time.
 std::vector<Candidate> rolling_waves(std::span<const measurement::FitData> data, const FittedModel& model);

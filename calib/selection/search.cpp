@@ -105,7 +105,7 @@ class Search {
     return smooth && accept_smooth(*smooth);
   }
 
-  /// A millisecond between the clocks is nothing to tell, but passes for play or for slip.
+  /// A millisecond between the clocks is not worth reporting, but passes for play or for slip.
   [[nodiscard]] std::optional<Trial> unnoticed_clock(const Trial& name) const {
     constexpr double kMuch = 0.9;  // of what the name explains
     if (is_clock(candidates_[name.candidate])) return std::nullopt;
@@ -150,7 +150,7 @@ class Search {
     no_more_smooths_ = false;
   }
 
-  /// Waves are many, and what was nothing before one of them was found is not asked again.
+  /// Waves are many, and what was nothing before one of them was found is not scored again.
   void strike_hopeless_waves() {
     constexpr double kHopeless = 0.05;  // family-wise
     for (std::size_t k = 0; round_ && k < candidates_.size(); ++k)
@@ -187,12 +187,12 @@ class Search {
     return spoils ? "this drive cannot tell it from the wheels" : "";
   }
 
-  /// Too small to be told, not too small to have moved the lengths.
+  /// Too small to be reported, not too small to have moved the lengths.
   [[nodiscard]] bool is_plain_but_small(const Candidate& candidate, const estimation::FitResult& fit) const {
     return is_negligible(*candidate.effect, fit) && !spoils_base(*candidate.effect, basis().fit, fit);
   }
 
-  /// Adds the candidate if it is plausible and proves itself; otherwise strikes it off the list.
+  /// Adds the candidate if it is plausible and passes cross-validation; otherwise excludes it.
   std::optional<CrossValidation> accept(const Trial& trial) {
     const Candidate& candidate = candidates_[trial.candidate];
     const Score& score = round_->score(trial.candidate);
@@ -230,7 +230,7 @@ class Search {
     result_.considered.push_back(std::move(one));
   }
 
-  /// With what was added later a quiet effect may have become one that matters.
+  /// With what was added later a nuisance effect may have become one that matters.
   void report_what_has_grown() {
     const FittedModel& model = result_.model;
     for (std::size_t e = 0; e < model.effects.size(); ++e)
@@ -260,7 +260,7 @@ class Search {
     return selected;
   }
 
-  /// How the trial fails its proof; empty when it does not.
+  /// How the trial fails cross-validation; empty when it does not.
   /// @param settled the trial on its own noise then
   std::string failure(const Trial& trial, CrossValidation& validation, std::optional<Trial>& settled) {
     const FoldFlags selected = selected_without_fold(trial.candidate);
@@ -290,7 +290,7 @@ class Search {
     return drives.is_spoilt || drives.ratio.value_or(0.0) > 1.0;
   }
 
-  /// Whether the proof is one of drives of ten seconds, not of single pairs.
+  /// Whether it was cross-validated on drives of ten seconds, not on single pairs.
   static bool has_drives(const CrossValidation& validation) { return validation.before > 0.0; }
 
   /// A smooth term that odometry follows. What folds that do not point to it make of it counts too: the next
@@ -301,8 +301,8 @@ class Search {
   }
 
   /// Of a smooth term that odometry would use, whose gain must show over ten seconds; where the reference is
-  /// too broken for that, its score must leave no doubt. A reference that errs with the motion, as in a
-  /// nearly round room, asks for one smooth term after the other: where the best is none, no other is.
+  /// too broken for that, its score must be decisive. A reference that errs with the motion, as in a
+  /// nearly round room, suggests one smooth term after the other: where the best is none, no other is.
   [[nodiscard]] bool may_be_chance(const Candidate& candidate, const CrossValidation& validation) const {
     if (!odometry_uses(candidate) || result_.owner_of(candidate.smooth->dependence)) return false;
     return has_drives(validation) ? !validation.improvement.is_plain()
@@ -420,7 +420,7 @@ class Search {
     return true;
   }
 
-  /// What was added proved itself, but not as it settled.
+  /// What was added passed cross-validation, but not with its final hyperparameters.
   void go_back_to(SearchResult before) {
     before.considered = std::move(result_.considered);
     before.considered.back().outcome = kUnhelpful;
@@ -433,7 +433,7 @@ class Search {
       if (candidate.smooth && found.excludes(candidate.smooth->dependence)) candidate.struck = true;
   }
 
-  /// A law that foretells nothing in the shape that it was found in, too coarse for it, may in another.
+  /// A term that predicts nothing in the shape that it was found in, too coarse for it, may in another.
   std::optional<CrossValidation> accept_reshaped(std::size_t index) {
     Candidate& candidate = candidates_[index];
     if (terms::basis_as<terms::Wave>(*candidate.smooth)) return std::nullopt;
@@ -468,14 +468,16 @@ class Search {
     if (eliminate_superfluous(task_, schwarz(basis().fit), result_)) start_again();
   }
 
-  /// Larger than usual if the data insist; about its mean where the drive cannot tell that from slow motion.
+  /// Larger than usual if the data insist; about its mean where the drive cannot separate that from slow
+  /// motion.
   std::optional<Trial> refit_as(std::size_t index, const terms::SmoothTerm& smooth) {
     candidates_[index].smooth = smooth;
     candidates_[index].effect = make_smooth_term_effect(smooth);
     return round_->refit(index);
   }
 
-  /// A candidate that was added, or failed its proof, is not asked again; the search goes on with the others.
+  /// A candidate that was added, or failed cross-validation, is not tried again; the search goes on with the
+  /// others.
   void strike(const std::string& key) {
     for (Candidate& candidate : candidates_)
       if (candidate.key == key) candidate.struck = true;

@@ -1,4 +1,4 @@
-// From residual to missing effect: score tests, joint refits, held-out proof, one effect after the other.
+// From residual to missing effect: score tests, joint refits, cross-validation, one effect after the other.
 #pragma once
 
 #include <functional>

@@ -14,7 +14,7 @@ namespace odomcalib::calib::selection {
 
 struct Finding {
   std::shared_ptr<const vehicle::Effect> effect;
-  std::vector<std::string> aliases;  ///< candidates the data cannot tell from it
+  std::vector<std::string> aliases;  ///< candidates the data cannot separate from it
   CrossValidation validation;
 };
 
@@ -44,12 +44,12 @@ struct SearchResult {
   FittedModel model;  ///< effects given, then what was added
   std::vector<Finding> findings;
   std::vector<AddedSmoothTerm> smooths;
-  vehicle::EffectList nuisance;        ///< in the model, but too small to be told
+  vehicle::EffectList nuisance;        ///< in the model, but too small to be reported
   std::vector<Considered> considered;  ///< in the order tried
   std::vector<Detectable> detectable;  ///< of the names that are not in the model
   /// What nobody knows about a law is unknown of the base parameters too: by how much they move with another
   /// shape, another zero or another name of the set, by extrapolation to where no effect is, and with what
-  /// was too small to be told.
+  /// was too small to be reported.
   std::vector<Eigen::VectorXd> model_uncertainties;
 
   [[nodiscard]] bool has_unnamed() const;
@@ -57,7 +57,7 @@ struct SearchResult {
   [[nodiscard]] std::shared_ptr<const vehicle::Effect> owner_of(const vehicle::Dependence& dependence) const;
   /// A law that was completed shares its ground with the smooth term, and keeps its name.
   [[nodiscard]] bool is_completed(const std::shared_ptr<const vehicle::Effect>& name) const;
-  /// No longer told, as a name or as a smooth term; smooth terms that completed its law stand for
+  /// No longer reported, as a name or as a smooth term; smooth terms that completed its shape stand for
   /// all of it then.
   void forget(const std::shared_ptr<const vehicle::Effect>& effect);
 };

@@ -18,7 +18,7 @@ struct Trial {
   double gain = 0.0;  ///< drop of -2 log L minus q log(3 n)
 };
 
-/// Scores of all candidates on a model, and joint refits of those that are asked for, each made once.
+/// Scores of all candidates on a model, and joint refits of those that are wanted, each made once.
 class SearchRound {
  public:
   /// Of a candidate's index.
@@ -42,7 +42,7 @@ class SearchRound {
   void try_out(std::size_t candidate);
   /// Of the trials.
   [[nodiscard]] std::optional<Trial> best_trial(const Wanted& wanted) const;
-  /// Which shape of a law is right, its score at size zero hardly tells.
+  /// Which shape of a term is right, its score at size zero hardly shows.
   std::optional<Trial> best_shape(const std::string& key);
 
   /// Candidates that are left and wanted, the most promising first.

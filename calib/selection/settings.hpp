@@ -31,7 +31,7 @@ inline constexpr double kTrustedWeight = 0.3;
 
 /// Random draws of signs; the finest family-wise p-value is 1 / (1 + draws). Chosen.
 inline constexpr int kSignDraws = 1999;
-/// Bonferroni's bound below which no draws are needed. Chosen: far beyond any doubt.
+/// Bonferroni's bound below which no draws are needed. Chosen: far below any level used.
 inline constexpr double kDecisive = 1e-12;
 /// Family-wise level of named effects, and of smooth terms that must be worthwhile. Chosen: a nominal 1 %
 /// test exceeds 1 % of robots in many campaigns. With kSignDraws no draw may be above.

@@ -8,7 +8,7 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-/// Of odometry over ten seconds with the model's effects; nullopt where the drive is too short to tell.
+/// Of odometry over ten seconds with the model's effects; nullopt where the drive is too short for it.
 std::optional<DriveError> open_loop_error(const FitTask& task, const FittedModel& model) {
   const JudgedModel judged{&model.fit, task.fixed(model.effects), model.effects};
   const auto errors = drive_errors(task.data, {}, nullptr, judged);

@@ -9,13 +9,13 @@
 
 namespace odomcalib::calib::selection {
 
-/// A smooth term in the best of its shapes, proved against the model without it.
+/// A smooth term in the best of its shapes, cross-validated against the model without it.
 struct FreeTerm {
   Reshaped dependence;
   CrossValidation validation;
 };
 
-/// The candidate's smooth term in the name's place, if the name leaves more than a little to it and foretells
+/// The candidate's smooth term in the name's place, if the name leaves more than a little to it and predicts
 /// held-out data worse.
 /// @param index of the name's effect in the model
 std::optional<FreeTerm> free_term_instead_of(const FitTask& task, const FittedModel& model, std::size_t index,

@@ -9,7 +9,7 @@
 namespace odomcalib::calib::terms {
 namespace {
 
-constexpr std::size_t kEvery = 3;    ///< relay is asked for: the others are found by their neighbours
+constexpr std::size_t kEvery = 3;    ///< relay is tried: the others are found by their neighbours
 constexpr int kHighestHarmonic = 8;  ///< poles of encoder magnets, lugs, spokes
 
 using Channels = std::vector<vehicle::Channel>;
@@ -194,7 +194,7 @@ std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* c
           smooths.push_back(on_basis(smooth, Relay{}));
           smooths.back().memory = memory;
         }
-      // A drive seldom shows all headings; one wave round the circle is what few of them can tell.
+      // A drive seldom shows all headings; one wave round the circle is what few of them determine.
       if (covariate == vehicle::Covariate::heading) add_harmonics(smooth, 1, 1, smooths);
     }
     if (covariate == vehicle::Covariate::time) {

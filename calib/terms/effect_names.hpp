@@ -1,4 +1,4 @@
-// What may be asked of solve: effects by name.
+// What may be requested of solve: effects by name.
 #pragma once
 
 #include <optional>

@@ -17,7 +17,7 @@ namespace odomcalib::calib::terms {
 struct Sighting {
   double bearing = 0.0;    ///< rad, direction of the beam in the sensor's frame
   double range = 0.0;      ///< m
-  double incidence = 0.0;  ///< rad, signed; 0 where it is not asked for
+  double incidence = 0.0;  ///< rad, signed; 0 where it is not needed
 };
 
 /// Displacement of a beam's end, measured minus true.

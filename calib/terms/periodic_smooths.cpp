@@ -7,9 +7,9 @@ namespace odomcalib::calib::terms {
 namespace {
 
 constexpr double kShortest = 0.2;    ///< m
-constexpr double kLongest = 1.25;    ///< m; what changes slower the polynomials tell
+constexpr double kLongest = 1.25;    ///< m; what changes slower is left to the polynomials
 constexpr double kStep = 0.7;        ///< cycles over the place's extent
-constexpr double kSmallest = 0.5;    ///< m, least extent taken for telling waves apart
+constexpr double kSmallest = 0.5;    ///< m, least extent taken for separating waves
 constexpr double kMostWaves = 1500;  ///< the shortest are left out where there would be more
 
 struct Extent {

@@ -1,4 +1,4 @@
-// What a user asks for by the names of effects.
+// What a user requests by the names of effects.
 #pragma once
 
 #include <string>

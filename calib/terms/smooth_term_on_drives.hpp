@@ -14,7 +14,7 @@ std::pair<double, double> range_of(vehicle::Covariate covariate,
                                    std::span<const vehicle::DriveModel* const> models,
                                    std::size_t memory = vehicle::kUsualMemory);
 
-/// What an unsigned way adds to a signed one, a drive that goes only one way cannot tell from the wheels.
+/// What an unsigned way adds to a signed one, a drive that goes only one way cannot separate from the wheels.
 bool goes_both_ways(std::span<const vehicle::DriveModel* const> models);
 
 /// What is left of a wheel's or the track's law about its mean is a law of the same kind; a constant that

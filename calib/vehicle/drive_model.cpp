@@ -90,7 +90,7 @@ Trajectory DriveModel::trajectory(std::span<const double> parameters, const Effe
   trajectory.effects_ = PlacedEffects(effects, kBaseCount);
   trajectory.poses_.resize(context_.size() + 1);
   trajectory.twists_.reserve(context_.size());
-  // The heading is turned on by each step: an angle's sine and cosine, asked for every step of every fit,
+  // The heading is turned on by each step: an angle's sine and cosine, computed in every step of every fit,
   // cost more than all the rest.
   std::complex<double> heading = 1.0;
   for (std::size_t k = 0; k < context_.size(); ++k) {

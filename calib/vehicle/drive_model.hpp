@@ -81,8 +81,8 @@ class DriveModel {
   [[nodiscard]] DriveModel located(std::span<const Fix> fixes, std::span<const double> parameters,
                                    const EffectList& effects) const;
 
-  /// Dead reckoning with these parameters, to be asked for poses. Throws std::invalid_argument if they are
-  /// too few.
+  /// Dead reckoning with these parameters, from which poses are read. Throws std::invalid_argument if they
+  /// are too few.
   [[nodiscard]] Trajectory trajectory(std::span<const double> parameters, const EffectList& effects) const;
 
   /// Trajectory::sensor_motions() with these parameters.

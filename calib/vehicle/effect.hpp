@@ -51,12 +51,12 @@ class Effect {
   /// Combinations of the parameters, in deviations, that a prior expects to be zero beside the parameters'
   /// own: a row each, a factor for each parameter.
   [[nodiscard]] virtual std::vector<std::vector<double>> expected_zeros() const { return {}; }
-  /// Names of the effects that look alike, and the motion that tells them apart.
+  /// Names of the effects that look alike, and the motion that separates them.
   [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
-  /// Names that no motion can tell from this one: listed beside it whenever it is found.
+  /// Names that no motion can separate from this one: listed beside it whenever it is found.
   [[nodiscard]] virtual std::vector<std::string> always_alike() const { return {}; }
   [[nodiscard]] virtual std::string separating_motion() const { return {}; }
-  /// The motion that tells them apart, as a manoeuvre that can be driven in a small area; empty: none.
+  /// The motion that separates them, as a manoeuvre that can be driven in a small area; empty: none.
   [[nodiscard]] virtual std::string manoeuvre() const { return {}; }
   /// The same effect with other shapes to start from; a search tries them all and keeps the best.
   [[nodiscard]] virtual std::vector<std::shared_ptr<const Effect>> variants() const { return {}; }
@@ -81,7 +81,7 @@ class Effect {
     return {};
   }
 
-  /// Whether either of two states may be the undisturbed one: nothing tells which way of turning is the
+  /// Whether either of two states may be the undisturbed one: nothing shows which way of turning is the
   /// normal one.
   [[nodiscard]] virtual bool has_two_states() const { return false; }
 

@@ -105,7 +105,7 @@ struct StepContext {
       0.0;  ///< of the base in its direction, m; not smoothed, so that in a spin ticks give either sign
   double distance = 0.0;                            ///< way so far, forward and backward alike, m
   double heading = 0.0;                             ///< rad, from the plain model
-  double heading_cosine = 1.0, heading_sine = 0.0;  ///< more than a thousand waves ask for them
+  double heading_cosine = 1.0, heading_sine = 0.0;  ///< more than a thousand waves need them
   double x = 0.0, y = 0.0;                          ///< m, from the plain model
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin

@@ -101,7 +101,7 @@ std::vector<Jet> seed(std::span<const double> parameters, std::size_t first) {
 
 }  // namespace
 
-/// One interval with all that does not depend on which parameters are asked for.
+/// One interval with all that does not depend on which parameters are wanted.
 struct Sensitivity::Path {
   End begin, end;
   Eigen::Matrix<double, 3, 6> to_sensor;  ///< by base motion, then by mount

@@ -1,5 +1,5 @@
 // Derivatives of predicted sensor motions by the parameters, by the chain rule: parameters act on the twists
-// of tick intervals and on the times at which the trajectory is asked; the trajectory carries both on.
+// of tick intervals and on the times at which the trajectory is read; the trajectory carries both on.
 #pragma once
 
 #include <Eigen/Core>

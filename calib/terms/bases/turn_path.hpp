@@ -10,7 +10,7 @@ namespace odomcalib::calib::terms {
 /// no base parameter here.
 struct TurnPath {
   [[nodiscard]] BasisValues values(const Argument& at) const;
-  /// Where turns of one speed cannot tell which, each radian leaves the same way.
+  /// Where turns of one speed cannot show which, each radian leaves the same way.
   [[nodiscard]] static double prior(std::size_t function, double usual) {
     return function > 0 ? 0.25 * usual : usual;
   }
