@@ -1,4 +1,4 @@
-// The pace of a device that samples steadily, under stamps that came late by more or less.
+// The rate of a device that samples steadily, under stamps that came late by more or less.
 #pragma once
 
 #include <cstddef>

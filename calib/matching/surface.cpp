@@ -160,7 +160,7 @@ double angular_step(const Scan& scan) {
 
 /// How far the reciprocal range of beam k lies off the line through beams k - lag and k + lag, in units of
 /// what range noise of 1 m would make of it: on a straight wall 1 / r = A cos(angle) + B sin(angle). Walls
-/// struck flatter than 45 degrees show how uneven they are instead.
+/// met flatter than 45 degrees show how uneven they are instead.
 std::optional<double> bend(const Scan& scan, std::size_t k, std::size_t lag) {
   const std::size_t beams[] = {k - lag, k, k + lag};
   double u[3];

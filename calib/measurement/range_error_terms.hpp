@@ -33,7 +33,7 @@ bool shows_offset(const RangeEvidence& evidence);
 /// A dependence on incidence beside which an offset is not needed.
 bool shows_slant(const RangeEvidence& evidence);
 
-/// Whether a law errs at a slant by more than surfaces of a room differ.
+/// Whether a fitted error errs at a slant by more than surfaces of a room differ.
 bool matters_at_a_slant(const RangeErrorTerms& dependence);
 
 /// Probability of so large an offset, or so large coefficients of the incidence, where there is none.

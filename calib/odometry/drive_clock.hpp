@@ -1,4 +1,4 @@
-// What the time of a law is in another drive than the one that it was fitted to.
+// What the time of a term is in another drive than the one that it was fitted to.
 #pragma once
 
 #include <optional>

@@ -31,12 +31,12 @@ using PlainFit = std::optional<estimation::FitResult>;
 /// Base parameters: values, and how well they are known.
 struct BaseEstimate {
   QuantityList measured;       ///< with the deviations that the motion leaves
-  QuantityList stated;         ///< also with what nobody knows of the laws of the effects
+  QuantityList stated;         ///< also with what nobody knows of the functions of the effects
   Eigen::MatrixXd covariance;  ///< of what is stated, in radii
 };
 
-/// Matches of keyframes are not free of bias; neither is a model with a law that was found to fit, whose true
-/// shape nobody knows (a delay may be a filter). Places in a map are, as far as simulated drives show.
+/// Matches of keyframes are not free of bias; neither is a model with a term that was found to fit, whose
+/// true shape nobody knows (a delay may be a filter). Places in a map are, as far as simulated drives show.
 double scale_deviation(const Findings& found) {
   const measurement::Dataset& dataset = found.fit.dataset;
   if (!dataset.reference_is_scans()) return 0.0;

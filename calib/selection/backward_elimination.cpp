@@ -10,8 +10,8 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-/// A name whose law was completed bit by bit shares its ground with the smooth term; what happens at one
-/// moment may leave it nothing.
+/// A name whose function was completed bit by bit shares its dependence with the smooth term; what happens at
+/// one moment may leave it nothing.
 bool shares_its_ground(const SearchResult& result, const std::shared_ptr<const vehicle::Effect>& name) {
   return std::any_of(result.smooths.begin(), result.smooths.end(), [&](const AddedSmoothTerm& added) {
     return added.named_term == name && !happens_at_once(added.smooth);

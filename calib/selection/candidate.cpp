@@ -22,7 +22,7 @@ std::string key_of(const vehicle::Effect& effect) {
 }
 
 /// What distinguishes a basis from others of the same dependence that are candidates of their own; empty for
-/// all that are shapes of one law.
+/// all that are shapes of one dependence.
 constexpr auto kind_of = []<typename Kind>(const Kind& basis) -> std::string {
   if constexpr (std::is_same_v<Kind, terms::Cycle>) return "/cycle " + std::to_string(basis.period);
   if constexpr (std::is_same_v<Kind, terms::Harmonics>) return "/harmonic " + std::to_string(basis.only);

@@ -18,8 +18,8 @@ void fit_anew_on_own_noise(const FitTask& task, FittedModel& model) {
     model.fit = std::move(*again);
 }
 
-/// A law of a speed or a force has a peak or a step, not one bend after the other: those stand for the single
-/// manoeuvres of this drive. Bends of less than a quarter of all that the law spans are none.
+/// A term of a speed or a force has a peak or a step, not one bend after the other: those stand for the
+/// single manoeuvres of this drive. Bends of less than a quarter of all that the function spans are none.
 bool bends_too_often(const Reshaped& shape) {
   constexpr double kPlain = 0.25;
   constexpr int kMost = 3;
@@ -53,7 +53,7 @@ void fit_anew_on_estimated_noise(const FitTask& task, FittedModel& model) {
   fit_anew_on_own_noise(task, model);
 }
 
-/// A law's splines are smooth all alike at first, then each bend as it was found.
+/// A term's splines are smooth all alike at first, then each bend as it was found.
 std::vector<terms::SmoothTerm> shapes_to_try(const FitTask& task, const Reshaped& now) {
   const auto* splines = terms::basis_as<terms::Splines>(now.smooth);
   if (!splines || splines->roughness.empty()) return other_shapes(now.smooth, task.models());

@@ -5,7 +5,7 @@
 
 namespace odomcalib::calib::selection {
 
-/// A law with a narrow peak needs more knots than finding it did, one of the past another memory. What other
+/// A term with a narrow peak needs more knots than finding it did, one of the past another memory. What other
 /// shapes that are nearly as likely, or another zero, would make of the base parameters is not known about
 /// them, and added to the model uncertainties.
 /// @param result whose model ends with the newest of its smooth terms

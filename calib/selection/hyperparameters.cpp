@@ -234,7 +234,7 @@ Eigen::VectorXd uncertainty_of_extrapolation(const FitTask& task, const FittedMo
       right.add(step.right / c.right_delta - 1.0, std::abs(c.right_delta));
       track.add(step.track - 1.0, std::abs(c.turn_rate) * c.dt);
     }
-  // A law that ends where the data end, instead of going on to zero, is two deviations off.
+  // A term that ends where the data end, instead of going on to zero, is two deviations off.
   const auto share = [&](Changes& changes) { return 0.5 * changes.unknown(two_states); };
   uncertainty(vehicle::kLeftRadius) = share(left) * model.fit.parameters(vehicle::kLeftRadius);
   uncertainty(vehicle::kRightRadius) = share(right) * model.fit.parameters(vehicle::kRightRadius);

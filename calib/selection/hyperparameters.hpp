@@ -1,4 +1,4 @@
-// The shape of a law that was found as a smooth term: how fine it is, and what is unknown of it.
+// The shape of a term that was found as a smooth term: how fine it is, and what is unknown of it.
 #pragma once
 
 #include <optional>
@@ -45,7 +45,7 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
                                       const terms::SmoothTerm& smooth,
                                       const std::vector<measurement::NoiseModel>& noise);
 
-/// A name that leaves so little to a freer law is the right one, whatever that little is.
+/// A name that leaves so little to a freer term is the right one, whatever that little is.
 /// @param index of the name's effect in `named`; `free` has a smooth term in its place, on the same noise
 bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::size_t index,
                          const FittedModel& free);
@@ -53,17 +53,17 @@ bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::siz
 /// Whether the other model is worth its parameters, and better on held-out data.
 bool is_better(const FitTask& task, const FittedModel& given, const FittedModel& other, double per_parameter);
 
-/// A smooth term about its mean leaves the base the average of this drive; where its law would be zero,
+/// A smooth term about its mean leaves the base the average of this drive; where its function would be zero,
 /// nobody knows. By how much that may move the base parameters.
 Eigen::VectorXd uncertainty_of_zero(const FitTask& task, const FittedModel& model,
                                     const terms::SmoothTerm& smooth);
 
 /// The base parameters are those of a robot without the effect. Where this drive shows it at work everywhere,
-/// as a law of speed does down to the slowest speed, they are extrapolated: by what it does where it does
+/// as a term of speed does down to the slowest speed, they are extrapolated: by what it does where it does
 /// least. Zero where it is absent, or of either sign, in a tenth of the drive.
-/// @param law effects of the model that make it up: one, or one and the smooth terms that make one law with
-/// it. A law that is not the textbook's has no side of which it is known that nothing happens there, so that
-/// all that lies between its extremes is open.
+/// @param dependence effects of the model that make it up: one, or one and the smooth terms that make one
+/// term with it. A term that is not the textbook's has no side of which it is known that nothing happens
+/// there, so that all that lies between its extremes is open.
 Eigen::VectorXd uncertainty_of_extrapolation(const FitTask& task, const FittedModel& model,
                                              const std::vector<std::size_t>& dependence);
 

@@ -88,7 +88,7 @@ class Trace {
     return false;
   }
 
-  /// What is too small as a free law is no larger under a name that explains too little of it.
+  /// What is too small as a free term is no larger under a name that explains too little of it.
   void refuse_lesser_names(std::size_t smooth, const std::vector<LidarScores::Score>& scores) {
     if (effect(smooth).is_named()) return;
     for (std::size_t c = 0; c < scores.size(); ++c)
@@ -140,7 +140,7 @@ class Trace {
     refused_[candidate] = true;
   }
 
-  /// A name that was only the best there was is none beside the law that was added last (Wald test, 5 %).
+  /// A name that was only the best there was is none beside the term that was added last (Wald test, 5 %).
   void eliminate_superfluous() {
     const std::vector<terms::LidarFinding> all = findings();
     for (std::size_t k = all.size() - 1; k-- > 0;)

@@ -19,7 +19,7 @@ double level(const Candidate& candidate, const SearchResult& found) {
   return is_clock(candidate) ? settings::kClockLevel : settings::kNamedLevel;
 }
 
-/// What the free smooth terms explain of those of a name's laws that a finding has already.
+/// What the free smooth terms explain of those of a name's dependences that a finding has already.
 double explained_by_smooths(const std::vector<vehicle::Dependence>& dependences, const SearchRound& round,
                             const SearchResult& found) {
   double all = 0.0;
@@ -31,8 +31,8 @@ double explained_by_smooths(const std::vector<vehicle::Dependence>& dependences,
   return all;
 }
 
-/// What a finding leaves on its own ground is the rest of its law, unless a second name explains nearly all
-/// that a free smooth term would.
+/// What a finding leaves on its own dependence is the rest of its function, unless a second name explains
+/// nearly all that a free smooth term would.
 bool is_rest_of_a_named_term(std::size_t name, const SearchRound& round, const SearchResult& found) {
   const std::vector<vehicle::Dependence> dependences = round.candidate(name).effect->dependences();
   if (std::none_of(dependences.begin(), dependences.end(), [&](const vehicle::Dependence& dependence) {

@@ -28,7 +28,7 @@ struct RefinedResult {
   bool every_scan_placed = false;  ///< the parameters come from the whole path, not from matches of keyframes
 };
 
-/// The same parameters from every scan instead of keyframes. Places are believed where they confirm the
+/// The same parameters from every scan instead of keyframes. Places are used where they confirm the
 /// matches and know better: a map may be wrong as a whole.
 /// @param dataset that the result was fitted to
 RefinedResult fit_to_every_scan(SearchResult found, const measurement::Dataset& dataset,

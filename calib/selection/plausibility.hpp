@@ -33,7 +33,7 @@ bool is_hidden_by_ticks(const terms::SmoothTerm& smooth, const estimation::FitRe
 bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& before,
                  const estimation::FitResult& after);
 
-/// Or it makes other lengths of them by a quarter, which a name may have to (a track that scrubs) but no law
+/// Or it makes other lengths of them by a quarter, which a name may have to (a track that scrubs) but no term
 /// without one should be believed.
 bool smooth_spoils_base(const vehicle::Effect& smooth, const estimation::FitResult& before,
                         const estimation::FitResult& after);

@@ -69,7 +69,7 @@ class Search {
                                        model_uncertainties.end());
   }
 
-  /// Places in the model of an effect and of the smooth terms that make one law with it.
+  /// Places in the model of an effect and of the smooth terms that make one term with it.
   [[nodiscard]] std::vector<std::size_t> dependence_with(std::size_t index) const {
     std::vector<std::size_t> dependence{index};
     const vehicle::EffectList& effects = result_.model.effects;
@@ -345,7 +345,7 @@ class Search {
     unproved_.clear();
   }
 
-  /// A law that can bend much should leave nothing to a free one.
+  /// A term that can bend much should leave nothing to a free one.
   [[nodiscard]] std::optional<std::size_t> better_smooth(const Trial& name) const {
     const auto& effect = candidates_[name.candidate].effect;
     if (has_textbook_shape(effect)) return std::nullopt;
@@ -446,7 +446,8 @@ class Search {
     return accept(Trial{index, std::move(best->model)});
   }
 
-  /// A free law that cannot stand on the name's, but does better in its place, shows that the name was wrong.
+  /// A free term that cannot stand beside the name's, but does better in its place, shows that the name was
+  /// wrong.
   void replace(const std::shared_ptr<const vehicle::Effect>& name, std::size_t candidate,
                const std::vector<vehicle::Covariate>& alike) {
     const auto& effects = result_.model.effects;

@@ -23,8 +23,8 @@ struct AddedSmoothTerm {
   std::shared_ptr<const vehicle::Effect> effect;
   terms::SmoothTerm smooth;
   CrossValidation validation;
-  /// The named effect whose law the smooth term completes: the data want another law than the textbook's.
-  /// Null: nothing in the catalogue explains it.
+  /// The named effect whose function the smooth term completes: the data want another function than the
+  /// textbook's. Null: nothing in the catalogue explains it.
   std::shared_ptr<const vehicle::Effect> named_term;
   /// Covariates that moved together with the smooth term's own in this drive, so that either may be meant.
   std::vector<vehicle::Covariate> alike = {};
@@ -47,15 +47,16 @@ struct SearchResult {
   vehicle::EffectList nuisance;        ///< in the model, but too small to be reported
   std::vector<Considered> considered;  ///< in the order tried
   std::vector<Detectable> detectable;  ///< of the names that are not in the model
-  /// What nobody knows about a law is unknown of the base parameters too: by how much they move with another
-  /// shape, another zero or another name of the set, by extrapolation to where no effect is, and with what
-  /// was too small to be reported.
+  /// What nobody knows about a function is unknown of the base parameters too: by how much they move with
+  /// another shape, another zero or another name of the set, by extrapolation to where no effect is, and with
+  /// what was too small to be reported.
   std::vector<Eigen::VectorXd> model_uncertainties;
 
   [[nodiscard]] bool has_unnamed() const;
-  /// The finding whose law a smooth term of that law would replace or complete; null if there is none.
+  /// The finding whose function a smooth term of that dependence would replace or complete; null if there is
+  /// none.
   [[nodiscard]] std::shared_ptr<const vehicle::Effect> owner_of(const vehicle::Dependence& dependence) const;
-  /// A law that was completed shares its ground with the smooth term, and keeps its name.
+  /// A function that was completed shares its dependence with the smooth term, and keeps its name.
   [[nodiscard]] bool is_completed(const std::shared_ptr<const vehicle::Effect>& name) const;
   /// No longer reported, as a name or as a smooth term; smooth terms that completed its shape stand for
   /// all of it then.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kAmbiguity = 6.0;  ///< units of BIC
 constexpr double kSameDependence =
-    0.5;  ///< share of a smooth term's statistic that a name with that law must reach
+    0.5;  ///< share of a smooth term's statistic that a name with that dependence must reach
 
 }  // namespace
 

@@ -24,7 +24,8 @@ class SearchRound {
   /// Of a candidate's index.
   using Wanted = std::function<bool(std::size_t)>;
 
-  /// @param candidates must outlive the round, in the same order; those struck meanwhile no longer take part
+  /// @param candidates must outlive the round, in the same order; those excluded meanwhile no longer take
+  /// part
   SearchRound(const FitTask& task, FittedModel basis, const std::vector<Candidate>& candidates);
 
   [[nodiscard]] const FittedModel& basis() const { return basis_; }
@@ -48,8 +49,8 @@ class SearchRound {
   /// Candidates that are left and wanted, the most promising first.
   [[nodiscard]] std::vector<std::size_t> by_score(const Wanted& wanted) const;
   /// A smooth term on the name's own ground that explains no more than about twice as much is the same
-  /// finding with a freer law; so is one that explains hardly more than the name in another shape than it was
-  /// refitted from.
+  /// finding with a freer term; so is one that explains hardly more than the name in another shape than it
+  /// was refitted from.
   [[nodiscard]] bool smooth_beats(std::size_t smooth, std::size_t name) const;
 
   /// Names within a few units of BIC of the best.

@@ -17,7 +17,7 @@ struct FittedSmoothTerm {
   terms::SmoothTerm smooth;
   std::vector<double> coefficients;
   std::string
-      named_term;  ///< named effect whose law it completes; empty: nothing in the catalogue explains it
+      named_term;  ///< named effect whose function it completes; empty: nothing in the catalogue explains it
 };
 
 std::string considered_to_json(const std::vector<Considered>& considered);

@@ -1,4 +1,4 @@
-// Names that a free law on their own ground shows to be wrong.
+// Names that a free term of their own dependence shows to be wrong.
 #pragma once
 
 #include <optional>

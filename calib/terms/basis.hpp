@@ -25,7 +25,7 @@ namespace odomcalib::calib::terms {
 using Basis = std::variant<Polynomials, SpeedHats, Splines, TurnPath, Harmonics, Cycle, FadingSince, Relay,
                            ChangePoint, Decay, Sway, Surface, Patches, Wave>;
 
-/// The plainest basis for a law, in which it is sought first.
+/// The plainest basis for a term, in which it is sought first.
 /// @param memory which way to understand what happened before, see vehicle::memories_of
 Basis usual_basis(const vehicle::Dependence& dependence, std::size_t memory);
 

@@ -14,8 +14,8 @@ constexpr int kHighestHarmonic = 8;  ///< poles of encoder magnets, lugs, spokes
 
 using Channels = std::vector<vehicle::Channel>;
 
-/// In drives both ways a defect of the signed way and one of the unsigned way are two laws. What one wheel
-/// does moves the base sideways by no mechanism: such a law, found in straights and spins, was nonsense in
+/// In drives both ways a defect of the signed way and one of the unsigned way are two terms. What one wheel
+/// does moves the base sideways by no mechanism: such a term, found in straights and spins, was nonsense in
 /// circles.
 Channels channels_of(vehicle::Covariate covariate) {
   using enum vehicle::Channel;

@@ -14,7 +14,7 @@ namespace odomcalib::calib::terms {
 /// recording.
 std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* const> models);
 
-/// The same law in other shapes: splines more or less smooth, other ways to understand what happened before.
+/// The same term in other shapes: splines more or less smooth, other ways to understand what happened before.
 std::vector<SmoothTerm> other_shapes(const SmoothTerm& smooth,
                                      std::span<const vehicle::DriveModel* const> models);
 

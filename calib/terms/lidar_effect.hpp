@@ -48,9 +48,10 @@ class LidarEffect {
   [[nodiscard]] virtual double may_leave() const { return 0.9965; }
   /// How many deviations the mean gain on held-out pairs must lie above zero.
   [[nodiscard]] virtual double least_z() const { return 2.5; }
-  /// Share of the statistic of a free law of its covariate that it must reach to be taken instead.
+  /// Share of the statistic of a free term of its covariate that it must reach to be taken instead.
   [[nodiscard]] virtual double share_of_free_term() const { return 0.5; }
-  /// The covariate it depends on. A rest that depends on the same one is the same effect with another law.
+  /// The covariate it depends on. A rest that depends on the same one is the same effect with another
+  /// function.
   [[nodiscard]] virtual std::string covariate() const = 0;
   [[nodiscard]] virtual std::vector<LidarParameter> parameters() const = 0;
   /// Shift per unit of each parameter: errors are linear in them to first order.

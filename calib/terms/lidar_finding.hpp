@@ -14,7 +14,7 @@ struct LidarFinding {
   double before = 0.0, after = 0.0;  ///< m, RMS distance between scans on pairs that were not fitted
 };
 
-/// Whether a finding is the rest of another's law and no finding of its own.
+/// Whether a finding is the rest of another's function and no finding of its own.
 bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all);
 
 /// The scan as it would be without the errors found.

@@ -1,4 +1,4 @@
-// The non-parametric fallback: a defect that depends on one observed covariate, whatever the law.
+// The non-parametric fallback: a defect that depends on one observed covariate, whatever the function.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ struct SmoothTerm {
   double low = -1.0, high = 1.0;  ///< range of the covariate, in its unit; of a position, of both x and y
   std::size_t memory = vehicle::kUsualMemory;  ///< which way to understand what happened before
   bool with_motion =
-      false;  ///< of an acceleration, the growth of the pace instead, so that braking is negative
+      false;  ///< of an acceleration, the growth of the speed magnitude instead, so that braking is negative
   Basis basis = usual_basis(dependence, memory);
   /// Subtracted from the functions; none: 0. Functions that are zero at rest leave the base parameters the
   /// meaning of slow motion; functions without a mean leave them that of the drive they were fitted to.
@@ -67,7 +67,7 @@ bool is_of_one_drive(const SmoothTerm& smooth);
 /// Begins with a stop or a push, of which it is not known how long or how hard it has to be.
 bool takes_an_event(const SmoothTerm& smooth);
 
-/// All of it at one moment: no law that bends, but an event.
+/// All of it at one moment: no function that bends, but an event.
 bool happens_at_once(const SmoothTerm& smooth);
 
 }  // namespace odomcalib::calib::terms

@@ -17,7 +17,7 @@ std::pair<double, double> range_of(vehicle::Covariate covariate,
 /// What an unsigned way adds to a signed one, a drive that goes only one way cannot separate from the wheels.
 bool goes_both_ways(std::span<const vehicle::DriveModel* const> models);
 
-/// What is left of a wheel's or the track's law about its mean is a law of the same kind; a constant that
+/// What is left of a wheel's or the track's term about its mean is a term of the same kind; a constant that
 /// pushes the same way whichever way the wheel turns is none.
 bool may_be_centred(const SmoothTerm& smooth);
 /// The same smooth term about its mean over these drives.

@@ -175,7 +175,7 @@ void carry(Channel channel, const StepContext& c, const T& f, WheelStep<T>& step
   }
 }
 
-/// A law of one covariate on one channel, whatever its shape.
+/// One covariate on one channel, whatever the function.
 struct Dependence {
   Covariate covariate = Covariate::speed;
   Channel channel = Channel::both_travel;

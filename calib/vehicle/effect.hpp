@@ -23,7 +23,8 @@ struct EffectParameter {
   double scale = 1.0;  ///< typical size; steps and tolerances are relative to it
   double lower = 0.0;  ///< physically plausible range
   double upper = 0.0;
-  double start = 0.0;  ///< where a fit begins; not zero for what gives the law its shape, such as a threshold
+  double start =
+      0.0;  ///< where a fit begins; not zero for what gives the term its shape, such as a threshold
   double prior =
       0.0;  ///< deviation of a normal prior about zero; 0: none. What the data do not show stays small
   bool fixed = false;  ///< a shape that is tried at several values instead of being fitted
@@ -61,7 +62,7 @@ class Effect {
   /// The same effect with other shapes to start from; a search tries them all and keeps the best.
   [[nodiscard]] virtual std::vector<std::shared_ptr<const Effect>> variants() const { return {}; }
   /// Where its signature lies. A rest that depends on these covariates on these channels is the same effect
-  /// with another law than the textbook's.
+  /// with another function than the textbook's.
   [[nodiscard]] virtual std::vector<Dependence> dependences() const { return {}; }
   [[nodiscard]] virtual Storage storage() const { return Storage::host; }
   /// Whether it distorts the sweeps of the sensor: a comparison with the reference needs it, dead reckoning
@@ -70,7 +71,8 @@ class Effect {
   /// Whether the next drive begins with it as this one ended.
   [[nodiscard]] virtual bool carries_over() const { return false; }
   [[nodiscard]] virtual ClockPart clock_part() const { return ClockPart::none; }
-  /// Whether a free smooth term of that law would describe the same once more where this effect was found.
+  /// Whether a free smooth term of that dependence would describe the same once more where this effect was
+  /// found.
   [[nodiscard]] virtual bool excludes(const Dependence& dependence) const {
     (void)dependence;
     return false;

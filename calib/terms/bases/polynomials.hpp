@@ -6,7 +6,7 @@
 
 namespace odomcalib::calib::terms {
 
-/// Highest degree of the polynomials of a law; one that was found may be as plain as the least.
+/// Highest degree of the polynomials of a term; one that was found may be as plain as the least.
 inline constexpr int kDegrees = 4, kPlainest = 1;
 
 /// Degree 1 to `degree` on the covariate's range, clamped outside. Zero at rest where the covariate has a

@@ -6,7 +6,7 @@
 
 namespace odomcalib::calib::terms {
 
-/// Knots over the magnitude of a speed to find a law.
+/// Knots over the magnitude of a speed to find a term.
 inline constexpr int kKnots = 4;
 
 /// Direction as a step, smooth over a few percent of the range so that noise about zero does not flip it.

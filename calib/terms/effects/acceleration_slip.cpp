@@ -38,7 +38,7 @@ class AccelerationSlip final : public StepEffect<AccelerationSlip> {
   }
 
  private:
-  /// Growth of the pace, m/s^2; of the other side zero.
+  /// Growth of the speed magnitude, m/s^2; of the other side zero.
   static double push(double acceleration, double speed, double side) {
     const double growth = vehicle::growth_of_speed_magnitude(acceleration, speed);
     return growth * side < 0.0 ? 0.0 : growth;

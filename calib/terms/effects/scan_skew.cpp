@@ -25,7 +25,7 @@ class ScanSkew final : public StepEffect<ScanSkew> {
   }
   [[nodiscard]] bool bends_scans() const override { return true; }
   /// Scans whose beams were sent at other times than stated are bent by turning, and matches of them find
-  /// other ways the faster the robot drives and turns: what looks like a law of turning is no more the
+  /// other ways the faster the robot drives and turns: what looks like a term of turning is no more the
   /// wheels'.
   [[nodiscard]] bool excludes(const vehicle::Dependence& dependence) const override {
     return dependence.covariate == vehicle::Covariate::lateral_acceleration ||

@@ -10,7 +10,7 @@ namespace {
 // instead.
 class SpeedDependentRadius final : public StepEffect<SpeedDependentRadius> {
  public:
-  /// @param half_speed at which half of the growth is reached, m/s; 0: the textbook's law
+  /// @param half_speed at which half of the growth is reached, m/s; 0: the textbook's function
   explicit SpeedDependentRadius(double half_speed) : half_speed_(half_speed) {}
   [[nodiscard]] std::string name() const override { return "speed_dependent_radius"; }
   [[nodiscard]] std::vector<vehicle::EffectParameter> parameters() const override {
