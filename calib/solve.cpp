@@ -20,12 +20,14 @@ namespace odomcalib::calib {
 namespace {
 
 /// What is missing from the fitted model, where that is to be looked for.
-selection::SearchResult select_terms(const estimation::Fit& fit, bool is_wanted, const Progress& progress) {
+selection::SearchResult select_terms(const estimation::Fit& fit, bool is_wanted,
+                                     const selection::RuleSet& rules, const Progress& progress) {
   selection::SearchResult found;
   found.model = {fit.model.effects, fit.result};
   if (!is_wanted || fit.dataset.has_motions_alone()) return found;
-  found = selection::search_effects(fit.dataset.data, fit.model.effects, fit.result, fit.dataset.fixed(),
-                                    [&](double fraction) { progress("tracing the residual", fraction); });
+  found =
+      selection::search_effects(fit.dataset.data, fit.model.effects, fit.result, fit.dataset.fixed(), rules,
+                                [&](double fraction) { progress("tracing the residual", fraction); });
   return without_idle_delay({fit.dataset.data, fit.dataset.fixed()}, std::move(found));
 }
 
@@ -40,7 +42,8 @@ std::optional<Error> contradiction(const ingest::Recordings& recordings, bool sa
 
 /// @param remarks on what was taken out of the recordings
 Calibration calibrate(measurement::Dataset opened, const terms::Request& request,
-                      const std::vector<std::string>& remarks, const Progress& progress) {
+                      const selection::RuleSet& rules, const std::vector<std::string>& remarks,
+                      const Progress& progress) {
   progress("matching", 0.0);
   measurement::Dataset rough = measured_roughly(std::move(opened));
   const auto start = estimation::start_model(rough, request);
@@ -57,7 +60,7 @@ Calibration calibrate(measurement::Dataset opened, const terms::Request& request
   fit = selection::locate(std::move(corrected), placement);
   if (fit.failure) return report::refused(fit);
 
-  selection::SearchResult found = select_terms(fit, request.is_automatic, progress);
+  selection::SearchResult found = select_terms(fit, request.is_automatic, rules, progress);
   const auto [outcome, every_scan_placed] =
       selection::fit_to_every_scan(std::move(found), fit.dataset, std::move(placement), progress);
 
@@ -83,8 +86,8 @@ Calibration solve(std::span<const Recording> recordings, const SolveOptions& opt
   const auto request = terms::request_for(options.effects);
   if (!request) return report::refused(repaired, request.error());
 
-  return report::explained(recordings,
-                           calibrate(std::move(opened).value(), request.value(), cleaned.remarks, progress));
+  return report::explained(recordings, calibrate(std::move(opened).value(), request.value(), options.rules,
+                                                 cleaned.remarks, progress));
 }
 
 }  // namespace odomcalib::calib

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/measurement/progress.hpp"
+#include "calib/selection/rules.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/recording/recording.hpp"
 
@@ -16,6 +17,8 @@ struct SolveOptions {
   std::vector<std::string> effects = {"auto"};
   /// Recordings that state different robot_id are of one robot all the same.
   bool same_robot = false;
+  /// All of them but in an ablation.
+  selection::RuleSet rules = {};
 };
 
 using Progress = measurement::Progress;

@@ -87,12 +87,14 @@ std::string objection(const FitTask& task, const FittedModel& before, const Fitt
     validation.before = gain->before;
     validation.after = gain->after;
     validation.improvement = gain->improvement;
-    if (validation.improvement.ratio > largest_ratio)
+    if (validation.improvement.ratio > largest_ratio && task.rules.has(Rule::worthwhile_gain))
       return "too small a gain: error times " + std::to_string(validation.improvement.ratio).substr(0, 5);
     if (validation.improvement.upper < 1.0) return {};
-    if (validation.improvement.lower > 1.0) return "held-out error rises";
+    if (validation.improvement.lower > 1.0 && task.rules.has(Rule::certain_gain))
+      return "held-out error rises";
   }
-  return compared_on_held_out(task, before, after, selected).lower > 0.0 ? "" : "no gain on held-out data";
+  const bool is_certain = compared_on_held_out(task, before, after, selected).lower > 0.0;
+  return is_certain || !task.rules.has(Rule::certain_gain) ? "" : "no gain on held-out data";
 }
 
 }  // namespace odomcalib::calib::selection

@@ -84,7 +84,7 @@ std::optional<FittedModel> with_effect(const FitTask& task, const FittedModel& m
 estimation::FitResult widened_where_outlying(const FitTask& task, const FittedModel& model, double share) {
   constexpr double kTolerated = 1.3;
   const double excess = excess_of_outliers(model.fit, share);
-  if (excess < kTolerated) return model.fit;
+  if (excess < kTolerated || !task.rules.has(Rule::wider_noise)) return model.fit;
   std::vector<measurement::NoiseModel> noise;
   for (const measurement::NoiseModel& given : model.fit.noise) noise.push_back(widened(given, excess));
   return task.fit(model.effects, model.fit.parameters, noise).value_or(model.fit);

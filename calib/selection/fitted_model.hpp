@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/estimation/joint.hpp"
+#include "calib/selection/rules.hpp"
 #include "calib/vehicle/vehicle_model.hpp"
 
 namespace odomcalib::calib::selection {
@@ -16,10 +17,11 @@ struct FittedModel {
   [[nodiscard]] Eigen::VectorXd base() const { return fit.parameters.head<vehicle::kBaseCount>(); }
 };
 
-/// What the search fits: recordings, and which base parameters stay as they are.
+/// What the search fits: recordings, which base parameters stay as they are, and the rules that hold.
 struct FitTask {
   std::span<const measurement::FitData> data;
   std::vector<bool> base_fixed;
+  RuleSet rules = {};
 
   [[nodiscard]] std::vector<bool> fixed(const vehicle::EffectList& effects) const {
     return vehicle::fixed_with(base_fixed, effects);

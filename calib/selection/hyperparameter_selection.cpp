@@ -63,7 +63,9 @@ std::vector<terms::SmoothTerm> shapes_to_try(const FitTask& task, const Reshaped
 bool take_best_shape(const FitTask& task, const std::vector<Reshaped>& shapes, SearchResult& result) {
   bool is_new = false;
   for (const Reshaped& other : shapes) {
-    if (bends_too_often(other) || !is_better(task, result.model, other.model, kAkaike)) continue;
+    if ((bends_too_often(other) && task.rules.has(Rule::few_bends)) ||
+        !is_better(task, result.model, other.model, kAkaike))
+      continue;
     take_shape(other, result);
     is_new = true;
   }
@@ -74,6 +76,7 @@ bool take_best_shape(const FitTask& task, const std::vector<Reshaped>& shapes, S
 /// @return the shapes that were tried last, the one before them at the end
 std::vector<Reshaped> select_hyperparameters(const FitTask& task, SearchResult& result) {
   constexpr int kRounds = 3;
+  if (!task.rules.has(Rule::best_shape)) return {{result.smooths.back().smooth, result.model}};
   std::vector<Reshaped> shapes;
   for (int round = 0; round < kRounds; ++round) {
     const Reshaped now{result.smooths.back().smooth, result.model};
@@ -91,7 +94,7 @@ std::vector<Reshaped> select_hyperparameters(const FitTask& task, SearchResult& 
 void select_hyperparameters_of_newest(const FitTask& task, SearchResult& result) {
   fit_anew_on_own_noise(task, result.model);
   const std::vector<Reshaped> shapes = select_hyperparameters(task, result);
-  if (takes_an_event(result.smooths.back().smooth))
+  if (takes_an_event(result.smooths.back().smooth) && task.rules.has(Rule::middle_event))
     take_shape(most_sensible_event(shapes, result.model.fit.cost + kAkaike), result);
   for (const Reshaped& other : shapes)
     if (other.model.fit.cost < result.model.fit.cost + schwarz(result.model.fit))

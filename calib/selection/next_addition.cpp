@@ -11,12 +11,11 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-double level(const Candidate& candidate, const SearchResult& found) {
-  if (candidate.smooth)
-    return found.owner_of(candidate.smooth->dependence) || must_be_worthwhile(candidate)
-               ? settings::kNamedLevel
-               : settings::kUnnamedLevel;
-  return is_clock(candidate) ? settings::kClockLevel : settings::kNamedLevel;
+double level(const Candidate& candidate, const SearchResult& found, const RuleSet& rules) {
+  if (!candidate.smooth) return is_clock(candidate) ? settings::kClockLevel : settings::kNamedLevel;
+  const bool is_stricter = (found.owner_of(candidate.smooth->dependence) || must_be_worthwhile(candidate)) &&
+                           rules.has(Rule::stricter_level);
+  return is_stricter ? settings::kNamedLevel : settings::kUnnamedLevel;
 }
 
 /// What the free smooth terms explain of those of a name's dependences that a finding has already.
@@ -46,7 +45,8 @@ bool is_rest_of_a_named_term(std::size_t name, const SearchRound& round, const S
 std::optional<Trial> best_name(SearchRound& round, const SearchResult& found) {
   std::set<std::string> tried;
   const auto is_open = [&](std::size_t k) {
-    return !round.candidate(k).smooth && passes(k, round, found) && !is_rest_of_a_named_term(k, round, found);
+    return !round.candidate(k).smooth && passes(k, round, found) &&
+           !(is_rest_of_a_named_term(k, round, found) && round.rules().has(Rule::rest_of_a_name));
   };
   for (const std::size_t k : round.by_score(is_open))
     if (tried.size() < SearchRound::kRefits && tried.insert(round.candidate(k).key).second) round.try_out(k);
@@ -59,7 +59,7 @@ std::optional<Trial> best_name(SearchRound& round, const SearchResult& found) {
 bool is_clock(const Candidate& candidate) { return candidate.effect->storage() == vehicle::Storage::driver; }
 
 bool passes(std::size_t candidate, const SearchRound& round, const SearchResult& found) {
-  return round.score(candidate).family_p_value <= level(round.candidate(candidate), found);
+  return round.score(candidate).family_p_value <= level(round.candidate(candidate), found, round.rules());
 }
 
 std::optional<std::size_t> best_smooth(const SearchRound& round, const SearchResult& found) {
@@ -71,7 +71,9 @@ std::optional<std::size_t> best_smooth(const SearchRound& round, const SearchRes
 std::optional<Trial> best_name_beside(std::optional<std::size_t> smooth, SearchRound& round,
                                       const SearchResult& found) {
   auto name = best_name(round, found);
-  if (!name || !smooth || !round.smooth_beats(*smooth, name->candidate)) return name;
+  if (!name || !smooth || !round.smooth_beats(*smooth, name->candidate) ||
+      !round.rules().has(Rule::smooth_term_before_name))
+    return name;
   const vehicle::Dependence& dependence = round.candidate(*smooth).smooth->dependence;
   const auto own = round.best_trial(
       [&](std::size_t k) { return contains(round.candidate(k).effect->dependences(), dependence); });

@@ -104,12 +104,16 @@ bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& bef
   return false;
 }
 
-bool smooth_spoils_base(const vehicle::Effect& smooth, const estimation::FitResult& before,
-                        const estimation::FitResult& after) {
+bool moves_lengths(const estimation::FitResult& before, const estimation::FitResult& after) {
   constexpr double kFar = 0.25;
   for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth})
     if (std::abs(after.parameters(k) - before.parameters(k)) > kFar * before.parameters(k)) return true;
-  return spoils_base(smooth, before, after);
+  return false;
+}
+
+bool smooth_spoils_base(const vehicle::Effect& smooth, const estimation::FitResult& before,
+                        const estimation::FitResult& after) {
+  return moves_lengths(before, after) || spoils_base(smooth, before, after);
 }
 
 bool is_superfluous(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit) {

@@ -37,9 +37,11 @@ constexpr const char* kUnhelpful = "leaving out what it explains does as well";
 class Search {
  public:
   Search(std::span<const measurement::FitData> data, const vehicle::EffectList& given,
-         const estimation::FitResult& fit, const std::vector<bool>& base_fixed,
+         const estimation::FitResult& fit, const std::vector<bool>& base_fixed, const RuleSet& rules,
          const std::function<void(double)>& progress)
-      : task_{data, base_fixed}, progress_(progress), candidates_(all_candidates(given, task_.models())) {
+      : task_{data, base_fixed, rules},
+        progress_(progress),
+        candidates_(all_candidates(given, task_.models())) {
     result_.model = {given, fit};
   }
 
@@ -61,6 +63,8 @@ class Search {
   }
 
  private:
+  [[nodiscard]] bool has(Rule rule) const { return task_.rules.has(rule); }
+
   /// That candidates are tested on.
   [[nodiscard]] const FittedModel& basis() const { return round_->basis(); }
 
@@ -97,11 +101,12 @@ class Search {
     if (has_changed_) look_again();
     const auto smooth = best_smooth(*round_, result_);
     const auto name = may_name() ? best_name_beside(smooth, *round_, result_) : std::nullopt;
-    if (const auto late = name ? unnoticed_clock(*name) : std::nullopt) return accept_name(*late);
+    if (const auto late = name ? unnoticed_clock(*name) : std::nullopt; late && has(Rule::clock_before_name))
+      return accept_name(*late);
     if (name && accept_name(*name)) return true;
     const auto clock =
         smooth && depends_on_history(candidates_[*smooth]) ? best_clock(*round_) : std::nullopt;
-    if (clock) return accept_name(*clock);
+    if (clock && has(Rule::clock_before_history)) return accept_name(*clock);
     return smooth && accept_smooth(*smooth);
   }
 
@@ -120,7 +125,7 @@ class Search {
   /// What happens so seldom that the fit leaves its pairs out no score sees, until they count as noise.
   void propose_from_outliers() {
     const auto trace = trace_outliers(task_.data, result_.model.fit);
-    if (!trace) return;
+    if (!trace || !has(Rule::outliers_first)) return;
     const auto goes_with = [&](const vehicle::Dependence& dependence) {
       return !belongs_to_the_place(dependence.covariate) &&
              std::count(trace->depends_on.begin(), trace->depends_on.end(), dependence.covariate) > 0;
@@ -170,20 +175,22 @@ class Search {
   }
 
   [[nodiscard]] bool may_name() const {
-    return result_.findings.size() < kMaxFindings && !result_.has_unnamed();
+    return result_.findings.size() < kMaxFindings &&
+           !(result_.has_unnamed() && has(Rule::names_before_smooth_terms));
   }
 
   [[nodiscard]] std::string implausibility(const Candidate& candidate,
                                            const estimation::FitResult& fit) const {
     const vehicle::Effect& effect = *candidate.effect;
     if (candidate.smooth && is_sway(*candidate.smooth) &&
-        is_hidden_by_ticks(*candidate.smooth, fit, task_.models()))
+        is_hidden_by_ticks(*candidate.smooth, fit, task_.models()) && has(Rule::sway_above_ticks))
       return "ticks so far apart hide as much";
-    if (auto reason = impossibility(effect, fit); !reason.empty()) return reason;
-    if (is_negligible(effect, fit)) return "too small to matter";
-    if (auto reason = contradiction(effect, fit); !reason.empty()) return reason;
-    const bool spoils = candidate.smooth ? smooth_spoils_base(effect, basis().fit, fit)
-                                         : spoils_base(effect, basis().fit, fit);
+    if (auto reason = impossibility(effect, fit); !reason.empty() && has(Rule::physical_range)) return reason;
+    if (is_negligible(effect, fit) && has(Rule::size_that_matters)) return "too small to matter";
+    if (auto reason = contradiction(effect, fit); !reason.empty() && has(Rule::no_contradiction))
+      return reason;
+    const bool spoils = (spoils_base(effect, basis().fit, fit) && has(Rule::base_determined)) ||
+                        (candidate.smooth && moves_lengths(basis().fit, fit) && has(Rule::lengths_kept));
     return spoils ? "this drive cannot tell it from the wheels" : "";
   }
 
@@ -202,7 +209,8 @@ class Search {
     std::string reason = implausibility(candidate, trial.model.fit);
     const Eigen::VectorXd change = trial.model.base() - basis().base();
     const bool is_small = is_plain_but_small(candidate, trial.model.fit);
-    if (is_small && !candidate.smooth && is_clock(candidate)) return keep_as_nuisance(trial, reason);
+    if (is_small && !candidate.smooth && is_clock(candidate) && has(Rule::unnamed_clock))
+      return keep_as_nuisance(trial, reason);
     if (is_small) result_.model_uncertainties.push_back(change);
     if (reason.empty()) {
       reason = failure(trial, validation, settled);
@@ -263,12 +271,13 @@ class Search {
   /// How the trial fails cross-validation; empty when it does not.
   /// @param settled the trial on its own noise then
   std::string failure(const Trial& trial, CrossValidation& validation, std::optional<Trial>& settled) {
-    const FoldFlags selected = selected_without_fold(trial.candidate);
+    FoldFlags selected = selected_without_fold(trial.candidate);
+    if (selected != all_folds() && !has(Rule::choice_held_out)) selected = all_folds();
     std::string reason = objection(task_, basis(), trial.model, selected,
                                    largest_ratio(candidates_[trial.candidate]), validation);
     if (!reason.empty()) return reason;
-    if (may_be_chance(candidates_[trial.candidate], validation)) {
-      no_more_smooths_ = true;
+    if (may_be_chance(candidates_[trial.candidate], validation) && has(Rule::gain_in_most_drives)) {
+      no_more_smooths_ = has(Rule::one_chance_of_smooth_terms);
       if (!has_drives(validation))
         return "may be chance, and the reference is too broken for drives to prove it";
       return "a gain that may be chance: error times " +
@@ -278,8 +287,11 @@ class Search {
     if (!settled) return "the fit does not settle";
     const bool is_followed = odometry_uses(candidates_[trial.candidate]);
     const DriveChange drives = change_of_drives(task_, basis(), settled->model);
-    if (drives.is_spoilt || (is_followed && drives.ratio.value_or(0.0) > 1.0)) return "drives get worse";
-    return is_followed && is_worse_than(result_.model, settled->model) ? kUnhelpful : "";
+    const bool is_worse = drives.is_spoilt || (is_followed && drives.ratio.value_or(0.0) > 1.0);
+    if (is_worse && has(Rule::drives_not_worse)) return "drives get worse";
+    return is_followed && is_worse_than(result_.model, settled->model) && has(Rule::model_not_worse)
+               ? kUnhelpful
+               : "";
   }
 
   /// With noise wide enough for what is systematic the plain model has moved as well. A smooth term that
@@ -327,7 +339,9 @@ class Search {
       without = std::move(*fewer);
       followed.push_back(added);
     }
-    if (followed.empty() || !explain_too_little(task_, result_.model, without)) return;
+    if (followed.empty() || !explain_too_little(task_, result_.model, without) ||
+        !has(Rule::enough_explained))
+      return;
     result_.model = std::move(without);
     for (const AddedSmoothTerm& added : followed) withdraw(added);
   }
@@ -357,7 +371,7 @@ class Search {
     if (smooths.empty()) return std::nullopt;
     const std::size_t last = name.model.effects.size() - 1;
     const auto free = free_term_instead_of(task_, name.model, last, candidates_[smooths.front()]);
-    return free ? std::optional(smooths.front()) : std::nullopt;
+    return free && has(Rule::name_against_smooth_term) ? std::optional(smooths.front()) : std::nullopt;
   }
 
   /// What seems to have changed bit by bit may have changed at once.
@@ -367,7 +381,8 @@ class Search {
         std::any_of(dependences.begin(), dependences.end(), [](const vehicle::Dependence& dependence) {
           return dependence.covariate == vehicle::Covariate::time;
         });
-    return goes_with_time ? event_instead_of(task_, *round_, name) : std::nullopt;
+    const auto event = goes_with_time ? event_instead_of(task_, *round_, name) : std::nullopt;
+    return event && has(Rule::name_against_event) ? event : std::nullopt;
   }
 
   bool accept_name(const Trial& best) {
@@ -390,10 +405,11 @@ class Search {
     auto trial = happens_at_once(*candidates_[index].smooth)
                      ? refit_as(index, at_likeliest_change_point(task_, basis(), *candidates_[index].smooth))
                      : round_->refit(index);
-    if (trial && is_held_back(*candidates_[index].effect, trial->model.fit))
+    if (trial && is_held_back(*candidates_[index].effect, trial->model.fit) && has(Rule::larger_prior))
       trial = refit_as(index, strong(*candidates_[index].smooth));
     if (trial && may_be_centred(*candidates_[index].smooth) &&
-        smooth_spoils_base(*candidates_[index].effect, basis().fit, trial->model.fit))
+        smooth_spoils_base(*candidates_[index].effect, basis().fit, trial->model.fit) &&
+        has(Rule::centred_term))
       trial = refit_as(index, centred(*candidates_[index].smooth, task_.models()));
     const auto named_term = result_.owner_of(candidates_[index].smooth->dependence);
     const std::vector<vehicle::Covariate> alike = covariates_like(candidates_, round_->table(), index);
@@ -405,13 +421,14 @@ class Search {
     auto validation = accept(*trial);
     const bool may_replace =
         named_term && !result_.is_completed(named_term) && !happens_at_once(*candidates_[index].smooth);
-    if (!validation && may_replace) replace(named_term, index, alike);
-    if (!validation && !named_term) validation = accept_reshaped(index);
+    if (!validation && may_replace && has(Rule::smooth_term_for_name)) replace(named_term, index, alike);
+    if (!validation && !named_term && has(Rule::other_shape)) validation = accept_reshaped(index);
     if (!validation) return true;
     const Candidate& candidate = candidates_[index];
     result_.smooths.push_back({candidate.effect, *candidate.smooth, *validation, named_term, alike});
     select_hyperparameters_of_newest(task_, result_);
-    if (odometry_uses(candidate) && is_worse_than(before.model, result_.model)) {
+    if (odometry_uses(candidate) && is_worse_than(before.model, result_.model) &&
+        has(Rule::final_shape_not_worse)) {
       go_back_to(before);
       return true;
     }
@@ -430,7 +447,8 @@ class Search {
 
   void strike_what_is_excluded_by(const vehicle::Effect& found) {
     for (Candidate& candidate : candidates_)
-      if (candidate.smooth && found.excludes(candidate.smooth->dependence)) candidate.struck = true;
+      if (candidate.smooth && found.excludes(candidate.smooth->dependence) && has(Rule::exclusions))
+        candidate.struck = true;
   }
 
   /// A term that predicts nothing in the shape that it was found in, too coarse for it, may in another.
@@ -438,7 +456,7 @@ class Search {
     Candidate& candidate = candidates_[index];
     if (terms::basis_as<terms::Wave>(*candidate.smooth)) return std::nullopt;
     auto best = in_best_shape(task_, basis(), *candidate.smooth, basis().fit.noise);
-    if (best && is_held_back(*best->model.effects.back(), best->model.fit))
+    if (best && is_held_back(*best->model.effects.back(), best->model.fit) && has(Rule::larger_prior))
       best = in_best_shape(task_, basis(), strong(*candidate.smooth), basis().fit.noise);
     if (!best || best->smooth == *candidate.smooth) return std::nullopt;
     candidate.smooth = std::move(best->smooth);
@@ -466,7 +484,8 @@ class Search {
 
   /// What an earlier finding or smooth term explained may belong to what was just added.
   void drop_superfluous() {
-    if (eliminate_superfluous(task_, schwarz(basis().fit), result_)) start_again();
+    if (has(Rule::backward_elimination) && eliminate_superfluous(task_, schwarz(basis().fit), result_))
+      start_again();
   }
 
   /// Larger than usual if the data insist; about its mean where the drive cannot separate that from slow
@@ -501,8 +520,8 @@ class Search {
 
 SearchResult search_effects(std::span<const measurement::FitData> data, const vehicle::EffectList& given,
                             const estimation::FitResult& fit, const std::vector<bool>& base_fixed,
-                            const std::function<void(double)>& progress) {
-  return Search(data, given, fit, base_fixed, progress).run();
+                            const RuleSet& rules, const std::function<void(double)>& progress) {
+  return Search(data, given, fit, base_fixed, rules, progress).run();
 }
 
 }  // namespace odomcalib::calib::selection

@@ -42,8 +42,9 @@ std::optional<Trial> SearchRound::refit(std::size_t candidate,
   const auto& effect = candidates_[candidate].effect;
   auto model = with_effect(task_, basis_, effect, noise);
   if (!model) return std::nullopt;
-  const double gain = basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect)) -
-                      (has_textbook_shape(effect) ? 0.0 : kAkaike);
+  const double gain =
+      basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect)) -
+      (has_textbook_shape(effect) || !task_.rules.has(Rule::shape_has_a_price) ? 0.0 : kAkaike);
   return Trial{candidate, std::move(*model), gain};
 }
 
@@ -94,10 +95,12 @@ bool SearchRound::smooth_beats(std::size_t smooth, std::size_t name) const {
 std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {
   std::vector<std::size_t> rivals;
   for (const Trial& trial : trials_)
-    if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity) rivals.push_back(trial.candidate);
+    if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity &&
+        task_.rules.has(Rule::close_rivals))
+      rivals.push_back(trial.candidate);
   for (std::size_t k = 0; k < candidates_.size(); ++k)
     if (is_open(k) && !candidates_[k].smooth && score(k).family_p_value <= settings::kNamedLevel &&
-        are_too_close(table_, best.candidate, k))
+        are_too_close(table_, best.candidate, k) && task_.rules.has(Rule::close_rivals))
       rivals.push_back(k);
   return rivals;
 }

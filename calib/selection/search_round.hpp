@@ -30,6 +30,7 @@ class SearchRound {
 
   [[nodiscard]] const FittedModel& basis() const { return basis_; }
   [[nodiscard]] const ScoreTable& table() const { return table_; }
+  [[nodiscard]] const RuleSet& rules() const { return task_.rules; }
   [[nodiscard]] const Candidate& candidate(std::size_t index) const { return candidates_[index]; }
   [[nodiscard]] const Score& score(std::size_t candidate) const { return table_.scores()[candidate]; }
 

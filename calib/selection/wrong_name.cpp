@@ -17,10 +17,14 @@ std::optional<FreeTerm> free_term_instead_of(const FitTask& task, const FittedMo
   const auto without = without_effect(task, model, index, {});
   if (!without) return std::nullopt;
   auto dependence = in_best_shape(task, *without, *candidate.smooth, model.fit.noise);
-  if (!dependence || explains_nearly_all(task, model, index, dependence->model) ||
+  if (!dependence ||
+      (explains_nearly_all(task, model, index, dependence->model) &&
+       task.rules.has(Rule::nearly_all_explained)) ||
       !is_better(task, model, dependence->model, schwarz(model.fit)))
     return std::nullopt;
-  if (happens_at_once(dependence->smooth) && !is_plainly_an_event(model, *dependence)) return std::nullopt;
+  if (happens_at_once(dependence->smooth) && !is_plainly_an_event(model, *dependence) &&
+      task.rules.has(Rule::plain_event))
+    return std::nullopt;
   CrossValidation validation;
   const auto missing =
       objection(task, *without, dependence->model, all_folds(), largest_ratio(candidate), validation);

@@ -130,23 +130,38 @@ void copy_residual(const Calibration& plain, Trial& trial) {
 
 }  // namespace
 
-Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options) {
-  const sim::BlindCase drawn = sim::make_blind_case(campaign, number, options);
-  const sim::BlindProof proof = sim::make_blind_proof(campaign, number, options);
+Examination make_examination(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options) {
+  Examination made{sim::make_blind_case(campaign, number, options),
+                   sim::make_blind_proof(campaign, number, options),
+                   {},
+                   {},
+                   {}};
+  made.plain = solve_plain(made.drawn.run.recording);
+  made.before = error_on(made.proof.fresh, made.plain);
+  made.twin = error_on(made.proof.fresh_twin, solve_plain(made.proof.twin.recording));
+  return made;
+}
+
+Trial judge(const Examination& examination, const Calibration& found, double seconds) {
+  const sim::BlindCase& drawn = examination.drawn;
   Trial trial;
   trial.answer = drawn.answer;
-  const std::clock_t start = std::clock();
-  const Calibration found = calib::solve({&drawn.run.recording, 1}, {});
-  trial.solve_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  const Calibration plain = solve_plain(drawn.run.recording);
+  trial.solve_seconds = seconds;
   copy_findings(found, trial);
-  copy_residual(plain, trial);
+  copy_residual(examination.plain, trial);
   trial.sigmas = sigmas_of(found, drawn.answer.truth);
-  trial.plain_sigmas = sigmas_of(plain, drawn.answer.truth);
-  trial.before = error_on(proof.fresh, plain);
-  trial.after = error_on(proof.fresh, found, stamp_correction(found, drawn.run));
-  trial.twin = error_on(proof.fresh_twin, solve_plain(proof.twin.recording));
+  trial.plain_sigmas = sigmas_of(examination.plain, drawn.answer.truth);
+  trial.before = examination.before;
+  trial.after = error_on(examination.proof.fresh, found, stamp_correction(found, drawn.run));
+  trial.twin = examination.twin;
   return trial;
+}
+
+Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options) {
+  const Examination examination = make_examination(campaign, number, options);
+  const std::clock_t start = std::clock();
+  const Calibration found = calib::solve({&examination.drawn.run.recording, 1}, {});
+  return judge(examination, found, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
 }
 
 }  // namespace odomcalib::blind

@@ -37,6 +37,19 @@ struct Trial {
   bool refused = false;
 };
 
+/// What all solutions of one recording are judged by.
+struct Examination {
+  sim::BlindCase drawn;
+  sim::BlindProof proof;
+  Calibration plain;  ///< the six base parameters, no effects
+  DriveError before, twin;
+};
+Examination make_examination(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options);
+
+/// A calibration of the drawn recording against the truth.
+/// @param seconds of CPU time that it took
+Trial judge(const Examination& examination, const Calibration& found, double seconds);
+
 Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options);
 
 /// One line of JSON, and back; rows of several processes are put together before a table is made.

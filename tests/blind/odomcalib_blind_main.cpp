@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/blind/ablation.hpp"
 #include "tests/blind/blind_table.hpp"
 #include "tests/blind/blind_trial.hpp"
 #include "tests/sim/effects/blind_cli.hpp"
@@ -14,12 +15,33 @@ namespace {
 
 using odomcalib::blind::Trial;
 
-int run(std::uint64_t campaign, unsigned first, unsigned count, const odomcalib::sim::BlindOptions& options) {
-  for (unsigned number = first; number < first + count; ++number) {
-    const Trial trial = odomcalib::blind::run_trial(campaign, number, options);
-    std::puts(odomcalib::blind::to_json_line(trial).c_str());
-    std::fflush(stdout);
-  }
+/// Recordings of a campaign.
+struct Part {
+  std::uint64_t campaign = 1;
+  unsigned first = 0, count = 10;
+  odomcalib::sim::BlindOptions options;
+};
+
+void put_line(const std::string& line) {
+  std::puts(line.c_str());
+  std::fflush(stdout);
+}
+
+/// @param without_rule name of a rule of the search; empty: all hold
+int run(const Part& part, const std::string& without_rule) {
+  namespace blind = odomcalib::blind;
+  for (unsigned number = part.first; number < part.first + part.count; ++number)
+    put_line(blind::to_json_line(
+        without_rule.empty() ? blind::run_trial(part.campaign, number, part.options)
+                             : blind::run_trial_without(without_rule, part.campaign, number, part.options)));
+  return 0;
+}
+
+int run_ablation(const Part& part) {
+  namespace blind = odomcalib::blind;
+  for (unsigned number = part.first; number < part.first + part.count; ++number)
+    for (const blind::Ablation& one : blind::ablate(part.campaign, number, part.options))
+      put_line(blind::to_json_line(one));
   return 0;
 }
 
@@ -38,17 +60,21 @@ int print_table(const std::vector<std::string>& files) {
 
 int main(int argc, char** argv) try {
   CLI::App app{"Blind test: recordings with effects that the solver is not told about, scored"};
-  std::uint64_t campaign = 1;
-  unsigned first = 0, count = 10;
-  odomcalib::sim::BlindOptions options;
+  Part part;
   std::vector<std::string> files;
-  app.add_option("--seed", campaign, "of the campaign");
-  app.add_option("--first", first, "number of the first recording");
-  app.add_option("--count", count, "number of recordings");
-  odomcalib::sim::add_blind_options(app, options);
+  std::string without_rule;
+  bool ablation = false;
+  app.add_option("--seed", part.campaign, "of the campaign");
+  app.add_option("--first", part.first, "number of the first recording");
+  app.add_option("--count", part.count, "number of recordings");
+  odomcalib::sim::add_blind_options(app, part.options);
   app.add_option("--table", files, "make the table of these files of lines instead");
+  // For tests/blind/ablate: an empty group keeps them out of the help.
+  app.add_option("--without-rule", without_rule, "leave out this rule of the search")->group("");
+  app.add_flag("--ablation", ablation, "leave out each rule of the search in turn")->group("");
   CLI11_PARSE(app, argc, argv);
-  return files.empty() ? run(campaign, first, count, options) : print_table(files);
+  if (!files.empty()) return print_table(files);
+  return ablation ? run_ablation(part) : run(part, without_rule);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "error: %s\n", error.what());
   return 1;

@@ -1,0 +1,72 @@
+#include "calib/selection/rules.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace odomcalib::calib::selection {
+namespace {
+
+constexpr std::array kTable = {
+    RuleRow{Rule::sway_above_ticks, "sway_above_ticks",
+            "taking what coarse ticks hide for a mast that sways"},
+    RuleRow{Rule::physical_range, "physical_range", "sizes that no robot has"},
+    RuleRow{Rule::size_that_matters, "size_that_matters", "reports of what nobody would notice"},
+    RuleRow{Rule::no_contradiction, "no_contradiction", "parameters of one effect that exclude each other"},
+    RuleRow{Rule::base_determined, "base_determined", "trading a known geometry for a guess in poor drives"},
+    RuleRow{Rule::lengths_kept, "lengths_kept", "smooth terms that take a quarter of a length"},
+    RuleRow{Rule::worthwhile_gain, "worthwhile_gain", "terms that are significant and useless"},
+    RuleRow{Rule::certain_gain, "certain_gain", "terms whose gain on held-out drives is chance"},
+    RuleRow{Rule::choice_held_out, "choice_held_out", "choosing a term by the data that judge it"},
+    RuleRow{Rule::gain_in_most_drives, "gain_in_most_drives",
+            "smooth terms that help in this drive and not in the next"},
+    RuleRow{Rule::one_chance_of_smooth_terms, "one_chance_of_smooth_terms",
+            "one smooth term after the other where the reference errs with the motion"},
+    RuleRow{Rule::drives_not_worse, "drives_not_worse",
+            "a lower residual and worse turns, straights or drives"},
+    RuleRow{Rule::model_not_worse, "model_not_worse", "a term that costs many motions what it gives a few"},
+    RuleRow{Rule::final_shape_not_worse, "final_shape_not_worse",
+            "a shape chosen later that undoes the gain"},
+    RuleRow{Rule::enough_explained, "enough_explained", "smooth terms of one covariate for an effect of two"},
+    RuleRow{Rule::stricter_level, "stricter_level", "false completions of named effects"},
+    RuleRow{Rule::clock_before_name, "clock_before_name", "a small delay that passes for play or slip"},
+    RuleRow{Rule::clock_before_history, "clock_before_history",
+            "a delay that passes for a memory of the motion"},
+    RuleRow{Rule::unnamed_clock, "unnamed_clock", "reports of a delay of a millisecond"},
+    RuleRow{Rule::names_before_smooth_terms, "names_before_smooth_terms",
+            "names for what a smooth term has left"},
+    RuleRow{Rule::smooth_term_before_name, "smooth_term_before_name",
+            "a name of another effect that explains a part"},
+    RuleRow{Rule::rest_of_a_name, "rest_of_a_name", "a second name for the rest of the first"},
+    RuleRow{Rule::name_against_smooth_term, "name_against_smooth_term", "flexible names that fit anything"},
+    RuleRow{Rule::nearly_all_explained, "nearly_all_explained", "right names refused for a small rest"},
+    RuleRow{Rule::name_against_event, "name_against_event",
+            "a drift reported where something changed at once"},
+    RuleRow{Rule::plain_event, "plain_event", "a change point preferred for its free moment"},
+    RuleRow{Rule::smooth_term_for_name, "smooth_term_for_name", "wrong names that were taken early"},
+    RuleRow{Rule::exclusions, "exclusions", "a second term for what a name covers"},
+    RuleRow{Rule::backward_elimination, "backward_elimination", "terms that a later term made superfluous"},
+    RuleRow{Rule::close_rivals, "close_rivals", "one name where the data cannot separate two"},
+    RuleRow{Rule::wider_noise, "wider_noise", "robust weights that take an effect for failed matches"},
+    RuleRow{Rule::outliers_first, "outliers_first", "missing what happens seldom"},
+    RuleRow{Rule::larger_prior, "larger_prior", "shrinking large effects"},
+    RuleRow{Rule::centred_term, "centred_term",
+            "refusing terms that the drive cannot separate from slow motion"},
+    RuleRow{Rule::other_shape, "other_shape", "refusing terms that were found too coarse"},
+    RuleRow{Rule::best_shape, "best_shape", "shapes too coarse or too fine"},
+    RuleRow{Rule::few_bends, "few_bends", "bends that stand for single manoeuvres"},
+    RuleRow{Rule::middle_event, "middle_event", "thresholds at the end of what the drive leaves open"},
+    RuleRow{Rule::shape_has_a_price, "shape_has_a_price", "names that win by their choice of shapes"},
+};
+static_assert(kTable.size() == static_cast<std::size_t>(Rule::count_));
+
+}  // namespace
+
+std::span<const RuleRow> rule_table() { return kTable; }
+
+std::optional<Rule> rule_from(const std::string& name) {
+  const auto row =
+      std::find_if(kTable.begin(), kTable.end(), [&](const RuleRow& r) { return name == r.name; });
+  return row == kTable.end() ? std::nullopt : std::optional(row->rule);
+}
+
+}  // namespace odomcalib::calib::selection

@@ -1,0 +1,30 @@
+// One recording of the blind test, solved with every rule of the search, and without each of them in turn.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/blind/blind_trial.hpp"
+
+namespace odomcalib::blind {
+
+/// Without one rule, or with all of them.
+struct Ablation {
+  std::string rule;      ///< that was left out; empty: none
+  bool changes = false;  ///< the calibration, in any byte
+  Trial trial;
+};
+
+/// With all rules first, then without each rule that is consulted in this recording: without one that is not,
+/// the calibration is the same.
+std::vector<Ablation> ablate(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options);
+
+/// The recording's calibration without the rule of that name. Throws std::invalid_argument if there is none.
+Trial run_trial_without(const std::string& rule, std::uint64_t campaign, unsigned number,
+                        const sim::BlindOptions& options);
+
+/// One line of JSON: the row, the rule, and what tests/blind/ablate counts.
+std::string to_json_line(const Ablation& ablation);
+
+}  // namespace odomcalib::blind
