@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/estimation/settings.hpp"
 #include "calib/estimation/stack.hpp"
 #include "calib/math/cluster_robust.hpp"
 #include "calib/measurement/noise_estimate.hpp"
@@ -13,15 +14,7 @@
 namespace odomcalib::calib::estimation {
 namespace {
 
-constexpr double kOutlier = 5.0;  ///< sigma of a standardised residual vector
-constexpr int kNoiseRounds = 3;   ///< noise and weights are settled over this many outer rounds
 constexpr double kMinRelativePivot = 1e-12;
-/// Sigma. Gauss-Newton's next step after one of this length is shorter by orders of magnitude.
-constexpr double kSettled = 1e-2;
-
-/// All recordings of one call come from one robot and one lidar; with few pairs each, they share a noise
-/// model.
-constexpr std::size_t kPairsForOwnNoise = 100;
 
 std::vector<measurement::NoiseModel> estimate_noise(std::span<const measurement::FitData> data,
                                                     const Stack& stack,
@@ -32,7 +25,7 @@ std::vector<measurement::NoiseModel> estimate_noise(std::span<const measurement:
   std::vector<measurement::PairState> pooled_states;
   for (std::size_t d = 0; d < data.size(); ++d) {
     const auto residuals = residuals_of(stack, d);
-    if (data[d].pairs.size() >= kPairsForOwnNoise || data.size() == 1) {
+    if (data[d].pairs.size() >= settings::kPairsForOwnNoise || data.size() == 1) {
       noise[d] = odomcalib::calib::measurement::estimate_noise(data[d].pairs, states_of(stack, d), residuals,
                                                                start[d]);
       continue;
@@ -45,7 +38,7 @@ std::vector<measurement::NoiseModel> estimate_noise(std::span<const measurement:
   const measurement::NoiseModel common = odomcalib::calib::measurement::estimate_noise(
       pooled, pooled_states, pooled_residuals, measurement::NoiseModel{});
   for (std::size_t d = 0; d < data.size(); ++d)
-    if (data[d].pairs.size() < kPairsForOwnNoise && data.size() > 1) noise[d] = common;
+    if (data[d].pairs.size() < settings::kPairsForOwnNoise && data.size() > 1) noise[d] = common;
   return noise;
 }
 
@@ -174,7 +167,7 @@ class Descent {
         if (auto error = check_rank(linear->system, linear->matrix, fixed_)) return *error;
       }
       const auto length = descend(*linear);
-      if (length && *length < kSettled) return true;
+      if (length && *length < settings::kFitSettled) return true;
       if (!length && moved_ == 0.0) return true;
       if (length)
         moved_ += *length;
@@ -223,7 +216,7 @@ class Descent {
         damping_ = std::max(damping_ * 0.1, 1e-12);
         return length;
       }
-      if (length < kSettled) return length;
+      if (length < settings::kFitSettled) return length;
       damping_ = std::max(damping_ * 10.0, 1e-6);
     }
     return std::nullopt;
@@ -271,7 +264,7 @@ void set_covariance(std::span<const measurement::FitData> data, const Stack& sta
 void count_outliers(const std::vector<double>& squared, FitResult& fit) {
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   for (Eigen::Index k = 0; k < fit.residuals.rows(); ++k) {
-    fit.outlier.push_back(squared[static_cast<std::size_t>(k)] > kOutlier * kOutlier);
+    fit.outlier.push_back(squared[static_cast<std::size_t>(k)] > settings::kOutlier * settings::kOutlier);
     if (fit.outlier.back()) {
       ++fit.discarded;
       continue;
@@ -312,10 +305,11 @@ Result<FitResult> fit_joint(std::span<const measurement::FitData> data, const ve
   if (descent.stack().states.empty())
     return Error{ErrorCode::empty, "no pair of scans or poses with ticks", "joint estimate",
                  "check the recording"};
-  for (int round = 0; round < kNoiseRounds; ++round) {
+  for (int round = 0; round < settings::kNoiseRounds; ++round) {
     if (options.noise.empty()) fit.noise = estimate_noise(data, descent.stack(), fit.noise);
     fit.weights = robust_weights(distances(data, descent.stack(), fit.noise));
-    const auto settled = descent.settle(fit.noise, fit.weights, options.max_iterations / kNoiseRounds);
+    const auto settled =
+        descent.settle(fit.noise, fit.weights, options.max_iterations / settings::kNoiseRounds);
     if (!settled) return settled.error();
     fit.converged = settled.value();
   }

@@ -6,6 +6,7 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 
+#include "calib/estimation/settings.hpp"
 #include "calib/ingest/gaps.hpp"
 #include "calib/math/cluster_robust.hpp"
 #include "calib/math/vector2.hpp"
@@ -16,11 +17,6 @@
 namespace odomcalib::calib::estimation {
 namespace {
 
-constexpr int kRounds = 3;                ///< of noise and parameters
-constexpr int kSteps = 3;                 ///< Gauss-Newton steps a round
-constexpr int kSweeps = 2;                ///< over the noise parameters
-constexpr double kOutlierSquared = 30.0;  ///< chi-square of three degrees of freedom: one in 7e5
-constexpr double kMinRolled = 1e-4;       ///< m, even standing wheels are not ideal
 constexpr double kMinPivot = 1e-12;
 
 /// A motion from one placed scan to the next, in map axes.
@@ -61,7 +57,7 @@ double rolled_between(const wheels::WheelTrack& track, const vehicle::Interval& 
   for (std::size_t k = track.interval_at(interval.begin); k <= track.interval_at(interval.end); ++k)
     sum += std::abs(track.left[k + 1] - track.left[k]) * base.left_radius +
            std::abs(track.right[k + 1] - track.right[k]) * base.right_radius;
-  return std::max(0.5 * sum, kMinRolled);
+  return std::max(0.5 * sum, settings::kLeastRolled_m);
 }
 
 Link make_link(const PathData& data, const vehicle::Trajectory& trajectory,
@@ -208,7 +204,7 @@ constexpr std::array<Range, 5> kRanges = {{{&PathNoise::place, 0.3, 4.0},
 
 PathNoise estimate(const Part& part, PathNoise noise, const std::vector<bool>& out) {
   constexpr int kBits = 7;  // about a hundredth of the logarithm's range
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
+  for (int sweep = 0; sweep < settings::kPathSweeps; ++sweep)
     for (const Range& range : kRanges) {
       const auto at = [&](double log_value) {
         noise.*range.member = std::exp(log_value);
@@ -238,11 +234,11 @@ class Fitter {
     if (count_links() < 50)
       return Error{ErrorCode::empty, "too few scans found their place", "path estimate",
                    "check the recording"};
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < settings::kPathRounds; ++round) {
       linearise_all();
       for (std::size_t d = 0; d < parts_.size(); ++d)
         fit_.noise[d] = estimate(parts_[d], fit_.noise[d], out_[d]);
-      for (int i = 0; i < kSteps; ++i)
+      for (int i = 0; i < settings::kPathSteps; ++i)
         if (auto error = step()) return *error;
       leave_out();
     }
@@ -324,7 +320,7 @@ class Fitter {
     for (std::size_t d = 0; d < parts_.size(); ++d)
       for (std::size_t k = 0; k < parts_[d].links.size(); ++k)
         if (system.residuals[d].middleRows<3>(static_cast<Eigen::Index>(3 * k)).squaredNorm() >
-            kOutlierSquared)
+            settings::kPathOutlierSquared)
           out_[d][k] = true;
   }
 

@@ -8,17 +8,11 @@
 
 #include "calib/classical/closed_form.hpp"
 #include "calib/classical/sign_check.hpp"
+#include "calib/estimation/settings.hpp"
 #include "calib/terms/catalogue.hpp"
 
 namespace odomcalib::calib::estimation {
 namespace {
-
-constexpr double kReach = 0.6;  ///< s
-constexpr double kStep = 0.02;  ///< s
-/// A delay must reduce the robust misfit by this factor to be believed; otherwise zero is the better start.
-constexpr double kBelievable = 0.9;
-/// Nearer to each other, delays of both halves are within reach of the fit from the delay of the whole, s.
-constexpr double kApart = 0.06;
 
 /// Mean absolute misfit of rotation = a left + b right at this delay, a and b by least squares with one
 /// reweighting.
@@ -54,11 +48,12 @@ struct Delay {
 Delay search_delay(std::span<const measurement::FitData> data) {
   const double at_zero = rotation_misfit(data, 0.0);
   Delay best{0.0, at_zero};
-  for (double d = -kReach; d <= kReach + 1e-9; d += kStep) {
+  for (double d = -settings::kDelayReach_s; d <= settings::kDelayReach_s + 1e-9;
+       d += settings::kDelayStep_s) {
     const double misfit = rotation_misfit(data, d);
     if (misfit < best.misfit) best = {d, misfit};
   }
-  return best.misfit < kBelievable * at_zero ? best : Delay{0.0, at_zero};
+  return best.misfit < settings::kBelievableDelay * at_zero ? best : Delay{0.0, at_zero};
 }
 
 /// The first and the second half of each recording's pairs.
@@ -107,10 +102,11 @@ ClockStart search_clock(std::span<const measurement::FitData> data) {
   const Delay first = search_delay(early), second = search_delay(late);
   const auto contradicts = [](const std::vector<measurement::FitData>& half, const Delay& own,
                               const Delay& other) {
-    return own.misfit < kBelievable * rotation_misfit(half, other.seconds);
+    return own.misfit < settings::kBelievableDelay * rotation_misfit(half, other.seconds);
   };
   const double apart = second.seconds - first.seconds;
-  if (std::abs(apart) < kApart || !contradicts(early, first, second) || !contradicts(late, second, first))
+  if (std::abs(apart) < settings::kClocksApart_s || !contradicts(early, first, second) ||
+      !contradicts(late, second, first))
     return {search_delay(data).seconds, 0.0};
   return {0.5 * (first.seconds + second.seconds), apart / (mean_time(late) - mean_time(early))};
 }

@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "calib/matching/settings.hpp"
+
 namespace odomcalib::calib::matching {
 namespace {
 
@@ -22,16 +24,12 @@ math::Pose mean(const math::Pose& a, const math::Pose& b) {
   return compose(a, math::Pose{0.5 * apart.x, 0.5 * apart.y, 0.5 * math::wrap_angle(apart.yaw)});
 }
 
-/// Correlation of the errors of both ways in simulated rooms: the readings are the same, the walls' ends and
-/// pieces are not. (0.93; 0.8 where furniture was moved between the scans.)
-constexpr double kCorrelation = 0.93;
-
 /// The motion is the mean of both ways, the information that of a mean of two alike.
 void take_mean(MatchResult& result, const MatchResult& back) {
   const math::Pose there = inverse(back.motion);
   const Eigen::Matrix3d sum = result.information + information_of_inverse(back.motion, back.information);
   result.motion = mean(result.motion, there);
-  result.information = sum / (1.0 + kCorrelation);
+  result.information = sum / (1.0 + settings::kBothWaysCorrelation);
   result.covariance = result.information.ldlt().solve(Eigen::Matrix3d::Identity());
 }
 

@@ -3,15 +3,13 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "calib/matching/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/tukey.hpp"
 #include "calib/math/vector2.hpp"
 
 namespace odomcalib::calib::matching {
 namespace {
-
-constexpr int kMaxIterations = 10;
-constexpr double kSettled = 0.02;  ///< sigma, a step that no longer matters
 
 /// Normal equations of the motion with the two parameters of every line eliminated.
 struct Reduced {
@@ -33,7 +31,7 @@ class Refinement {
   }
 
   JointEstimate run() {
-    for (int i = 0; i < kMaxIterations && !estimate_.converged; ++i) {
+    for (int i = 0; i < settings::kMostLineSteps && !estimate_.converged; ++i) {
       weigh();
       const Reduced system = reduce(fit_lines());
       const double variance = estimate_.scale * estimate_.scale;
@@ -47,7 +45,7 @@ class Refinement {
       estimate_.motion.yaw -= step(2);
       frame_ = math::Frame(estimate_.motion);
       estimate_.information = system.information - system.spurious;
-      estimate_.converged = step.dot(information * step) < kSettled * kSettled;
+      estimate_.converged = step.dot(information * step) < settings::kLinesSettled * settings::kLinesSettled;
     }
     return estimate_;
   }

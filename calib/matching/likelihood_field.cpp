@@ -4,23 +4,22 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/matching/settings.hpp"
 #include "calib/math/vector2.hpp"
 
 namespace odomcalib::calib::matching {
 namespace {
 
-constexpr double kMaxExtent = 200.0;  ///< m; what lies farther out is left out of the map
-
 Eigen::Vector2d lower_corner(std::span<const Eigen::Vector2d> points) {
   Eigen::Vector2d corner = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& p : points) corner = corner.cwiseMin(p);
-  return corner.cwiseMax(-kMaxExtent);
+  return corner.cwiseMax(-settings::kLargestMap_m);
 }
 
 Eigen::Vector2d upper_corner(std::span<const Eigen::Vector2d> points) {
   Eigen::Vector2d corner = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& p : points) corner = corner.cwiseMax(p);
-  return corner.cwiseMin(kMaxExtent);
+  return corner.cwiseMin(settings::kLargestMap_m);
 }
 
 std::uint8_t larger(std::uint8_t a, std::uint8_t b) { return a > b ? a : b; }
@@ -64,7 +63,7 @@ void LikelihoodField::stamp(std::span<const Eigen::Vector2d> reference) {
   const Stamp stamp = make_stamp(options_);
   const CellBox map = within(0);
   for (const Eigen::Vector2d& point : reference) {
-    if (!(point.cwiseAbs().maxCoeff() < kMaxExtent)) continue;
+    if (!(point.cwiseAbs().maxCoeff() < settings::kLargestMap_m)) continue;
     const Eigen::Vector2i at = cell_of(point);
     for (const auto& [dx, dy, score] : stamp) {
       if (!map.has(at.x() + dx, at.y() + dy)) continue;

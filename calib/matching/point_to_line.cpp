@@ -6,21 +6,13 @@
 
 #include "calib/matching/joint_lines.hpp"
 #include "calib/matching/observability.hpp"
+#include "calib/matching/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/tukey.hpp"
 #include "calib/math/vector2.hpp"
 
 namespace odomcalib::calib::matching {
 namespace {
-
-constexpr std::size_t kMinPoints = 20;
-constexpr double kMinNormalAgreement = 0.8;  ///< cosine between the two scans' normals
-constexpr double kMinIncidence = 0.2;        ///< cosine; flatter beams say little and err much
-constexpr int kCoarseIterations = 4;
-constexpr std::size_t kCoarsePoints = 180;
-constexpr int kDampedFrom = 12;
-constexpr double kSettled = 0.5;        ///< sigma, a step small enough to leave the rest to the walls
-constexpr double kSettledAlone = 0.05;  ///< sigma, without walls to refine on
 
 /// One point of the scan against one line of the reference.
 struct Correspondence {
@@ -56,9 +48,9 @@ std::vector<Correspondence> correspond(const MatchReference& reference, const Su
     if (!nearest) continue;
     const SurfacePoint& partner = reference.surface().points[nearest->index];
     if (!partner.has_line) continue;
-    if (point.has_line && frame.rotate(point.normal).dot(partner.normal) < kMinNormalAgreement) continue;
+    if (point.has_line && frame.rotate(point.normal).dot(partner.normal) < settings::kNormalsAgree) continue;
     const double cosine = frame.rotate(point.beam).dot(partner.normal);
-    if (cosine > -kMinIncidence) continue;
+    if (cosine > -settings::kFlattestBeam) continue;
     pairs.push_back({point.position, partner.anchor, partner.normal, pair_variance(cosine, range_noise)});
   }
   return pairs;
@@ -105,7 +97,8 @@ bool lies_on(const Wall& wall, const Eigen::Vector2d& moved, const Eigen::Vector
 bool faces(const Wall& wall, const SurfacePoint& partner, const SurfacePoint& point, const math::Frame& frame,
            double cosine) {
   if (std::abs(cosine) < kMinWallIncidence || cosine * partner.beam.dot(wall.line.normal) < 0.0) return false;
-  return !point.has_line || std::abs(frame.rotate(point.normal).dot(wall.line.normal)) >= kMinNormalAgreement;
+  return !point.has_line ||
+         std::abs(frame.rotate(point.normal).dot(wall.line.normal)) >= settings::kNormalsAgree;
 }
 
 std::vector<WallPoint> points_on_walls(const MatchReference& reference, const Surface& scan,
@@ -163,7 +156,7 @@ void conclude(MatchResult& result, const Linearised& system, double scale, std::
   const Observability translation = observability(system.information);
   result.eigenvalue_ratio = translation.ratio;
   result.weak_direction = translation.weak_direction;
-  if (result.overlap < options.min_overlap || system.inliers < kMinPoints)
+  if (result.overlap < options.min_overlap || system.inliers < settings::kFewestPoints)
     result.status = MatchStatus::no_overlap;
   else if (result.eigenvalue_ratio < options.min_eigenvalue_ratio)
     result.status = MatchStatus::degenerate;
@@ -215,7 +208,7 @@ struct LocalMatch {
 
 /// Far from the solution a part of the points shows the way as well as all of them.
 std::size_t stride_at(int iteration, std::size_t points) {
-  return iteration < kCoarseIterations ? std::max<std::size_t>(1, points / kCoarsePoints) : 1;
+  return iteration < settings::kCoarseSteps ? std::max<std::size_t>(1, points / settings::kCoarsePoints) : 1;
 }
 
 /// One Gauss-Newton step; false when there is nothing to step on.
@@ -224,7 +217,7 @@ bool iterate(const MatchReference& reference, const Surface& scan, const MatchOp
   const int i = match.iterations++;
   const auto pairs = correspond(reference, scan, match.motion, gate_at(i, options), options.range_noise,
                                 stride_at(i, scan.points.size()));
-  if (pairs.size() < kMinPoints) return false;
+  if (pairs.size() < settings::kFewestPoints) return false;
   const math::Frame frame(match.motion);
   match.scale = std::max(1.0, residual_scale(pairs, frame));
   match.system = linearise(pairs, frame, match.scale);
@@ -235,14 +228,14 @@ bool iterate(const MatchReference& reference, const Surface& scan, const MatchOp
       damped.ldlt().solve(match.system.gradient + variance * match.prior.gradient(match.motion));
   if (!step.allFinite()) return false;
   // Late, correspondences that flip to and fro are averaged.
-  const double length = i < kDampedFrom ? 1.0 : 0.5;
+  const double length = i < settings::kDampedFrom ? 1.0 : 0.5;
   match.motion.x -= length * step(0);
   match.motion.y -= length * step(1);
   match.motion.yaw -= length * step(2);
   // In units of the match's own uncertainty; smaller steps only follow correspondences that change back and
   // forth.
   const double largest = settled * match.scale;
-  match.converged = i >= kCoarseIterations && step.dot(information * step) < largest * largest;
+  match.converged = i >= settings::kCoarseSteps && step.dot(information * step) < largest * largest;
   return true;
 }
 
@@ -260,7 +253,7 @@ bool refine(const MatchReference& reference, const Surface& scan, const MatchOpt
             LocalMatch& match) {
   const auto points = points_on_walls(reference, scan, match.motion, last_gate(options), options.range_noise);
   const JointEstimate joint = refine_on_walls(reference.walls(), points, match.motion, match.prior);
-  if (!joint.converged || joint.inliers < kMinPoints || 2 * joint.inliers < match.system.inliers)
+  if (!joint.converged || joint.inliers < settings::kFewestPoints || 2 * joint.inliers < match.system.inliers)
     return false;
   match.motion = joint.motion;
   match.system.information = joint.information;
@@ -276,17 +269,18 @@ MatchResult match_point_to_line(const MatchReference& reference, const Surface& 
   MatchResult result;
   result.motion = guess;
   const std::size_t lines = count_lines(scan);
-  if (lines < kMinPoints || count_lines(reference.surface()) < kMinPoints) {
+  if (lines < settings::kFewestPoints || count_lines(reference.surface()) < settings::kFewestPoints) {
     result.status = MatchStatus::too_few_points;
     return result;
   }
   LocalMatch match;
   match.motion = guess;
-  if (options.guess_is_near) match.iterations = kCoarseIterations;
+  if (options.guess_is_near) match.iterations = settings::kCoarseSteps;
   match.prior = {guess, options.guess_information};
   result.status = MatchStatus::no_overlap;
-  if (!settle(reference, scan, options, kSettled, match)) return result;
-  if (!refine(reference, scan, options, match) && !settle(reference, scan, options, kSettledAlone, match))
+  if (!settle(reference, scan, options, settings::kPointsSettled, match)) return result;
+  if (!refine(reference, scan, options, match) &&
+      !settle(reference, scan, options, settings::kPointsSettledAlone, match))
     return result;
   result.motion = match.motion;
   result.iterations = match.iterations;

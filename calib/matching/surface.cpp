@@ -5,27 +5,12 @@
 #include <optional>
 #include <span>
 
+#include "calib/matching/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"
 
 namespace odomcalib::calib::matching {
 namespace {
-
-constexpr int kMaxNeighbours = 12;  ///< on each side
-/// m to either side; longer stretches of wall gain nothing and bend at corners.
-constexpr double kMaxNeighbourhood = 0.25;
-/// Steps between beams: where no more than kFewLines of the points have a line, beams are too rare for that.
-constexpr double kWideNeighbourhood = 2.5;
-constexpr double kFewLines = 0.33;
-constexpr std::size_t kMinLinePoints = 4;
-constexpr double kLineNoiseFactor = 2.0;  ///< accepted rms of a line fit in units of the expected noise
-/// Neighbours further apart than this times the median step, and than range noise makes them, are another
-/// surface.
-constexpr double kRelativeGap = 3.5;
-constexpr double kMinRangeNoise = 2e-3;  ///< m, real surfaces and beams are no better than this
-constexpr double kMaxRangeNoise = 5e-2;  ///< m
-constexpr double kDefaultRangeNoise = 1e-2;
-constexpr double kBeamFloor = 1e-3;  ///< m, angular error of beams and unevenness of surfaces
 
 struct Line {
   Eigen::Vector2d centre;
@@ -76,12 +61,12 @@ double expected_step(const SurfacePoint& a, double angular_step) {
 std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int direction, double angular_step,
                   double farthest, double range_noise) {
   std::size_t k = i;
-  for (int n = 0; n < kMaxNeighbours; ++n) {
+  for (int n = 0; n < settings::kMostNeighbours; ++n) {
     if ((direction < 0 && k == 0) || (direction > 0 && k + 1 == points.size())) break;
     const std::size_t next = direction < 0 ? k - 1 : k + 1;
     // A surface seen at a grazing angle spreads its points; beyond about 75 degrees it is not used.
     const double gap = (points[next].position - points[k].position).norm();
-    const double step = kRelativeGap * expected_step(points[k], angular_step);
+    const double step = settings::kGapOfSurface * expected_step(points[k], angular_step);
     if (gap > std::max(step, gap_by_noise(range_noise))) break;
     if ((points[next].position - points[i].position).norm() > farthest) break;
     k = next;
@@ -90,10 +75,10 @@ std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int di
 }
 
 bool acceptable(const Line& line, const SurfacePoint& point, double range_noise) {
-  if (line.count < kMinLinePoints) return false;
+  if (line.count < settings::kFewestLinePoints) return false;
   const double incidence = std::abs(line.normal.dot(point.beam));
   if (incidence < 0.2) return false;
-  return line.rms < kLineNoiseFactor * std::hypot(range_noise * incidence, kBeamFloor);
+  return line.rms < settings::kLineNoise * std::hypot(range_noise * incidence, settings::kBeamFloor_m);
 }
 
 /// Widest neighbourhood that is still one line: both sides, one side (next to a corner), then a narrower one.
@@ -129,11 +114,11 @@ void attach_lines(std::vector<SurfacePoint>& points, double angular_step, double
     const auto line = line_within(points, sums, i, angular_step, farthest, range_noise);
     if (line) set_line(points[i], *line), ++found;
   };
-  for (std::size_t i = 0; i < points.size(); ++i) attach(i, kMaxNeighbourhood);
-  if (static_cast<double>(found) > kFewLines * static_cast<double>(points.size())) return;
+  for (std::size_t i = 0; i < points.size(); ++i) attach(i, settings::kReachOfLine_m);
+  if (static_cast<double>(found) > settings::kFewLines * static_cast<double>(points.size())) return;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double wide = kWideNeighbourhood * expected_step(points[i], angular_step);
-    if (!points[i].has_line && wide > kMaxNeighbourhood) attach(i, wide);
+    const double wide = settings::kWideReach * expected_step(points[i], angular_step);
+    if (!points[i].has_line && wide > settings::kReachOfLine_m) attach(i, wide);
   }
 }
 
@@ -221,10 +206,8 @@ double reference_time(const Scan& scan) {
 }
 
 double far_limit(double range_max, double range_noise) {
-  constexpr double kCertain = 4.0;     // deviations
-  constexpr double kNoiseAfar = 0.03;  // of the range: some lidars' noise grows with it
   if (!(range_max > 0.0)) return std::numeric_limits<double>::infinity();
-  return range_max - std::max(kCertain * range_noise, kNoiseAfar * range_max);
+  return range_max - std::max(settings::kCertainSlope * range_noise, settings::kNoiseAfar * range_max);
 }
 
 Surface make_surface(const Scan& scan, const BeamMotion& motion, double range_noise) {
@@ -243,8 +226,8 @@ double estimate_range_noise(std::span<const Scan> scans) {
   std::vector<double> bends;
   const std::size_t stride = std::max<std::size_t>(scans.size() / 100, 1);
   for (std::size_t k = 0; k < scans.size(); k += stride) collect_bends(scans[k], bends);
-  if (bends.empty()) return kDefaultRangeNoise;
-  return std::clamp(normal_part(bends), kMinRangeNoise, kMaxRangeNoise);
+  if (bends.empty()) return settings::kUsualRangeNoise_m;
+  return std::clamp(normal_part(bends), settings::kLeastRangeNoise_m, settings::kMostRangeNoise_m);
 }
 
 }  // namespace odomcalib::calib::matching

@@ -4,22 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/matching/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"
 
 namespace odomcalib::calib::matching {
 namespace {
-
-constexpr std::size_t kMinWallPoints = 4;
-constexpr double kMaxAngleSigma = 0.08;  ///< rad; what is shorter may as well be a corner or a curve
-constexpr double kRelativeGap = 7.0;  ///< times the step across the beam, as on a surface seen at 82 degrees
-constexpr double kMinGap = 0.02;      ///< m
-constexpr double kMaxJoinGap = 1.0;   ///< m between the ends of two pieces of one wall
-constexpr double kMaxJoinSquares = 12.0;  ///< chi-square of two degrees of freedom, 99.8 %
-constexpr double kMinJoinCosine = 0.9;    ///< between the normals of the pieces
-constexpr double kMinEndMargin = 0.03;    ///< m, about one beam to the next
-constexpr double kSurfaceFloor = 1e-3;    ///< m, unevenness of surfaces and angular error of beams
-constexpr double kFlat = 0.5;  ///< cosine; a flatter beam meets an uneven wall far from where it ends
 
 struct Piece {
   std::size_t first, last;  ///< points of the surface, both included
@@ -48,8 +38,8 @@ std::vector<Piece> split_at_gaps(const Surface& surface, double range_noise) {
   for (std::size_t i = 1; i < surface.points.size(); ++i) {
     const SurfacePoint& a = surface.points[i - 1];
     const SurfacePoint& b = surface.points[i];
-    const double across = kRelativeGap * std::min(a.range, b.range) * step;
-    const double limit = std::max({kMinGap, across, gap_by_noise(range_noise)});
+    const double across = settings::kGapOfWall * std::min(a.range, b.range) * step;
+    const double limit = std::max({settings::kLeastGap_m, across, gap_by_noise(range_noise)});
     if ((b.position - a.position).norm() > limit)
       runs.push_back({i, i});
     else
@@ -81,13 +71,12 @@ Wall wall_through(const Surface& surface, const Piece& piece, double range_noise
 
 bool is_straight(const Wall& wall) {
   return wall.line.squares < straightness_limit(wall.sums.count) &&
-         wall.line.angle_variance < kMaxAngleSigma * kMaxAngleSigma;
+         wall.line.angle_variance < settings::kWallDirection_rad * settings::kWallDirection_rad;
 }
 
 /// A slight arc hides in the noise of all readings, and shows in a fit of its own: by the coefficient of
 /// s^2 beside offset and slope.
 bool is_bent(const Surface& surface, const Piece& piece, const FittedLine& line, double range_noise) {
-  constexpr double kPlain = 5.0;  // deviations
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   for (std::size_t i = piece.first; i <= piece.last; ++i) {
@@ -101,7 +90,7 @@ bool is_bent(const Surface& surface, const Piece& piece, const FittedLine& line,
   }
   const Eigen::LDLT<Eigen::Matrix3d> ldlt(gram);
   const double bend = ldlt.solve(gradient)(2);
-  return bend * bend > kPlain * kPlain * ldlt.solve(Eigen::Vector3d::UnitZ())(2);
+  return bend * bend > settings::kPlainArc * settings::kPlainArc * ldlt.solve(Eigen::Vector3d::UnitZ())(2);
 }
 
 /// The point farthest from the chord between the ends; an end itself when the piece is too short to cut.
@@ -132,7 +121,7 @@ struct JoinedPieces {
 };
 
 void split(const Surface& surface, const Piece& piece, double range_noise, std::vector<PieceOfWall>& out) {
-  if (piece.last - piece.first + 1 < kMinWallPoints) return;
+  if (piece.last - piece.first + 1 < settings::kFewestWallPoints) return;
   const Wall wall = wall_through(surface, piece, range_noise);
   if (is_straight(wall) && !is_bent(surface, piece, wall.line, range_noise)) {
     out.push_back({piece, wall});
@@ -148,7 +137,8 @@ void split(const Surface& surface, const Piece& piece, double range_noise, std::
 bool join(PieceOfWall& into, const PieceOfWall& next, const Surface& surface) {
   const double gap =
       (surface.points[next.piece.first].position - surface.points[into.piece.last].position).norm();
-  if (gap > kMaxJoinGap || std::abs(into.wall.line.normal.dot(next.wall.line.normal)) < kMinJoinCosine)
+  if (gap > settings::kJoinGap_m ||
+      std::abs(into.wall.line.normal.dot(next.wall.line.normal)) < settings::kJoinCosine)
     return false;
   Wall joined;
   joined.sums = into.wall.sums;
@@ -156,7 +146,7 @@ bool join(PieceOfWall& into, const PieceOfWall& next, const Surface& surface) {
   joined.line = fit_line(joined.sums);
   if (!is_straight(joined)) return false;
   const double added = joined.line.squares - into.wall.line.squares - next.wall.line.squares;
-  if (added > kMaxJoinSquares) return false;
+  if (added > settings::kJoinSquares) return false;
   into.wall = joined;
   into.piece.last = next.piece.last;
   return true;
@@ -173,7 +163,7 @@ std::vector<JoinedPieces> group(const std::vector<PieceOfWall>& pieces, const Su
 
 /// Near a corner a reading of one wall lies within the noise of the other, always on the same side of it. The
 /// two scans would not be misled alike, so neither uses the ends of a wall.
-double end_margin(double range_noise) { return std::max(3.0 * range_noise, kMinEndMargin); }
+double end_margin(double range_noise) { return std::max(3.0 * range_noise, settings::kEndMargin_m); }
 
 /// Indices of the points of all pieces, with their place along the line.
 std::vector<std::pair<std::size_t, double>> places_along(const JoinedPieces& pieces, const Surface& surface) {
@@ -201,7 +191,7 @@ void take(const JoinedPieces& pieces, const Surface& surface, double range_noise
       continue;
     wall.sums.add(point.position, 1.0 / distance_variance(cosine, range_noise), range_noise * point.beam);
   }
-  if (wall.sums.count < kMinWallPoints) return;
+  if (wall.sums.count < settings::kFewestWallPoints) return;
   wall.line = fit_line(wall.sums);
   // The ends are measured from the line's centre, which has moved with the readings left out.
   const double moved = line.direction().dot(wall.line.centre - line.centre);
@@ -248,7 +238,7 @@ FittedLine fit_line(const LineSums& sums) {
 double place_of_beam(const FittedLine& line, const Eigen::Vector2d& end, const Eigen::Vector2d& beam) {
   const Eigen::Vector2d offset = end - line.centre;
   const double place = line.direction().dot(offset), cosine = line.normal.dot(beam);
-  if (std::abs(cosine) < kFlat) return place;
+  if (std::abs(cosine) < settings::kFlatCosine) return place;
   return place - line.normal.dot(offset) / cosine * line.direction().dot(beam);
 }
 
@@ -258,13 +248,13 @@ double range_to_line(const SurfacePoint& point, double distance, double cosine_o
 
 double distance_variance(double cosine_of_incidence, double range_noise) {
   const double across = range_noise * cosine_of_incidence;
-  return across * across + kSurfaceFloor * kSurfaceFloor;
+  return across * across + settings::kSurfaceFloor_m * settings::kSurfaceFloor_m;
 }
 
 Walls find_walls(const Surface& surface, double range_noise) {
   Walls found;
   found.of_point.assign(surface.points.size(), Walls::kNone);
-  if (surface.points.size() < kMinWallPoints) return found;
+  if (surface.points.size() < settings::kFewestWallPoints) return found;
   std::vector<PieceOfWall> pieces;
   for (const Piece& run : split_at_gaps(surface, range_noise)) split(surface, run, range_noise, pieces);
   for (const JoinedPieces& joined : group(pieces, surface)) take(joined, surface, range_noise, found);

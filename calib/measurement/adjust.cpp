@@ -6,11 +6,11 @@
 
 #include "calib/math/tukey.hpp"
 #include "calib/math/vector2.hpp"
+#include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
 
-constexpr int kRounds = 3;
 constexpr double kPrior = 1e-6;  ///< relative to the largest, for walls that nobody strikes
 
 /// What one scan says about its pose and about what all scans share: shift and turn of each wall, and the
@@ -136,7 +136,8 @@ RangeEvidence adjust_once(const std::vector<std::vector<Beam>>& scans, const Pla
 RangeEvidence adjust_map(const std::vector<std::vector<Beam>>& scans, const PlaceOptions& options,
                          WallMap& map, std::vector<Place>& places) {
   RangeEvidence evidence;
-  for (int round = 0; round < kRounds; ++round) evidence = adjust_once(scans, options, map, places);
+  for (int round = 0; round < settings::kAdjustRounds; ++round)
+    evidence = adjust_once(scans, options, map, places);
   for (std::size_t k = 0; k < scans.size(); ++k)
     if (places[k].is_usable()) places[k] = place_scan(map, scans[k], places[k].pose, options);
   return evidence;

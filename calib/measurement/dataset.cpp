@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "calib/ingest/recording_check.hpp"
+#include "calib/measurement/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "calib/wheels/fine_track.hpp"
 #include "calib/wheels/nominal_base.hpp"
@@ -12,15 +13,11 @@
 namespace odomcalib::calib::measurement {
 namespace {
 
-/// Khepera-sized start for tuple files, which carry no nominal geometry; the closed form replaces it.
-constexpr double kUnknownRadius = 0.05;
-constexpr double kUnknownTrackWidth = 0.3;
-
 wheels::BaseParameters start_of(const RobotDescription& robot) {
   wheels::BaseParameters base = wheels::nominal_base(robot);
-  if (!(base.left_radius > 0.0)) base.left_radius = kUnknownRadius;
-  if (!(base.right_radius > 0.0)) base.right_radius = kUnknownRadius;
-  if (!(base.track_width > 0.0)) base.track_width = kUnknownTrackWidth;
+  if (!(base.left_radius > 0.0)) base.left_radius = settings::kUnknownRadius_m;
+  if (!(base.right_radius > 0.0)) base.right_radius = settings::kUnknownRadius_m;
+  if (!(base.track_width > 0.0)) base.track_width = settings::kUnknownTrack_m;
   return base;
 }
 

@@ -7,18 +7,12 @@
 
 #include "calib/matching/both_ways.hpp"
 #include "calib/math/vector2.hpp"
+#include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
 
-constexpr double kNear = 0.8;                             // m between the two sensors
-constexpr double kLongest = 40.0;                         // s apart: odometry must still be a guess
-constexpr double kGate = 0.08;                            // m
-constexpr double kMinAgreement = 0.97;                    // cosine of the normals (14 degrees)
-constexpr double kMinIncidence = 0.3;                     // cosine
-constexpr double kMargin = 0.25;                          // m, the reach of a local line
 constexpr std::array kTurns = {2.4, 1.2, 3.0, 0.7, 1.8};  // rad, wanted between the scans of a pair
-constexpr double kTurnTolerance = 0.3;                    // rad
 
 double turn_between(const math::Pose& a, const math::Pose& b) {
   return std::abs(math::wrap_angle(b.yaw - a.yaw));
@@ -28,10 +22,11 @@ double turn_between(const math::Pose& a, const math::Pose& b) {
 std::optional<std::size_t> partner_of(const ScanSurfaces& scans, std::size_t from, double turn,
                                       const std::vector<bool>& used) {
   const auto& poses = scans.odometry();
-  for (std::size_t k = from + 1; k < poses.size() && scans.times()[k] - scans.times()[from] < kLongest; ++k) {
+  for (std::size_t k = from + 1;
+       k < poses.size() && scans.times()[k] - scans.times()[from] < settings::kHeadingPair_s; ++k) {
     const math::Pose step = between(poses[from], poses[k]);
-    if (used[k] || std::hypot(step.x, step.y) > kNear) continue;
-    if (std::abs(turn_between(poses[from], poses[k]) - turn) < kTurnTolerance) return k;
+    if (used[k] || std::hypot(step.x, step.y) > settings::kNearSensors_m) continue;
+    if (std::abs(turn_between(poses[from], poses[k]) - turn) < settings::kTurnTolerance_rad) return k;
   }
   return std::nullopt;
 }
@@ -94,13 +89,14 @@ class Meeting {
  public:
   Meeting(const matching::MatchReference& reference, const Eigen::Vector2d& end, const Eigen::Vector2d& beam)
       : surface_(reference.surface()), walls_(reference.walls()) {
-    const auto nearest = reference.order().nearest(end, kGate);
+    const auto nearest = reference.order().nearest(end, settings::kHeadingGate_m);
     if (!nearest) return;
     wall_ = walls_.of_point[nearest->index];
     if (wall_ == matching::Walls::kNone) return;
     const matching::Wall& wall = walls_.walls[wall_];
     const double place = place_of_beam(wall.line, end, beam);
-    if (place < wall.low + kMargin || place > wall.high - kMargin) return;
+    if (place < wall.low + settings::kHeadingMargin_m || place > wall.high - settings::kHeadingMargin_m)
+      return;
     partner_ = nearest_beam(nearest->index, place);
     place_ = wall.line.centre + place * wall.line.direction();
   }
@@ -119,7 +115,7 @@ class Meeting {
   [[nodiscard]] const matching::SurfacePoint* nearest_beam(std::size_t index, double place) const {
     constexpr std::size_t kReach = 4;
     const matching::SurfacePoint* best = nullptr;
-    double least = kGate;
+    double least = settings::kHeadingGate_m;
     const std::size_t end = std::min(index + kReach + 1, surface_.points.size());
     for (std::size_t k = index > kReach ? index - kReach : 0; k < end; ++k) {
       const matching::SurfacePoint& point = surface_.points[k];
@@ -149,11 +145,12 @@ std::optional<DoubleSighting> compare(const matching::MatchReference& reference,
   if (meeting.partner() == nullptr) return std::nullopt;
   const matching::SurfacePoint& partner = *meeting.partner();
   const Plane plane = meeting.plane();
-  if (-plane.normal.dot(beam) < kMinIncidence || -plane.normal.dot(partner.beam) < kMinIncidence)
+  if (-plane.normal.dot(beam) < settings::kHeadingIncidence ||
+      -plane.normal.dot(partner.beam) < settings::kHeadingIncidence)
     return std::nullopt;
-  if (frame.rotate(point.normal).dot(plane.normal) < kMinAgreement) return std::nullopt;
+  if (frame.rotate(point.normal).dot(plane.normal) < settings::kHeadingNormals) return std::nullopt;
   const double distance = plane.normal.dot(end - partner.anchor);
-  if (std::abs(distance) > kGate) return std::nullopt;
+  if (std::abs(distance) > settings::kHeadingGate_m) return std::nullopt;
   return DoubleSighting{plane.seen(Eigen::Vector2d::Zero(), partner.beam, partner.bearing),
                         plane.seen(sensor, beam, point.bearing),
                         partner.beam,

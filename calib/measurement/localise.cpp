@@ -8,15 +8,10 @@
 #include "calib/math/median.hpp"
 #include "calib/math/tukey.hpp"
 #include "calib/math/vector2.hpp"
+#include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
-
-constexpr std::size_t kMinInliers = 40;
-constexpr double kMinInlierShare = 0.5;  ///< of the beams that should strike a wall
-constexpr double kMinEigenvalueRatio = 0.01;
-constexpr double kSettled = 0.1;  ///< sigma
-constexpr int kWholeSteps = 5;
 
 std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>& beams,
                                     const std::vector<Strike>& struck, const math::Pose& pose,
@@ -91,9 +86,9 @@ double weight_of(const RangeTerm& term, double scale) {
 }
 
 bool Place::is_usable() const {
-  if (!converged || inliers < kMinInliers) return false;
-  if (static_cast<double>(inliers) < kMinInlierShare * static_cast<double>(strikes)) return false;
-  return matching::observability(information).ratio > kMinEigenvalueRatio;
+  if (!converged || inliers < settings::kFewestInliers) return false;
+  if (static_cast<double>(inliers) < settings::kLeastInliers * static_cast<double>(strikes)) return false;
+  return matching::observability(information).ratio > settings::kLeastEigenvalue;
 }
 
 Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const math::Pose& guess,
@@ -111,11 +106,11 @@ Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const math:
       cast_from = place.pose;
     }
     const auto terms = terms_within(map, beams, struck, place.pose, options, gate, place.strikes);
-    if (terms.size() < kMinInliers) return place;
+    if (terms.size() < settings::kFewestInliers) return place;
     place.scale = robust_scale(terms);
     // Beams next to the end of a wall may strike it and miss it in turn; half steps settle between.
-    const double step = improve(terms, i < kWholeSteps ? 1.0 : 0.5, place);
-    place.converged = gate <= last && step < kSettled * place.scale;
+    const double step = improve(terms, i < settings::kWholeSteps ? 1.0 : 0.5, place);
+    place.converged = gate <= last && step < settings::kPlaceSettled * place.scale;
   }
   return place;
 }

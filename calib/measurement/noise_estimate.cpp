@@ -6,12 +6,10 @@
 #include <cmath>
 
 #include "calib/math/median.hpp"
+#include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
-
-constexpr int kSweeps = 2;
-constexpr double kWinsor = 2.5;
 
 struct Observation {
   std::span<const SensorPair> pairs;
@@ -111,8 +109,10 @@ std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseMod
     const Eigen::Vector3d jitter_here = noise.stamp_jitter * scaled(k, o.states[k].begin_velocity);
     for (Eigen::Index c = 0; c < 3; ++c) {
       const double weight = 1.0 / (spread_before(c) * spread_here(c));
-      const double a = std::clamp(before(c), -kWinsor * spread_before(c), kWinsor * spread_before(c));
-      const double b = std::clamp(here(c), -kWinsor * spread_here(c), kWinsor * spread_here(c));
+      const double a =
+          std::clamp(before(c), -settings::kWinsor * spread_before(c), settings::kWinsor * spread_before(c));
+      const double b =
+          std::clamp(here(c), -settings::kWinsor * spread_here(c), settings::kWinsor * spread_here(c));
       products[static_cast<std::size_t>(c)] += weight * (a * b + jitter_before(c) * jitter_here(c));
       weights[static_cast<std::size_t>(c)] += weight;
     }
@@ -162,7 +162,7 @@ NoiseModel estimate_noise(std::span<const SensorPair> pairs, std::span<const Pai
   NoiseModel noise = start;
   if (pairs.empty()) return noise;
   begin_at_spread(o, noise);
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
+  for (int sweep = 0; sweep < settings::kNoiseSweeps; ++sweep)
     for (const Range& range : kRanges) improve(o, range, noise);
   noise.correlation = neighbour_correlation(o, noise);
   return noise;

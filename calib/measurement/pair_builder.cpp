@@ -9,12 +9,10 @@
 #include "calib/math/median.hpp"
 #include "calib/measurement/placed_poses.hpp"
 #include "calib/measurement/scan_surfaces.hpp"
+#include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
-
-constexpr double kTupleNoise = 1e-3;     ///< m, a scan match whose covariance is not recorded
-constexpr double kTupleYawNoise = 2e-3;  ///< rad
 
 bool is_keyframe(const math::Pose& step, double elapsed, const PairOptions& options) {
   const double travel = std::hypot(step.x, step.y);
@@ -47,7 +45,7 @@ PairSet pairs_from_increments(const Recording& recording) {
     SensorPair pair;
     pair.interval = {t, t + sample.duration};
     pair.motion = {sample.lidar_motion[0], sample.lidar_motion[1], sample.lidar_motion[2]};
-    pair.covariance = diagonal_covariance(kTupleNoise, kTupleYawNoise);
+    pair.covariance = diagonal_covariance(settings::kTupleNoise_m, settings::kTupleNoise_rad);
     pair.follows_previous = t > 0.0;
     set.pairs.push_back(pair);
     t += sample.duration;
@@ -58,11 +56,10 @@ PairSet pairs_from_increments(const Recording& recording) {
 /// s to either side of a keyframe in which poses stand for it: enough of them to average their noise away,
 /// over no more time than wheels carry them well.
 double reach_of_keyframes(const std::vector<PlacedScan>& places) {
-  constexpr double kGood = 5e-4;  // m, of a mean; scan matching is no better
   if (places.size() < 2) return 0.0;
   std::vector<double> steps;
   for (std::size_t k = 1; k < places.size(); ++k) steps.push_back(places[k].time - places[k - 1].time);
-  const double wanted = places.front().covariance(0, 0) / (kGood * kGood);
+  const double wanted = places.front().covariance(0, 0) / (settings::kGoodMatch_m * settings::kGoodMatch_m);
   return std::min(0.5 * wanted * math::median_of(std::move(steps)), kMeanReach);
 }
 

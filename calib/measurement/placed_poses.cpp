@@ -7,13 +7,10 @@
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/scan_surfaces.hpp"
+#include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
-
-constexpr double kSpan = 0.1;           // s, over which wheels err by less than a pose does
-constexpr double kLeastNoise = 1e-4;    // m and rad: nothing is measured better
-constexpr double kUnknownNoise = 1e-3;  // m and rad
 
 math::Pose pose_of(const PoseSample& sample) { return {sample.x, sample.y, math::wrap_angle(sample.yaw)}; }
 
@@ -34,12 +31,13 @@ std::vector<Eigen::Vector3d> steps_beyond_wheels(std::span<const PoseSample> pos
 /// have: the second difference has six times the variance of one.
 Eigen::Vector3d noise_of(std::span<const PoseSample> poses, const PathOfWheels& wheels) {
   const std::vector<Eigen::Vector3d> steps = steps_beyond_wheels(poses, wheels);
-  if (steps.size() < 3) return Eigen::Vector3d::Constant(kUnknownNoise);
+  if (steps.size() < 3) return Eigen::Vector3d::Constant(settings::kUnknownPoseNoise);
   Eigen::Vector3d noise;
   for (Eigen::Index i = 0; i < noise.size(); ++i) {
     std::vector<double> sizes;
     for (std::size_t k = 1; k < steps.size(); ++k) sizes.push_back(std::abs(steps[k](i) - steps[k - 1](i)));
-    noise(i) = std::max(math::kMadToSigma * math::median_of(std::move(sizes)) / std::sqrt(6.0), kLeastNoise);
+    noise(i) = std::max(math::kMadToSigma * math::median_of(std::move(sizes)) / std::sqrt(6.0),
+                        settings::kLeastPoseNoise);
   }
   const double position = std::sqrt(0.5 * (noise(0) * noise(0) + noise(1) * noise(1)));
   return {position, position, noise(2)};
@@ -73,7 +71,7 @@ std::vector<PlacedScan> placed_poses(std::span<const PoseSample> poses, const Pa
   std::vector<PlacedScan> places;
   for (std::size_t first = 0; first < singles.size();) {
     std::size_t end = first + 1;
-    while (end < singles.size() && singles[end].time - singles[first].time < kSpan) ++end;
+    while (end < singles.size() && singles[end].time - singles[first].time < settings::kWheelSpan_s) ++end;
     const auto span = std::span(singles).subspan(first, end - first);
     places.push_back(mean_of(span, mean_time(span), wheels));
     first = end;

@@ -5,16 +5,13 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
+#include "calib/measurement/settings.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
 
 // Deviations are those of the ranges' noise alone; walls that are not quite straight add to them.
-constexpr double kSigmas = 6.0;
-constexpr double kSmallest = 3e-3;      // m; surfaces of the room differ by as much
-constexpr double kMostChange = 0.5;     // of the offset, when the incidence is allowed to explain it
-constexpr double kUsualDistance = 4.0;  // m, where a slanted beam's error is judged, at 45 degrees
 constexpr Eigen::Index kSlants = kRangeCoefficients - 1;
 
 double offset_in_sigmas(const RangeEvidence& e) {
@@ -44,17 +41,19 @@ RangeErrorTerms by_coefficient(const terms::Sighting& sighting) {
 }
 
 bool shows_offset(const RangeEvidence& e) {
-  return std::abs(e.values(0)) > kSmallest && offset_in_sigmas(e) > kSigmas &&
-         std::abs(e.values(0) - e.offset_alone) < kMostChange * std::abs(e.values(0));
+  return std::abs(e.values(0)) > settings::kLeastRangeError_m &&
+         offset_in_sigmas(e) > settings::kRangeErrorSigmas &&
+         std::abs(e.values(0) - e.offset_alone) < settings::kMostOffsetChange * std::abs(e.values(0));
 }
 
 bool matters_at_a_slant(const RangeErrorTerms& dependence) {
-  const double at_45_degrees = dependence(1) + kUsualDistance * dependence(3);
-  return std::abs(at_45_degrees) > kSmallest;
+  const double at_45_degrees = dependence(1) + settings::kUsualDistance_m * dependence(3);
+  return std::abs(at_45_degrees) > settings::kLeastRangeError_m;
 }
 
 bool shows_slant(const RangeEvidence& e) {
-  return matters_at_a_slant(e.values) && slant_statistic(e) > kSigmas * kSigmas + kSlants;
+  return matters_at_a_slant(e.values) &&
+         slant_statistic(e) > settings::kRangeErrorSigmas * settings::kRangeErrorSigmas + kSlants;
 }
 
 double p_value_of_offset(const RangeEvidence& e) { return chance(std::pow(offset_in_sigmas(e), 2), 1.0); }

@@ -7,21 +7,11 @@
 #include <optional>
 
 #include "calib/matching/point_to_line.hpp"
+#include "calib/measurement/settings.hpp"
 #include "calib/measurement/sweep_motion.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
-
-constexpr double kNewWallsAfter = 0.3;       ///< m of travel, or ...
-constexpr double kNewWallsAfterTurn = 0.35;  ///< rad
-constexpr std::size_t kAdjusted = 500;       ///< scans that the map is adjusted to
-constexpr std::size_t kMostScans = 4000;     ///< placed, about thirteen a second in five minutes
-constexpr double kMostBeams = 1.5e6;         ///< of all of them
-constexpr std::size_t kMostWalls = 300;
-constexpr std::size_t kFewestScans = 50;
-constexpr double kMostLost = 0.1;    ///< share of the scans
-constexpr double kDouble = 2.0;      ///< range noise, across a wall that was taken for two
-constexpr double kFirstGate = 0.15;  ///< m, for a scan placed from the one before it
 
 /// Of the recording's only lidar, m.
 double range_max(const Recording& recording) {
@@ -44,7 +34,9 @@ class Mapper {
       : recording_(recording),
         mount_(vehicle::to_base(parameters).mount),
         trajectory_(model.trajectory(parameters, effects)),
-        options_{.range_noise = options.range_noise, .gate = kFirstGate, .range_max = range_max(recording)},
+        options_{.range_noise = options.range_noise,
+                 .gate = settings::kFirstGate_m,
+                 .range_max = range_max(recording)},
         trace_ranges_(options.trace_ranges) {
     for (std::size_t k = 0; k < recording.scans.size(); ++k) {
       const Scan& scan = recording.scans[k];
@@ -55,12 +47,12 @@ class Mapper {
   }
 
   ScanPath run(const ScanPath& known) {
-    if (chosen_.size() < kFewestScans) return {};
+    if (chosen_.size() < settings::kFewestScans) return {};
     if (known.scans.empty())
       explore();
     else
       begin_with(known);
-    if (path_.map.walls().empty() || path_.map.walls().size() > kMostWalls) return {};
+    if (path_.map.walls().empty() || path_.map.walls().size() > settings::kMostWalls) return {};
     adjust();
     place_all();
     return std::move(path_);
@@ -69,11 +61,11 @@ class Mapper {
  private:
   /// More scans and beams than the wheels' own noise lets matter only take longer.
   void thin_out() {
-    const std::size_t scan_step = (chosen_.size() + kMostScans - 1) / kMostScans;
+    const std::size_t scan_step = (chosen_.size() + settings::kMostScans - 1) / settings::kMostScans;
     chosen_ = every_nth(std::move(chosen_), scan_step);
     double total = 0.0;
     for (const std::size_t k : chosen_) total += static_cast<double>(recording_.scans[k].ranges.size());
-    beam_step_ = static_cast<std::size_t>(std::max(1.0, std::round(total / kMostBeams)));
+    beam_step_ = static_cast<std::size_t>(std::max(1.0, std::round(total / settings::kMostBeams)));
   }
 
   [[nodiscard]] std::vector<Beam> beams(std::size_t k) const {
@@ -120,7 +112,8 @@ class Mapper {
       const auto found = find(k, guess);
       poses_.push_back(found.value_or(guess));
       const math::Pose step = between(key_pose_, poses_.back());
-      if (found && (std::hypot(step.x, step.y) > kNewWallsAfter || std::abs(step.yaw) > kNewWallsAfterTurn))
+      if (found && (std::hypot(step.x, step.y) > settings::kNewWallsAfter_m ||
+                    std::abs(step.yaw) > settings::kNewWallsAfter_rad))
         make_key(k, *found);
     }
   }
@@ -139,10 +132,10 @@ class Mapper {
 
   /// Every few scans show all walls; more would only take longer.
   void adjust() {
-    const std::size_t stride = std::max<std::size_t>(2, chosen_.size() / kAdjusted + 1);
+    const std::size_t stride = std::max<std::size_t>(2, chosen_.size() / settings::kMostAdjusted + 1);
     PlacedBeams used = sample(0, stride);
     RangeEvidence evidence = adjust_map(used.beams, options_, path_.map, used.places);
-    if (path_.map.drop_doubles(kDouble * options_.range_noise))
+    if (path_.map.drop_doubles(settings::kDoubleWall * options_.range_noise))
       evidence = adjust_map(used.beams, options_, path_.map, used.places);
     if (!trace_ranges_ || !(shows_offset(evidence) || shows_slant(evidence))) return;
     RangeTrace trace = trace_ranges_(evidence, used, sample(stride / 2, stride), options_, path_.map);
@@ -188,8 +181,8 @@ class Mapper {
 }  // namespace
 
 bool ScanPath::is_usable() const {
-  return scans.size() >= kFewestScans &&
-         static_cast<double>(lost) < kMostLost * static_cast<double>(lost + scans.size());
+  return scans.size() >= settings::kFewestScans &&
+         static_cast<double>(lost) < settings::kMostLost * static_cast<double>(lost + scans.size());
 }
 
 ScanPath place_scans(const Recording& recording, const vehicle::DriveModel& model,

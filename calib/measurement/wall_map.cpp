@@ -6,17 +6,10 @@
 
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/sector_index.hpp"
+#include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
-
-constexpr double kMinLength = 0.25;   ///< m; shorter pieces may be curved
-constexpr double kMaxOffset = 0.06;   ///< m across, between pieces of one wall
-constexpr double kMinAlike = 0.995;   ///< cosine between their normals, 5.7 degrees
-constexpr double kMinAlong = 0.9;     ///< the same, of a double
-constexpr double kMaxGapAlong = 0.5;  ///< m, between pieces of one wall
-constexpr double kMaxOverhang = 0.1;  ///< m, of a double beyond the end of its wall
-constexpr double kShade = 0.03;       ///< m, a wall is longer than what counts of it: both its ends are cut
 
 matching::LineSums moved(const matching::LineSums& sums, const math::Frame& frame) {
   const Eigen::Matrix2d turn = frame.rotation();
@@ -53,9 +46,9 @@ std::pair<double, double> ends_along(const MapWall& from, const MapWall& wall) {
 }
 
 bool lies_along(const MapWall& piece, const MapWall& wall, double tolerance) {
-  if (piece.normal.dot(wall.normal) < kMinAlong) return false;
+  if (piece.normal.dot(wall.normal) < settings::kDoubleNormals) return false;
   const auto [low, high] = ends_along(piece, wall);
-  if (low > wall.high + kMaxOverhang || high < wall.low - kMaxOverhang) return false;
+  if (low > wall.high + settings::kOverhang_m || high < wall.low - settings::kOverhang_m) return false;
   const auto across = [&](double s) {
     return std::abs(wall.normal.dot(piece.centre + s * piece.direction() - wall.centre));
   };
@@ -78,11 +71,11 @@ void merge(MapWall& into, const MapWall& piece) {
 
 MapWall* WallMap::find_alike(const MapWall& wall) {
   for (MapWall& known : walls_) {
-    if (known.normal.dot(wall.normal) < kMinAlike) continue;
+    if (known.normal.dot(wall.normal) < settings::kWallNormals) continue;
     const auto [low, high] = ends_along(wall, known);
-    if (low > known.high + kMaxGapAlong || high < known.low - kMaxGapAlong) continue;
+    if (low > known.high + settings::kGapAlong_m || high < known.low - settings::kGapAlong_m) continue;
     const Eigen::Vector2d apart = wall.centre - known.centre;
-    if (std::abs(known.normal.dot(apart)) < kMaxOffset) return &known;
+    if (std::abs(known.normal.dot(apart)) < settings::kWallOffset_m) return &known;
   }
   return nullptr;
 }
@@ -90,7 +83,7 @@ MapWall* WallMap::find_alike(const MapWall& wall) {
 void WallMap::insert(const matching::Walls& seen, const math::Pose& sensor) {
   const math::Frame frame(sensor);
   for (const matching::Wall& wall : seen.walls) {
-    if (wall.high - wall.low < kMinLength) continue;
+    if (wall.high - wall.low < settings::kShortestWall_m) continue;
     const MapWall piece = in_map(wall, frame);
     if (MapWall* known = find_alike(piece))
       merge(*known, piece);
@@ -131,7 +124,7 @@ std::optional<std::size_t> WallMap::struck_by(const Eigen::Vector2d& from, const
     const double range = wall.normal.dot(wall.centre - from) / towards;
     if (range <= 0.0 || range >= nearest) continue;
     const double s = wall.direction().dot(from + range * direction - wall.centre);
-    if (s < wall.low - kShade || s > wall.high + kShade) continue;
+    if (s < wall.low - settings::kShade_m || s > wall.high + settings::kShade_m) continue;
     nearest = range;
     const bool inside = s > wall.low && s < wall.high;
     struck = inside && towards < -matching::kMinWallIncidence ? std::optional<std::size_t>(w) : std::nullopt;
@@ -143,7 +136,7 @@ std::vector<Strike> WallMap::strikes(const std::vector<Beam>& beams, const math:
   const math::Frame frame(sensor);
   double reach = 0.0;
   for (const Beam& beam : beams) reach = std::max(reach, beam.origin.norm());
-  const SectorIndex index(walls_, frame.origin(), reach, kShade);
+  const SectorIndex index(walls_, frame.origin(), reach, settings::kShade_m);
   std::vector<Strike> found;
   found.reserve(beams.size());
   for (std::size_t i = 0; i < beams.size(); ++i) {

@@ -17,8 +17,8 @@ namespace odomcalib::calib::selection {
 struct Candidate {
   std::shared_ptr<const vehicle::Effect> effect;
   std::optional<terms::SmoothTerm> smooth;
-  std::string key;      ///< variants of one effect share it
-  bool struck = false;  ///< added, or failed cross-validation: not tried again
+  std::string key;        ///< variants of one effect share it
+  bool excluded = false;  ///< added, or failed cross-validation: not tried again
 };
 
 /// The catalogue without what the model has already, each effect in all its shapes.

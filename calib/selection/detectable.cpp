@@ -6,12 +6,10 @@
 
 #include "calib/selection/candidate.hpp"
 #include "calib/selection/score.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
-
-/// Two-sided test at kNamedLevel among about a hundred candidates that are not alike, and nine of ten found.
-constexpr double kQuantiles = 4.4 + 1.28;
 
 std::vector<Candidate> textbook_names(const FitTask& task, const FittedModel& model) {
   std::vector<Candidate> names = names_missing(model.effects, task.data.size() == 1);
@@ -26,7 +24,8 @@ Detectable detectable(const vehicle::Effect& effect, const std::vector<double>& 
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const vehicle::EffectParameter& parameter = parameters[k];
     if (!parameter.is_size()) continue;
-    const double smallest = std::max(kQuantiles * deviations[k], vehicle::kNegligibleShare * parameter.scale);
+    const double smallest =
+        std::max(settings::kDetectableQuantiles * deviations[k], vehicle::kNegligibleShare * parameter.scale);
     const bool is_first = best.parameter.empty();
     if (!is_first && !(smallest / parameter.scale < least)) continue;
     least = smallest / parameter.scale;

@@ -8,6 +8,7 @@
 #include "calib/math/bootstrap.hpp"
 #include "calib/selection/evaluation_window.hpp"
 #include "calib/selection/folds.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/terms/effects/reference_effect.hpp"
 
 namespace odomcalib::calib::selection {
@@ -15,7 +16,6 @@ namespace {
 
 constexpr const char* kOpenLoopPosition = "open_loop_10s_position";
 
-constexpr std::size_t kFewest = 4;
 constexpr unsigned kSeed = 20010823;
 
 /// Predicted minus measured motion of each stretch, in the base's frame at its begin.
@@ -93,7 +93,7 @@ class Judge {
            std::vector<DriveError>& out) const {
     const auto windows =
         find_windows(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
-    if (windows.size() < kFewest) return;
+    if (windows.size() < settings::kFewestOfAKind) return;
     const auto errors = [&](const std::vector<Eigen::VectorXd>& parameters) {
       return parameters.empty() ? std::vector<math::Pose>{}
                                 : errors_of(data_, windows, parameters, full_.effects);

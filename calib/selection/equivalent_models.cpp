@@ -2,11 +2,10 @@
 
 #include <algorithm>
 
+#include "calib/selection/settings.hpp"
+
 namespace odomcalib::calib::selection {
 namespace {
-
-constexpr double kSeparable = 10.0;  ///< expected gap of -2 log L that separates two candidates
-constexpr double kMost = 0.6;        ///< of a smooth term's statistic
 
 template <typename T>
 void add_once(const T& value, std::vector<T>& list) {
@@ -18,7 +17,7 @@ void add_once(const T& value, std::vector<T>& list) {
 /// The expected gap between the true and the wrong one is T (1 - rho^2).
 bool are_too_close(const ScoreTable& table, std::size_t a, std::size_t b) {
   const double rho = table.correlation(a, b);
-  return rho > kAlias && table.scores()[a].statistic * (1.0 - rho * rho) < kSeparable;
+  return rho > settings::kAlias && table.scores()[a].statistic * (1.0 - rho * rho) < settings::kSeparable;
 }
 
 std::vector<vehicle::Covariate> covariates_like(const std::vector<Candidate>& candidates,
@@ -26,10 +25,10 @@ std::vector<vehicle::Covariate> covariates_like(const std::vector<Candidate>& ca
   const vehicle::Covariate own = candidates[index].smooth->dependence.covariate;
   std::vector<vehicle::Covariate> alike;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    if (candidates[k].struck || !candidates[k].smooth || candidates[k].smooth->dependence.covariate == own)
+    if (candidates[k].excluded || !candidates[k].smooth || candidates[k].smooth->dependence.covariate == own)
       continue;
-    if (table.scores()[k].statistic >= kMost * table.scores()[index].statistic &&
-        table.correlation(index, k) > kAlias)
+    if (table.scores()[k].statistic >= settings::kMostOfStatistic * table.scores()[index].statistic &&
+        table.correlation(index, k) > settings::kAlias)
       add_once(candidates[k].smooth->dependence.covariate, alike);
   }
   return alike;

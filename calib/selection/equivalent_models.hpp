@@ -6,11 +6,9 @@
 
 #include "calib/selection/candidate.hpp"
 #include "calib/selection/score.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
-
-/// Canonical correlation that counts as indistinguishable.
-inline constexpr double kAlias = 0.9;
 
 /// Whether the gap of -2 log L that this data would show between both is too small to separate them.
 /// @param a, b candidates of the table, `a` the one believed to be there

@@ -11,22 +11,16 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr double kHorizonSeconds = 10.0;
-constexpr double kStraight = 0.15;          ///< rad/m; more is a curve
-constexpr double kOnTheSpot = 0.08;         ///< m/rad; more is an arc
-constexpr double kStanding = 0.004;         ///< m and rad; a pair at rest belongs to any kind
-constexpr double kShortestStraight = 0.25;  ///< m; on less, noise of the reference dominates
-constexpr double kSmallestTurn = 0.6;       ///< rad
-
 /// How much of its kind a pair is: m or rad, signed; nullopt when it is of another kind.
 std::optional<double> amount_of(WindowKind kind, const math::Pose& base) {
   const double turn = std::abs(base.yaw);
   const double length = std::hypot(base.x, base.y);
-  if (turn < kStanding && length < kStanding) return 0.0;
+  if (turn < settings::kStanding && length < settings::kStanding) return 0.0;
   if (kind == WindowKind::straight)
-    return turn < kStraight * length + kStanding ? std::optional(std::copysign(length, base.x))
-                                                 : std::nullopt;
-  return length < kOnTheSpot * turn + kStanding ? std::optional(base.yaw) : std::nullopt;
+    return turn < settings::kStraightest * length + settings::kStanding
+               ? std::optional(std::copysign(length, base.x))
+               : std::nullopt;
+  return length < settings::kOnTheSpot * turn + settings::kStanding ? std::optional(base.yaw) : std::nullopt;
 }
 
 /// Sensor poses along the chain in the frame of its begin, each with its pair's noise.
@@ -164,8 +158,8 @@ class Finder {
     std::size_t k = begin;
     for (; k < pairs_.size() && joined(begin, k); ++k) {
       const double elapsed = pairs_[k].interval.end - pairs_[begin].interval.begin;
-      if (elapsed < kHorizonSeconds / 2.0) half = k + 1;
-      if (elapsed < kHorizonSeconds) continue;
+      if (elapsed < settings::kHorizon_s / 2.0) half = k + 1;
+      if (elapsed < settings::kHorizon_s) continue;
       keep(begin, k, 1.0);
       return half;
     }
@@ -176,7 +170,8 @@ class Finder {
   /// begins
   std::size_t run_from(std::size_t begin) {
     const double full = kind_ == WindowKind::straight ? 1.0 : 2.0 * math::kPi;
-    const double least = kind_ == WindowKind::straight ? kShortestStraight : kSmallestTurn;
+    const double least =
+        kind_ == WindowKind::straight ? settings::kShortestStraight_m : settings::kSmallestTurn_rad;
     double sum = 0.0;
     std::size_t k = begin;
     for (; k < pairs_.size() && joined(begin, k) && std::abs(sum) < full; ++k) {

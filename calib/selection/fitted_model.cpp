@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calib/measurement/noise_estimate.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -16,14 +17,13 @@ double squared_distance(double weight) {
 
 /// How much larger the noise would have to be for that share of the residuals to be noise.
 double excess_of_outliers(const estimation::FitResult& fit, double share) {
-  constexpr double kExpected = 7.815;  // 95 % quantile of chi-squared with three degrees of freedom
   if (fit.weights.empty()) return 1.0;
   std::vector<double> squared;
   for (const double w : fit.weights) squared.push_back(squared_distance(w));
   const auto nth =
       squared.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(squared.size() - 1));
   std::nth_element(squared.begin(), nth, squared.end());
-  return std::sqrt(std::max(*nth, 0.0) / kExpected);
+  return std::sqrt(std::max(*nth, 0.0) / settings::kChiSquared95Of3);
 }
 
 measurement::NoiseModel widened(measurement::NoiseModel noise, double factor) {
@@ -82,9 +82,8 @@ std::optional<FittedModel> with_effect(const FitTask& task, const FittedModel& m
 }
 
 estimation::FitResult widened_where_outlying(const FitTask& task, const FittedModel& model, double share) {
-  constexpr double kTolerated = 1.3;
   const double excess = excess_of_outliers(model.fit, share);
-  if (excess < kTolerated || !task.rules.has(Rule::wider_noise)) return model.fit;
+  if (excess < settings::kToleratedExcess || !task.rules.has(Rule::wider_noise)) return model.fit;
   std::vector<measurement::NoiseModel> noise;
   for (const measurement::NoiseModel& given : model.fit.noise) noise.push_back(widened(given, excess));
   return task.fit(model.effects, model.fit.parameters, noise).value_or(model.fit);

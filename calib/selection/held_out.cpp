@@ -8,12 +8,10 @@
 #include "calib/estimation/stack.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/selection/folds.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
-
-constexpr std::size_t kMinPairs = 50;
-constexpr double kGrossError = 6.0;  ///< sigma; a failed match says nothing about the wheels
 
 /// In the sensor's frame at the begin: heading zero.
 Eigen::Vector3d expected_variance(const measurement::SensorPair& pair, const measurement::NoiseModel& noise) {
@@ -25,7 +23,8 @@ Eigen::Vector3d expected_variance(const measurement::SensorPair& pair, const mea
 }
 
 bool is_gross(const HeldOutError& e) {
-  return e.error.cwiseAbs2().cwiseQuotient(e.variance).maxCoeff() > kGrossError * kGrossError;
+  return e.error.cwiseAbs2().cwiseQuotient(e.variance).maxCoeff() >
+         settings::kGrossError * settings::kGrossError;
 }
 
 std::array<double, 3> root(const Eigen::Vector3d& sum, std::size_t count) {
@@ -62,13 +61,14 @@ std::optional<HeldOut> held_out_residual(const std::vector<HeldOutError>& errors
   Eigen::Vector3d squares = Eigen::Vector3d::Zero(), expected = squares, bounded = squares;
   std::size_t count = 0;
   for (std::size_t k = 0; k < errors.size(); ++k) {
-    bounded += errors[k].error.cwiseAbs2().cwiseMin(kGrossError * kGrossError * errors[k].variance);
+    bounded += errors[k].error.cwiseAbs2().cwiseMin(settings::kGrossError * settings::kGrossError *
+                                                    errors[k].variance);
     if (is_gross(errors[k]) && is_gross(other[k])) continue;
     squares += errors[k].error.cwiseAbs2();
     expected += errors[k].variance;
     ++count;
   }
-  if (count < kMinPairs) return std::nullopt;
+  if (count < settings::kFewestHeldOut) return std::nullopt;
   return HeldOut{root(squares, count), root(expected, count), root(bounded, errors.size()), count};
 }
 

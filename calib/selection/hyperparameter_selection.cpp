@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/selection/hyperparameters.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/terms/candidate_smooths.hpp"
 #include "calib/terms/smooth_term.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
@@ -21,14 +22,12 @@ void fit_anew_on_own_noise(const FitTask& task, FittedModel& model) {
 /// A term of a speed or a force has a peak or a step, not one bend after the other: those stand for the
 /// single manoeuvres of this drive. Bends of less than a quarter of all that the function spans are none.
 bool bends_too_often(const Reshaped& shape) {
-  constexpr double kPlain = 0.25;
-  constexpr int kMost = 3;
   if (terms::basis_as<terms::Cycle>(shape.smooth) ||
       shape.smooth.dependence.covariate == vehicle::Covariate::time)
     return false;
   const auto count = static_cast<Eigen::Index>(function_count(shape.smooth));
   const Eigen::VectorXd values = shape.model.fit.parameters.tail(count);
-  const double plain = kPlain * (values.maxCoeff() - values.minCoeff());
+  const double plain = settings::kPlainBend * (values.maxCoeff() - values.minCoeff());
   int bends = 0;
   double from = values(0), way = 0.0;  // of the last plain rise or fall
   for (Eigen::Index k = 1; k < count; ++k) {
@@ -38,7 +37,7 @@ bool bends_too_often(const Reshaped& shape) {
     way = change;
     from = values(k);
   }
-  return bends > kMost;
+  return bends > settings::kMostBends;
 }
 
 void take_shape(const Reshaped& shape, SearchResult& result) {
@@ -75,10 +74,9 @@ bool take_best_shape(const FitTask& task, const std::vector<Reshaped>& shapes, S
 /// Shape and noise settle each other.
 /// @return the shapes that were tried last, the one before them at the end
 std::vector<Reshaped> select_hyperparameters(const FitTask& task, SearchResult& result) {
-  constexpr int kRounds = 3;
   if (!task.rules.has(Rule::best_shape)) return {{result.smooths.back().smooth, result.model}};
   std::vector<Reshaped> shapes;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < settings::kShapeRounds; ++round) {
     const Reshaped now{result.smooths.back().smooth, result.model};
     shapes = reshaped(task, now, shapes_to_try(task, now));
     const bool is_new = take_best_shape(task, shapes, result);

@@ -7,6 +7,7 @@
 
 #include "calib/selection/cross_validation.hpp"
 #include "calib/selection/plausibility.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/terms/candidate_smooths.hpp"
 #include "calib/terms/effects/reference_effect.hpp"
 #include "calib/terms/smooth_term.hpp"
@@ -66,9 +67,8 @@ class Changes {
   /// @param two_states the change from one to the other; otherwise the least of the changes' sizes that all
   /// but a tenth of the motion exceed on one side of zero
   [[nodiscard]] double unknown(bool two_states) {
-    constexpr double kShare = 0.1;
     std::sort(all_.begin(), all_.end());
-    const double low = quantile(kShare), high = quantile(1.0 - kShare);
+    const double low = quantile(settings::kQuietShare), high = quantile(1.0 - settings::kQuietShare);
     if (two_states) return high - low;
     return low * high > 0.0 ? std::min(std::abs(low), std::abs(high)) : 0.0;
   }

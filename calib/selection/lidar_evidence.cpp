@@ -6,11 +6,10 @@
 #include <string>
 
 #include "calib/ingest/scan_span.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
-
-constexpr std::size_t kMostPairs = 120;  // of all recordings together
 
 const terms::LidarFinding* finding_of(const measurement::ScanPath& path, const std::string& name) {
   const auto found =
@@ -41,7 +40,8 @@ std::vector<measurement::HeadingPair> heading_pairs(const estimation::Fit& fit) 
   for (std::size_t i = 0; i < dataset.recordings.size(); ++i) {
     const measurement::ScanSurfaces scans(dataset.recordings[i], *dataset.models[i], p, fit.model.effects,
                                           dataset.pair_sets[i].range_noise);
-    const std::size_t most = std::max<std::size_t>(1, kMostPairs / dataset.recordings.size());
+    const std::size_t most =
+        std::max<std::size_t>(1, settings::kMostHeadingPairs / dataset.recordings.size());
     auto pairs = heading_pairs(scans, most);
     std::move(pairs.begin(), pairs.end(), std::back_inserter(all));
   }

@@ -14,7 +14,6 @@ namespace odomcalib::calib::selection {
 namespace {
 
 constexpr unsigned kSeed = 20210602;
-constexpr double kVisible = 1e-3;  // least share of a direction's signature that poses must leave
 
 /// How much farther from the first scan's line the shift puts a point, m.
 double pushed(const terms::BeamShift& shift, const Eigen::Vector2d& beam, double range,
@@ -118,7 +117,7 @@ Eigen::MatrixXd project(const std::vector<PairScore>& pairs, const PairScore& to
     values = ldlt.solve(total.gradient(accepted));
     rest -= part(total.gram, own, accepted) * onto;
   }
-  const Eigen::MatrixXd basis = visible(rest, kVisible);
+  const Eigen::MatrixXd basis = visible(rest, settings::kVisible);
   Eigen::MatrixXd projected(basis.cols(), static_cast<Eigen::Index>(pairs.size()));
   for (std::size_t g = 0; g < pairs.size(); ++g) {
     Eigen::VectorXd s = pairs[g].gradient(own);
@@ -202,7 +201,7 @@ Eigen::VectorXd solved(const std::vector<PairScore>& pairs, const std::vector<Ei
     gram += part(pairs[g].gram, columns, columns);
     gradient += pairs[g].gradient(columns);
   }
-  const Eigen::MatrixXd basis = visible(gram, kVisible);
+  const Eigen::MatrixXd basis = visible(gram, settings::kVisible);
   return basis * (basis.transpose() * gradient);
 }
 
@@ -269,7 +268,7 @@ LidarFit LidarScores::fit(const std::vector<std::size_t>& accepted) const {
   const std::vector<Eigen::Index> taken = columns(accepted);
   const auto n = static_cast<Eigen::Index>(taken.size());
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
-  const Eigen::MatrixXd basis = visible(part(total_.gram, taken, taken), kVisible);
+  const Eigen::MatrixXd basis = visible(part(total_.gram, taken, taken), settings::kVisible);
   LidarFit result{solved(pairs_, taken, kFolds), Eigen::VectorXd::Zero(n)};
   for (const PairScore& pair : pairs_) {
     const Eigen::VectorXd left = pair.gradient(taken) - part(pair.gram, taken, taken) * result.values;

@@ -4,14 +4,11 @@
 #include <cmath>
 
 #include "calib/selection/lidar_score.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
-
-constexpr std::size_t kFewestPairs = 25;  // sign flips of fewer cannot be significant
-constexpr std::size_t kMostFindings = 2;
-constexpr double kLevel = 0.001;  // family-wise
 
 std::vector<double> slice(const Eigen::VectorXd& all, Eigen::Index first, Eigen::Index count) {
   return {all.data() + first, all.data() + first + count};
@@ -40,9 +37,8 @@ std::vector<double> bearings_in(const std::vector<measurement::HeadingPair>& pai
 
 /// No value of it is beyond what chance leaves.
 bool is_superfluous(const terms::LidarFinding& finding) {
-  constexpr double kWald = 1.960;  // normal quantile, 5 % on both sides
   for (std::size_t k = 0; k < finding.values.size(); ++k)
-    if (std::abs(finding.values[k]) > kWald * finding.deviations[k]) return false;
+    if (std::abs(finding.values[k]) > settings::kNormal95 * finding.deviations[k]) return false;
   return finding.effect->is_named();
 }
 
@@ -53,7 +49,7 @@ class Trace {
       : scores_(pairs, candidates), refused_(candidates.size(), false) {}
 
   std::vector<terms::LidarFinding> run() {
-    while (accepted_.size() < kMostFindings && add_best()) {
+    while (accepted_.size() < settings::kMostLidarFindings && add_best()) {
     }
     return findings();
   }
@@ -102,7 +98,8 @@ class Trace {
   [[nodiscard]] std::vector<std::size_t> in_order(const std::vector<LidarScores::Score>& scores) const {
     std::vector<std::size_t> order;
     for (std::size_t c = 0; c < scores.size(); ++c)
-      if (scores[c].degrees > 0 && scores[c].family_p_value <= kLevel && !refused_[c]) order.push_back(c);
+      if (scores[c].degrees > 0 && scores[c].family_p_value <= settings::kLidarLevel && !refused_[c])
+        order.push_back(c);
     const auto rank = [&](std::size_t c) { return penalised(scores[c]); };
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) > rank(b); });
     const auto is_name_of_best = [&](std::size_t c) {
@@ -173,7 +170,7 @@ class Trace {
 
 std::vector<terms::LidarFinding> trace_lidar(const std::vector<measurement::HeadingPair>& pairs,
                                              bool all_round, bool ranges_are_judged) {
-  if (pairs.size() < kFewestPairs) return {};
+  if (pairs.size() < settings::kFewestHeadingPairs) return {};
   std::vector<terms::LidarEffectPtr> candidates = terms::lidar_catalogue(all_round);
   for (const auto& smooth : terms::lidar_smooths()) candidates.push_back(smooth);
   if (auto sector = terms::make_sector_error(bearings_in(pairs))) candidates.push_back(std::move(sector));

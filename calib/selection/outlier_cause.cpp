@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calib/math/vector2.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -42,8 +43,8 @@ class Causes {
     if (!ends) return;
     ++cause_.placed;
     const math::Pose placed = between(ends->begin.pose, ends->end.pose);
-    constexpr double kNear = 0.25;  // half as far from the places as from the wheels, squared
-    if (length(math::difference(pair.motion, placed), pair) > kNear * length(error, pair)) return;
+    if (length(math::difference(pair.motion, placed), pair) > settings::kNearPlaces * length(error, pair))
+      return;
     ++cause_.confirmed;
     add_excess({pair.motion.x - error(0), pair.motion.y - error(1), pair.motion.yaw - error(2)}, error);
   }
@@ -58,10 +59,9 @@ class Causes {
  private:
   /// Along a motion that is one; at rest there is no way to go.
   void add_excess(const math::Pose& predicted, const Eigen::Vector3d& error) {
-    constexpr double kRest = 0.01;  // m and rad
     const double way = std::hypot(predicted.x, predicted.y);
-    if (way > kRest) way_.add((error(0) * predicted.x + error(1) * predicted.y) / way);
-    if (std::abs(predicted.yaw) > kRest) turn_.add(std::copysign(1.0, predicted.yaw) * error(2));
+    if (way > settings::kAtRest) way_.add((error(0) * predicted.x + error(1) * predicted.y) / way);
+    if (std::abs(predicted.yaw) > settings::kAtRest) turn_.add(std::copysign(1.0, predicted.yaw) * error(2));
   }
 
   OutlierCause cause_;

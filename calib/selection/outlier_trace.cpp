@@ -12,18 +12,13 @@
 
 #include "calib/estimation/stack.hpp"
 #include "calib/math/se2.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr std::size_t kFewest = 5;      ///< events; fewer have everything in common
-constexpr double kFewestShare = 0.015;  ///< of all pairs
-constexpr double kLevel = 0.001;        ///< family-wise: better than all draws
-constexpr double kAlike = 0.8;          ///< of the best gain: a covariate that may as well be the one
-constexpr std::size_t kMostNamed = 3;
 constexpr std::size_t kSlices = 4;  ///< of each coordinate of a place
 constexpr std::size_t kBins = kSlices * kSlices;
-constexpr int kDraws = 999;
 constexpr unsigned kSeed = 5;
 
 /// Events and pairs by bin of one covariate.
@@ -143,12 +138,12 @@ class Tracer {
     const std::vector<double> gains = gains_of(events_);
     const double best = *std::max_element(gains.begin(), gains.end());
     trace.p_value = chance_of(best);
-    if (trace.p_value > kLevel) return;
+    if (trace.p_value > settings::kOutlierLevel) return;
     std::vector<std::size_t> by_gain(gains.size());
     std::iota(by_gain.begin(), by_gain.end(), std::size_t{0});
     std::sort(by_gain.begin(), by_gain.end(), [&](auto a, auto b) { return gains[a] > gains[b]; });
     for (const std::size_t v : by_gain)
-      if (gains[v] >= kAlike * best && trace.depends_on.size() < kMostNamed)
+      if (gains[v] >= settings::kAsGood * best && trace.depends_on.size() < settings::kMostNamed)
         trace.depends_on.push_back(covariates_[v].covariate);
     if (trace.depends_on.front() == vehicle::Covariate::time) set_range(by_gain.front(), trace);
   }
@@ -166,7 +161,7 @@ class Tracer {
     std::mt19937 engine(kSeed);
     int as_good = 0;
     std::vector<std::size_t> strewn(events_.size());
-    for (int draw = 0; draw < kDraws; ++draw) {
+    for (int draw = 0; draw < settings::kOutlierDraws; ++draw) {
       for (std::size_t k = 0; k < strewn.size(); ++k) {  // the beginning of a Fisher-Yates shuffle
         std::swap(order_[k], order_[k + engine() % (order_.size() - k)]);
         strewn[k] = order_[k];
@@ -174,7 +169,7 @@ class Tracer {
       const std::vector<double> gains = gains_of(strewn);
       as_good += *std::max_element(gains.begin(), gains.end()) >= best ? 1 : 0;
     }
-    return (1.0 + as_good) / (1.0 + kDraws);
+    return (1.0 + as_good) / (1.0 + settings::kOutlierDraws);
   }
 
   /// Of the bins with more than twice the usual share of events.
@@ -220,8 +215,8 @@ std::optional<OutlierTrace> trace_outliers(std::span<const measurement::FitData>
                                            const estimation::FitResult& fit) {
   const std::vector<std::size_t> events = events_of(fit);
   OutlierTrace trace{fit.discarded, fit.outlier.size(), {}, 1.0, 0.0, 0.0, {}};
-  if (events.size() < kFewest ||
-      static_cast<double>(trace.outliers) < kFewestShare * static_cast<double>(trace.pairs))
+  if (events.size() < settings::kFewestEvents ||
+      static_cast<double>(trace.outliers) < settings::kFewestOutliers * static_cast<double>(trace.pairs))
     return std::nullopt;
   Tracer(data, events, trace.pairs).run(trace);
   return trace;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "calib/selection/score.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/terms/smooth_term.hpp"
 
 namespace odomcalib::calib::selection {
@@ -43,12 +44,11 @@ std::string contradiction(const vehicle::Effect& effect, const estimation::FitRe
 }
 
 bool is_held_back(const vehicle::Effect& effect, const estimation::FitResult& fit) {
-  constexpr double kNear = 0.6;  // of the bound
   const Eigen::VectorXd values = last_parameters(effect, fit);
   const auto parameters = effect.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k)
     if (parameters[k].is_size() &&
-        !(std::abs(values(static_cast<Eigen::Index>(k))) < kNear * parameters[k].upper))
+        !(std::abs(values(static_cast<Eigen::Index>(k))) < settings::kNearBound * parameters[k].upper))
       return true;
   return false;
 }
@@ -70,7 +70,6 @@ bool is_negligible(const vehicle::Effect& effect, std::size_t first, const estim
 
 bool is_hidden_by_ticks(const terms::SmoothTerm& smooth, const estimation::FitResult& fit,
                         std::span<const vehicle::DriveModel* const> models) {
-  constexpr double kAtLeast = 2.0;                                                 // times what is hidden
   const double strongest = std::max(std::abs(smooth.low), std::abs(smooth.high));  // rad/s^2
   double hidden = 0.0;
   for (const vehicle::DriveModel* model : models) {
@@ -88,26 +87,26 @@ bool is_hidden_by_ticks(const terms::SmoothTerm& smooth, const estimation::FitRe
     const terms::BasisValues functions = functions_of(smooth, c);
     sway = std::max(sway, std::abs(std::inner_product(functions.begin(), functions.end(), own.data(), 0.0)));
   }
-  return sway < kAtLeast * hidden;
+  return sway < settings::kAboveTicks * hidden;
 }
 
 bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& before,
                  const estimation::FitResult& after) {
-  constexpr double kHarmless = 1e-3;  // of a length: a millimetre in a metre
   const double most =
       effect.storage() == vehicle::Storage::nowhere ? 10.0 : 3.0;  // times a standard deviation
   for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth}) {
     const double deviation = std::sqrt(after.covariance(k, k));
-    if (deviation > kHarmless * after.parameters(k) && deviation > most * std::sqrt(before.covariance(k, k)))
+    if (deviation > settings::kHarmless * after.parameters(k) &&
+        deviation > most * std::sqrt(before.covariance(k, k)))
       return true;
   }
   return false;
 }
 
 bool moves_lengths(const estimation::FitResult& before, const estimation::FitResult& after) {
-  constexpr double kFar = 0.25;
   for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth})
-    if (std::abs(after.parameters(k) - before.parameters(k)) > kFar * before.parameters(k)) return true;
+    if (std::abs(after.parameters(k) - before.parameters(k)) > settings::kFarOff * before.parameters(k))
+      return true;
   return false;
 }
 
@@ -117,7 +116,6 @@ bool smooth_spoils_base(const vehicle::Effect& smooth, const estimation::FitResu
 }
 
 bool is_superfluous(const vehicle::Effect& effect, std::size_t first, const estimation::FitResult& fit) {
-  constexpr double kLevel = 0.05;
   std::vector<Eigen::Index> sizes;
   const auto parameters = effect.parameters();
   for (std::size_t k = 0; k < parameters.size(); ++k)
@@ -125,7 +123,7 @@ bool is_superfluous(const vehicle::Effect& effect, std::size_t first, const esti
   const Eigen::VectorXd value = fit.parameters(sizes);
   const Eigen::MatrixXd covariance = fit.covariance(sizes, sizes);
   const double wald = value.dot(covariance.ldlt().solve(value));
-  return chi_squared_tail(wald, sizes.size()) > kLevel;
+  return chi_squared_tail(wald, sizes.size()) > settings::kNeededLevel;
 }
 
 }  // namespace odomcalib::calib::selection

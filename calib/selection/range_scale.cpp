@@ -3,15 +3,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "calib/selection/settings.hpp"
+
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr std::size_t kScans = 50;  ///< of a recording, evenly
-
 /// Of all errors that are left in the scans.
 double slope(const std::vector<terms::LidarFinding>& findings, double bearing, double range) {
-  constexpr double kHalfStep = 0.05;  // of the range
-  const double step = kHalfStep * range;
+  const double step = settings::kHalfStep * range;
   double rise = 0.0;
   for (const terms::LidarFinding& finding : findings) {
     if (finding.effect->is_correctable()) continue;
@@ -27,7 +26,8 @@ double range_scale_uncertainty(const std::vector<terms::LidarFinding>& findings,
                                std::span<const Recording> recordings) {
   double squares = 0.0, count = 0.0;
   for (const Recording& recording : recordings)
-    for (std::size_t s = 0; s < recording.scans.size(); s += 1 + recording.scans.size() / kScans) {
+    for (std::size_t s = 0; s < recording.scans.size();
+         s += 1 + recording.scans.size() / settings::kScansOfScale) {
       const Scan& scan = recording.scans[s];
       for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
         const auto range = static_cast<double>(scan.ranges[k]);

@@ -5,15 +5,11 @@
 #include <limits>
 #include <optional>
 
+#include "calib/selection/settings.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
-
-constexpr int kPasses = 4;         // readings that no longer seem outliers show some more of the error
-constexpr double kSettled = 1e-4;  // m
-constexpr double kHeldOutZ = 2.5;  // of the mean gain of scans that were not used
-constexpr double kClear = 4.0;     // deviations
 
 /// A map, and the error of the ranges that it was adjusted with.
 struct Adjusted {
@@ -36,11 +32,11 @@ measurement::RangeErrorTerms slant_step(const measurement::RangeEvidence& eviden
 }
 
 Adjusted adjusted_with(Step step, Adjusted state, measurement::PlacedBeams used) {
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < settings::kRangePasses; ++pass) {
     const measurement::RangeErrorTerms change = step(state.evidence);
     state.options.range_error += change;
     state.evidence = adjust_map(used.beams, state.options, state.map, used.places);
-    if (change.cwiseAbs().maxCoeff() < kSettled) break;
+    if (change.cwiseAbs().maxCoeff() < settings::kRangeSettled_m) break;
   }
   return state;
 }
@@ -129,7 +125,7 @@ class Trace {
     const double p_value = p_value_of_offset(state_.evidence);
     Adjusted better = adjusted_with(offset_step, state_, used_);
     const double value = better.options.range_error(0), deviation = deviation_of_offset(better.evidence);
-    if (std::abs(value) < kClear * deviation) return {};
+    if (std::abs(value) < settings::kClearRangeError * deviation) return {};
     const auto validation = advance(std::move(better));
     if (!validation) return {};
     return {finding_of(terms::make_range_bias(), p_value, *validation, Eigen::VectorXd::Constant(1, value),
@@ -152,7 +148,7 @@ class Trace {
   /// To a state that scans that were not used confirm.
   std::optional<CrossValidation> advance(Adjusted better) {
     const CrossValidation validation = prove(state_, better, others_);
-    if (validation.z < kHeldOutZ) return std::nullopt;
+    if (validation.z < settings::kHeldOutZ) return std::nullopt;
     state_ = std::move(better);
     return validation;
   }

@@ -13,9 +13,6 @@ namespace {
 
 constexpr std::size_t kBins = 16;
 constexpr std::size_t kMostPoints = 300;
-constexpr double kWorthDividing = 0.1;   ///< gain of the correlation ratio that a division must bring
-constexpr double kWorthChanging = 0.02;  ///< ... and a less simple covariate
-constexpr double kFarBack = 20.0;        ///< rad; a reversal farther back is forgotten
 
 /// A covariate that a defect may depend on: its mean or sum over a measured motion, or its value at the
 /// middle. Simple ones first: they are preferred.
@@ -92,10 +89,12 @@ constexpr std::array kCovariates = {
               [](const vehicle::StepContext& c) { return c.previous_push[vehicle::kUsualMemory]; }},
     Covariate{"place, x", "m", Covariate::mean, [](const vehicle::StepContext& c) { return c.x; }},
     Covariate{"place, y", "m", Covariate::mean, [](const vehicle::StepContext& c) { return c.y; }},
-    Covariate{"left wheel since reversal", "rad", Covariate::mean,
-              [](const vehicle::StepContext& c) { return std::min(c.left_since_reversal, kFarBack); }},
-    Covariate{"right wheel since reversal", "rad", Covariate::mean,
-              [](const vehicle::StepContext& c) { return std::min(c.right_since_reversal, kFarBack); }},
+    Covariate{
+        "left wheel since reversal", "rad", Covariate::mean,
+        [](const vehicle::StepContext& c) { return std::min(c.left_since_reversal, settings::kFarBack); }},
+    Covariate{
+        "right wheel since reversal", "rad", Covariate::mean,
+        [](const vehicle::StepContext& c) { return std::min(c.right_since_reversal, settings::kFarBack); }},
     Covariate{"time", "s", Covariate::mean, [](const vehicle::StepContext& c) { return c.t; }},
     Covariate{"heading", "rad", Covariate::middle, [](const vehicle::StepContext& c) { return c.heading; }},
 };
@@ -236,7 +235,7 @@ View best_view(const Samples& samples) {
   for (std::size_t divisor = 0; divisor < kDivisors.size(); ++divisor)
     for (std::size_t variable = 0; variable < kCovariates.size(); ++variable) {
       View view = make_view(samples, variable, divisor, axis);
-      const double lead = divisor == best.divisor ? kWorthChanging : kWorthDividing;
+      const double lead = divisor == best.divisor ? settings::kWorthChanging : settings::kWorthDividing;
       if (view.explained > best.explained + lead) best = std::move(view);
     }
   return best;

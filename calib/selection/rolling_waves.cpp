@@ -9,15 +9,10 @@
 
 #include "calib/selection/candidate_columns.hpp"
 #include "calib/selection/score.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
-
-constexpr double kShortest = 0.2;    ///< m; less than a pair of scans is long
-constexpr double kLongest = 1.5;     ///< m; what changes slower may be anything
-constexpr double kStep = 0.5;        ///< cycles over the whole way
-constexpr double kMostWaves = 3000;  ///< the shortest are left out where there would be more
-constexpr double kDecisive = 1e-4;   ///< of a peak as high anywhere, in noise
 
 /// Something that rolls.
 struct Roller {
@@ -98,13 +93,15 @@ class Periodogram {
   std::vector<double> weight_, score_;
 };
 
-/// Frequency of the wave that stands out of all that a roller may make, between which kStep cycles lie; its
-/// place in between a tenth as far.
+/// Frequency of the wave that stands out of all that a roller may make, between which settings::kRollingStep
+/// cycles lie; its place in between a tenth as far.
 /// @param metre of the covariate, for a metre of way
 std::optional<double> outstanding(double metre, const Periodogram& periodogram, double whole_way) {
-  const double lowest = 1.0 / (kLongest * metre), step = kStep / whole_way;
+  const double lowest = 1.0 / (settings::kLongestRolling_m * metre),
+               step = settings::kRollingStep / whole_way;
   if (!(step < lowest)) return std::nullopt;
-  const double highest = std::min(1.0 / (kShortest * metre), lowest + kMostWaves * step);
+  const double highest =
+      std::min(1.0 / (settings::kShortestRolling_m * metre), lowest + settings::kMostRolling * step);
   const auto best_of = [&](double low, double high, double by) {
     std::array<double, 2> best{low, 0.0};
     for (double f = low; f <= high; f += by)
@@ -114,7 +111,8 @@ std::optional<double> outstanding(double metre, const Periodogram& periodogram, 
   const double coarse = best_of(lowest, highest, step)[0];
   const auto [frequency, statistic] = best_of(coarse - step, coarse + step, 0.1 * step);
   const double tried = 3.0 * (highest - lowest) / step;
-  return chi_squared_tail(statistic, 2) * tried < kDecisive ? std::optional(frequency) : std::nullopt;
+  return chi_squared_tail(statistic, 2) * tried < settings::kDecisivePeak ? std::optional(frequency)
+                                                                          : std::nullopt;
 }
 
 /// Once round with each turn of a wheel has a name; it competes with the wave.

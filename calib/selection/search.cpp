@@ -27,10 +27,6 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr double kNoiseShare = 0.95;  ///< of pairs that a usual effect does not touch much
-constexpr std::size_t kMaxFindings = 3;
-constexpr std::size_t kMaxSmooths = 4;
-constexpr int kMaxSteps = 12;  ///< additions and failed proofs together
 constexpr const char* kAdded = "added";
 constexpr const char* kUnhelpful = "leaving out what it explains does as well";
 
@@ -53,10 +49,10 @@ class Search {
     eliminate_unhelpful_smooths();
     for (std::size_t e = 0; e < result_.model.effects.size(); ++e) {
       result_.model_uncertainties.push_back(
-          uncertainty_of_extrapolation(task_, result_.model, dependence_with(e)));
+          uncertainty_of_extrapolation(task_, result_.model, parts_of_term(e)));
       add_model_uncertainties(uncertainties_of_shape(task_, result_.model, e));
     }
-    add_model_uncertainties(unproved_);
+    add_model_uncertainties(unconfirmed_);
     report_what_has_grown();
     result_.detectable = smallest_detectable(task_, result_.model);
     return std::move(result_);
@@ -74,24 +70,24 @@ class Search {
   }
 
   /// Places in the model of an effect and of the smooth terms that make one term with it.
-  [[nodiscard]] std::vector<std::size_t> dependence_with(std::size_t index) const {
-    std::vector<std::size_t> dependence{index};
+  [[nodiscard]] std::vector<std::size_t> parts_of_term(std::size_t index) const {
+    std::vector<std::size_t> parts{index};
     const vehicle::EffectList& effects = result_.model.effects;
     for (const AddedSmoothTerm& added : result_.smooths) {
       const vehicle::Dependence signed_dependence{added.smooth.dependence.covariate,
                                                   signed_counterpart(added.smooth.dependence.channel)};
       if (added.effect == effects[index] || !contains(effects[index]->dependences(), signed_dependence))
         continue;
-      dependence.push_back(static_cast<std::size_t>(std::find(effects.begin(), effects.end(), added.effect) -
-                                                    effects.begin()));
+      parts.push_back(static_cast<std::size_t>(std::find(effects.begin(), effects.end(), added.effect) -
+                                               effects.begin()));
     }
-    return dependence;
+    return parts;
   }
 
   /// @param from, to shares of the whole search
   void go_on(double from, double to) {
-    for (int step = 0; step < kMaxSteps; ++step) {
-      progress_(from + (to - from) * step / kMaxSteps);
+    for (int step = 0; step < settings::kMostSteps; ++step) {
+      progress_(from + (to - from) * step / settings::kMostSteps);
       if (!advance()) break;
     }
   }
@@ -100,7 +96,7 @@ class Search {
   bool advance() {
     if (has_changed_) look_again();
     const auto smooth = best_smooth(*round_, result_);
-    const auto name = may_name() ? best_name_beside(smooth, *round_, result_) : std::nullopt;
+    const auto name = may_add_name() ? best_name_beside(smooth, *round_, result_) : std::nullopt;
     if (const auto late = name ? unnoticed_clock(*name) : std::nullopt; late && has(Rule::clock_before_name))
       return accept_name(*late);
     if (name && accept_name(*name)) return true;
@@ -112,13 +108,12 @@ class Search {
 
   /// A millisecond between the clocks is not worth reporting, but passes for play or for slip.
   [[nodiscard]] std::optional<Trial> unnoticed_clock(const Trial& name) const {
-    constexpr double kMuch = 0.9;  // of what the name explains
     if (is_clock(candidates_[name.candidate])) return std::nullopt;
     const auto clocks = round_->by_score([&](std::size_t k) { return is_clock(candidates_[k]); });
     auto clock = clocks.empty() ? std::nullopt : round_->refit(clocks.front());
     if (!clock || !is_plain_but_small(candidates_[clocks.front()], clock->model.fit)) return std::nullopt;
     const double by_clock = basis().fit.cost - clock->model.fit.cost;
-    const bool is_much = by_clock > kMuch * (basis().fit.cost - name.model.fit.cost);
+    const bool is_much = by_clock > settings::kMuchOfName * (basis().fit.cost - name.model.fit.cost);
     return is_much ? std::move(clock) : std::nullopt;
   }
 
@@ -138,7 +133,7 @@ class Search {
     noise_share_ = 1.0 - 0.5 * static_cast<double>(trace->outliers) / static_cast<double>(trace->pairs);
     begin_again();
     go_on(0.4, 0.5);
-    noise_share_ = kNoiseShare;
+    noise_share_ = settings::kNoiseShare;
   }
 
   /// What repeats itself along the floor or as something rolls, when nothing else is left to say.
@@ -156,26 +151,25 @@ class Search {
   }
 
   /// Waves are many, and what was nothing before one of them was found is not scored again.
-  void strike_hopeless_waves() {
-    constexpr double kHopeless = 0.05;  // family-wise
+  void exclude_hopeless_waves() {
     for (std::size_t k = 0; round_ && k < candidates_.size(); ++k)
       if (candidates_[k].smooth && terms::basis_as<terms::Wave>(*candidates_[k].smooth) &&
-          round_->score(k).family_p_value > kHopeless)
-        candidates_[k].struck = true;
+          round_->score(k).family_p_value > settings::kHopelessWave)
+        candidates_[k].excluded = true;
   }
 
   /// Scores of all that is left, on the model as it is now.
   void look_again() {
-    strike_hopeless_waves();
-    std::erase_if(candidates_, [](const Candidate& c) { return c.struck; });
+    exclude_hopeless_waves();
+    std::erase_if(candidates_, [](const Candidate& c) { return c.excluded; });
     round_.emplace(
         task_, FittedModel{result_.model.effects, widened_where_outlying(task_, result_.model, noise_share_)},
         candidates_);
     has_changed_ = false;
   }
 
-  [[nodiscard]] bool may_name() const {
-    return result_.findings.size() < kMaxFindings &&
+  [[nodiscard]] bool may_add_name() const {
+    return result_.findings.size() < settings::kMostFindings &&
            !(result_.has_unnamed() && has(Rule::names_before_smooth_terms));
   }
 
@@ -216,12 +210,13 @@ class Search {
       reason = failure(trial, validation, settled);
       const bool is_plain = !candidate.smooth || score.family_p_value <= settings::kNamedLevel;
       if (!reason.empty() && is_plain) {
-        unproved_.push_back(change);
-        if (candidate.smooth) unproved_.push_back(uncertainty_of_zero(task_, trial.model, *candidate.smooth));
+        unconfirmed_.push_back(change);
+        if (candidate.smooth)
+          unconfirmed_.push_back(uncertainty_of_zero(task_, trial.model, *candidate.smooth));
       }
     }
     consider(trial, reason.empty() ? kAdded : reason);
-    strike(candidate.key);
+    exclude(candidate.key);
     if (!reason.empty()) return std::nullopt;
     adopt(std::move(settled->model));
     return validation;
@@ -250,7 +245,7 @@ class Search {
   /// Stays in the model unnamed: a millisecond matters to nobody, but left out it would look like slip.
   std::optional<CrossValidation> keep_as_nuisance(const Trial& trial, const std::string& reason) {
     consider(trial, reason);
-    strike(candidates_[trial.candidate].key);
+    exclude(candidates_[trial.candidate].key);
     result_.nuisance.push_back(candidates_[trial.candidate].effect);
     const auto settled = round_->refit(trial.candidate, {});
     adopt(settled ? settled->model : trial.model);
@@ -356,7 +351,7 @@ class Search {
   void start_again() {
     has_changed_ = true;
     no_more_smooths_ = false;
-    unproved_.clear();
+    unconfirmed_.clear();
   }
 
   /// A term that can bend much should leave nothing to a free one.
@@ -394,14 +389,14 @@ class Search {
     const auto validation = accept(best);
     if (!validation) return true;
     result_.findings.push_back({candidate.effect, aliases, *validation});
-    strike_what_is_excluded_by(*candidate.effect);
+    exclude_what_is_covered_by(*candidate.effect);
     add_model_uncertainties(round_->model_uncertainties_of(rivals, best));
     drop_superfluous();
     return true;
   }
 
   bool accept_smooth(std::size_t index) {
-    if (no_more_smooths_ || result_.smooths.size() >= kMaxSmooths) return false;
+    if (no_more_smooths_ || result_.smooths.size() >= settings::kMostSmooths) return false;
     auto trial = happens_at_once(*candidates_[index].smooth)
                      ? refit_as(index, at_likeliest_change_point(task_, basis(), *candidates_[index].smooth))
                      : round_->refit(index);
@@ -414,7 +409,7 @@ class Search {
     const auto named_term = result_.owner_of(candidates_[index].smooth->dependence);
     const std::vector<vehicle::Covariate> alike = covariates_like(candidates_, round_->table(), index);
     if (!trial) {
-      strike(candidates_[index].key);
+      exclude(candidates_[index].key);
       return true;
     }
     const SearchResult before = result_;
@@ -432,7 +427,7 @@ class Search {
       go_back_to(before);
       return true;
     }
-    strike_what_is_excluded_by(*result_.smooths.back().effect);
+    exclude_what_is_covered_by(*result_.smooths.back().effect);
     drop_superfluous();
     return true;
   }
@@ -445,10 +440,10 @@ class Search {
     start_again();
   }
 
-  void strike_what_is_excluded_by(const vehicle::Effect& found) {
+  void exclude_what_is_covered_by(const vehicle::Effect& found) {
     for (Candidate& candidate : candidates_)
       if (candidate.smooth && found.excludes(candidate.smooth->dependence) && has(Rule::exclusions))
-        candidate.struck = true;
+        candidate.excluded = true;
   }
 
   /// A term that predicts nothing in the shape that it was found in, too coarse for it, may in another.
@@ -498,22 +493,22 @@ class Search {
 
   /// A candidate that was added, or failed cross-validation, is not tried again; the search goes on with the
   /// others.
-  void strike(const std::string& key) {
+  void exclude(const std::string& key) {
     for (Candidate& candidate : candidates_)
-      if (candidate.key == key) candidate.struck = true;
+      if (candidate.key == key) candidate.excluded = true;
   }
 
   FitTask task_;
   std::function<void(double)> progress_;
   std::vector<Candidate> candidates_;
   std::optional<SearchRound> round_;
-  double noise_share_ = kNoiseShare;
+  double noise_share_ = settings::kNoiseShare;
   bool no_more_smooths_ = false;
   bool has_changed_ = true;  ///< the model or the candidates, since the round began
   SearchResult result_;
   /// What plausible names and plain smooth terms would make of the base parameters that the last model could
   /// neither show nor rule out.
-  std::vector<Eigen::VectorXd> unproved_;
+  std::vector<Eigen::VectorXd> unconfirmed_;
 };
 
 }  // namespace

@@ -9,13 +9,7 @@
 #include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
-namespace {
-
-constexpr double kAmbiguity = 6.0;  ///< units of BIC
-constexpr double kSameDependence =
-    0.5;  ///< share of a smooth term's statistic that a name with that dependence must reach
-
-}  // namespace
+namespace {}  // namespace
 
 SearchRound::SearchRound(const FitTask& task, FittedModel basis, const std::vector<Candidate>& candidates)
     : task_(task),
@@ -81,21 +75,21 @@ std::vector<std::size_t> SearchRound::by_score(const Wanted& wanted) const {
 }
 
 bool SearchRound::smooth_beats(std::size_t smooth, std::size_t name) const {
-  if (penalised(smooth) - penalised(name) <= kAmbiguity) return false;
+  if (penalised(smooth) - penalised(name) <= settings::kAmbiguity) return false;
   const bool same_ground =
       contains(candidates_[name].effect->dependences(), candidates_[smooth].smooth->dependence) ||
-      table_.correlation(name, smooth) > kAlias;
+      table_.correlation(name, smooth) > settings::kAlias;
   const auto has_key_of_name = [&](std::size_t k) { return candidates_[k].key == candidates_[name].key; };
   const double of_best_shape = score(by_score(has_key_of_name).front()).statistic;
   const double of_smooth = score(smooth).statistic;
-  return !(same_ground &&
-           (score(name).statistic > kSameDependence * of_smooth || of_best_shape > kNearlyAll * of_smooth));
+  return !(same_ground && (score(name).statistic > settings::kSameDependence * of_smooth ||
+                           of_best_shape > kNearlyAll * of_smooth));
 }
 
 std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {
   std::vector<std::size_t> rivals;
   for (const Trial& trial : trials_)
-    if (is_open(trial.candidate) && best.gain - trial.gain < kAmbiguity &&
+    if (is_open(trial.candidate) && best.gain - trial.gain < settings::kAmbiguity &&
         task_.rules.has(Rule::close_rivals))
       rivals.push_back(trial.candidate);
   for (std::size_t k = 0; k < candidates_.size(); ++k)

@@ -64,7 +64,7 @@ class SearchRound {
   static constexpr std::size_t kRefits = 4;
 
  private:
-  [[nodiscard]] bool is_open(std::size_t candidate) const { return !candidates_[candidate].struck; }
+  [[nodiscard]] bool is_open(std::size_t candidate) const { return !candidates_[candidate].excluded; }
   [[nodiscard]] double penalty(std::size_t degrees) const;
   [[nodiscard]] double penalised(std::size_t candidate) const;
 

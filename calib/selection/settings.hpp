@@ -82,4 +82,194 @@ inline constexpr double kNegligibleSeat_m = 5e-4, kNegligibleSeat_rad = 2e-3;
 /// negligible.
 inline constexpr double kKnownSeat_m = 5e-3, kKnownSeat_rad = 2e-2;
 
+// --- Detectable ------------------------------------------------------------------------------------------
+
+/// Two-sided test at kNamedLevel among about a hundred candidates that are not alike, and nine of ten
+/// found. Chosen.
+inline constexpr double kDetectableQuantiles = 4.4 + 1.28;
+
+// --- Drive error -----------------------------------------------------------------------------------------
+
+/// Windows of a kind from which its error is reported. Chosen.
+inline constexpr std::size_t kFewestOfAKind = 4;
+
+// --- Equivalent models -----------------------------------------------------------------------------------
+
+/// Expected gap of -2 log L that separates two candidates. Chosen.
+inline constexpr double kSeparable = 10.0;
+/// Share of a smooth term's statistic that one of another covariate explains when either may be meant.
+/// Chosen.
+inline constexpr double kMostOfStatistic = 0.6;
+/// Canonical correlation that counts as indistinguishable. Chosen.
+inline constexpr double kAlias = 0.9;
+
+// --- Evaluation window -----------------------------------------------------------------------------------
+
+/// s, of open-loop driving. Chosen.
+inline constexpr double kHorizon_s = 10.0;
+/// rad/m, of a motion that counts as straight; more is a curve. Chosen.
+inline constexpr double kStraightest = 0.15;
+/// m/rad, of a motion that counts as a turn on the spot; more is an arc. Chosen.
+inline constexpr double kOnTheSpot = 0.08;
+/// m and rad; a pair at rest belongs to any kind. Chosen.
+inline constexpr double kStanding = 0.004;
+/// m; on less, noise of the reference dominates. Chosen.
+inline constexpr double kShortestStraight_m = 0.25;
+/// rad, of a turn that is judged. Chosen.
+inline constexpr double kSmallestTurn_rad = 0.6;
+
+// --- Fitted model ----------------------------------------------------------------------------------------
+
+/// 95 % quantile of chi-squared with three degrees of freedom. Derived.
+inline constexpr double kChiSquared95Of3 = 7.815;
+/// Factor on the noise from which it is widened. Chosen.
+inline constexpr double kToleratedExcess = 1.3;
+
+// --- Held out --------------------------------------------------------------------------------------------
+
+/// Pairs from which a held-out residual is stated. Chosen.
+inline constexpr std::size_t kFewestHeldOut = 50;
+/// sigma; a failed match says nothing about the wheels. Chosen.
+inline constexpr double kGrossError = 6.0;
+
+// --- Hyperparameter selection ----------------------------------------------------------------------------
+
+/// Share of all that a function spans from which a rise or fall counts as a bend. Chosen.
+inline constexpr double kPlainBend = 0.25;
+/// Bends of a function. Chosen: a peak or a step has fewer.
+inline constexpr int kMostBends = 3;
+/// Rounds in which hyperparameters and noise settle each other. Chosen.
+inline constexpr int kShapeRounds = 3;
+
+// --- Hyperparameters -------------------------------------------------------------------------------------
+
+/// Share of the motion in which an effect is absent, or of the other sign, when zero is known. Chosen.
+inline constexpr double kQuietShare = 0.1;
+
+// --- Lidar evidence --------------------------------------------------------------------------------------
+
+/// Pairs of scans with other headings, of all recordings together. Chosen.
+inline constexpr std::size_t kMostHeadingPairs = 120;
+
+// --- Lidar score -----------------------------------------------------------------------------------------
+
+/// Least share of a direction's signature that poses must leave. Chosen.
+inline constexpr double kVisible = 1e-3;
+
+// --- Lidar trace -----------------------------------------------------------------------------------------
+
+/// Sign flips of fewer cannot be significant. Chosen.
+inline constexpr std::size_t kFewestHeadingPairs = 25;
+/// Terms of the lidar. Chosen.
+inline constexpr std::size_t kMostLidarFindings = 2;
+/// Family-wise level of terms of the lidar. Chosen.
+inline constexpr double kLidarLevel = 0.001;
+/// 95 % quantile of the normal distribution, both sides. Derived.
+inline constexpr double kNormal95 = 1.960;
+
+// --- Outlier cause ---------------------------------------------------------------------------------------
+
+/// Squared ratio of distances, to the places and to the wheels' motion, from which the wheels are at fault.
+/// Derived: half as far.
+inline constexpr double kNearPlaces = 0.25;
+/// m and rad, of a pair at rest. Chosen.
+inline constexpr double kAtRest = 0.01;
+
+// --- Outlier trace ---------------------------------------------------------------------------------------
+
+/// Outlying events that are traced; fewer have everything in common. Chosen.
+inline constexpr std::size_t kFewestEvents = 5;
+/// Share of all pairs that outliers must be to be traced. Chosen.
+inline constexpr double kFewestOutliers = 0.015;
+/// Family-wise level of a covariate of the outliers. Derived: no draw of kOutlierDraws is above.
+inline constexpr double kOutlierLevel = 0.001;
+/// Share of the best gain from which a covariate may as well be the one. Chosen.
+inline constexpr double kAsGood = 0.8;
+/// Covariates named of outliers. Chosen.
+inline constexpr std::size_t kMostNamed = 3;
+/// Random permutations; the finest p-value is 1 / (1 + draws). Chosen.
+inline constexpr int kOutlierDraws = 999;
+
+// --- Plausibility ----------------------------------------------------------------------------------------
+
+/// Share of a bound from which a prior holds a size back. Chosen.
+inline constexpr double kNearBound = 0.6;
+/// Times what ticks hide that a sway has to be. Chosen.
+inline constexpr double kAboveTicks = 2.0;
+/// Deviation of a length, relative, that spoils nothing: a millimetre in a metre. Chosen.
+inline constexpr double kHarmless = 1e-3;
+/// Share of a length by which a smooth term may not move it. Chosen.
+inline constexpr double kFarOff = 0.25;
+/// Level of the Wald test of a term that is still needed. Chosen: the usual 5 %.
+inline constexpr double kNeededLevel = 0.05;
+
+// --- Range scale -----------------------------------------------------------------------------------------
+
+/// Scans of a recording, evenly, in which the lengths of the ranges are looked at. Chosen.
+inline constexpr std::size_t kScansOfScale = 50;
+/// Share of a range over which its error's slope is taken, to either side. Chosen.
+inline constexpr double kHalfStep = 0.05;
+
+// --- Range trace -----------------------------------------------------------------------------------------
+
+/// Readings that no longer seem outliers show some more of the error. Chosen.
+inline constexpr int kRangePasses = 4;
+/// m, change of an error of the ranges that no longer matters. Chosen.
+inline constexpr double kRangeSettled_m = 1e-4;
+/// Standard deviations of the mean gain on scans that were not used. Chosen.
+inline constexpr double kHeldOutZ = 2.5;
+/// Standard deviations of an error of the ranges. Chosen as kSignificance.
+inline constexpr double kClearRangeError = 4.0;
+
+// --- Residual trace --------------------------------------------------------------------------------------
+
+/// Gain of the correlation ratio that a division must bring. Chosen.
+inline constexpr double kWorthDividing = 0.1;
+/// Gain of the correlation ratio that a less simple covariate must bring. Chosen.
+inline constexpr double kWorthChanging = 0.02;
+/// rad; a reversal farther back is forgotten. Chosen.
+inline constexpr double kFarBack = 20.0;
+
+// --- Rolling waves ---------------------------------------------------------------------------------------
+
+/// m; less than a pair of scans is long. Chosen.
+inline constexpr double kShortestRolling_m = 0.2;
+/// m; what changes slower may be anything. Chosen.
+inline constexpr double kLongestRolling_m = 1.5;
+/// Cycles over the whole way between two waves that are tried. Derived: half the resolution of a Fourier
+/// transform.
+inline constexpr double kRollingStep = 0.5;
+/// Waves tried; the shortest are left out where there would be more. Chosen: time.
+inline constexpr double kMostRolling = 3000;
+/// Probability of a peak as high anywhere, in noise. Chosen.
+inline constexpr double kDecisivePeak = 1e-4;
+
+// --- Search ----------------------------------------------------------------------------------------------
+
+/// Share of the pairs that a usual effect does not touch much. Chosen.
+inline constexpr double kNoiseShare = 0.95;
+/// Named terms. Chosen.
+inline constexpr std::size_t kMostFindings = 3;
+/// Smooth terms without a name. Chosen.
+inline constexpr std::size_t kMostSmooths = 4;
+/// Additions and candidates that failed cross-validation, together. Chosen: time.
+inline constexpr int kMostSteps = 12;
+/// Share of what a name explains from which a small delay explains it as well. Chosen.
+inline constexpr double kMuchOfName = 0.9;
+/// Family-wise p-value above which a wave is not scored again. Chosen: time.
+inline constexpr double kHopelessWave = 0.05;
+
+// --- Search round ----------------------------------------------------------------------------------------
+
+/// Units of BIC within which two candidates may both be meant. Chosen; 6 to 10 are called strong evidence
+/// by Kass and Raftery, J. Am. Stat. Assoc. 90, 1995.
+inline constexpr double kAmbiguity = 6.0;
+/// Share of a smooth term's statistic that a name with that dependence must reach. Chosen.
+inline constexpr double kSameDependence = 0.5;
+
+// --- Window errors ---------------------------------------------------------------------------------------
+
+/// m, of travel over which an error of the heading counts as one of the position. Chosen.
+inline constexpr double kHeadingLever_m = 0.5;
+
 }  // namespace odomcalib::calib::selection::settings

@@ -14,7 +14,6 @@ namespace odomcalib::calib::selection {
 namespace {
 
 constexpr unsigned kSeed = 19960612;
-constexpr double kHeadingLever = 0.5;  ///< m
 
 double rms(const std::vector<double>& values) {
   double sum = 0.0;
@@ -23,7 +22,7 @@ double rms(const std::vector<double>& values) {
 }
 
 double combined_square(const WindowErrors& e, std::size_t k) {
-  return e.position[k] * e.position[k] + std::pow(kHeadingLever * e.heading[k], 2);
+  return e.position[k] * e.position[k] + std::pow(settings::kHeadingLever_m * e.heading[k], 2);
 }
 
 std::vector<EvaluationWindow> select(const std::vector<EvaluationWindow>& windows, std::size_t fold,

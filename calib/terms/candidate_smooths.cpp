@@ -4,13 +4,11 @@
 #include <cmath>
 #include <tuple>
 
+#include "calib/terms/settings.hpp"
 #include "calib/terms/smooth_term_on_drives.hpp"
 
 namespace odomcalib::calib::terms {
 namespace {
-
-constexpr std::size_t kEvery = 3;    ///< relay is tried: the others are found by their neighbours
-constexpr int kHighestHarmonic = 8;  ///< poles of encoder magnets, lugs, spokes
 
 using Channels = std::vector<vehicle::Channel>;
 
@@ -71,12 +69,10 @@ bool is_unsigned(vehicle::Channel channel) {
 }
 
 /// Of both wheels, as the day goes, of one, as its brake or its motor does, or of the heading, as the wind
-/// turns it. Periods closer than kStep cycles per recording look alike.
+/// turns it. Periods closer than settings::kCycleStep cycles per recording look alike.
 void add_periods(double duration, std::vector<SmoothTerm>& smooths) {
-  constexpr double kShortest = 8.0;  // s
-  constexpr double kFewestCycles = 1.5;
-  constexpr double kStep = 0.7;  // cycles
-  for (double cycles = kFewestCycles; duration / cycles > kShortest; cycles += kStep)
+  for (double cycles = settings::kFewestCycles; duration / cycles > settings::kShortestCycle_s;
+       cycles += settings::kCycleStep)
     for (const auto channel : {vehicle::Channel::both_travel, vehicle::Channel::left_travel,
                                vehicle::Channel::right_travel, vehicle::Channel::yaw_path})
       smooths.push_back(
@@ -86,8 +82,7 @@ void add_periods(double duration, std::vector<SmoothTerm>& smooths) {
 /// A load that is taken up or slips, a tyre that lets its air out, a lidar that is knocked: from one moment
 /// on all is different. Where it leaves little of the drive, that would hang on a few scans.
 void add_change_points(double duration, std::vector<SmoothTerm>& smooths) {
-  constexpr int kLeast = 2;  // parts of the drive
-  for (int k = kLeast; k <= kChangePoints - kLeast; ++k)
+  for (int k = settings::kLeastPart; k <= kChangePoints - settings::kLeastPart; ++k)
     for (const auto channel :
          {vehicle::Channel::both_travel, vehicle::Channel::track, vehicle::Channel::way_turned})
       smooths.push_back(on_basis({{vehicle::Covariate::time, channel}, 0.0, duration},
@@ -182,7 +177,7 @@ std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* c
       const SmoothTerm smooth{{covariate, channel}, low, high};
       const bool has_constant = covariate == vehicle::Covariate::heading && is_unsigned(channel) && both_ways;
       smooths.push_back(has_constant ? on_basis(smooth, Harmonics{0, true}) : smooth);
-      if (is_phase(covariate)) add_harmonics(smooth, kHarmonics + 1, kHighestHarmonic, smooths);
+      if (is_phase(covariate)) add_harmonics(smooth, kHarmonics + 1, settings::kHighestHarmonic, smooths);
       if (covariate ==
           vehicle::Covariate::turn_acceleration) {  // what comes late may look like what went before
         smooths.push_back(smooth);
@@ -190,7 +185,8 @@ std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* c
       }
       // What stays until the opposite push hardly resembles what fades.
       for (std::size_t memory = 0; memory < memories_of(covariate); ++memory)
-        if (is_relay(covariate, memory) && (memory - vehicle::kMemorySpans.size()) % kEvery == 0) {
+        if (is_relay(covariate, memory) &&
+            (memory - vehicle::kMemorySpans.size()) % settings::kEveryRelay == 0) {
           smooths.push_back(on_basis(smooth, Relay{}));
           smooths.back().memory = memory;
         }

@@ -9,14 +9,10 @@
 
 #include "calib/math/median.hpp"
 #include "calib/math/se2.hpp"
+#include "calib/terms/settings.hpp"
 
 namespace odomcalib::calib::terms {
 namespace {
-
-constexpr double kSmallShift = 3e-3;   // m
-constexpr double kSmallAngle = 2e-3;   // rad
-constexpr double kLargestShift = 0.2;  // m
-constexpr double kLargestAngle = 0.1;  // rad
 
 class UnnamedError : public LidarEffect {
  public:
@@ -26,8 +22,9 @@ class UnnamedError : public LidarEffect {
   [[nodiscard]] bool is_named() const override { return false; }
   [[nodiscard]] std::string covariate() const override { return covariate_; }
   [[nodiscard]] std::vector<LidarParameter> parameters() const override {
-    const LidarParameter one = radial_ ? LidarParameter{"radial", "m", kSmallShift, kLargestShift}
-                                       : LidarParameter{"angular", "rad", kSmallAngle, kLargestAngle};
+    const LidarParameter one =
+        radial_ ? LidarParameter{"radial", "m", settings::kSmallShift_m, settings::kLargestShift_m}
+                : LidarParameter{"angular", "rad", settings::kSmallAngle_rad, settings::kLargestAngle_rad};
     std::vector<LidarParameter> all(size_, one);
     for (std::size_t k = 0; k < size_; ++k) all[k].name += std::to_string(k + 1);
     return all;
@@ -164,13 +161,12 @@ std::array<double, 4> slants(const Sighting& s) {
 LidarEffectPtr make_incidence_error() { return std::make_shared<OfIncidence>(); }
 
 LidarEffectPtr make_sector_error(const std::vector<double>& bearings) {
-  constexpr std::size_t kFewest = 30;
   std::array<std::size_t, OfSector::kKnots> seen{};
   for (const double bearing : bearings)
     ++seen.at(static_cast<std::size_t>(std::round(OfSector::place_of(bearing))) % OfSector::kKnots);
   std::vector<std::size_t> knots;
   for (std::size_t k = 0; k < seen.size(); ++k)
-    if (seen.at(k) >= kFewest) knots.push_back(k);
+    if (seen.at(k) >= settings::kFewestPoints) knots.push_back(k);
   return knots.size() < 2 ? nullptr : std::make_shared<OfSector>(std::move(knots));
 }
 

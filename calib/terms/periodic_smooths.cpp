@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/terms/settings.hpp"
+
 namespace odomcalib::calib::terms {
 namespace {
-
-constexpr double kShortest = 0.2;    ///< m
-constexpr double kLongest = 1.25;    ///< m; what changes slower is left to the polynomials
-constexpr double kStep = 0.7;        ///< cycles over the place's extent
-constexpr double kSmallest = 0.5;    ///< m, least extent taken for separating waves
-constexpr double kMostWaves = 1500;  ///< the shortest are left out where there would be more
 
 struct Extent {
   double low = 1e300, high = -1e300;
@@ -19,12 +15,15 @@ struct Extent {
     high = std::max(high, value);
   }
   /// Between neighbouring waves, cycles per m.
-  [[nodiscard]] double step() const { return kStep / std::max(high - low, kSmallest); }
+  [[nodiscard]] double step() const {
+    return settings::kWaveStep / std::max(high - low, settings::kSmallestPlace_m);
+  }
 };
 
-/// The highest frequency whose half disc holds no more than kMostWaves.
+/// The highest frequency whose half disc holds no more than settings::kMostWaves.
 double highest_frequency(double x_step, double y_step) {
-  return std::min(1.0 / kShortest, std::sqrt(2.0 * kMostWaves * x_step * y_step / math::kPi));
+  return std::min(1.0 / settings::kShortestWave_m,
+                  std::sqrt(2.0 * settings::kMostWaves * x_step * y_step / math::kPi));
 }
 
 }  // namespace
@@ -46,7 +45,7 @@ std::vector<SmoothTerm> periodic_smooths(std::span<const vehicle::DriveModel* co
     for (double b = a > 0.0 ? -std::floor(highest / y.step()) * y.step() : y.step(); b <= highest;
          b += y.step()) {
       const double frequency = std::hypot(a, b);
-      if (frequency < 1.0 / kLongest || frequency > highest) continue;
+      if (frequency < 1.0 / settings::kLongestWave_m || frequency > highest) continue;
       waves.push_back(on_basis(floor, Wave{a, b}));
     }
   return waves;

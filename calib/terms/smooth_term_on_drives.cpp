@@ -5,10 +5,10 @@
 #include <limits>
 #include <numeric>
 
+#include "calib/terms/settings.hpp"
+
 namespace odomcalib::calib::terms {
 namespace {
-
-constexpr double kMoving = 0.01;  ///< m/s of either wheel; standing still shows nothing
 
 /// How much motion of the channel an interval holds.
 double amount(vehicle::Channel channel, const vehicle::StepContext& c) {
@@ -29,7 +29,7 @@ double amount(vehicle::Channel channel, const vehicle::StepContext& c) {
 }
 
 bool is_at_rest(const vehicle::StepContext& c) {
-  return std::abs(c.left_speed) <= kMoving && std::abs(c.right_speed) <= kMoving;
+  return std::abs(c.left_speed) <= settings::kMoving && std::abs(c.right_speed) <= settings::kMoving;
 }
 
 /// The smooth term's functions in an interval on each of its channels, with how much motion they act on.
@@ -73,12 +73,11 @@ std::pair<double, double> range_of(vehicle::Covariate covariate,
 }
 
 bool goes_both_ways(std::span<const vehicle::DriveModel* const> models) {
-  constexpr double kLeast = 0.2;  // of the way
   double ahead = 0.0, back = 0.0;
   for (const vehicle::DriveModel* model : models)
     for (const vehicle::StepContext& c : model->context())
       (c.speed > 0.0 ? ahead : back) += std::abs(c.speed) * c.dt;
-  return std::min(ahead, back) > kLeast * (ahead + back);
+  return std::min(ahead, back) > settings::kLeastOfWay * (ahead + back);
 }
 
 bool may_be_centred(const SmoothTerm& smooth) {

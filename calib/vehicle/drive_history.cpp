@@ -4,14 +4,10 @@
 #include <cmath>
 #include <span>
 
+#include "calib/vehicle/settings.hpp"
+
 namespace odomcalib::calib::vehicle {
 namespace {
-
-/// m/s; below, the direction of travel is undefined and the last one is kept ...
-constexpr double kStanding = 0.005;
-/// ... as below this share of the rims' speed in a turn: on the spot, wheels that are not quite alike and
-/// drives that do not quite keep their speed move the middle of the axle to and fro.
-constexpr double kOnTheSpot = 0.1;
 
 /// Of a time in which a quantity goes from one value to another.
 double share_below_one(double from, double to) {
@@ -69,7 +65,8 @@ LostToPlay DriveHistory::Gears::advance(double delta, double dither) {
 void DriveHistory::advance(StepContext& c) {
   const math::Pose step = wheels::wheel_arc(base_.left_radius * c.left_delta,
                                             base_.right_radius * c.right_delta, base_.track_width);
-  const double least = std::max(kStanding, kOnTheSpot * 0.5 * base_.track_width * std::abs(c.turn_rate));
+  const double least =
+      std::max(settings::kStanding, settings::kOnTheSpot * 0.5 * base_.track_width * std::abs(c.turn_rate));
   const double now = std::abs(c.speed) > least ? std::copysign(1.0, c.speed) : direction_;
   if (direction_ != 0.0 && now != direction_) since_reversal_ = 0.0;
   direction_ = now;
@@ -100,8 +97,7 @@ void DriveHistory::advance(StepContext& c) {
 /// the angle between both (Campion, Bastin and D'Andrea-Novel 1996, eq. 4: no slip across the wheel). A lean
 /// turns it on by lean * s / t.
 void DriveHistory::swing_caster(StepContext& c, const math::Pose& step) {
-  constexpr double kBehind = 0.6;  // track widths; what matters is that a spin moves the pivot sideways
-  const double across = -kBehind * base_.track_width * step.yaw;
+  const double across = -settings::kCasterBehind * base_.track_width * step.yaw;
   const double way = std::hypot(step.x, across);
   const double towards = std::atan2(across, step.x);
   std::size_t k = 0;
@@ -147,8 +143,6 @@ void DriveHistory::remember_stop(StepContext& c) {
 
 /// Tyres, belts and gears; the state follows the motion over a distance of its own.
 void DriveHistory::wind_up(const StepContext& c, const math::Pose& step) {
-  constexpr double kWay = 0.05;   // m of the rims
-  constexpr double kTurn = 0.15;  // rad
   const double left = base_.left_radius * c.left_delta, right = base_.right_radius * c.right_delta;
   const double rims = std::abs(left) + std::abs(right);
   const auto follow = [](double& state, double aim, double motion) {
@@ -156,18 +150,17 @@ void DriveHistory::wind_up(const StepContext& c, const math::Pose& step) {
   };
   if (stood_ > 0.0 || !(rims > 0.0)) return;
   auto& [brief, lasting] = wound_;
-  follow(brief.way, (left + right) / rims, 0.5 * rims / kWay);
-  follow(brief.turn, (right - left) / rims, 0.5 * rims / kWay);
-  follow(lasting.way, std::copysign(1.0, step.x), std::abs(step.x) / kWay);
-  follow(lasting.turn, std::copysign(1.0, step.yaw), std::abs(step.yaw) / kTurn);
+  follow(brief.way, (left + right) / rims, 0.5 * rims / settings::kWindWay_m);
+  follow(brief.turn, (right - left) / rims, 0.5 * rims / settings::kWindWay_m);
+  follow(lasting.way, std::copysign(1.0, step.x), std::abs(step.x) / settings::kWindWay_m);
+  follow(lasting.turn, std::copysign(1.0, step.yaw), std::abs(step.yaw) / settings::kWindTurn_rad);
 }
 
 void DriveHistory::unwind(StepContext& c) {
-  constexpr double kTime = 0.15;  // s
   const double rim_speed = std::max(std::abs(c.left_speed), std::abs(c.right_speed));
   if (stood_ == 0.0) fastest_ = std::max(fastest_, rim_speed);
   c.fastest = fastest_;
-  const double share = -std::expm1(-std::min(stood_, c.dt) / kTime);
+  const double share = -std::expm1(-std::min(stood_, c.dt) / settings::kUnwind_s);
   for (std::size_t k = 0; k < kWindings; ++k) {
     c.unwound[k] = {share * wound_[k].way, share * wound_[k].turn};
     wound_[k].way -= c.unwound[k].way;
@@ -177,9 +170,8 @@ void DriveHistory::unwind(StepContext& c) {
 
 /// Noise of the acceleration at steady speed must not wash the memory out.
 void DriveHistory::remember_push(StepContext& c) {
-  constexpr double kMemory = 0.1;  // m/s
   c.previous_push = previous_push_;
-  if (std::abs(c.push) > kPushes.front()) remember(previous_push_, c.push * c.dt / kMemory);
+  if (std::abs(c.push) > kPushes.front()) remember(previous_push_, c.push * c.dt / settings::kPushMemory);
   for (std::size_t k = 0; k < kPushes.size(); ++k)
     if (std::abs(c.hardest_push) > kPushes[k])
       previous_push_[kMemorySpans.size() + k] = std::copysign(1.0, c.hardest_push);

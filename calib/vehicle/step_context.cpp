@@ -5,12 +5,10 @@
 #include <cmath>
 
 #include "calib/vehicle/drive_history.hpp"
+#include "calib/vehicle/settings.hpp"
 
 namespace odomcalib::calib::vehicle {
 namespace {
-
-constexpr double kSmoothing = 0.25;  ///< s; differences of raw ticks over less are mostly quantisation noise
-constexpr double kCoarse = 5e-4;     ///< m; ticks from which on shorter times show nothing else either
 
 /// Least-squares parabola through (t, values) around `centre` within the smoothing window: slope and
 /// curvature.
@@ -25,7 +23,7 @@ LocalDerivatives local_derivatives(const std::vector<double>& t, const std::vect
   double s[5] = {};
   double b[3] = {};
   for (std::size_t k = low; k <= high; ++k) {
-    const double u = (t[k] - centre) / kSmoothing;
+    const double u = (t[k] - centre) / settings::kSmoothing_s;
     const double y = values[k] - values[low];
     double power = 1.0;
     for (int j = 0; j < 5; ++j, power *= u) {
@@ -38,7 +36,7 @@ LocalDerivatives local_derivatives(const std::vector<double>& t, const std::vect
   const double determinant = normal.determinant();
   if (high - low >= 3 && std::abs(determinant) > 1e-9 * std::pow(s[0], 3)) {
     const Eigen::Vector3d c = normal.inverse() * Eigen::Vector3d(b[0], b[1], b[2]);
-    return {c(1) / kSmoothing, 2.0 * c(2) / (kSmoothing * kSmoothing)};
+    return {c(1) / settings::kSmoothing_s, 2.0 * c(2) / (settings::kSmoothing_s * settings::kSmoothing_s)};
   }
   const double duration = t[high] - t[low];
   return {duration > 0.0 ? (values[high] - values[low]) / duration : 0.0, 0.0};
@@ -76,7 +74,7 @@ void fill_speeds(StepContext& c, const wheels::WheelTrack& track, Window window,
 /// Fine encoders show an acceleration over a shorter time than coarse ones.
 double duration_for(const wheels::WheelTrack& track, const wheels::BaseParameters& base, double if_fine) {
   const double tick = track.tick_angle * std::max(base.left_radius, base.right_radius);
-  return tick <= kCoarse ? if_fine : kSmoothing;
+  return tick <= settings::kCoarse_m ? if_fine : settings::kSmoothing_s;
 }
 
 /// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on.
@@ -126,34 +124,31 @@ void fill_changes_of_acceleration(std::vector<StepContext>& contexts) {
 /// count or two by which its wheels settle are no motion.
 void fill_speed_magnitudes(std::vector<StepContext>& contexts, const wheels::WheelTrack& track,
                            std::size_t first, const wheels::BaseParameters& base) {
-  constexpr double kSlow = 0.003;        // m/s
-  constexpr std::size_t kIntervals = 3;  // the last of them the one in question: odometry knows no later ones
-  constexpr double kFew = 1.5;           // counts in them, mean of both wheels
   const double count = track.tick_angle * std::max(base.left_radius, base.right_radius);
   for (std::size_t j = 0; j < contexts.size(); ++j) {
     std::size_t from = first + j;
     const std::size_t to = from + 1;
-    while (to - from < kIntervals && from > 0 && track.segment[from - 1] == track.segment[to]) --from;
+    while (to - from < settings::kSlowIntervals && from > 0 && track.segment[from - 1] == track.segment[to])
+      --from;
     double way = 0.0;
     for (std::size_t k = from; k < to; ++k)
       way += 0.5 * (base.left_radius * std::abs(track.left[k + 1] - track.left[k]) +
                     base.right_radius * std::abs(track.right[k + 1] - track.right[k]));
-    contexts[j].pace = way / std::max(kSlow * (track.t[to] - track.t[from]), kFew * count);
+    contexts[j].pace =
+        way / std::max(settings::kSlow * (track.t[to] - track.t[from]), settings::kFewCounts * count);
   }
 }
 
 /// A push may be short, but what lies beyond a threshold must not be noise: the curvature of a parabola
 /// through values of deviation s, one every dt over a time T, has the deviation sqrt(720 dt / T^5) s.
 double duration_of_push(const wheels::WheelTrack& track, const wheels::BaseParameters& base) {
-  constexpr double kTolerated = 0.03;  // m/s^2
-  constexpr double kFewest = 3.1;      // intervals that a curvature needs, with some leeway
-  constexpr double kShortest = 0.08;   // s; stamps are no better than to a millisecond
+  constexpr double kFewest = 3.1;  // intervals that a curvature needs, with some leeway
   const double dt =
       (track.t.back() - track.t.front()) / std::max(1.0, static_cast<double>(track.t.size() - 1));
   const double count = track.tick_angle * std::max(base.left_radius, base.right_radius);
   const double variance = count * count / 12.0 / 2.0;  // of both wheels' mean
-  const double wanted = std::pow(720.0 * dt * variance / (kTolerated * kTolerated), 0.2);
-  return std::max(std::clamp(wanted, kShortest, kSmoothing), kFewest * dt);
+  const double wanted = std::pow(720.0 * dt * variance / (settings::kPushNoise * settings::kPushNoise), 0.2);
+  return std::max(std::clamp(wanted, settings::kShortestPush_s, settings::kSmoothing_s), kFewest * dt);
 }
 
 double push_of(const WheelAccelerations& wheels, std::size_t k, const wheels::BaseParameters& base) {
@@ -221,7 +216,7 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
     c.right_angle = (track.right[k] + track.right[k + 1]) / 2.0;
     c.left_delta = joined ? track.left[k + 1] - track.left[k] : 0.0;
     c.right_delta = joined ? track.right[k + 1] - track.right[k] : 0.0;
-    window = window_around(track, k, window, centre, kSmoothing);
+    window = window_around(track, k, window, centre, settings::kSmoothing_s);
     fill_speeds(c, track, window, centre, base);
   }
   fill_accelerations_at_ends(contexts, track, first, base);

@@ -6,14 +6,13 @@
 #include <utility>
 
 #include "calib/math/median.hpp"
+#include "calib/wheels/settings.hpp"
 
 namespace odomcalib::calib::wheels {
 namespace {
 
 using Cubic = boost::math::interpolators::makima<std::vector<double>>;
 
-constexpr double kLongest = 0.03;   // s
-constexpr double kGap = 0.5;        // s
 constexpr std::size_t kFewest = 4;  // samples that a cubic needs
 
 std::vector<double> part_of(const std::vector<double>& all, std::size_t begin, std::size_t end) {
@@ -52,7 +51,7 @@ void append_refined(const WheelTrack& track, std::size_t begin, std::size_t end,
   for (std::size_t k = begin; k + 1 < end; ++k) {
     copy(k);
     const double duration = track.t[k + 1] - track.t[k];
-    const int parts = static_cast<int>(std::ceil(duration / kLongest));
+    const int parts = static_cast<int>(std::ceil(duration / settings::kFineInterval_s));
     for (int part = 1; part < parts; ++part) {
       const double t = track.t[k] + duration * part / parts;
       append(out, t, within(track.left[k], track.left[k + 1], left(t)),
@@ -70,8 +69,8 @@ WheelTrack finely_sampled(const WheelTrack& track) {
   out.tick_angle = track.tick_angle;
   std::size_t begin = 0;
   for (std::size_t k = 1; k <= track.t.size(); ++k) {
-    const bool goes_on =
-        k < track.t.size() && track.segment[k] == track.segment[begin] && track.t[k] - track.t[k - 1] <= kGap;
+    const bool goes_on = k < track.t.size() && track.segment[k] == track.segment[begin] &&
+                         track.t[k] - track.t[k - 1] <= settings::kGap_s;
     if (goes_on) continue;
     append_refined(track, begin, k, out);
     begin = k;

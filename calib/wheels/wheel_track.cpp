@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "calib/math/se2.hpp"
+#include "calib/wheels/settings.hpp"
 
 namespace odomcalib::calib::wheels {
 namespace {
@@ -25,11 +26,12 @@ std::size_t WheelTrack::interval_at(double time) const {
 }
 
 Bend WheelTrack::bend(std::size_t interval) const {
-  constexpr double kAlike = 2.0;  // neighbours' durations
   if (interval == 0 || interval + 2 >= t.size() || segment[interval - 1] != segment[interval + 2]) return {};
   const auto duration = [this](std::size_t k) { return t[k + 1] - t[k]; };
   const double own = duration(interval), before = duration(interval - 1), after = duration(interval + 1);
-  if (std::max(before, after) > kAlike * own || std::min(before, after) * kAlike < own) return {};
+  if (std::max(before, after) > settings::kAlikeIntervals * own ||
+      std::min(before, after) * settings::kAlikeIntervals < own)
+    return {};
   const double by_rate = own * own / (own + 0.5 * (before + after));
   return {by_rate / before, by_rate / after};
 }

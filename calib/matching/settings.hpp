@@ -1,0 +1,102 @@
+// Numbers that decide how scans are matched, each once, with its unit and its origin: derived (from what),
+// published (source), measured (where), chosen (for what reason; where none is given, no comparison with
+// other values is known). Sizes of tables and numbers that only rounding needs stand where they are used.
+#pragma once
+
+#include <cstddef>
+
+namespace odomcalib::calib::matching::settings {
+
+// --- Both ways -------------------------------------------------------------------------------------------
+
+/// Correlation of the errors of both ways: the readings are the same, the walls' ends and pieces are not.
+/// Measured: in simulated rooms; 0.8 where furniture was moved between the scans.
+inline constexpr double kBothWaysCorrelation = 0.93;
+
+// --- Joint lines -----------------------------------------------------------------------------------------
+
+/// Gauss-Newton steps on the walls of both scans. Chosen.
+inline constexpr int kMostLineSteps = 10;
+/// sigma, a step that no longer matters. Chosen.
+inline constexpr double kLinesSettled = 0.02;
+
+// --- Likelihood field ------------------------------------------------------------------------------------
+
+/// m; what lies farther out is left out of the map. Chosen.
+inline constexpr double kLargestMap_m = 200.0;
+
+// --- Point to line ---------------------------------------------------------------------------------------
+
+/// Points in correspondence from which a match counts. Chosen.
+inline constexpr std::size_t kFewestPoints = 20;
+/// Cosine between the two scans' normals. Chosen.
+inline constexpr double kNormalsAgree = 0.8;
+/// Cosine; flatter beams say little and err much. Chosen.
+inline constexpr double kFlattestBeam = 0.2;
+/// Steps on a part of the points. Chosen.
+inline constexpr int kCoarseSteps = 4;
+/// Points of the first steps. Chosen.
+inline constexpr std::size_t kCoarsePoints = 180;
+/// Step from which on steps are halved, as correspondences may alternate. Chosen.
+inline constexpr int kDampedFrom = 12;
+/// sigma, a step small enough to leave the rest to the walls. Chosen.
+inline constexpr double kPointsSettled = 0.5;
+/// sigma, without walls to refine on. Chosen.
+inline constexpr double kPointsSettledAlone = 0.05;
+
+// --- Surface ---------------------------------------------------------------------------------------------
+
+/// Points on each side of one that its line is fitted to. Chosen.
+inline constexpr int kMostNeighbours = 12;
+/// m to either side; longer stretches of wall gain nothing and bend at corners. Chosen.
+inline constexpr double kReachOfLine_m = 0.25;
+/// Steps between beams that a line may reach where no more than kFewLines of the points have one. Chosen.
+inline constexpr double kWideReach = 2.5;
+/// Share of the points with a line below which beams are too rare for the narrow reach. Chosen.
+inline constexpr double kFewLines = 0.33;
+/// Points of a local line. Chosen.
+inline constexpr std::size_t kFewestLinePoints = 4;
+/// Accepted rms of a line fit in units of the expected noise. Chosen.
+inline constexpr double kLineNoise = 2.0;
+/// Neighbours further apart than this times the median step, and than range noise makes them, are another
+/// surface. Chosen.
+inline constexpr double kGapOfSurface = 3.5;
+/// m, real surfaces and beams are no better than this. Chosen.
+inline constexpr double kLeastRangeNoise_m = 2e-3;
+/// m, largest noise of a range that is taken for one. Chosen.
+inline constexpr double kMostRangeNoise_m = 5e-2;
+/// m, noise of a range where the scan does not show it. Chosen.
+inline constexpr double kUsualRangeNoise_m = 1e-2;
+/// m, angular error of beams and unevenness of surfaces. Chosen.
+inline constexpr double kBeamFloor_m = 1e-3;
+/// Standard deviations of a noise that grows with the range. Chosen.
+inline constexpr double kCertainSlope = 4.0;
+/// Of the range: some lidars' noise grows with it. Chosen.
+inline constexpr double kNoiseAfar = 0.03;
+
+// --- Walls -----------------------------------------------------------------------------------------------
+
+/// Points of a wall. Chosen.
+inline constexpr std::size_t kFewestWallPoints = 4;
+/// rad, deviation of a wall's direction; what is shorter may as well be a corner or a curve. Chosen.
+inline constexpr double kWallDirection_rad = 0.08;
+/// Times the step across the beam, as on a surface seen at 82 degrees. Chosen.
+inline constexpr double kGapOfWall = 7.0;
+/// m, between neighbouring readings of one wall, that is always allowed. Chosen.
+inline constexpr double kLeastGap_m = 0.02;
+/// m between the ends of two pieces of one wall. Chosen.
+inline constexpr double kJoinGap_m = 1.0;
+/// Chi-squared of two degrees of freedom with which two pieces are one wall. Derived: its 99.8 % quantile.
+inline constexpr double kJoinSquares = 12.0;
+/// Cosine between the normals of pieces of one wall. Chosen.
+inline constexpr double kJoinCosine = 0.9;
+/// m, about one beam to the next. Chosen.
+inline constexpr double kEndMargin_m = 0.03;
+/// m, unevenness of surfaces and angular error of beams. Chosen.
+inline constexpr double kSurfaceFloor_m = 1e-3;
+/// Cosine; a flatter beam meets an uneven wall far from where it ends. Chosen.
+inline constexpr double kFlatCosine = 0.5;
+/// Standard deviations of the curvature of a wall that is none. Chosen.
+inline constexpr double kPlainArc = 5.0;
+
+}  // namespace odomcalib::calib::matching::settings

@@ -1,0 +1,57 @@
+// Numbers that decide which terms are candidates and in which bases, each once, with its unit and its origin
+// (see calib/matching/settings.hpp).
+#pragma once
+
+#include <cstddef>
+
+namespace odomcalib::calib::terms::settings {
+
+// --- Candidate smooths -----------------------------------------------------------------------------------
+
+/// Relay is tried: the others are found by their neighbours. Chosen.
+inline constexpr std::size_t kEveryRelay = 3;
+/// Poles of encoder magnets, lugs, spokes. Chosen.
+inline constexpr int kHighestHarmonic = 8;
+/// s, of what repeats itself in time. Chosen.
+inline constexpr double kShortestCycle_s = 8.0;
+/// Cycles within the drive. Chosen.
+inline constexpr double kFewestCycles = 1.5;
+/// Cycles between two that are tried. Chosen.
+inline constexpr double kCycleStep = 0.7;
+/// Parts of the drive before and after a change point. Chosen.
+inline constexpr int kLeastPart = 2;
+
+// --- Lidar smooth term -----------------------------------------------------------------------------------
+
+/// m, of a range, that is expected of a smooth term. Chosen.
+inline constexpr double kSmallShift_m = 3e-3;
+/// rad, of a bearing, that is expected. Chosen.
+inline constexpr double kSmallAngle_rad = 2e-3;
+/// m, largest shift that a lidar may have. Chosen.
+inline constexpr double kLargestShift_m = 0.2;
+/// rad, largest. Chosen.
+inline constexpr double kLargestAngle_rad = 0.1;
+/// Points of a wall that a term of the ranges is fitted to. Chosen.
+inline constexpr std::size_t kFewestPoints = 30;
+
+// --- Periodic smooths ------------------------------------------------------------------------------------
+
+/// m, of what repeats itself along the floor. Chosen.
+inline constexpr double kShortestWave_m = 0.2;
+/// m; what changes slower is left to the polynomials. Chosen.
+inline constexpr double kLongestWave_m = 1.25;
+/// Cycles over the place's extent. Chosen.
+inline constexpr double kWaveStep = 0.7;
+/// m, least extent taken for separating waves. Chosen.
+inline constexpr double kSmallestPlace_m = 0.5;
+/// The shortest are left out where there would be more. Chosen.
+inline constexpr double kMostWaves = 1500;
+
+// --- Smooth term on drives -------------------------------------------------------------------------------
+
+/// m/s of either wheel; standing still shows nothing. Chosen.
+inline constexpr double kMoving = 0.01;
+/// Share of the way that a drive must go the other way to count as one both ways. Chosen.
+inline constexpr double kLeastOfWay = 0.2;
+
+}  // namespace odomcalib::calib::terms::settings

@@ -1,0 +1,45 @@
+// Numbers that decide how covariates are computed from the wheels, each once, with its unit and its origin
+// (see calib/matching/settings.hpp).
+#pragma once
+
+#include <cstddef>
+
+namespace odomcalib::calib::vehicle::settings {
+
+// --- Drive history ---------------------------------------------------------------------------------------
+
+/// m/s; below, the direction of travel is undefined and the last one is kept ... Chosen.
+inline constexpr double kStanding = 0.005;
+/// ... as below this share of the rims' speed in a turn: on the spot, wheels that are not quite alike and
+/// drives that do not quite keep their speed move the middle of the axle to and fro. Chosen.
+inline constexpr double kOnTheSpot = 0.1;
+/// Track widths, of a caster's pivot behind the axle. Chosen: it only matters that a spin moves it
+/// sideways.
+inline constexpr double kCasterBehind = 0.6;
+/// m of the rims over which tyres, belts and gears wind up. Chosen.
+inline constexpr double kWindWay_m = 0.05;
+/// rad, the same of a turn. Chosen.
+inline constexpr double kWindTurn_rad = 0.15;
+/// s, in which what was wound up unwinds at rest. Chosen.
+inline constexpr double kUnwind_s = 0.15;
+/// m/s, change of speed that a push is remembered over. Chosen.
+inline constexpr double kPushMemory = 0.1;
+
+// --- Step context ----------------------------------------------------------------------------------------
+
+/// s; differences of raw ticks over less are mostly quantisation noise. Chosen.
+inline constexpr double kSmoothing_s = 0.25;
+/// m; ticks from which on shorter times show nothing else either. Chosen.
+inline constexpr double kCoarse_m = 5e-4;
+/// m/s, slowest speed that is no standing. Chosen.
+inline constexpr double kSlow = 0.003;
+/// The last of them the one in question: odometry knows no later ones. Chosen.
+inline constexpr std::size_t kSlowIntervals = 3;
+/// counts in them, mean of both wheels. Chosen.
+inline constexpr double kFewCounts = 1.5;
+/// m/s^2, deviation of an acceleration that a threshold is compared with. Chosen.
+inline constexpr double kPushNoise = 0.03;
+/// s; stamps are no better than to a millisecond. Chosen.
+inline constexpr double kShortestPush_s = 0.08;
+
+}  // namespace odomcalib::calib::vehicle::settings

@@ -1,0 +1,21 @@
+// Numbers that decide how counts become wheel angles, each once, with its unit and its origin (see
+// calib/matching/settings.hpp).
+#pragma once
+
+#include <cstddef>
+
+namespace odomcalib::calib::wheels::settings {
+
+// --- Fine track ------------------------------------------------------------------------------------------
+
+/// s, longest interval of samples between which angles are interpolated by cubics. Chosen.
+inline constexpr double kFineInterval_s = 0.03;
+/// s, of a gap across which nothing is interpolated. Chosen.
+inline constexpr double kGap_s = 0.5;
+
+// --- Wheel track -----------------------------------------------------------------------------------------
+
+/// Neighbours' durations. Chosen.
+inline constexpr double kAlikeIntervals = 2.0;
+
+}  // namespace odomcalib::calib::wheels::settings
