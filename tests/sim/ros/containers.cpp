@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace odomcalib::sim {
@@ -86,10 +87,10 @@ class BagWriter {
       if (chunk.bytes.size() >= options_.chunk_bytes) finish(chunk);
     }
     if (!chunk.counts.empty()) finish(chunk);
-    if (!options_.closed) return kMagic + bag_header(0, 0, 0) + body_;
+    if (!options_.closed) return std::string(kMagic) + bag_header(0, 0, 0) + body_;
     std::string tail;
     for (std::size_t i = 0; i < log_.topics.size(); ++i) tail += connection(log_, i);
-    return kMagic + bag_header(place(), log_.topics.size(), chunks_) + body_ + tail + infos_;
+    return std::string(kMagic) + bag_header(place(), log_.topics.size(), chunks_) + body_ + tail + infos_;
   }
 
  private:
@@ -117,7 +118,7 @@ class BagWriter {
     chunk = {};
   }
 
-  const std::string kMagic = "#ROSBAG V2.0\n";
+  static constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
   const RosLog& log_;
   const BagOptions& options_;
   std::string body_, infos_;

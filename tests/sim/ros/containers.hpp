@@ -16,16 +16,16 @@ enum class RosPacking { none, bz2, lz4, zstd };
 std::string packed(RosPacking packing, const std::string& bytes);
 
 struct BagOptions {
-  RosPacking packing = RosPacking::none;  ///< of chunks: none, bz2, lz4
-  std::size_t chunk_bytes = 768 * 1024;   ///< as rosbag record
-  bool closed = true;                     ///< with index; a recorder that was killed leaves a file without
+  RosPacking packing = RosPacking::none;   ///< of chunks: none, bz2, lz4
+  std::size_t chunk_bytes = 768UL * 1024;  ///< as rosbag record
+  bool closed = true;                      ///< with index; a recorder that was killed leaves a file without
 };
 std::string write_bag(const RosLog& log, const BagOptions& options = {});
 
 struct McapOptions {
-  RosPacking packing = RosPacking::none;  ///< of chunks: none, lz4, zstd
-  std::size_t chunk_bytes = 1024 * 1024;  ///< 0: no chunks
-  bool closed = true;                     ///< with end and footer
+  RosPacking packing = RosPacking::none;    ///< of chunks: none, lz4, zstd
+  std::size_t chunk_bytes = 1024UL * 1024;  ///< 0: no chunks
+  bool closed = true;                       ///< with end and footer
 };
 std::string write_mcap(const RosLog& log, const McapOptions& options = {});
 

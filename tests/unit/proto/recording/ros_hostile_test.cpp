@@ -218,7 +218,7 @@ TEST(HostileRos, trees_that_bite_their_tail_end) {
     const std::string itself{'\0', '\0', static_cast<char>((page + 1) >> 8U), static_cast<char>(page + 1)};
     for (std::size_t k = 0; k < cells; ++k) {
       const std::size_t pointer = page * kPage + 12 + 2 * k;
-      const std::size_t cell = page * kPage + static_cast<unsigned char>(good[pointer]) * 256U +
+      const std::size_t cell = page * kPage + static_cast<unsigned char>(good[pointer]) * 256UL +
                                static_cast<unsigned char>(good[pointer + 1]);
       cyclic.replace(cell, 4, itself);
     }
