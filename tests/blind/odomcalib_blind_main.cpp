@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/selection/rules.hpp"
 #include "tests/blind/ablation.hpp"
 #include "tests/blind/blind_table.hpp"
 #include "tests/blind/blind_trial.hpp"
@@ -37,6 +38,12 @@ int run(const Part& part, const std::string& without_rule) {
   return 0;
 }
 
+int print_rules() {
+  for (const auto& row : odomcalib::calib::selection::rule_table())
+    std::printf("%s\t%s\n", row.name, row.protects_against);
+  return 0;
+}
+
 int run_ablation(const Part& part) {
   namespace blind = odomcalib::blind;
   for (unsigned number = part.first; number < part.first + part.count; ++number)
@@ -63,7 +70,7 @@ int main(int argc, char** argv) try {
   Part part;
   std::vector<std::string> files;
   std::string without_rule;
-  bool ablation = false;
+  bool ablation = false, rules = false;
   app.add_option("--seed", part.campaign, "of the campaign");
   app.add_option("--first", part.first, "number of the first recording");
   app.add_option("--count", part.count, "number of recordings");
@@ -72,7 +79,10 @@ int main(int argc, char** argv) try {
   // For tests/blind/ablate: an empty group keeps them out of the help.
   app.add_option("--without-rule", without_rule, "leave out this rule of the search")->group("");
   app.add_flag("--ablation", ablation, "leave out each rule of the search in turn")->group("");
+  app.add_flag("--rules", rules, "list the rules of the search, each with what it protects against")
+      ->group("");
   CLI11_PARSE(app, argc, argv);
+  if (rules) return print_rules();
   if (!files.empty()) return print_table(files);
   return ablation ? run_ablation(part) : run(part, without_rule);
 } catch (const std::exception& error) {
