@@ -10,6 +10,7 @@
 
 #include "calib/report/found_effects.hpp"
 #include "calib/report/gate.hpp"
+#include "calib/report/gyro_report.hpp"
 #include "calib/report/one_robot.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/report_data.hpp"
@@ -64,10 +65,10 @@ Agreement agreement(const Findings& found) {
   return {std::move(homogeneity), std::move(apart)};
 }
 
-BaseEstimate base_estimate(const Findings& found, const Agreement& agreement) {
-  const estimation::FitResult& fit = found.outcome.model.fit;
-  const wheels::BaseParameters base = vehicle::to_base(vehicle::as_span(fit.parameters));
-  Eigen::MatrixXd covariance = with_scale_error(fit.covariance, base, scale_deviation(found));
+BaseEstimate base_estimate(const Findings& found, const Agreement& agreement,
+                           const estimation::GyroWitness& gyros) {
+  const wheels::BaseParameters base = vehicle::to_base(vehicle::as_span(gyros.parameters));
+  Eigen::MatrixXd covariance = with_scale_error(gyros.covariance, base, scale_deviation(found));
   QuantityList measured = base_quantities(base, covariance);
   if (agreement.apart)
     covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>().diagonal() +=
@@ -126,7 +127,8 @@ std::optional<Unexplained> unexplained(const Findings& found, const Outliers& ou
 
 /// Members of the file beyond its contract.
 std::map<std::string, std::string> extensions(const Findings& found, const SmoothTerms& smooths,
-                                              const Outliers& outliers) {
+                                              const Outliers& outliers,
+                                              const estimation::GyroWitness& gyros) {
   std::map<std::string, std::string> members;
   if (!smooths.empty()) members[selection::kSmoothTermsMember] = smooth_terms_to_json(smooths);
   if (std::any_of(found.lidar.begin(), found.lidar.end(),
@@ -135,15 +137,18 @@ std::map<std::string, std::string> extensions(const Findings& found, const Smoot
   if (outliers) members["outliers"] = to_json(*outliers);
   const ingest::StampReport& stamps = found.fit.dataset.recordings.stamps();
   if (stamps.any()) members["stamps"] = to_json(stamps);
+  if (!is_silent(gyros)) members["gyros"] = to_json(gyros, found.fit.dataset.recordings.view());
   if (!found.outcome.considered.empty()) members["considered"] = considered_to_json(found.outcome.considered);
   return members;
 }
 
 std::vector<std::string> remarks(const Findings& found, const SmoothTerms& smooths,
-                                 const Outliers& outliers) {
+                                 const Outliers& outliers, const estimation::GyroWitness& gyros) {
   std::vector<std::string> sentences = found.remarks;
   if (outliers) sentences.push_back(to_text(*outliers));
   for (const std::string& remark : remarks_on(found.fit.dataset.recordings.stamps()))
+    sentences.push_back(remark);
+  for (const std::string& remark : remarks_on(gyros, found.fit.dataset.recordings.view()))
     sentences.push_back(remark);
   const math::Pose mount = vehicle::to_base(vehicle::as_span(found.outcome.model.fit.parameters)).mount;
   for (const selection::FittedSmoothTerm& smooth : smooths)
@@ -223,8 +228,10 @@ Calibration refused(const estimation::Fit& failed) {
 Calibration calibrated(const Findings& found) {
   const estimation::FitResult& fit = found.outcome.model.fit;
   const PlainFit plain = plain_fit(found);
+  const estimation::GyroWitness gyros = estimation::weigh_gyros(
+      found.fit.dataset.data, found.outcome.model.effects, fit, found.fit.dataset.recordings.view());
   const Agreement together = agreement(found);
-  const BaseEstimate base = base_estimate(found, together);
+  const BaseEstimate base = base_estimate(found, together, gyros);
   const SmoothTerms smooths = found_smooths(found);
   const Outliers outliers = outliers_of(found);
   const ReportData data = make_report_data(found.fit.dataset, found.outcome, plain);
@@ -237,13 +244,14 @@ Calibration calibrated(const Findings& found) {
   calibration.residual = residual(found, plain);
   calibration.effects = found_effects(found, plain);
   calibration.unexplained = unexplained(found, outliers, !calibration.effects.empty(), data.drive_errors);
-  calibration.extensions = extensions(found, smooths, outliers);
+  calibration.extensions = extensions(found, smooths, outliers, gyros);
   store_report_data(data, calibration);
   if (together.homogeneity)
     store_homogeneity(*together.homogeneity, found.fit.dataset.recordings.view(), calibration);
 
   const GateResult gate =
-      judge(calibration, footing(found, base, data, together.apart, remarks(found, smooths, outliers)));
+      judge(calibration,
+            footing(found, base, data, together.apart, remarks(found, smooths, outliers, gyros)));
   calibration.verdict = gate.verdict;
   calibration.reasons = gate.reasons;
   return calibration;
