@@ -17,6 +17,7 @@ using Raw = std::array<std::uint32_t, 3>;
 constexpr double kDistanceNoise = 0.002;          // m
 constexpr double kTurnNoise = 0.1 / 57.29577951;  // rad
 constexpr double kShareBetter = 0.99;
+constexpr double kRight = 0.005;  // share of a length
 
 unsigned count_from_environment() {
   const char* const given = std::getenv("ODOMCALIB_CAMPAIGN");
@@ -120,6 +121,7 @@ struct Bad {
   void (*robot)(sim::SimRobot& robot) = [](auto&) {};
   void (*config)(Config& config) = [](auto&) {};
   json (*file)(std::uint64_t seed) = nullptr;  ///< a calibration from elsewhere instead of a motion
+  bool may_be_true = false;  ///< one that names the fault and is right all the same may be stored
 };
 
 std::ostream& operator<<(std::ostream& out, const Bad& bad) { return out << bad.name; }
@@ -144,6 +146,11 @@ class BadCampaign : public Campaign, public testing::WithParamInterface<Bad> {
   }
   void adjust(Config& config) override { GetParam().config(config); }
 
+  void expect_true_values() {
+    const auto values = truth();
+    for (std::size_t i = 0; i < values.size(); ++i)
+      EXPECT_NEAR(1e-6 * stored().at(i), values.at(i), kRight * values.at(i)) << kNames.at(i);
+  }
   control::Reply applied() {
     if (GetParam().file != nullptr) return ask("Apply", {{"calibration", GetParam().file(seed_)}});
     GetParam().robot(*robot_);
@@ -164,9 +171,13 @@ TEST_P(BadCampaign, is_not_stored_and_told_why) {
     if (HasFatalFailure()) return;
     const Raw old = stored();
     const auto reply = applied();
-    EXPECT_NE(reply.error, "") << reply.parameters;
-    EXPECT_EQ(stored(), old);
-    EXPECT_EQ(robot_->node().store_count(), 0U);
+    if (GetParam().may_be_true && reply.error.empty()) {
+      expect_true_values();
+    } else {
+      EXPECT_NE(reply.error, "") << reply.parameters;
+      EXPECT_EQ(stored(), old);
+      EXPECT_EQ(robot_->node().store_count(), 0U);
+    }
     const auto& said = GetParam().said;
     const bool right = std::any_of(said.begin(), said.end(), [&](const std::string& text) {
       return reply.parameters.find(text) != std::string::npos;
@@ -185,9 +196,10 @@ void in_a_corridor(sim::SimRobotOptions& options, std::uint64_t /*seed*/) {
 const Bad kBad[] = {
     {.name = "corridor", .said = {"corridor"}, .world = in_a_corridor},
     {.name = "slipping",
-     .said = {"odometry and lidar differ", "odometry says"},
+     .said = {"odometry and lidar differ", "odometry says", "the robot moved otherwise than its wheels"},
      .world = [](sim::SimRobotOptions& options,
-                 std::uint64_t seed) { options.disturbances.push_back(std::make_shared<LosesGrip>(seed)); }},
+                 std::uint64_t seed) { options.disturbances.push_back(std::make_shared<LosesGrip>(seed)); },
+     .may_be_true = true},
     {.name = "swapped_wires",
      .said = {"odometry and lidar differ"},
      .robot = [](sim::SimRobot& robot) { robot.node().faults.swap_sides = true; }},

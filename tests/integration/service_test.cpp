@@ -140,6 +140,17 @@ TEST_F(HeldUp, a_daemon_that_was_away_for_longer_than_the_drives_watchdog_stops)
   EXPECT_LT(time_to_rest(), 0.5);
 }
 
+TEST_F(HeldUp, a_daemon_that_was_away_for_200_ms_stops_by_itself_too) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  robot_->node().dictionary().set({0x1016, 1}, 0);  // the drive no longer watches us
+  hold_up(0.22, false);
+  const auto reply = wait_reply(mover, 1.0);
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.ProtectiveStop");
+  EXPECT_NE(reply.parameters.find("held up for"), std::string::npos) << reply.parameters;
+}
+
 TEST_F(ServiceLoop, a_machine_that_was_suspended_does_not_drive_on) {
   acquire();
   TestClient mover(folder_ / "control");
@@ -236,6 +247,17 @@ TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
   service_.reset();
   for (int i = 0; i < 400; ++i) robot_->step(0.002);
   EXPECT_LT(robot_->fastest_rim(), 0.01);
+}
+
+TEST_F(ServiceLoop, a_daemon_that_is_told_to_end_stops_a_motion_at_once_and_says_why) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  service_->stop_all("told to end");
+  EXPECT_LT(time_to_rest(), 0.25);
+  const auto reply = wait_reply(mover, 0.1);
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Cancelled");
+  EXPECT_NE(reply.parameters.find("told to end"), std::string::npos) << reply.parameters;
 }
 
 TEST_F(ServiceLoop, a_daemon_that_is_told_to_end_begins_nothing_and_still_tells_its_status) {

@@ -118,6 +118,54 @@ INSTANTIATE_TEST_SUITE_P(Moments, EveryCrash,
                          testing::Combine(testing::Range(0, 12), testing::Bool(), testing::Bool(),
                                           testing::Values(Mishap::none, Mishap::half_written)));
 
+/// Says that it took all values, and took all but one.
+struct TakesAllButOne : FakeController {
+  using FakeController::FakeController;
+  Result<void> start_write_parameters(const std::vector<drivers::ParameterValue>& values,
+                                      double now) override {
+    auto taken = values;
+    std::erase_if(taken, [](const auto& value) { return value.quantity == "track_width"; });
+    return FakeController::start_write_parameters(taken, now);
+  }
+};
+
+TEST(Transaction, a_value_that_was_not_taken_is_found_before_anything_is_stored) {
+  const Folder folder;
+  Memory memory;
+  TakesAllButOne controller(memory);
+  auto journal = Journal::open(folder.path / "journal");
+  Transaction transaction(journal.value());
+  ASSERT_TRUE(transaction.write("apply", kNew).ok());
+  const auto report = run(transaction, controller);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(report->outcome, WriteOutcome::rolled_back);
+  EXPECT_EQ(controller.stores, 0);
+  EXPECT_TRUE(is_old(memory.ram) && is_old(memory.stored));
+}
+
+/// Comes back from its first store with one old value.
+struct ForgetsInTheStore : FakeController {
+  explicit ForgetsInTheStore(Memory& memory) : FakeController(memory), all(memory) {}
+  Result<void> start_store(double now) override {
+    if (stores == 0) all.ram["track_width"] = 400000;
+    return FakeController::start_store(now);
+  }
+  Memory& all;
+};
+
+TEST(Transaction, a_value_that_the_store_lost_is_found_after_it) {
+  const Folder folder;
+  Memory memory;
+  ForgetsInTheStore controller(memory);
+  auto journal = Journal::open(folder.path / "journal");
+  Transaction transaction(journal.value());
+  ASSERT_TRUE(transaction.write("apply", kNew).ok());
+  const auto report = run(transaction, controller);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(report->outcome, WriteOutcome::rolled_back);
+  EXPECT_TRUE(is_old(memory.ram) && is_old(memory.stored));
+}
+
 TEST(Transaction, waits_for_a_store_as_long_as_the_driver_does) {
   const Folder folder;
   Memory memory;

@@ -200,6 +200,17 @@ TEST(DualAxis, quick_stop_takes_effect_at_once_and_stays) {
   EXPECT_TRUE(bench.enabled());  // a person may start again
 }
 
+TEST(DualAxis, a_quick_stop_that_is_lost_on_the_bus_is_sent_again) {
+  Bench bench;
+  ASSERT_TRUE(bench.enabled());
+  bench.drive(2.0, 2.0, 0.5);
+  bench.controller->quick_stop(bench.now);
+  EXPECT_FALSE(bench.controller->take_frames().empty());
+  EXPECT_NE(bench.node.order().rate[0], 0.0);
+  bench.run(0.05);
+  EXPECT_EQ(bench.node.order().rate[0], 0.0);
+}
+
 TEST(DualAxis, disable_ends_without_torque) {
   Bench bench;
   ASSERT_TRUE(bench.enabled());
@@ -439,9 +450,14 @@ TEST(DualAxisParameters, every_job_ends_by_itself_when_the_drive_falls_silent) {
 TEST(DualAxisParameters, are_refused_while_enabled) {
   Bench bench;
   ASSERT_TRUE(bench.enabled());
-  EXPECT_EQ(bench.controller->start_write_parameters({{"track_width", 0.41}}, bench.now).error().code,
-            ErrorCode::refused);
-  EXPECT_EQ(bench.controller->start_store(bench.now).error().code, ErrorCode::refused);
+  bench.drive(0.0, 0.0, 0.5);
+  ASSERT_TRUE(bench.controller->at_rest());
+  for (const auto& refused : {bench.controller->start_read_parameters(bench.now),
+                              bench.controller->start_write_parameters({{"track_width", 0.41}}, bench.now),
+                              bench.controller->start_store(bench.now)}) {
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().what, "axes are not disabled");
+  }
 }
 
 TEST(DualAxisParameters, refuse_unknown_quantities_and_values_out_of_range) {
