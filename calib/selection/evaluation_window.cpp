@@ -123,7 +123,7 @@ std::optional<measurement::PlacedMotion> motion_by_places(const measurement::Fit
   return begin && end ? std::optional(motion_between(*begin, *end)) : std::nullopt;
 }
 
-/// One recording's stretches, found from left to right.
+/// One recording's windows, found from left to right.
 class Finder {
  public:
   Finder(WindowKind kind, const measurement::FitData& data, std::size_t recording,

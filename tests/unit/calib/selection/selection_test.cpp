@@ -433,8 +433,9 @@ TEST(Selection, a_wheel_whose_counts_are_older_than_the_others_is_named) {
   const auto fit =
       estimation::fit_joint({&data, 1}, {terms::find_effect("time_offset")}, vehicle::to_vector(kBase, 2));
   ASSERT_TRUE(fit) << "seed " << kSeed;
-  const SearchResult result = search_effects({&data, 1}, {terms::find_effect("time_offset")}, fit.value(),
-                                             std::vector<bool>(vehicle::kBaseCount, false), {}, [](double) {});
+  const SearchResult result =
+      search_effects({&data, 1}, {terms::find_effect("time_offset")}, fit.value(),
+                     std::vector<bool>(vehicle::kBaseCount, false), {}, [](double) {});
   ASSERT_FALSE(result.findings.empty());
   EXPECT_EQ(result.findings.front().effect->name(), "encoder_lag");
   EXPECT_NEAR(result.model.fit.parameters(vehicle::kBaseCount + 2), kLag, 3e-3);
