@@ -34,6 +34,9 @@ using Raw = std::array<std::uint32_t, 3>;
 constexpr Raw kOldRaw{150000, 150000, 400000}, kNewRaw{151200, 149800, 403300};
 const json kNew{{"left_wheel_diameter", 0.1512}, {"right_wheel_diameter", 0.1498}, {"track_width", 0.4033}};
 
+// The calibration (file, folder), then begin, write, readback_ok, store_begin.
+constexpr int kLastBeforeStore = 6;
+
 class OnFailingDisk : public ServiceLoop, public testing::WithParamInterface<int> {
  protected:
   void TearDown() override {
@@ -66,6 +69,7 @@ TEST_P(OnFailingDisk, a_write_back_ends_wholly_old_or_wholly_new_and_says_which)
   EXPECT_EQ(node().geometry_stored(), stored ? kNewRaw : kOldRaw);
   EXPECT_EQ(node().geometry_in_ram(), stored ? kNewRaw : kOldRaw);
   EXPECT_EQ(status()["operator_needed"], false);
+  EXPECT_EQ(stored, GetParam() > kLastBeforeStore) << "no action without its record, none undone for one";
   if (!stored) {
     EXPECT_NE(reply.error, "") << "the old values are in force";
   }
@@ -93,7 +97,7 @@ TEST_P(OnFailingDisk, the_next_start_finds_nothing_undecided) {
   EXPECT_FALSE(Journal::open(folder_ / "state" / "journal").value().unfinished());
 }
 
-// The calibration (file, folder), six records, then history and calibration in force (file, folder each).
+// The calibration, six records, then history and calibration in force (file, folder each).
 INSTANTIATE_TEST_SUITE_P(Service, OnFailingDisk, testing::Range(1, 13));
 
 }  // namespace

@@ -103,6 +103,19 @@ TEST_F(Restarted, a_read_that_fails_is_repeated_and_changes_nothing) {
   EXPECT_EQ(history().size(), 1U);
 }
 
+TEST_F(Restarted, a_recovery_does_not_begin_while_the_wheels_turn) {
+  die(record_of(JournalState::write), kMixed);
+  restart();
+  for (int i = 0; i < 1500; ++i) {
+    robot_->shift_counts(3, 3);  // somebody pushes the robot
+    step();
+  }
+  EXPECT_EQ(journaled(), (std::vector<std::string>{"write"}));
+  EXPECT_EQ(node().geometry_in_ram(), kMixed);
+  ASSERT_TRUE(settled(false)) << service_->status_json();
+  EXPECT_EQ(node().geometry_in_ram(), kOldRaw);
+}
+
 TEST_F(Restarted, a_recovery_that_fails_stores_once_and_is_told_once) {
   die(record_of(JournalState::needs_operator), kMixed);
   node().faults.store_fails = true;
