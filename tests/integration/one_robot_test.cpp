@@ -1,9 +1,13 @@
 // Several recordings: of one robot they are one, of two robots, or of one whose tyre was changed in between,
 // they are told apart, by name and in any order.
+// ODOMCALIB_CAMPAIGN=100 counts over a hundred of each kind instead of a few; seeds are the numbers of the
+// pairs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <string>
 
 #include "calib/solve.hpp"
 #include "tests/sim/world/simulate.hpp"
@@ -85,6 +89,62 @@ TEST(OneRobot, with_exchanged_counts_in_one_recording_is_refused_by_name) {
   EXPECT_EQ(result.verdict, Verdict::refused);
   EXPECT_TRUE(holds(reasons_of(result), "drive2.jsonl: ") && holds(reasons_of(result), "exchanged"))
       << reasons_of(result);
+}
+
+constexpr std::uint64_t kCampaignSeed = 52000;  // robots and drives that no other test uses
+
+std::uint64_t campaign_size(std::uint64_t usual) {
+  const char* size = std::getenv("ODOMCALIB_CAMPAIGN");
+  return size != nullptr ? std::stoull(size) : usual;
+}
+
+bool is_told_apart(const Calibration& result) {
+  return holds(reasons_of(result), "do not agree on one robot");
+}
+
+/// Pairs of drives of which the second robot's number is that of the first and so much more.
+std::uint64_t count_told_apart(std::uint64_t pairs, std::uint64_t apart) {
+  std::uint64_t told = 0;
+  for (std::uint64_t pair = 0; pair < pairs; ++pair) {
+    const std::uint64_t robot = kCampaignSeed + 10 * pair;
+    const std::vector<Recording> recordings = {recorded(robot, robot + 1),
+                                               recorded(robot + apart, robot + 2)};
+    const Calibration result = calib::solve(recordings, {.same_robot = true});
+    const bool is_told = is_told_apart(result) || (apart != 0 && result.verdict == Verdict::refused);
+    if (is_told) ++told;
+    if (is_told == (apart == 0))
+      std::cout << "robots " << robot << " and " << robot + apart << ": " << reasons_of(result) << "\n";
+  }
+  std::cout << told << " of " << pairs << " pairs told apart\n";
+  return told;
+}
+
+TEST(OneRobotCampaign, tells_different_robots_apart) {
+  const std::uint64_t pairs = campaign_size(3);
+  EXPECT_EQ(count_told_apart(pairs, 5), pairs);
+}
+
+TEST(OneRobotCampaign, takes_one_robot_for_one) {
+  const std::uint64_t pairs = campaign_size(3);
+  EXPECT_LE(count_told_apart(pairs, 0), pairs / 100);
+}
+
+TEST(OneRobotCampaign, names_the_recording_with_another_tyre) {
+  const std::uint64_t sets = campaign_size(1);
+  std::uint64_t named = 0;
+  for (std::uint64_t set = 0; set < sets; ++set) {
+    const std::uint64_t robot = kCampaignSeed + 10 * set, odd = 1 + set % 5;
+    std::vector<Recording> recordings;
+    for (std::uint64_t drive = 1; drive <= 5; ++drive)
+      recordings.push_back(recorded(robot, robot + drive, drive == odd ? 1.003 : 1.0));
+    const Calibration result = calib::solve(recordings, {});
+    if (holds(reasons_of(result), "in drive" + std::to_string(robot + odd) + ".jsonl left_wheel_diameter"))
+      ++named;
+    else
+      std::cout << "robot " << robot << ", drive " << odd << ": " << reasons_of(result) << "\n";
+  }
+  std::cout << named << " of " << sets << " changed tyres named\n";
+  EXPECT_GE(static_cast<double>(named), 0.95 * static_cast<double>(sets));
 }
 
 }  // namespace

@@ -51,10 +51,16 @@ TEST(PhantomReturn, is_found_where_a_twentieth_of_the_beams_return_nothing) {
   const auto found = phantom_return(recording);
   ASSERT_TRUE(found);
   EXPECT_FLOAT_EQ(static_cast<float>(*found), 4.6F);
-  remove_readings(recording, *found);
-  EXPECT_FALSE(phantom_return(recording));
-  ASSERT_EQ(recording.discarded.size(), 1U);
-  EXPECT_GE(recording.discarded[0].count, 400U * 18U);
+  const Cleaned without = without_phantom_returns({&recording, 1});
+  const Recording& cleaned = without.recordings.front();
+  EXPECT_FALSE(phantom_return(cleaned));
+  ASSERT_EQ(cleaned.discarded.size(), 1U);
+  EXPECT_GE(cleaned.discarded[0].count, 400U * 18U);
+  ASSERT_EQ(without.remarks.size(), 1U);
+  EXPECT_NE(without.remarks[0].find("exactly 4.6 m wherever"), std::string::npos) << without.remarks[0];
+  const Cleaned again = without_phantom_returns(without.recordings.view());
+  EXPECT_TRUE(again.recordings.are_those_of(without.recordings)) << "nothing is left to take out";
+  EXPECT_TRUE(again.remarks.empty());
 }
 
 TEST(PhantomReturn, is_not_asked_near_the_range_where_the_lidar_gives_up) {

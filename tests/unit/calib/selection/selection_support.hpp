@@ -107,7 +107,7 @@ inline measurement::FitData measured(const vehicle::DriveModel& model, const veh
 inline SearchResult searched(const measurement::FitData& data) {
   const auto fit = estimation::fit_joint({&data, 1}, {}, vehicle::to_vector(kBase));
   EXPECT_TRUE(fit) << "seed " << kSeed;
-  return search_effects({&data, 1}, {}, fit.value(), std::vector<bool>(vehicle::kBaseCount, false),
+  return search_effects({&data, 1}, {}, fit.value(), std::vector<bool>(vehicle::kBaseCount, false), {},
                         [](double) {});
 }
 

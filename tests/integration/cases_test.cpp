@@ -1,0 +1,156 @@
+// What people reported of other programs, made small: recordings of which the right answer is known from how
+// they were made. The files are not part of the repository; mistakes_test makes each kind anew.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "calib/solve.hpp"
+#include "daemon/config/robot_file.hpp"
+#include "proto/calibration/report_data.hpp"
+#include "proto/recording/recording.hpp"
+
+namespace odomcalib {
+namespace {
+
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+
+std::filesystem::path cases() {
+  const char* folder = std::getenv("ODOMCALIB_SHARED");
+  return std::filesystem::path(folder != nullptr ? folder : "../shared") / "cases";
+}
+
+class Cases : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(cases()))
+      GTEST_SKIP() << "no cases: set ODOMCALIB_SHARED to the folder that holds cases/";
+  }
+};
+
+struct Outcome {
+  Calibration calibration;  ///< refused where the recording could not be read
+  std::string text;         ///< reasons, one a line
+  Recording recording;
+};
+
+Outcome solved(const std::string& name, const RobotDescription* robot = nullptr) {
+  Outcome outcome;
+  auto recording = read_recording(cases() / name, robot);
+  if (!recording) {
+    outcome.text = recording.error().text();
+    return outcome;
+  }
+  outcome.recording = std::move(recording).value();
+  outcome.calibration = calib::solve({&outcome.recording, 1}, {});
+  for (const std::string& reason : outcome.calibration.reasons) outcome.text += reason + "\n";
+  return outcome;
+}
+
+bool is_refused(const Outcome& outcome) { return outcome.calibration.verdict == Verdict::refused; }
+
+/// @param share of a deviation by which the values may differ
+void expect_alike(const Outcome& one, const Outcome& other, double share) {
+  ASSERT_FALSE(other.calibration.parameters.empty()) << other.text;
+  for (const auto& [name, quantity] : other.calibration.parameters)
+    EXPECT_NEAR(one.calibration.parameter(name).value_or(0.0), quantity.value,
+                share * std::max(quantity.std, 0.0) + 1e-12)
+        << name;
+}
+
+TEST_F(Cases, counts_that_only_grow_are_refused_for_that_and_their_signed_twin_is_not) {
+  const Outcome counted_up = solved("unsigned-encoders/unsigned.jsonl.gz");
+  EXPECT_TRUE(is_refused(counted_up));
+  EXPECT_THAT(counted_up.text, ContainsRegex("only ever grow.*quadrature"));
+  EXPECT_FALSE(is_refused(solved("unsigned-encoders/right.jsonl.gz")));
+}
+
+TEST_F(Cases, beams_in_another_order_are_the_same_scan) {
+  const Outcome ordered = solved("beam-order/in_time_order.jsonl.gz");
+  expect_alike(solved("beam-order/reversed_order.jsonl.gz"), ordered, 1e-6);
+}
+
+TEST_F(Cases, stamps_that_are_not_in_s_are_told_by_their_unit) {
+  EXPECT_FALSE(is_refused(solved("stamps-not-in-s/right.jsonl.gz")));
+  for (const auto& [file, unit] :
+       {std::pair("ms", "milliseconds"), {"us", "microseconds"}, {"ns", "nanoseconds"}}) {
+    const Outcome outcome = solved("stamps-not-in-s/" + std::string(file) + "_epoch.jsonl.gz");
+    EXPECT_TRUE(is_refused(outcome));
+    EXPECT_THAT(outcome.text, ContainsRegex(unit + std::string(" since 1970.*in seconds")));
+  }
+}
+
+TEST_F(Cases, ranges_that_are_not_in_m_are_told_by_their_unit) {
+  for (const auto& [file, unit] :
+       {std::pair("cm", "centimetres"), {"mm_limits_mm", "millimetres"}, {"mm_no_limits", "millimetres"}}) {
+    const Outcome outcome = solved("ranges-not-in-m/" + std::string(file) + ".jsonl.gz");
+    EXPECT_TRUE(is_refused(outcome));
+    EXPECT_THAT(outcome.text, HasSubstr(std::string("look like ") + unit));
+  }
+}
+
+TEST_F(Cases, a_counter_that_wraps_anywhere_loses_no_interval_silently) {
+  const Outcome wrapped = solved("counter-modulo/modulo.jsonl.gz");
+  const Outcome plain = solved("counter-modulo/plain.jsonl.gz");
+  expect_alike(wrapped, plain, 1.0);
+  const auto travelled = [](const Recording& r) { return r.ticks.back().left - r.ticks.front().left; };
+  if (travelled(wrapped.recording) != travelled(plain.recording)) {
+    std::size_t told = 0;
+    for (const Discarded& discarded : wrapped.recording.discarded)
+      if (discarded.what == "ticks" || discarded.what == "tick interval") told += discarded.count;
+    EXPECT_GT(told, 0U);
+  }
+}
+
+TEST_F(Cases, a_fixed_range_for_no_return_is_left_out_and_named) {
+  const Outcome null = solved("phantom-return/null.jsonl.gz");
+  expect_alike(solved("phantom-return/no_return_is_max.jsonl.gz"), null, 2.0);
+  const Outcome phantom = solved("phantom-return/no_return_is_4.6_of_12.jsonl.gz");
+  expect_alike(phantom, null, 2.0);
+  EXPECT_THAT(phantom.text, HasSubstr("exactly 4.6 m"));
+}
+
+TEST_F(Cases, a_tracked_robot_comes_out_as_its_builders_measured_it) {
+  const Outcome outcome = solved("slambot/slambot.jsonl.gz");
+  for (const auto& [name, quantity] : outcome.calibration.parameters) {
+    if (name.starts_with("lidar_")) continue;
+    const double measured = name == "track_width" ? 0.3194 : 0.0582;
+    EXPECT_NEAR(quantity.value, measured, 3.0 * quantity.std) << name;
+  }
+  for (const DriveError& error : report_data_of(outcome.calibration).drive_errors) {
+    if (!error.before || !error.after) continue;
+    EXPECT_LT(error.after->low, error.after->high) << error.name << ": an interval of zero width";
+    if (error.after->value > 1.05 * error.before->value) {
+      EXPECT_THAT(outcome.text, HasSubstr("no better than before")) << error.name;
+    }
+  }
+}
+
+TEST_F(Cases, stamps_that_lost_their_last_digits_are_told) {
+  const auto robot = read_robot_file(cases() / "carmen-rounded-stamps/r.toml");
+  ASSERT_TRUE(robot.ok());
+  const Outcome outcome = solved("carmen-rounded-stamps/csail.log.gz", &robot.value());
+  EXPECT_TRUE(is_refused(outcome));
+  EXPECT_THAT(outcome.text, HasSubstr("lost their last digits"));
+}
+
+// Figures of the report that speak against the answer are reasons of the verdict, and the first is that
+// nothing was gained.
+TEST_F(Cases, a_real_drive_after_which_odometry_is_no_better_says_so_first) {
+  const Outcome outcome = solved("../data/mines-rover/exp1.jsonl.gz");
+  EXPECT_EQ(outcome.calibration.verdict, Verdict::accepted_with_warnings);
+  EXPECT_THAT(outcome.calibration.reasons.at(0), HasSubstr("straight metre is no better than before"));
+}
+
+TEST_F(Cases, a_real_drive_after_which_a_full_turn_is_off_says_so) {
+  const Outcome outcome = solved("../data/maebot/convex.jsonl.gz");
+  EXPECT_EQ(outcome.calibration.verdict, Verdict::accepted_with_warnings);
+  EXPECT_THAT(outcome.text, HasSubstr("heading over a full turn is still off by 4.9"));
+  EXPECT_THAT(outcome.text, HasSubstr("has no name")) << "the verdict and `unexplained` agree";
+}
+
+}  // namespace
+}  // namespace odomcalib
