@@ -1,5 +1,5 @@
 // The rules of the search, each with what it protects against, and the set of them that holds. All of them
-// hold but in an ablation, which leaves out one at a time (docs/evidence/ablation.md).
+// hold but in an ablation, which leaves out one at a time (docs/developer/selection-rules.md).
 #pragma once
 
 #include <bitset>
