@@ -321,9 +321,9 @@ class CannedDaemon {
       std::vector<pollfd> polled;
       server_.watch(polled);
       (void)poll(polled.data(), polled.size(), 5);
-      server_.step();
-      for (const auto& incoming : server_.take_calls())
-        server_.reply(incoming.client, control::encode_reply(answer(incoming.call.name()).dump()));
+      server_.step(now_ += 0.005);
+      while (const auto incoming = server_.next_call())
+        server_.reply(incoming->client, control::encode_reply(answer(incoming->call.name()).dump()));
     }
   }
   json answer(const std::string& method) {
@@ -334,6 +334,7 @@ class CannedDaemon {
   }
 
   ControlServer server_;
+  double now_ = 0.0;  ///< s
   json calibration_;
   std::function<void()> while_driving_;
   std::atomic<bool> over_{false};
