@@ -266,15 +266,16 @@ Result<Proposal> square_proposal(const DrivenMoves& driven, double side) {
   if (!result) return result.error();
   const auto& found = result.value();
   const auto lengths = calib::classical::with_errors(base, {1.0, found.diameters.mean, found.track.mean});
-  const auto std_of = [](const Repeated& factor, double length) {
-    return factor.std < 0.0 ? -1.0 : factor.std * length;
+  // With the mean fixed, each wheel moves by half of what their ratio moves; the mean is as good as the
+  // straight line that gave it.
+  const auto diameter_of = [&](double radius) {
+    const double std = std::hypot(found.diameters.std, 2.0 * calib::classical::kDiametersOfStraight) * radius;
+    return Quantity{2.0 * radius, found.diameters.std < 0.0 ? -1.0 : std, "m"};
   };
-  // With the mean fixed, each wheel moves by half of what their ratio moves.
-  proposal.parameters = {
-      {"left_wheel_diameter", {2.0 * lengths.left_radius, std_of(found.diameters, lengths.left_radius), "m"}},
-      {"right_wheel_diameter",
-       {2.0 * lengths.right_radius, std_of(found.diameters, lengths.right_radius), "m"}},
-      {"track_width", {lengths.track_width, std_of(found.track, base.track_width), "m"}}};
+  const double track_std = found.track.std < 0.0 ? -1.0 : found.track.std * base.track_width;
+  proposal.parameters = {{"left_wheel_diameter", diameter_of(lengths.left_radius)},
+                         {"right_wheel_diameter", diameter_of(lengths.right_radius)},
+                         {"track_width", {lengths.track_width, track_std, "m"}}};
   add_error(proposal, "E_d", found.diameters);
   add_error(proposal, "E_b", found.track);
   proposal.used = pairs.size();
