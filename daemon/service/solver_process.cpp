@@ -81,6 +81,7 @@ Result<void> Child::start(const std::filesystem::path& program, const std::vecto
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return no_process(std::strerror(errno));
   answers_ = ends[0];
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (const std::string& one : arguments) pointers.push_back(const_cast<char*>(one.c_str()));
   pointers.push_back(nullptr);
   posix_spawn_file_actions_t actions;
