@@ -1,6 +1,7 @@
 #include "calib/selection/drive_error.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -16,6 +17,8 @@ namespace {
 constexpr const char* kOpenLoopPosition = "open_loop_10s_position";
 
 constexpr std::size_t kFewest = 4;
+/// Of three blocks only ten different draws exist, of one only itself.
+constexpr std::size_t kFewestBlocks = 4;
 constexpr unsigned kSeed = 20010823;
 
 /// Predicted minus measured motion of each stretch, in the base's frame at its begin.
@@ -55,6 +58,14 @@ double variance_of(Part part, const Eigen::Matrix3d& c) {
   return part == Part::heading ? c(2, 2) : c(0, 0) + c(1, 1);
 }
 
+/// Blocks too few to be drawn from: as of so many independent errors with a normal distribution.
+Bounded of_few(double root, std::size_t blocks) {
+  const auto freedom = static_cast<double>(blocks);
+  const boost::math::chi_squared squares(freedom);
+  return {root, root * std::sqrt(freedom / quantile(squares, 0.975)),
+          root * std::sqrt(freedom / quantile(squares, 0.025))};
+}
+
 Bounded bounded(Part part, const std::vector<Stretch>& stretches, const std::vector<math::Pose>& errors) {
   std::map<std::size_t, math::RatioOfSums> by_block;
   math::RatioOfSums total;
@@ -63,6 +74,7 @@ Bounded bounded(Part part, const std::vector<Stretch>& stretches, const std::vec
     by_block[stretches[k].block] += one;
     total += one;
   }
+  if (by_block.size() < kFewestBlocks) return of_few(total.root(), by_block.size());
   const math::BootstrapInterval interval = bootstrap_root(by_block, kSeed);
   return {total.root(), interval.lower, interval.upper};
 }
