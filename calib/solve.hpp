@@ -1,12 +1,14 @@
 // Recordings in, calibration out: the one entry point of the estimators.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "calib/measurement/progress.hpp"
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/scale.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib {
@@ -16,6 +18,8 @@ struct SolveOptions {
   std::vector<std::string> effects = {"auto"};
   /// Recordings that state different robot_id are of one robot all the same.
   bool same_robot = false;
+  /// Of the reference; without one a lidar's data sheet has to do.
+  std::optional<Scale> scale = std::nullopt;
 };
 
 using Progress = measurement::Progress;
