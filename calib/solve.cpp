@@ -6,6 +6,7 @@
 #include "calib/estimation/fit.hpp"
 #include "calib/estimation/start_values.hpp"
 #include "calib/ingest/phantom_return.hpp"
+#include "calib/ingest/reference_scale.hpp"
 #include "calib/report/explain.hpp"
 #include "calib/report/findings.hpp"
 #include "calib/report/one_robot.hpp"
@@ -77,7 +78,9 @@ Calibration solve(std::span<const Recording> recordings, const SolveOptions& opt
                   const Progress& callback) {
   const Progress progress = callback ? callback : [](const std::string&, double) {};
 
-  const ingest::Cleaned cleaned = ingest::without_phantom_returns(recordings);
+  const auto scale = options.scale ? options.scale : ingest::scale_by_data_sheet(recordings);
+  const ingest::Recordings scaled = ingest::with_scale(recordings, scale ? scale->value : 1.0);
+  const ingest::Cleaned cleaned = ingest::without_phantom_returns(scaled.view());
   const ingest::Recordings repaired = ingest::with_even_ticks(cleaned.recordings.view());
   auto opened = measurement::open_dataset(repaired);
   if (!opened) return report::refused(repaired, opened.error());
@@ -86,8 +89,11 @@ Calibration solve(std::span<const Recording> recordings, const SolveOptions& opt
   const auto request = terms::request_for(options.effects);
   if (!request) return report::refused(repaired, request.error());
 
-  return report::explained(recordings, calibrate(std::move(opened).value(), request.value(), options.rules,
-                                                 cleaned.remarks, progress));
+  Calibration calibration = report::explained(
+      recordings,
+      calibrate(std::move(opened).value(), request.value(), options.rules, cleaned.remarks, progress));
+  if (scale && !calibration.parameters.empty()) store_scale(*scale, calibration);
+  return calibration;
 }
 
 }  // namespace odomcalib::calib

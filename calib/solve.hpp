@@ -1,6 +1,7 @@
 // Recordings in, calibration out: the one entry point of the estimators.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "calib/measurement/progress.hpp"
 #include "calib/selection/rules.hpp"
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/scale.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib {
@@ -19,6 +21,8 @@ struct SolveOptions {
   bool same_robot = false;
   /// All of them but in an ablation.
   selection::RuleSet rules = {};
+  /// Of the reference; without one a lidar's data sheet has to do.
+  std::optional<Scale> scale = std::nullopt;
 };
 
 using Progress = measurement::Progress;

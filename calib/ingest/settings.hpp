@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 
 namespace odomcalib::calib::ingest::settings {
 
@@ -44,6 +45,11 @@ inline constexpr double kFarthestMedian_m = 60.0, kNearestMedian_m = 0.02;
 inline constexpr double kUsualMedian_m = 2.5;
 /// Scans that are looked at, evenly spread.
 inline constexpr std::size_t kScansLookedAt = 200;
+
+/// Standard deviation of the scale of a lidar, relative. Derived (JCGM 100:2008, 4.3.7) from limits of 1 % of
+/// the range, as published for triangulating lidars (SLAMTEC, RPLIDAR A1M8 data sheet: up to 3 m); those that
+/// measure times of flight are better over long ranges and state limits in cm.
+inline constexpr double kLidarScale = 0.01 / std::numbers::sqrt3;
 
 // --- Readings that stand for no return ---------------------------------------------------------------------
 

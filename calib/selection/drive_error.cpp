@@ -1,6 +1,7 @@
 #include "calib/selection/drive_error.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -55,6 +56,14 @@ double variance_of(Part part, const Eigen::Matrix3d& c) {
   return part == Part::heading ? c(2, 2) : c(0, 0) + c(1, 1);
 }
 
+/// Blocks too few to be drawn from: as of so many independent errors with a normal distribution.
+Bounded of_few(double root, std::size_t blocks) {
+  const auto freedom = static_cast<double>(blocks);
+  const boost::math::chi_squared squares(freedom);
+  return {root, root * std::sqrt(freedom / quantile(squares, 0.975)),
+          root * std::sqrt(freedom / quantile(squares, 0.025))};
+}
+
 Bounded bounded(Part part, const std::vector<EvaluationWindow>& windows,
                 const std::vector<math::Pose>& errors) {
   std::map<std::size_t, math::RatioOfSums> by_block;
@@ -64,6 +73,7 @@ Bounded bounded(Part part, const std::vector<EvaluationWindow>& windows,
     by_block[windows[k].block] += one;
     total += one;
   }
+  if (by_block.size() < settings::kFewestBlocks) return of_few(total.root(), by_block.size());
   const math::BootstrapInterval interval = bootstrap_root(by_block, kSeed);
   return {total.root(), interval.lower, interval.upper};
 }

@@ -92,6 +92,9 @@ inline constexpr double kDetectableQuantiles = 4.4 + 1.28;
 
 /// Windows of a kind from which its error is reported. Chosen.
 inline constexpr std::size_t kFewestOfAKind = 4;
+/// Blocks from which an error's interval is drawn. Derived: of three only ten different draws exist, of one
+/// only itself.
+inline constexpr std::size_t kFewestBlocks = 4;
 
 // --- Equivalent models -----------------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@
 #include "calib/odometry/predict.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/report_sections.hpp"
+#include "proto/calibration/scale.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -49,6 +50,12 @@ Section parameters_of(const Calibration& calibration) {
   for (const auto& [name, quantity] : calibration.parameters)
     section.table.rows.push_back(parameter_row(calibration.robot, name, quantity));
   section.lines = effect_in_words(calibration);
+  if (const auto scale = scale_of(calibration))
+    section.lines.push_back(
+        fmt::format("+-2 sigma is against the metre of the reference, which is known to +-{:.3g} % ({}): so "
+                    "are all lengths, "
+                    "and no ratio of two; --scale states what a tape says.",
+                    100.0 * 2.0 * scale->std / scale->value, scale->source));
   return section;
 }
 

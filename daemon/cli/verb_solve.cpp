@@ -14,6 +14,7 @@
 #include "daemon/cli/verbs.hpp"
 #include "odomcalib_version.hpp"
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/scale.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -22,7 +23,7 @@ namespace {
 struct Options {
   std::vector<std::string> recordings;
   std::vector<std::string> effects{"auto"};
-  std::string out, report, note;
+  std::string scale, out, report, note;
   RecordingOptions reading;
   bool same_robot = false;
 };
@@ -37,6 +38,7 @@ Result<void> write_results(const Options& options, const Calibration& calibratio
 // What a reader of the file must know to repeat the run.
 std::string settings_of(const Options& options) {
   nlohmann::ordered_json settings = {{"version", kVersion}, {"effects", options.effects}};
+  if (!options.scale.empty()) settings["scale"] = options.scale;
   if (!options.note.empty()) settings["note"] = options.note;
   return settings.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
@@ -51,14 +53,19 @@ int solve_recordings(const Options& options, const Session& session) {
   if (const auto wrong = calib::terms::wrong_effects(options.effects))
     return report_error(*wrong, session.json);
   if (const auto files = check_files(options); !files) return report_error(files.error(), session.json);
+  calib::SolveOptions how{.effects = options.effects, .same_robot = options.same_robot};
+  if (!options.scale.empty()) {
+    const auto scale = scale_from_text(options.scale);
+    if (!scale) return report_error(scale.error(), session.json);
+    how.scale = scale.value();
+  }
   const auto recordings = read_recordings(options.recordings, options.reading);
   if (!recordings) return report_error(recordings.error(), session.json);
   ProgressLine line;
   const auto progress = [&line](const std::string& phase, double fraction) {
     line.show(fmt::format("{} {:3.0f} %", phase, 100.0 * fraction));
   };
-  Calibration calibration = calib::solve(
-      recordings.value(), {.effects = options.effects, .same_robot = options.same_robot}, progress);
+  Calibration calibration = calib::solve(recordings.value(), how, progress);
   calibration.extensions["settings"] = settings_of(options);
   line.clear();
   if (auto written = write_results(options, calibration); !written)
@@ -80,6 +87,8 @@ void add_solve(CLI::App& app, Session& session) {
       ->required();
   add_reading_options(*verb, options->reading);
   verb->add_option("--effects", options->effects, "auto, none, or names of effects to fit")->delimiter(',');
+  verb->add_option("--scale", options->scale,
+                   "metres in a metre of the reference, as a tape has it: 1.002+-0.001");
   verb->add_flag("--same-robot", options->same_robot, "recordings with different robot_id are of one robot");
   verb->add_option("--out", options->out, "calibration file to write, also when refused");
   verb->add_option("--report", options->report, "HTML report to write");

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/scale.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
@@ -36,6 +37,15 @@ Json quantities(const QuantityList& list) {
   for (const auto& [name, quantity] : list)
     out[name] = {
         {"value", number(quantity.value)}, {"std", deviation(quantity.std)}, {"unit", quantity.unit}};
+  return out;
+}
+
+/// With the deviation in true metres, where the scale of the reference is known.
+Json parameters(const Calibration& calibration) {
+  Json out = quantities(calibration.parameters);
+  if (const auto scale = scale_of(calibration))
+    for (const auto& [name, quantity] : calibration.parameters)
+      out[name]["std_absolute"] = deviation(absolute_deviation(quantity, *scale));
   return out;
 }
 
@@ -157,7 +167,7 @@ std::string to_json(const Calibration& calibration) {
       {"verdict", verdict(calibration.verdict)},
       {"reasons", calibration.reasons},
       {"robot", robot(calibration.robot)},
-      {"parameters", quantities(calibration.parameters)},
+      {"parameters", parameters(calibration)},
       {"covariance", {{"order", calibration.covariance_order}, {"matrix", matrix(calibration.covariance)}}},
       {"linear_correction", linear_correction(calibration.linear_correction)},
       {"methods", methods(calibration.methods)},

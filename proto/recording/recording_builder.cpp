@@ -75,6 +75,9 @@ Error missing_unit(const std::string& field, double value, const char* unit, dou
       where, remedy};
 }
 
+/// What moved there is not known: a counter that wraps at another number, a reset, a jump.
+constexpr const char* kUncontinued = "count does not continue the one before: the way between is left out";
+
 }  // namespace
 
 RecordingBuilder::StreamClock::StreamClock() : newest(kNone) {}
@@ -326,6 +329,7 @@ Result<Recording> RecordingBuilder::finish(const std::string& where, const Robot
   if (recording_.motion != MotionSource::ticks) make_ticks();
   const ContinuedCounts counts = continue_counts(recording_.ticks, recording_.robot);
   discard("ticks", "count read wrong once", counts.misread);
+  discard("ticks", kUncontinued, counts.jumps);
   for (const auto& [key, count] : discarded_) recording_.discarded.push_back({key.first, key.second, count});
   return std::move(recording_);
 }

@@ -231,10 +231,12 @@ class Continuation {
 ContinuedCounts continue_counts(std::vector<TickSample>& ticks, const RobotDescription& robot) {
   const auto changes = Continuation(ticks, robot).changes(ticks);
   ContinuedCounts found;
-  std::int32_t segment = 0;
+  std::int32_t segment = 0, given = 0;
   Counts counts{};
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     if (changes[i].misread) ++found.misread;
+    if (i > 0 && !changes[i].continued && ticks[i].segment == given) ++found.jumps;
+    given = ticks[i].segment;
     if (i == 0 || !changes[i].continued) {
       segment += i == 0 ? 0 : 1;
       counts = {ticks[i].left, ticks[i].right};

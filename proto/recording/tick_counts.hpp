@@ -9,6 +9,7 @@ namespace odomcalib {
 
 struct ContinuedCounts {
   std::size_t breaks = 0;   ///< new segments
+  std::size_t jumps = 0;    ///< of them, those that the samples did not carry
   std::size_t misread = 0;  ///< samples that were taken for what lies between their neighbours
 };
 

@@ -317,8 +317,6 @@ const std::vector<Mistake>& mistakes() {
        "pi / 180", cli::kRefused, true},
       {"pose_yaw_of_a_compass", poses([](PoseSample& p) { p.yaw = 0.5 * kPi - p.yaw; }), "compass",
        "pi / 2 - yaw", cli::kRefused, true},
-      {"pose_yaw_negated", poses([](PoseSample& p) { p.yaw = -p.yaw; }), "opposite sign", "negate yaw",
-       cli::kRefused, true},
       {"pose_yaw_missing", poses([](PoseSample& p) { p.yaw = 0.0; }), "yaw never changes", "heading",
        cli::kRefused, true},
       {"pose_of_a_quaternion", poses([](PoseSample& p) { p.yaw *= 0.5; }), "half of the heading", "atan2",

@@ -91,9 +91,23 @@ TEST(TickCounts, start_a_new_segment_at_a_jump_that_no_wheel_can_make) {
   for (const std::int64_t jump : {3000, -3000, 70000, 1 << 20}) {
     auto ticks = drive(random, 100, 0, 0);
     for (std::size_t i = 60; i < ticks.size(); ++i) ticks[i].right += jump;
-    EXPECT_EQ(continue_counts(ticks, test::example_robot()).breaks, 1U) << jump;
+    const ContinuedCounts found = continue_counts(ticks, test::example_robot());
+    EXPECT_EQ(found.breaks, 1U) << jump;
+    EXPECT_EQ(found.jumps, 1U) << "it is told";
     EXPECT_EQ(ticks[60].segment, 1);
   }
+}
+
+TEST(TickCounts, of_a_segment_that_the_controller_began_are_no_jump) {
+  std::mt19937 random(7);
+  auto ticks = drive(random, 100, 0, 0);
+  for (std::size_t i = 60; i < ticks.size(); ++i) {
+    ticks[i].right += 70000;
+    ticks[i].segment = 1;
+  }
+  const ContinuedCounts found = continue_counts(ticks, test::example_robot());
+  EXPECT_EQ(found.breaks, 1U);
+  EXPECT_EQ(found.jumps, 0U);
 }
 
 TEST(TickCounts, start_a_new_segment_at_a_single_step_out_of_line) {

@@ -1,0 +1,63 @@
+#include "proto/calibration/scale.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace odomcalib {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kScaleMember = "scale";
+/// Beyond these a number is no scale of a reference but a unit, or a slip of the pen. Chosen.
+constexpr double kLeast = 0.5, kMost = 2.0, kMostDeviation = 0.1;
+
+std::optional<double> whole_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+void store_scale(const Scale& scale, Calibration& calibration) {
+  calibration.extensions[kScaleMember] =
+      Json{{"value", scale.value}, {"std", scale.std}, {"source", scale.source}}.dump();
+}
+
+std::optional<Scale> scale_of(const Calibration& calibration) {
+  const auto member = calibration.extensions.find(kScaleMember);
+  if (member == calibration.extensions.end()) return std::nullopt;
+  try {
+    const Json json = Json::parse(member->second);
+    return Scale{json.at("value"), json.at("std"), json.at("source")};
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+double absolute_deviation(const Quantity& quantity, const Scale& scale) {
+  if (quantity.unit != "m" || !(quantity.std >= 0.0)) return quantity.std;
+  return std::hypot(quantity.std, quantity.value * scale.std / scale.value);
+}
+
+Result<Scale> scale_from_text(const std::string& text) {
+  constexpr std::string_view kBetween = "+-";
+  const std::size_t at = text.find(kBetween);
+  const std::string_view all = text;
+  const auto value = whole_number(all.substr(0, at));
+  const auto deviation =
+      at == std::string::npos ? std::optional(0.0) : whole_number(all.substr(at + kBetween.size()));
+  const bool is_scale = value && deviation && *value >= kLeast && *value <= kMost && *deviation >= 0.0 &&
+                        *deviation <= kMostDeviation;
+  if (!is_scale)
+    return Error{
+        ErrorCode::usage, "\"" + text + "\" is no scale of a reference", "--scale",
+        "state what a tape says over what the reference says, and its standard deviation: 1.002+-0.001"};
+  return Scale{*value, *deviation, "stated"};
+}
+
+}  // namespace odomcalib

@@ -1,0 +1,59 @@
+#include "proto/calibration/scale.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace odomcalib {
+namespace {
+
+TEST(Scale, is_read_with_its_deviation) {
+  const auto scale = scale_from_text("1.002+-0.001");
+  ASSERT_TRUE(scale);
+  EXPECT_DOUBLE_EQ(scale.value().value, 1.002);
+  EXPECT_DOUBLE_EQ(scale.value().std, 0.001);
+  EXPECT_EQ(scale.value().source, "stated");
+  ASSERT_TRUE(scale_from_text("0.99"));
+  EXPECT_EQ(scale_from_text("0.99").value().std, 0.0);
+}
+
+TEST(Scale, that_is_none_is_refused_with_an_example) {
+  for (const char* text : {"", "1.0+", "1.0+-", "+-0.1", "one", "1.0+-x", "1,002", "1000", "0.001", "nan",
+                           "1.0+--0.1", "1.0+-0.5", "1.0 +- 0.1", "1.0+-nan"}) {
+    const auto scale = scale_from_text(text);
+    ASSERT_FALSE(scale) << text;
+    EXPECT_EQ(scale.error().code, ErrorCode::usage);
+    EXPECT_NE(scale.error().text().find("1.002+-0.001"), std::string::npos);
+  }
+}
+
+TEST(Scale, widens_lengths_and_nothing_else) {
+  const Scale scale{1.0, 0.003, "tape"};
+  EXPECT_DOUBLE_EQ(absolute_deviation({0.4, 0.0016, "m"}, scale), std::hypot(0.0016, 0.0012));
+  EXPECT_DOUBLE_EQ(absolute_deviation({0.4, 0.0016, "rad"}, scale), 0.0016);
+  EXPECT_EQ(absolute_deviation({0.4, -1.0, "m"}, scale), -1.0) << "not estimated";
+}
+
+TEST(Scale, stands_in_the_file_with_the_deviation_of_every_parameter) {
+  Calibration calibration;
+  calibration.parameters = {{"track_width", {0.4, 0.0016, "m"}}, {"lidar_yaw", {0.1, 0.01, "rad"}}};
+  EXPECT_EQ(to_json(calibration).find("std_absolute"), std::string::npos) << "no scale, no such deviation";
+  EXPECT_FALSE(scale_of(calibration));
+  store_scale({1.0, 0.003, "lidar data sheet"}, calibration);
+  const std::string text = to_json(calibration);
+  EXPECT_NE(text.find("\"std_absolute\": 0.002"), std::string::npos) << text;
+  const auto read = calibration_from_json(text, "here");
+  ASSERT_TRUE(read);
+  ASSERT_TRUE(scale_of(read.value()));
+  EXPECT_EQ(scale_of(read.value())->source, "lidar data sheet");
+  EXPECT_EQ(to_json(read.value()), text);
+}
+
+TEST(Scale, that_is_not_understood_is_none) {
+  Calibration calibration;
+  calibration.extensions["scale"] = "[1.0]";
+  EXPECT_FALSE(scale_of(calibration));
+}
+
+}  // namespace
+}  // namespace odomcalib
