@@ -3,7 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -21,19 +26,27 @@ std::vector<bool> fixed_of_one(const FitTask& task, const FittedModel& model) {
   return fixed;
 }
 
+/// So well that a fit of it alone is as linear as the covariance has it.
+bool knows_its_lengths(const OwnEstimate& own) {
+  for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth})
+    if (!(std::sqrt(own.covariance(k, k)) < settings::kKnownAlone * std::abs(own.value(k)))) return false;
+  return own.freedom > 0.0;
+}
+
 std::optional<OwnEstimate> own_estimate(const FitTask& task, const FittedModel& model, std::size_t recording,
                                         double metre) {
   estimation::FitOptions options;
   options.fixed = fixed_of_one(task, model);
   const auto fit = fit_joint(task.data.subspan(recording, 1), model.effects, model.fit.parameters, options);
   if (!fit) return std::nullopt;
-  OwnEstimate own{fit.value().parameters.head(kBase), fit.value().covariance.topLeftCorner(kBase, kBase)};
+  OwnEstimate own{fit.value().parameters.head(kBase), fit.value().covariance.topLeftCorner(kBase, kBase),
+                  static_cast<double>(fit.value().used) - static_cast<double>(kBase)};
   Eigen::VectorXd lengths = own.value;
   lengths(vehicle::kMountYaw) = 0.0;
   for (Eigen::Index k = 0; k < kBase; ++k)
     if (!(own.covariance(k, k) > 0.0)) lengths(k) = 0.0;
   own.covariance += metre * metre * lengths * lengths.transpose();
-  return own;
+  return knows_its_lengths(own) ? std::optional(std::move(own)) : std::nullopt;
 }
 
 /// Parameters that are estimated at all.
@@ -74,14 +87,33 @@ struct Reduced {
   std::size_t recording;
   Eigen::VectorXd value;
   Eigen::MatrixXd covariance;
+  double freedom = 0.0;
 };
 
 std::vector<Reduced> reduced(const std::vector<std::optional<OwnEstimate>>& own,
                              const std::vector<Eigen::Index>& free) {
   std::vector<Reduced> all;
   for (std::size_t i = 0; i < own.size(); ++i)
-    if (own[i]) all.push_back({i, own[i]->value(free), own[i]->covariance(free, free)});
+    if (own[i]) all.push_back({i, own[i]->value(free), own[i]->covariance(free, free), own[i]->freedom});
   return all;
+}
+
+/// The square of a normal distance that is as unlikely as this one with an estimated covariance (H.
+/// Hotelling, Ann. Math. Statist. 2, 1931).
+double as_chi_squared(double square, double size, double freedom) {
+  namespace bm = boost::math;
+  const double spare = freedom - size + 1.0;
+  if (!(spare > 0.0) || !(square > 0.0)) return 0.0;
+  const double chance = bm::cdf(bm::complement(bm::fisher_f(size, spare), square * spare / (freedom * size)));
+  return chance > 0.0 ? bm::quantile(bm::complement(bm::chi_squared(size), chance)) : square;
+}
+
+/// The same for one difference, with its sign.
+double as_normal(double deviations, double freedom) {
+  namespace bm = boost::math;
+  const double chance = bm::cdf(bm::complement(bm::students_t(freedom), std::abs(deviations)));
+  if (!(chance > 0.0)) return deviations;
+  return std::copysign(bm::quantile(bm::complement(bm::normal(), chance)), deviations);
 }
 
 double cochran(const std::vector<Reduced>& estimates) {
@@ -91,7 +123,8 @@ double cochran(const std::vector<Reduced>& estimates) {
   double sum = 0.0;
   for (const Reduced& one : estimates) {
     const Eigen::VectorXd apart = one.value - mean;
-    sum += apart.dot(Pool::inverse_of(one.covariance) * apart);
+    sum += as_chi_squared(apart.dot(Pool::inverse_of(one.covariance) * apart),
+                          static_cast<double>(apart.size()), one.freedom);
   }
   return sum;
 }
@@ -108,7 +141,7 @@ void compare_with_others(const std::vector<Reduced>& estimates, const std::vecto
       const auto row = static_cast<Eigen::Index>(one.recording);
       const auto own = static_cast<Eigen::Index>(k);
       found.differences(row, free[k]) = apart(own);
-      found.sigmas(row, free[k]) = apart(own) / std::sqrt(variance(own));
+      found.sigmas(row, free[k]) = as_normal(apart(own) / std::sqrt(variance(own)), one.freedom);
     }
   }
 }

@@ -15,12 +15,15 @@ namespace odomcalib::calib::selection {
 struct OwnEstimate {
   Eigen::VectorXd value;
   Eigen::MatrixXd covariance;  ///< with the error of the recording's own metre
+  double freedom = 0.0;        ///< pairs beyond the parameters: of the covariance
 };
 
 struct Homogeneity {
-  std::vector<std::optional<OwnEstimate>> own;  ///< per recording; none where it determines nothing alone
+  /// Per recording; none where it does not determine all lengths alone, to kKnownAlone.
+  std::vector<std::optional<OwnEstimate>> own;
   /// Per recording (row) and base parameter: own value less that of all others together, in deviations of
-  /// that difference; 0 where either does not determine it.
+  /// that difference, as many as of a normal distribution are as unlikely (Student, Biometrika 6, 1908); 0
+  /// where either does not determine it.
   Eigen::MatrixXd sigmas;
   Eigen::MatrixXd differences;  ///< the same in the parameter's unit
   double p_value = 1.0;         ///< of Cochran's Q and of the largest of the sigmas, the smaller (Bonferroni)

@@ -135,6 +135,12 @@ inline constexpr std::size_t kFewestHeldOut = 50;
 /// sigma; a failed match says nothing about the wheels. Chosen.
 inline constexpr double kGrossError = 6.0;
 
+// --- Homogeneity -----------------------------------------------------------------------------------------
+
+/// Relative deviation of each length that one recording must determine alone to be compared with others.
+/// Chosen.
+inline constexpr double kKnownAlone = 0.02;
+
 // --- Hyperparameter selection ----------------------------------------------------------------------------
 
 /// Share of all that a function spans from which a rise or fall counts as a bend. Chosen.

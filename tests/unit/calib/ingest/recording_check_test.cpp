@@ -53,9 +53,9 @@ const std::vector<Mistake> kMistakes = {
     {"no_unit", [](Recording& r) { r.robot.ticks_per_rev = 0.0; }, ErrorCode::missing_units, "ticks_per_rev",
      "robot line"},
     {"ticks_in_milliseconds", [](Recording& r) { stretch_times(r.ticks, 1e3); }, ErrorCode::format,
-     "ticks come every 20 s", "seconds"},
+     "the times of the ticks look like milliseconds", "seconds"},
     {"scans_in_milliseconds", [](Recording& r) { stretch_times(r.scans, 1e3); }, ErrorCode::format,
-     "scans come every 100 s", "seconds"},
+     "the times of the scans look like milliseconds", "seconds"},
     {"clocks_apart",
      [](Recording& r) {
        for (Scan& scan : r.scans) scan.t += 1.7e9;
