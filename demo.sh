@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# A robot whose dimensions differ from its papers is calibrated through its wires. The robot is simulated (CANopen drive
+# A robot whose dimensions differ from the nominal values is calibrated through its wires. The robot is simulated (CANopen drive
 # behind an slcan port, 2D lidar on a serial port); the daemon and the command line are the real ones. Needs no hardware.
-# The robot also has a defect that nobody told the program about, drawn from the simulator's own list, part of which is in
+# The robot also has a defect that the program does not know of, drawn from the simulator's own list, part of which is in
 # no catalogue. At the end the truth is shown beside what was found, and the error before and after on a fresh drive.
 #
 # Works on a fresh Debian 12 as root, or as a user with sudo; installs and builds what is missing. About 12 minutes on
@@ -108,9 +108,9 @@ socket = "$dir/control"
 TOML
 }
 
-# The dimensions on paper, for odometry as it was before.
+# The nominal values, for odometry as it was before.
 write_papers() {
-  cat > build/demo/papers.toml << TOML
+  cat > build/demo/nominal.toml << TOML
 wheel_diameter = 0.150
 track_width = 0.400
 lidar_pose = [0.10, 0.0, 0.0]
@@ -186,7 +186,7 @@ fresh_drive() { # NAME VERB...
   for kind in nominal geometry calibration; do
     local values=build/demo/$kind.json
     [ "$kind" = nominal ] && values=nominal
-    "$bin/odomcalibctl" predict "build/demo/fresh-$name.lcmlog" --robot build/demo/papers.toml --calibration "$values" \
+    "$bin/odomcalibctl" predict "build/demo/fresh-$name.lcmlog" --robot build/demo/nominal.toml --calibration "$values" \
       --trajectory "build/demo/fresh-$name.$kind.tum" > /dev/null || fail "predict"
   done
 }
@@ -207,7 +207,7 @@ dir=$(mktemp -d "$([ -w /dev/shm ] && echo /dev/shm || echo /tmp)/odomcalib-demo
 hurry=()
 if chrt -R --rr 10 true 2> /dev/null; then hurry=(chrt -R --rr 10); fi
 
-step "a robot is drawn (seed $seed): its true dimensions differ from its papers by 1 to 3 %, and it has a defect"
+step "a robot is drawn (seed $seed): its true dimensions differ from the nominal values by 1 to 3 %, and it has a defect"
 start_robot
 write_configuration
 write_papers

@@ -78,7 +78,7 @@ Result<Vector5> minimise_on_circle(const Matrix5& form) {
   const Eigen::Matrix3d a = form.topLeftCorner<3, 3>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> conditioning(a);
   if (!(conditioning.eigenvalues()(0) > 1e-12 * conditioning.eigenvalues()(2)))
-    return underdetermined("track width and sensor position cannot be told apart",
+    return underdetermined("track width and sensor position cannot be separated",
                            "turns on the spot both ways");
   const Eigen::Matrix<double, 3, 2> b = form.topRightCorner<3, 2>();
   const Eigen::Matrix2d reduced = form.bottomRightCorner<2, 2>() - b.transpose() * a.ldlt().solve(b);

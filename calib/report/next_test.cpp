@@ -24,7 +24,7 @@ std::optional<NextTest> for_ambiguity(const Calibration& calibration) {
     std::string others;
     for (const auto& name : separable(result, *effect)) others += (others.empty() ? "" : ", ") + name;
     if (others.empty()) continue;
-    return NextTest{effect->manoeuvre(), result.name + " cannot be told from " + others +
+    return NextTest{effect->manoeuvre(), result.name + " cannot be separated from " + others +
                                              " with what was driven; it takes " +
                                              effect->separating_motion()};
   }

@@ -223,7 +223,7 @@ std::optional<Objection> objection_to_deviation(const Length& length) {
                    " only; a longer recording would help");
   if (length.relative() > settings::kWarnRelativeDeviation)
     return warning(length.name + " without what was found is known to " + percent(length.relative()) +
-                   " only: how that goes on where it was not seen, this recording does not tell");
+                   " only: how that goes on where it was not seen, this recording does not show");
   return std::nullopt;
 }
 

@@ -70,15 +70,15 @@ constexpr std::array kCovariates = {
               [](const vehicle::StepContext& c) { return c.unwound[0].way; }},
     Covariate{"stop after a turn", "", Covariate::sum,
               [](const vehicle::StepContext& c) { return c.unwound[0].turn; }},
-    Covariate{"growth of the left wheel's pace", "m/s^2", Covariate::mean,
+    Covariate{"left wheel acceleration, braking negative", "m/s^2", Covariate::mean,
               [](const vehicle::StepContext& c) {
                 return vehicle::growth_of_speed_magnitude(c.left_acceleration, c.left_speed);
               }},
-    Covariate{"growth of the right wheel's pace", "m/s^2", Covariate::mean,
+    Covariate{"right wheel acceleration, braking negative", "m/s^2", Covariate::mean,
               [](const vehicle::StepContext& c) {
                 return vehicle::growth_of_speed_magnitude(c.right_acceleration, c.right_speed);
               }},
-    Covariate{"growth of the pace", "m/s^2", Covariate::mean,
+    Covariate{"acceleration, braking negative", "m/s^2", Covariate::mean,
               [](const vehicle::StepContext& c) {
                 return vehicle::growth_of_speed_magnitude(0.5 * (c.left_acceleration + c.right_acceleration),
                                                           c.speed);

@@ -185,7 +185,7 @@ class Search {
       return reason;
     const bool spoils = (spoils_base(effect, basis().fit, fit) && has(Rule::base_determined)) ||
                         (candidate.smooth && moves_lengths(basis().fit, fit) && has(Rule::lengths_kept));
-    return spoils ? "this drive cannot tell it from the wheels" : "";
+    return spoils ? "this drive cannot separate it from the wheels" : "";
   }
 
   /// Too small to be reported, not too small to have moved the lengths.

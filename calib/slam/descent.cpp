@@ -13,7 +13,7 @@ constexpr double kShortestStep = 1e-6;    // of the full step, in the line searc
 constexpr double kSufficientFall = 1e-4;  // of the promised fall (Armijo)
 constexpr double kFairFall = 0.75;        // of the promised fall: the linear model holds
 constexpr double kSmallestMove = 1e-13;   // m or rad, beside coordinates of size 1
-constexpr double kChi2Rounding = 1e-12;   // of chi2, relative: smaller falls cannot be told from none
+constexpr double kChi2Rounding = 1e-12;   // of chi2, relative: smaller falls cannot be separated from none
 constexpr double kSteadyRate = 0.1;       // falls that shrink at least this fast may be extrapolated
 
 /// Damping after Nielsen (1999), "Damping parameter in Marquardt's method": falls smoothly with the quality

@@ -157,7 +157,8 @@ Section effects_of(const Calibration& calibration) {
     std::string others;
     for (const auto& alias : effect.aliases) others += (others.empty() ? "" : ", ") + readable(alias);
     if (!others.empty())
-      section.lines.push_back(readable(effect.name) + " cannot be told from " + others + " with this drive");
+      section.lines.push_back(readable(effect.name) + " cannot be separated from " + others +
+                              " with this drive");
   }
   return section;
 }

@@ -157,10 +157,10 @@ Section determination_section(const Calibration& calibration) {
   const double smallest = eigen.eigenvalues()(0);
   section.lines.push_back(
       smallest > 0.0
-          ? fmt::format("condition of the correlations {:.1f}; beyond 1000 the motion hardly tells "
+          ? fmt::format("condition of the correlations {:.1f}; beyond 1000 the motion hardly separates "
                         "two parameters apart",
                         eigen.eigenvalues()(n - 1) / smallest)
-          : "the correlations are singular: the motion does not tell the parameters apart");
+          : "the correlations are singular: the motion does not separate the parameters");
   return section;
 }
 

@@ -207,7 +207,7 @@ Wiring judge_wiring(const Nudge& nudge) {
   const bool sighted = nudge.ahead.seen && nudge.left.seen;
   if (best.empty() || (!sighted && faults(best.front()) == 0)) {
     wiring.why = sighted ? "no combination of exchanged or inverted wires explains what was seen"
-                         : "the counts are as commanded, but the lidar could not tell how it moved";
+                         : "the counts are as commanded, but the lidar could not measure how it moved";
     return wiring;
   }
   wiring.lidar_yaw = measured_yaw(nudge, best.front());

@@ -70,8 +70,8 @@ bool EncoderFreshness::frozen(const Wheel& wheel, double now) {
 std::optional<std::string> EncoderFreshness::stale(double now) const {
   if (!last_) return "no encoder counts yet";
   if (now - *last_ > kEncoderTimeout) return "no encoder counts for more than 100 ms";
-  if (frozen(wheels_[0], now)) return "left wheel is told to turn and its count does not change";
-  if (frozen(wheels_[1], now)) return "right wheel is told to turn and its count does not change";
+  if (frozen(wheels_[0], now)) return "left wheel is commanded to turn and its count does not change";
+  if (frozen(wheels_[1], now)) return "right wheel is commanded to turn and its count does not change";
   return std::nullopt;
 }
 

@@ -70,7 +70,7 @@ void run(Service& service, const odomcalib::Clock& clock) {
     service.poll_once(20);
     watchdog.turned(clock.now(), service);
   }
-  service.stop_all("the daemon was told to end");
+  service.stop_all("the daemon ends");
   sd_notify(0, "STOPPING=1");
   for (const double begin = clock.now(); !may_end(service, clock.now() - begin);) {
     service.poll_once(5);

@@ -19,7 +19,7 @@ ordered_json view_check(const std::vector<safety::Sector>& blind) {
   return {{"name", "lidar view"},
           {"outcome", "warn"},
           {"found", "blind from " + safety::text_of(blind) + " (0 is ahead, 90 left)"},
-          {"remedy", "moves that go there are asked about: see that this area is free"}};
+          {"remedy", "moves that go there need consent: see that this area is free"}};
 }
 
 ordered_json check_disk(const std::filesystem::path& folder) {

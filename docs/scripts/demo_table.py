@@ -49,7 +49,7 @@ def print_defect(calibration, truth):
     for effect in calibration["effects"]:
         values = ", ".join(f"{name} {value['value']:.4g}{spread(value)} {value['unit']}"
                            for name, value in effect["parameters"].items() if value["value"] or value["std"])
-        others = f"; cannot be told from {', '.join(effect['aliases'])}" if effect["aliases"] else ""
+        others = f"; cannot be separated from {', '.join(effect['aliases'])}" if effect["aliases"] else ""
         print(f"  estimated  {effect['name']}: {values}{others}")
         found += 1
     rest = calibration["unexplained"]

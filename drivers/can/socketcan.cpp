@@ -140,7 +140,7 @@ class SocketCan final : public CanTransport {
     return age < kOldest_s ? age : 0.0;
   }
 
-  /// Stamps are wall-clock times: those taken before the clock was set cannot be told from those after.
+  /// Stamps are wall-clock times: those taken before the clock was set cannot be separated from those after.
   bool wall_clock_stepped(double wall_now) {
     const double offset = wall_now - read_clock(CLOCK_MONOTONIC);
     const double before = std::exchange(offset_, offset);

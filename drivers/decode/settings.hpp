@@ -14,7 +14,7 @@ inline constexpr std::size_t kPiece = 256;
 /// without scaling is 64 KiB; with scaling, devices stay below 1 MiB.
 inline constexpr std::size_t kMostWaiting = std::size_t{1} << 20U;
 /// Bytes between what was expected and what came that are another connection. Derived: a quarter of the
-/// sequence numbers, beyond which before and after cannot be told apart.
+/// sequence numbers, beyond which before and after cannot be separated.
 inline constexpr std::int64_t kFarthest = std::int64_t{1} << 30U;
 
 }  // namespace odomcalib::drivers::decoding

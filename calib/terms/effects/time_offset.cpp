@@ -20,7 +20,7 @@ class TimeOffset final : public StepEffect<TimeOffset> {
   [[nodiscard]] std::vector<std::string> always_alike() const override { return {"encoder_lag"}; }
   [[nodiscard]] std::string separating_motion() const override {
     return "equal accelerations at low and at high speed, forward and backward; a filter in the encoder path "
-           "cannot be told "
+           "cannot be separated "
            "apart from a late scan";
   }
   [[nodiscard]] std::string manoeuvre() const override { return "accelerations"; }

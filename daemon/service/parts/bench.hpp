@@ -40,7 +40,7 @@ struct Bench {
 
   std::string last_stop;         ///< why the robot was stopped last
   std::uint64_t late_steps = 0;  ///< control steps that came noticeably late
-  bool ending = false;           ///< the daemon was told to end
+  bool ending = false;           ///< the daemon ends
 };
 
 /// Zero speed and quick stop, on the bus when it returns.

@@ -69,7 +69,7 @@ void Startup::on_refusal(const Telegram& telegram, double now) {
   const unsigned code = in.number(2);
   if (step_ == Step::identify || step_ == Step::state) return enter(Step::subscribe, now);
   if (step_ != Step::subscribe) return;
-  problem_ = trouble("the sensor refuses to send scans: " + refusal_text(code), "it is asked again");
+  problem_ = trouble("the sensor refuses to send scans: " + refusal_text(code), "the request is repeated");
   enter(Step::pause, now);
 }
 
