@@ -296,7 +296,7 @@ TEST(Recording, survives_writing_as_json_lines) {
     for (int k = 0; k < 100; ++k) {
       scan.ranges.push_back(k % 7 == 0 ? 0.0F : static_cast<float>(any(random)));
       scan.angles.push_back(static_cast<float>(any(random)));
-      scan.times.push_back(static_cast<float>(any(random) * 1e-4));
+      scan.times.push_back(static_cast<float>((k + 0.09 * any(random)) * 1e-4));  // read in order of time
       scan.intensities.push_back(static_cast<float>(any(random) * 100));
     }
     r.scans.push_back(scan);
