@@ -108,9 +108,17 @@ double as_chi_squared(double square, double size, double freedom) {
   return chance > 0.0 ? bm::quantile(bm::complement(bm::chi_squared(size), chance)) : square;
 }
 
-/// The same for one difference, with its sign.
-double as_normal(double deviations, double freedom) {
+struct Variance {
+  double value = 0.0, freedom = 0.0;
+};
+
+/// The same for a difference of two, with its sign (B. L. Welch, Biometrika 34, 1947).
+double in_deviations(double apart, const Variance& a, const Variance& b) {
   namespace bm = boost::math;
+  const double variance = a.value + b.value;
+  const double freedom =
+      variance * variance / (a.value * a.value / a.freedom + b.value * b.value / b.freedom);
+  const double deviations = apart / std::sqrt(variance);
   const double chance = bm::cdf(bm::complement(bm::students_t(freedom), std::abs(deviations)));
   if (!(chance > 0.0)) return deviations;
   return std::copysign(bm::quantile(bm::complement(bm::normal(), chance)), deviations);
@@ -133,15 +141,21 @@ void compare_with_others(const std::vector<Reduced>& estimates, const std::vecto
                          Homogeneity& found) {
   for (const Reduced& one : estimates) {
     Pool others(one.value.size());
-    for (const Reduced& other : estimates)
-      if (other.recording != one.recording) others.add(other.value, other.covariance);
+    double freedom = 0.0;  // of the others
+    for (const Reduced& other : estimates) {
+      if (other.recording == one.recording) continue;
+      others.add(other.value, other.covariance);
+      freedom += other.freedom;
+    }
     const Eigen::VectorXd apart = one.value - others.value();
-    const Eigen::VectorXd variance = one.covariance.diagonal() + others.covariance().diagonal();
+    const Eigen::VectorXd own_variance = one.covariance.diagonal(),
+                          variance_of_others = others.covariance().diagonal();
     for (std::size_t k = 0; k < free.size(); ++k) {
       const auto row = static_cast<Eigen::Index>(one.recording);
       const auto own = static_cast<Eigen::Index>(k);
       found.differences(row, free[k]) = apart(own);
-      found.sigmas(row, free[k]) = as_normal(apart(own) / std::sqrt(variance(own)), one.freedom);
+      found.sigmas(row, free[k]) =
+          in_deviations(apart(own), {own_variance(own), one.freedom}, {variance_of_others(own), freedom});
     }
   }
 }
