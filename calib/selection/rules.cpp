@@ -57,7 +57,7 @@ constexpr std::array kTable = {
     RuleRow{Rule::middle_event, "middle_event", "thresholds at the end of what the drive leaves open"},
     RuleRow{Rule::shape_has_a_price, "shape_has_a_price", "names that win by their choice of shapes"},
 };
-static_assert(kTable.size() == static_cast<std::size_t>(Rule::count_));
+static_assert(kTable.size() == kRules);
 
 }  // namespace
 

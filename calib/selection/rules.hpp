@@ -54,8 +54,8 @@ enum class Rule : std::size_t {
   few_bends,
   middle_event,
   shape_has_a_price,
-  count_
 };
+inline constexpr std::size_t kRules = static_cast<std::size_t>(Rule::shape_has_a_price) + 1;
 
 /// One row of the table.
 struct RuleRow {
@@ -69,7 +69,7 @@ std::span<const RuleRow> rule_table();
 /// nullopt when there is none of that name.
 std::optional<Rule> rule_from(const std::string& name);
 
-using RuleBits = std::bitset<static_cast<std::size_t>(Rule::count_)>;
+using RuleBits = std::bitset<kRules>;
 
 /// The rules that hold. Each is consulted last of what decides, so that one that was never consulted changes
 /// nothing.

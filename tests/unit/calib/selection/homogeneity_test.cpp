@@ -15,6 +15,7 @@ constexpr int kPairs = 240;  // of half a second
 measurement::FitData driven(const vehicle::DriveModel& model, const wheels::BaseParameters& base,
                             unsigned seed) {
   std::vector<vehicle::Interval> intervals;
+  intervals.reserve(kPairs);
   for (int k = 0; k < kPairs; ++k) intervals.push_back({0.513 + 0.5 * k, 1.013 + 0.5 * k});
   const Eigen::VectorXd p = vehicle::to_vector(base);
   const auto motions = model.predict(vehicle::as_span(p), {}, intervals);

@@ -259,7 +259,8 @@ TEST(Recording, reads_gzip_by_content_and_hashes_the_stored_bytes) {
 
 TEST(Recording, uses_what_can_be_unpacked_of_a_cut_off_or_damaged_gzip_file) {
   std::string text = kRobotLine;
-  for (int i = 0; i < 2000; ++i) text += ticks_line(i * 0.05, i * i % 977, i * 3);
+  for (std::int64_t i = 0; i < 2000; ++i)
+    text += ticks_line(static_cast<double>(i) * 0.05, i * i % 977, i * 3);
   auto packed = gzip(text).value();
   const auto cut = read_text(packed.substr(0, packed.size() / 2));
   ASSERT_TRUE(cut.ok()) << cut.error().text();
@@ -284,7 +285,7 @@ TEST(Recording, survives_writing_as_json_lines) {
              "ä\"\\",    "c"};
   for (int i = 0; i < 50; ++i) {
     const double t = i + any(random) * 0.01;
-    r.ticks.push_back({t, i * 3 - 20, -i * 2, i / 25});
+    r.ticks.push_back({t, std::int64_t{3} * i - 20, std::int64_t{-2} * i, i / 25});
     r.poses.push_back({t, any(random), any(random), any(random)});
     r.gyro.push_back({t, any(random)});
     Scan scan;
@@ -386,7 +387,7 @@ TEST(Recording, of_five_minutes_loads_within_the_time_budget) {
   std::string ranges;
   for (int k = 0; k < 1081; ++k) ranges += (k > 0 ? "," : "") + std::to_string(range(random)).substr(0, 6);
   for (int i = 0; i < 15000; ++i) {
-    text += ticks_line(i * 0.02, i * 10, i * 10);
+    text += ticks_line(i * 0.02, std::int64_t{10} * i, std::int64_t{10} * i);
     if (i % 5 == 0)
       text += R"({"type":"scan","t":)" + std::to_string(i * 0.02) +
               R"(,"angle_min":-2.35,"angle_increment":0.00436,"range_max":30,"ranges":[)" + ranges + "]}\n";
