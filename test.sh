@@ -45,7 +45,6 @@ install_packages
 failed=()
 build
 tests/lint build/release || failed+=("tests/lint")
-tests/odr || failed+=("tests/odr")
 [ -d "${ODOMCALIB_SHARED:-../shared}" ] ||
   echo "WARNING: no real recordings at ${ODOMCALIB_SHARED:-../shared}; tests that need them are skipped"
 ctest --preset release -j 2 --output-junit tests.xml || failed+=("ctest")
