@@ -87,6 +87,7 @@ TEST_F(AttackedInMotion, by_clients_that_come_and_go_drives_on_and_hears_a_stop)
 
 TEST_F(AttackedInMotion, by_clients_that_never_read_drives_on_and_hears_a_stop) {
   std::vector<std::unique_ptr<ControlClient>> all;
+  all.reserve(2);
   for (int i = 0; i < 2; ++i) all.push_back(std::make_unique<ControlClient>(both_.folder() / "control"));
   attack([&] {
     for (auto& client : all) client->send(30, "GetStatus");
