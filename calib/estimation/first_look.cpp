@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "calib/classical/closed_form.hpp"
-#include "calib/estimation/first_look_settings.hpp"
+#include "calib/estimation/settings.hpp"
 #include "calib/measurement/reference_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
 
@@ -234,7 +234,7 @@ class Look {
 
   [[nodiscard]] std::optional<Cause> delay() const {
     double best = explained_, late = 0.0;
-    for (double d = -settings::kDelayReach_s; d <= settings::kDelayReach_s; d += settings::kDelayStep_s)
+    for (double d = -settings::kClockReach_s; d <= settings::kClockReach_s; d += settings::kClockStep_s)
       if (const double explained = explained_with({d, 0.0, 1.0}); explained > best)
         best = explained, late = d;
     if (!mends(explained_, best)) return std::nullopt;
