@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Checks that includes point one way: proto <- calib, proto <- drivers, {calib, drivers} <- daemon, all <- tests, and
 inside these folders from a layer only to those above it in LAYERS. With that no two folders can include each other.
+A namespace of settings is one file, so that no constant of it can have two values.
 
 Usage: check_includes.py [PROJECT_ROOT]      lists violations, exit status 1 if there are any
        check_includes.py --self-test         shows that each rule accepts what is right and rejects what is wrong
@@ -12,6 +13,8 @@ import sys
 import tempfile
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+SETTINGS = re.compile(r"^namespace ([\w:]+::settings) \{", re.MULTILINE)
 
 # Folder -> folders of this project whose headers it may include.
 MAY_INCLUDE = {
@@ -107,6 +110,27 @@ def violations(root):
                     yield f"{name}:{number}: {reason}"
 
 
+def split_settings(root):
+    """Files that define constants of a namespace of settings beside another file."""
+    known = {}
+    for path in sorted(path for folder in MAY_INCLUDE for path in (root / folder).rglob("*.hpp")):
+        for namespace in SETTINGS.findall(path.read_text(encoding="utf-8")):
+            name = path.relative_to(root).as_posix()
+            if known.setdefault(namespace, name) != name:
+                yield f"{name}: {namespace} stands in {known[namespace]} already"
+
+
+def settings_are_judged_rightly():
+    with tempfile.TemporaryDirectory() as folder:
+        calib = pathlib.Path(folder) / "calib"
+        calib.mkdir()
+        for name, layer in (("a.hpp", "a"), ("b.hpp", "b")):
+            (calib / name).write_text(f"namespace {layer}::settings {{\n}}\n", encoding="utf-8")
+        apart = list(split_settings(pathlib.Path(folder)))
+        (calib / "c.hpp").write_text("namespace b::settings {\n}\n", encoding="utf-8")
+        return not apart and len(list(split_settings(pathlib.Path(folder)))) == 1
+
+
 def self_test():
     good = [
         ("proto/a.hpp", "proto/b.hpp"), ("calib/a.cpp", "proto/b.hpp"), ("calib/a.cpp", "calib/terms/b.hpp"),
@@ -140,7 +164,10 @@ def self_test():
     if problem("calib/a.cpp", False, "chrono") is None or problem("daemon/a.cpp", False, "chrono") is not None:
         print("self-test failed: system headers")
         return 1
-    print(f"{len(good) + len(bad) + 2} cases judged rightly")
+    if not settings_are_judged_rightly():
+        print("self-test failed: settings in two files")
+        return 1
+    print(f"{len(good) + len(bad) + 4} cases judged rightly")
     return 0
 
 
@@ -148,10 +175,10 @@ def main():
     if "--self-test" in sys.argv:
         return self_test()
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
-    found = list(violations(root))
+    found = list(violations(root)) + list(split_settings(root))
     for line in found:
         print(line)
-    print(f"{len(found)} violations of the include direction")
+    print(f"{len(found)} violations of the include direction and of one settings file a layer")
     return 1 if found else 0
 
 
