@@ -2,29 +2,18 @@
 
 #include <array>
 #include <cmath>
-#include <iomanip>
-#include <numbers>
-#include <sstream>
 
 #include "calib/classical/settings.hpp"
+#include "calib/math/se2.hpp"
+#include "calib/math/significant.hpp"
 
 namespace odomcalib::calib::classical {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-std::string number(double value) {
-  std::ostringstream out;
-  out << std::setprecision(3) << value;
-  return out.str();
-}
+std::string number(double value) { return math::significant(value, 3); }
 
 /// Counts are whole numbers that have to be typed.
-std::string count(double value) {
-  std::ostringstream out;
-  out << std::setprecision(6) << value;
-  return out.str();
-}
+std::string count(double value) { return math::significant(value, 6); }
 
 bool is_one(double ratio) { return ratio > 1.0 / settings::kSameLength && ratio < settings::kSameLength; }
 
@@ -55,10 +44,10 @@ constexpr std::array kOfBothWheels = {
     Factor{4.0, "ticks_per_rev counts all four edges of a period, the recorded counts only one"},
     Factor{0.25, "ticks_per_rev counts one edge of a period, the recorded counts all four"},
     Factor{0.5, "ticks_per_rev counts half of the edges that come, or the diameter was doubled"},
-    Factor{1.0 / kPi, "the circumference was given as diameter"},
-    Factor{kPi, "the diameter was divided by pi"},
-    Factor{0.5 / kPi, "ticks_per_rev is counts per radian"},
-    Factor{2.0 * kPi, "ticks_per_rev was multiplied by 2 pi"},
+    Factor{1.0 / math::kPi, "the circumference was given as diameter"},
+    Factor{math::kPi, "the diameter was divided by pi"},
+    Factor{0.5 / math::kPi, "ticks_per_rev is counts per radian"},
+    Factor{2.0 * math::kPi, "ticks_per_rev was multiplied by 2 pi"},
     Factor{1.5, "ticks_per_rev has a gear ratio in it that the counts have not"},
     Factor{2.0 / 3.0, "ticks_per_rev lacks a gear ratio"},
     Factor{0.0254, "wheel_diameter is in inches"},

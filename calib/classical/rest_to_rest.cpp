@@ -5,14 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "calib/classical/settings.hpp"
+
 namespace odomcalib::calib::classical {
 namespace {
 
-constexpr double kLeastDistance = 0.2;          ///< m; below it the errors at rest are a per cent of the move
-constexpr double kMostYaw = 0.5;                ///< rad in a straight line
-constexpr double kLeastTurn = math::kPi / 2.0;  ///< rad
-constexpr double kFarEnd = 0.5;  ///< of a side: a drive that ends farther from its start is no square
-constexpr int kMostSteps = 20;   ///< Gauss-Newton from E_d = E_b = 1 takes three or four
+constexpr int kMostSteps = 20;  ///< Gauss-Newton from E_d = E_b = 1 takes three or four
 constexpr double kSmallStep = 1e-12;
 
 /// E_d, E_b, and by how much the lidar sits elsewhere than stated: m, m, rad in the frame of the base.
@@ -50,9 +48,9 @@ double mean_distance(std::span<const StraightMove> moves) {
 }
 
 std::optional<Error> unfit(const StraightMove& move) {
-  if (!(move.distance >= kLeastDistance))
+  if (!(move.distance >= settings::kLeastDistance_m))
     return refused("a move of less than 0.2 m", "straight method", "drive farther, better a metre");
-  if (move.yaw && !(std::abs(*move.yaw) <= kMostYaw))
+  if (move.yaw && !(std::abs(*move.yaw) <= settings::kMostYaw_rad))
     return refused("a move that turned by more than half a radian", "straight method",
                    "check that both wheels are driven and counted");
   if (!(move.wheels.left * move.wheels.right > 0.0))
@@ -144,8 +142,8 @@ GeometryErrors by_formula(std::span<const SquarePair> pairs, const wheels::BaseP
 
 bool is_square(const SquareRun& run, const wheels::BaseParameters& used, double side) {
   const math::Pose claimed = end_of(run, used);
-  return run.moves.size() == 8 && std::hypot(claimed.x, claimed.y) < kFarEnd * side &&
-         std::hypot(run.end.x, run.end.y) < kFarEnd * side;
+  return run.moves.size() == 8 && std::hypot(claimed.x, claimed.y) < settings::kFarEnd * side &&
+         std::hypot(run.end.x, run.end.y) < settings::kFarEnd * side;
 }
 
 }  // namespace
@@ -192,7 +190,7 @@ Result<SpinProposal> propose_track_width(std::span<const SpinMove> moves, const 
     return Error{ErrorCode::empty, "no turn on the spot", "spin method", "odomcalibctl spin"};
   std::vector<double> factor, width;
   for (const SpinMove& move : moves) {
-    if (!(std::abs(move.turn) >= kLeastTurn))
+    if (!(std::abs(move.turn) >= settings::kLeastTurn_rad))
       return refused("a turn of less than a quarter of one", "spin method",
                      "turn farther, better a whole turn");
     width.push_back((used.right_radius * move.wheels.right - used.left_radius * move.wheels.left) /

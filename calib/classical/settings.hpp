@@ -1,6 +1,8 @@
-// Numbers that decide which factor a length has in it, each once, with its unit and its origin: derived (from
-// what), published (source), measured (where), chosen (for what reason).
+// Numbers that decide which factor a length has in it, and which moves show a length, each once, with its
+// unit and its origin: derived (from what), published (source), measured (where), chosen (for what reason).
 #pragma once
+
+#include "calib/math/se2.hpp"
 
 namespace odomcalib::calib::classical::settings {
 
@@ -10,5 +12,16 @@ inline constexpr double kSameLength = 1.2;
 /// Relative deviation of a ratio from a factor of the table, and of ratios that are alike. Derived: nominal
 /// values are right to 10 %, and neighbouring factors of the table are 27 % apart at least.
 inline constexpr double kSameFactor = 0.12;
+
+// --- Rest to rest ----------------------------------------------------------------------------------------
+
+/// m, of a straight move; Chosen: below it errors at rest weigh too much.
+inline constexpr double kLeastDistance_m = 0.2;
+/// rad, by which a straight move may turn. Chosen.
+inline constexpr double kMostYaw_rad = 0.5;
+/// rad, of a turn on the spot. Chosen: a quarter of a turn.
+inline constexpr double kLeastTurn_rad = math::kPi / 2.0;
+/// Share of a side; a drive that ends farther from its start is no square. Chosen.
+inline constexpr double kFarEnd = 0.5;
 
 }  // namespace odomcalib::calib::classical::settings

@@ -5,14 +5,14 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <iomanip>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calib/classical/closed_form.hpp"
+#include "calib/classical/length_factor.hpp"
 #include "calib/estimation/settings.hpp"
+#include "calib/math/significant.hpp"
 #include "calib/measurement/reference_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
 
@@ -23,11 +23,7 @@ using classical::Cause;
 using measurement::ReferenceMotion;
 using wheels::WheelMotion;
 
-std::string number(double value) {
-  std::ostringstream out;
-  out << std::setprecision(3) << value;
-  return out.str();
-}
+std::string number(double value) { return math::significant(value, 3); }
 
 /// From the clock of the reference to that of the counts.
 struct ClockMap {
@@ -35,21 +31,13 @@ struct ClockMap {
   [[nodiscard]] double operator()(double t) const { return to + rate * (t - from); }
 };
 
-double angle_at(const wheels::WheelTrack& track, const std::vector<double>& angle, double time) {
-  const std::size_t k = track.interval_at(time);
-  const double share = (time - track.t[k]) / (track.t[k + 1] - track.t[k]);
-  return angle[k] + share * (angle[k + 1] - angle[k]);
-}
-
 std::vector<WheelMotion> beside_wheels(const std::vector<ReferenceMotion>& motions,
                                        const wheels::WheelTrack& track, const ClockMap& clock = {}) {
   std::vector<WheelMotion> all;
   if (track.empty()) return all;
   for (const ReferenceMotion& m : motions) {
     const double begin = clock(m.begin), end = clock(m.end);
-    if (!track.covers(begin, end)) continue;
-    all.push_back({angle_at(track, track.left, end) - angle_at(track, track.left, begin),
-                   angle_at(track, track.right, end) - angle_at(track, track.right, begin), m.motion});
+    if (track.covers(begin, end)) all.push_back(motion_between(track, begin, end, m.motion));
   }
   return all;
 }
@@ -128,13 +116,14 @@ std::vector<WheelMotion> with_direction(std::vector<WheelMotion> motions, const 
 
 std::size_t changed(const std::vector<WheelMotion>& before, const std::vector<WheelMotion>& after,
                     const RobotDescription& robot) {
-  constexpr double kPlain = 0.1;  // rad in half a second: no match is off by that
   std::size_t count = 0;
   for (std::size_t k = 0; k < before.size(); ++k) {
     const double given = nominal_rotation(robot, before[k].left, before[k].right);
     const double mended = nominal_rotation(robot, after[k].left, after[k].right);
     const double yaw = before[k].sensor_motion.yaw;
-    if (std::abs(yaw - given) > kPlain && std::abs(yaw - mended) < 0.3 * std::abs(yaw - given)) ++count;
+    if (std::abs(yaw - given) > settings::kContradicting_rad &&
+        std::abs(yaw - mended) < settings::kLeftWithDirection * std::abs(yaw - given))
+      ++count;
   }
   return count;
 }
@@ -189,7 +178,7 @@ class Look {
         return std::nullopt;
     double turned = 0.0;
     for (const ReferenceMotion& m : seen_.motions) turned += std::abs(m.motion.yaw);
-    if (turned < 1.0) return std::nullopt;
+    if (turned < settings::kTurned_rad) return std::nullopt;
     return Cause{"left and right counts are always the same, although the robot turned by " +
                      std::to_string(std::lround(turned * 180.0 / math::kPi)) + " degrees in all",
                  "check that each count comes from its own encoder"};
@@ -256,9 +245,8 @@ class Look {
   }
 
   static bool are_nominal(const std::optional<classical::LengthRatios>& r) {
-    constexpr double kNear = 0.1;  // nominal values are right to that
-    return r && std::abs(r->left - 1.0) < kNear && std::abs(r->right - 1.0) < kNear &&
-           std::abs(r->track - 1.0) < kNear;
+    const auto is_near = [](double ratio) { return std::abs(ratio - 1.0) < settings::kNearNominal; };
+    return r && is_near(r->left) && is_near(r->right) && is_near(r->track);
   }
 
   /// Beams spread wider, or less wide, than they were sent.
@@ -302,6 +290,10 @@ bool can_be_looked_at(const Recording& recording) {
          (recording.poses.size() > 1 || recording.scans.size() > 1);
 }
 
+Error refusal(const Cause& cause, const Recording& recording) {
+  return {ErrorCode::refused, cause.what, recording.name, cause.remedy};
+}
+
 }  // namespace
 
 bool never_counts_down(const Recording& recording) {
@@ -312,13 +304,13 @@ bool never_counts_down(const Recording& recording) {
 std::optional<Error> counts_without_direction(const Recording& recording) {
   if (!can_be_looked_at(recording) || !never_counts_down(recording)) return std::nullopt;
   const auto found = Look(recording).without_direction();
-  if (!found) return std::nullopt;
-  return Error{ErrorCode::refused, found->what, recording.name, found->remedy};
+  return found ? std::optional(refusal(*found, recording)) : std::nullopt;
 }
 
-std::optional<Cause> first_look(const Recording& recording) {
+std::optional<Error> first_look(const Recording& recording) {
   if (!can_be_looked_at(recording)) return std::nullopt;
-  return Look(recording).cause();
+  const auto found = Look(recording).cause();
+  return found ? std::optional(refusal(*found, recording)) : std::nullopt;
 }
 
 }  // namespace odomcalib::calib::estimation

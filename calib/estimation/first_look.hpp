@@ -5,14 +5,13 @@
 
 #include <optional>
 
-#include "calib/classical/length_factor.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::estimation {
 
-/// The mistake without which counts and reference explain each other; nullopt when none does, or nothing is
-/// wrong. Takes about as long as a first match of all scans.
-std::optional<classical::Cause> first_look(const Recording& recording);
+/// The mistake without which counts and reference explain each other, as the reason to refuse the recording;
+/// nullopt when none does, or nothing is wrong. Takes about as long as a first match of all scans.
+std::optional<Error> first_look(const Recording& recording);
 
 /// Whether the counts of a wheel never fall, although it turned: the sign of encoders without a direction.
 bool never_counts_down(const Recording& recording);

@@ -5,23 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/estimation/settings.hpp"
 #include "calib/math/median.hpp"
 
 namespace odomcalib::calib::estimation {
 namespace {
 
-constexpr double kScaleTolerance = 0.03;  ///< of a MEMS gyro (MPU-6050, product specification: +-3 %)
-constexpr double kPlain = 4.0;            ///< standard deviations
-constexpr double kBias = 0.1;            ///< rad/s, deviation before anything is known (the same: +-20 deg/s)
-constexpr double kOffset = 0.1;          ///< s, about the best of the coarse search
-constexpr double kFarthestOffset = 0.5;  ///< s
-constexpr double kOffsetStep = 0.02;     ///< s
-constexpr double kHole = 0.1;            ///< s between samples over which nothing is integrated
-constexpr double kStretch = 0.5;         ///< s, of what lies between pairs
-constexpr double kLeastTurn = math::kPi;  ///< rad, both ways together, that a verdict on a gyro needs
-constexpr double kLeastShare = 0.5;       ///< of the gyro's variance that the wheels explain
-constexpr std::size_t kFewestRows = 20;
-constexpr double kOutlier = 5.0;        ///< robust standard deviations
 constexpr double kRelativeStep = 1e-6;  ///< of central differences
 constexpr double kDegrees = 180.0 / math::kPi;
 
@@ -38,7 +27,7 @@ class TurnRead {
     const auto first = index(from), last = index(to);
     if (!first || !last) return std::nullopt;
     for (std::size_t k = *first; k <= *last; ++k)
-      if (samples_[k + 1].t - samples_[k].t > kHole) return std::nullopt;
+      if (samples_[k + 1].t - samples_[k].t > settings::kGyroHole_s) return std::nullopt;
     return at(*last, to) - at(*first, from);
   }
   /// rad/s, at a time that lies between samples.
@@ -73,10 +62,11 @@ struct Turns {
   Eigen::MatrixXd jacobian;   ///< of `wheels`, by the parameters
 };
 
-void add_stretches(double from, double to, const wheels::WheelTrack& track, Turns& turns) {
-  const int count = static_cast<int>(std::floor((to - from) / kStretch));
+void add_unseen(double from, double to, const wheels::WheelTrack& track, Turns& turns) {
+  const int count = static_cast<int>(std::floor((to - from) / settings::kBetweenPairs_s));
   for (int k = 0; k < count; ++k) {
-    const vehicle::Interval interval{from + k * kStretch, from + (k + 1) * kStretch};
+    const vehicle::Interval interval{from + k * settings::kBetweenPairs_s,
+                                     from + (k + 1) * settings::kBetweenPairs_s};
     if (track.covers(interval.begin, interval.end)) turns.intervals.push_back(interval);
   }
 }
@@ -110,9 +100,9 @@ Turns turns_of(const measurement::FitData& data, const vehicle::EffectList& effe
   const wheels::WheelTrack& track = data.model->track();
   if (track.empty()) return turns;
   std::vector<double> seen;
-  double end = track.t.front() + kStretch;
+  double end = track.t.front() + settings::kBetweenPairs_s;
   for (const measurement::SensorPair& pair : data.pairs) {
-    if (pair.interval.begin > end) add_stretches(end, pair.interval.begin, track, turns);
+    if (pair.interval.begin > end) add_unseen(end, pair.interval.begin, track, turns);
     turns.is_seen.resize(turns.intervals.size(), false);
     seen.resize(turns.intervals.size(), 0.0);
     turns.intervals.push_back(pair.interval);
@@ -120,7 +110,7 @@ Turns turns_of(const measurement::FitData& data, const vehicle::EffectList& effe
     seen.push_back(pair.motion.yaw);
     end = std::max(end, pair.interval.end);
   }
-  add_stretches(end, track.t.back() - kStretch, track, turns);
+  add_unseen(end, track.t.back() - settings::kBetweenPairs_s, track, turns);
   turns.is_seen.resize(turns.intervals.size(), false);
   turns.wheels = yaws(*data.model, fit.parameters, effects, turns.intervals);
   turns.lidar = Eigen::VectorXd::Zero(turns.wheels.size());
@@ -177,9 +167,10 @@ Line line_of(const Turns& turns, const std::vector<Row>& rows) {
 
 double best_offset(const Turns& turns, const TurnRead& gyro) {
   double best = 0.0, least = std::numeric_limits<double>::infinity();
-  for (double offset = -kFarthestOffset; offset <= kFarthestOffset + 1e-9; offset += kOffsetStep) {
+  for (double offset = -settings::kGyroReach_s; offset <= settings::kGyroReach_s + 1e-9;
+       offset += settings::kGyroStep_s) {
     const auto rows = rows_of(turns, gyro, offset);
-    if (rows.size() < kFewestRows) continue;
+    if (rows.size() < settings::kFewestGyroTurns) continue;
     const double rms = line_of(turns, rows).rms;
     if (rms < least) {
       least = rms;
@@ -195,12 +186,12 @@ std::string percent_off(double scale) {
 }
 
 bool is_about(double scale, double expected) {
-  return std::abs(scale / expected - 1.0) < kPlain * kScaleTolerance;
+  return std::abs(scale / expected - 1.0) < settings::kGyroPlain * settings::kGyroScale;
 }
 
 /// What is wrong with a gyro that reads this.
 std::optional<std::string> fault_of(const Line& line) {
-  if (line.share < kLeastShare)
+  if (line.share < settings::kLeastGyroShare)
     return "the gyro is left out: it does not follow the turns of the robot; is it mounted with its axis "
            "upright?";
   const double size = std::abs(line.scale);
@@ -227,7 +218,7 @@ struct System {
   Eigen::VectorXd beyond;
 };
 
-/// Slip is in what the lidar and in what the gyro sees beyond the wheels. What is told twice must count once:
+/// Slip is in what the lidar and in what the gyro sees beyond the wheels. What both show must count once:
 /// the share of the lidar's that the gyro repeats is taken off, as in a block elimination.
 struct Noise {
   double repeated = 0.0;                  ///< share
@@ -257,7 +248,7 @@ Noise noise_of(const Turns& turns, const std::vector<Row>& rows, const System& s
   std::vector<double> errors;
   for (const Row& row : rows)
     if (turns.is_seen[static_cast<std::size_t>(row.turn)]) errors.push_back(turns.lidar(row.turn));
-  const double limit = kOutlier * robust_deviation(errors);
+  const double limit = settings::kOutlier * robust_deviation(errors);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double seen = turns.lidar(rows[k].turn);
     if (seen == 0.0 || std::abs(seen) > limit) continue;
@@ -293,7 +284,7 @@ void whiten(const Turns& turns, const std::vector<Row>& rows, const Noise& noise
   const Eigen::VectorXd left =
       system.beyond - system.of_gyro * system.of_gyro.colPivHouseholderQr().solve(system.beyond);
   for (Eigen::Index k = 0; k < left.size(); ++k)
-    if (std::abs(left(k)) > kOutlier) {
+    if (std::abs(left(k)) > settings::kOutlier) {
       system.beyond(k) = 0.0;
       system.of_parameters.row(k).setZero();
       system.of_gyro.row(k).setZero();
@@ -310,7 +301,8 @@ Eigen::MatrixXd prior_of(const Eigen::MatrixXd& of_parameters) {
   const Eigen::Index count = of_parameters.rows();
   Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(count + 3, count + 3);
   prior.topLeftCorner(count, count) = of_parameters;
-  prior.diagonal().tail<3>() << kScaleTolerance * kScaleTolerance, kBias * kBias, kOffset * kOffset;
+  prior.diagonal().tail<3>() << settings::kGyroScale * settings::kGyroScale,
+      settings::kGyroBias * settings::kGyroBias, settings::kGyroOffset_s * settings::kGyroOffset_s;
   return prior;
 }
 
@@ -346,7 +338,7 @@ bool contradicts(const Update& update, const Eigen::VectorXd& before, const Eige
   for (const Eigen::Index k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth}) {
     const double gained = covariance(k, k) - update.covariance(k, k);
     const double moved = update.change(k) - before(k);
-    if (gained > 0.0 && moved * moved > kPlain * kPlain * gained) return true;
+    if (gained > 0.0 && moved * moved > settings::kGyroPlain * settings::kGyroPlain * gained) return true;
   }
   return false;
 }
@@ -354,7 +346,7 @@ bool contradicts(const Update& update, const Eigen::VectorXd& before, const Eige
 bool turns_enough(const Turns& turns, const std::vector<Row>& rows) {
   double sum = 0.0;
   for (const Row& row : rows) sum += std::abs(turns.wheels(row.turn));
-  return rows.size() >= kFewestRows && sum > kLeastTurn;
+  return rows.size() >= settings::kFewestGyroTurns && sum > settings::kLeastGyroTurn_rad;
 }
 
 /// What one gyro says; `change` and `covariance` become what they are with it, unless it is at fault.

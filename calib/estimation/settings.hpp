@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "calib/math/se2.hpp"
+
 namespace odomcalib::calib::estimation::settings {
 
 // --- First look ------------------------------------------------------------------------------------------
@@ -30,6 +32,13 @@ inline constexpr int kEdge = 2;
 /// Share of the motions in which counts with a direction explain the rotation plainly better, of counts that
 /// have none. Chosen: now and then a match fails.
 inline constexpr double kAgainstCounting = 0.05;
+/// rad in half a second, by which a motion contradicts the counts, and the share of that which may be left
+/// with a direction. Chosen: no match is off by the first.
+inline constexpr double kContradicting_rad = 0.1, kLeftWithDirection = 0.3;
+/// rad, turned in all, after which left and right counts cannot be the same. Chosen.
+inline constexpr double kTurned_rad = 1.0;
+/// Ratio of a length to its nominal value, less one. Chosen: nominal values are right to that.
+inline constexpr double kNearNominal = 0.1;
 
 // --- Joint -----------------------------------------------------------------------------------------------
 
@@ -68,5 +77,31 @@ inline constexpr double kBelievableDelay = 0.9;
 /// Nearer to each other, delays of both halves are within reach of the fit from the delay of the whole, s.
 /// Chosen.
 inline constexpr double kClocksApart_s = 0.06;
+
+// --- Gyro witness ----------------------------------------------------------------------------------------
+
+/// Relative deviation of the scale of a MEMS gyro. Published: +-3 % (MPU-6050, product specification).
+inline constexpr double kGyroScale = 0.03;
+/// Standard deviations at which a gyro's scale is another, or its turns contradict the lidar's. Chosen.
+inline constexpr double kGyroPlain = 4.0;
+/// rad/s, deviation of a gyro's bias before anything is known. Chosen; the same specification states +-20
+/// deg/s.
+inline constexpr double kGyroBias = 0.1;
+/// s, deviation of a gyro's clock about the best of the coarse search. Chosen.
+inline constexpr double kGyroOffset_s = 0.1;
+/// s, to either side, over which that clock is searched. Chosen.
+inline constexpr double kGyroReach_s = 0.5;
+/// s, of that search. Chosen.
+inline constexpr double kGyroStep_s = 0.02;
+/// s, between samples of a gyro over which nothing is integrated. Chosen.
+inline constexpr double kGyroHole_s = 0.1;
+/// s, of an interval between pairs, where the gyro alone sees the turn. Chosen.
+inline constexpr double kBetweenPairs_s = 0.5;
+/// rad, both ways together, that a verdict on a gyro needs. Chosen: half a turn.
+inline constexpr double kLeastGyroTurn_rad = math::kPi;
+/// Share of a gyro's variance that the wheels must explain. Chosen.
+inline constexpr double kLeastGyroShare = 0.5;
+/// Intervals that a verdict on a gyro needs. Chosen.
+inline constexpr std::size_t kFewestGyroTurns = 20;
 
 }  // namespace odomcalib::calib::estimation::settings

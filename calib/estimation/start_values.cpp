@@ -95,6 +95,19 @@ vehicle::VehicleModel with_start_values(const vehicle::EffectList& effects,
   return {effects, parameters};
 }
 
+/// Of each recording alone first: one with exchanged wires beside sound ones is outvoted.
+std::optional<Error> check_signs(const measurement::Dataset& rough, double delay) {
+  const std::span<const measurement::FitData> data(rough.data);
+  const RobotDescription& robot = rough.recordings.front().robot;
+  const bool of_base = rough.reference_is_base();
+  for (std::size_t i = 0; data.size() > 1 && i < data.size(); ++i)
+    if (auto error = classical::check_signs(wheel_motions(data.subspan(i, 1), delay), robot, of_base)) {
+      error->where = rough.recordings[i].name;
+      return error;
+    }
+  return classical::check_signs(wheel_motions(data, delay), robot, of_base);
+}
+
 }  // namespace
 
 ClockStart search_clock(std::span<const measurement::FitData> data) {
@@ -124,19 +137,6 @@ wheels::BaseParameters start_values(const measurement::Dataset& dataset, double 
     start.mount = mount;
   }
   return start;
-}
-
-/// Of each recording alone first: one with exchanged wires beside sound ones is outvoted.
-std::optional<Error> check_signs(const measurement::Dataset& rough, double delay) {
-  const std::span<const measurement::FitData> data(rough.data);
-  const RobotDescription& robot = rough.recordings.front().robot;
-  const bool of_base = rough.reference_is_base();
-  for (std::size_t i = 0; data.size() > 1 && i < data.size(); ++i)
-    if (auto error = classical::check_signs(wheel_motions(data.subspan(i, 1), delay), robot, of_base)) {
-      error->where = rough.recordings[i].name;
-      return error;
-    }
-  return classical::check_signs(wheel_motions(data, delay), robot, of_base);
 }
 
 Result<vehicle::VehicleModel> start_model(const measurement::Dataset& rough, const terms::Request& request) {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
-#include <sstream>
 #include <vector>
 
 #include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
+#include "calib/math/significant.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -17,11 +17,7 @@ struct Reading {
   std::size_t count = 0;
 };
 
-std::string number(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
+std::string number(double value) { return math::significant(value, 6); }
 
 /// Different readings of some scans, by size.
 std::vector<Reading> readings_of(const std::vector<Scan>& scans, std::size_t from, std::size_t to) {
@@ -101,16 +97,14 @@ std::optional<double> phantom_return(const Recording& recording) {
 }
 
 Cleaned without_phantom_returns(std::span<const Recording> given) {
-  std::vector<Recording> cleaned;  // a copy of all, made when the first of them is changed
+  Repairs repairs(given);
   std::vector<std::string> remarks;
   for (std::size_t i = 0; i < given.size(); ++i)
     if (const auto value = phantom_return(given[i])) {
-      if (cleaned.empty()) cleaned.assign(given.begin(), given.end());
-      remove_readings(cleaned[i], *value);
+      remove_readings(repairs.own(i), *value);
       remarks.push_back(remark_on(*value));
     }
-  if (cleaned.empty()) return {Recordings(given)};
-  return {Recordings(std::move(cleaned), {}), std::move(remarks)};
+  return {std::move(repairs).take(), std::move(remarks)};
 }
 
 }  // namespace odomcalib::calib::ingest

@@ -2,16 +2,14 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "calib/ingest/settings.hpp"
+#include "calib/math/se2.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 using Change = PoseSample (*)(PoseSample);
 
@@ -23,21 +21,21 @@ struct Mistake {
 
 constexpr std::array kMistakes = {
     Mistake{"yaw looks like degrees", "multiply yaw by pi / 180",
-            [](PoseSample p) { return p.yaw *= kPi / 180.0, p; }},
+            [](PoseSample p) { return p.yaw *= math::kPi / 180.0, p; }},
     Mistake{"yaw has the opposite sign of the frame that x and y are in (clockwise, or z down)",
             "negate yaw: it is counter-clockwise, x forward, y left",
             [](PoseSample p) { return p.yaw = -p.yaw, p; }},
     Mistake{"yaw is a compass heading (clockwise from y) beside x and y of a map, or x and y are exchanged",
             "write pi / 2 - yaw: yaw is counter-clockwise from x",
-            [](PoseSample p) { return p.yaw = 0.5 * kPi - p.yaw, p; }},
+            [](PoseSample p) { return p.yaw = 0.5 * math::kPi - p.yaw, p; }},
     Mistake{"yaw is a quarter of a turn off: it looks to the side of the robot",
             "let yaw be the heading of the robot's front",
-            [](PoseSample p) { return p.yaw += 0.5 * kPi, p; }},
+            [](PoseSample p) { return p.yaw += 0.5 * math::kPi, p; }},
     Mistake{"yaw is half of the heading, as the z of a quaternion read as an angle",
             "write 2 atan2(q_z, q_w)", [](PoseSample p) { return p.yaw *= 2.0, p; }}};
 
 double middle_heading(const PoseSample& a, const PoseSample& b) {
-  return a.yaw + 0.5 * std::remainder(b.yaw - a.yaw, 2.0 * kPi);
+  return a.yaw + 0.5 * std::remainder(b.yaw - a.yaw, 2.0 * math::kPi);
 }
 
 /// Share of the way that goes sideways, 0 to 1; about 0.64 when headings are random.
@@ -68,7 +66,7 @@ std::vector<PoseSample> spaced(const std::vector<PoseSample>& poses) {
 /// A heading that stays the same while the way turns.
 bool heading_stands(const std::vector<PoseSample>& poses) {
   for (const PoseSample& pose : poses)
-    if (std::abs(std::remainder(pose.yaw - poses.front().yaw, 2.0 * kPi)) > 1e-6) return false;
+    if (std::abs(std::remainder(pose.yaw - poses.front().yaw, 2.0 * math::kPi)) > 1e-6) return false;
   return true;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,16 +11,13 @@
 #include "calib/ingest/pose_frame.hpp"
 #include "calib/ingest/unit_check.hpp"
 #include "calib/math/median.hpp"
+#include "calib/math/significant.hpp"
 #include "proto/recording/stamp_units.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
 
-std::string number(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
+std::string number(double value) { return math::significant(value, 6); }
 
 /// Samples that were dropped for their stamps say more than that they are missing.
 std::optional<Error> undated_stream(const Recording& recording) {

@@ -22,16 +22,24 @@ Recordings Recordings::reported_as(const StampReport& stamps) const {
   return same;
 }
 
+Recording& Repairs::own(std::size_t k) {
+  if (own_.empty()) own_.assign(given_.begin(), given_.end());
+  return own_[k];
+}
+
+Recordings Repairs::take(const StampReport& stamps) && {
+  return any() ? Recordings(std::move(own_), stamps) : Recordings(given_);
+}
+
 Recordings with_even_ticks(std::span<const Recording> given) {
-  std::vector<Recording> repaired;  // a copy of all, made when the first of them is changed
+  Repairs repairs(given);
   StampReport stamps;
   for (std::size_t i = 0; i < given.size(); ++i)
     if (const auto even = even_ticks(given[i])) {
-      if (repaired.empty()) repaired.assign(given.begin(), given.end());
-      set_stamps(repaired[i].ticks, even->t);
+      set_stamps(repairs.own(i).ticks, even->t);
       stamps.ticks = std::max(stamps.ticks, even->jitter);
     }
-  return repaired.empty() ? Recordings(given) : Recordings(std::move(repaired), stamps);
+  return std::move(repairs).take(stamps);
 }
 
 }  // namespace odomcalib::calib::ingest

@@ -36,6 +36,23 @@ class Recordings {
   StampReport stamps_;
 };
 
+/// Recordings of which some are changed: all are copied when the first of them is.
+class Repairs {
+ public:
+  /// @param given which the caller keeps alive
+  explicit Repairs(std::span<const Recording> given) : given_(given) {}
+  /// The copy of one, to be changed.
+  Recording& own(std::size_t k);
+  [[nodiscard]] bool any() const { return !own_.empty(); }
+  /// Those given where none was changed, which say nothing of times.
+  /// @param stamps what the others say of times that were replaced
+  Recordings take(const StampReport& stamps = {}) &&;
+
+ private:
+  std::span<const Recording> given_;
+  std::vector<Recording> own_;  ///< empty before the first change
+};
+
 /// Ticks that were sampled evenly get even stamps; without any such ticks the recordings given.
 Recordings with_even_ticks(std::span<const Recording> given);
 

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 #include <vector>
 
 #include "calib/ingest/settings.hpp"
 #include "calib/matching/surface.hpp"
 #include "calib/math/median.hpp"
+#include "calib/math/significant.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -24,12 +24,7 @@ constexpr std::array kTimeUnits = {Unit{"milliseconds", 1e-3}, Unit{"microsecond
 constexpr std::array kLengthUnits = {Unit{"millimetres", 1e-3}, Unit{"centimetres", 1e-2},
                                      Unit{"inches", 0.0254}, Unit{"kilometres", 1e3}};
 
-std::string number(double value) {
-  std::ostringstream out;
-  out.precision(4);
-  out << value;
-  return out.str();
-}
+std::string number(double value) { return math::significant(value, 4); }
 
 Error wrong(const Recording& recording, const std::string& what, const std::string& remedy) {
   return {ErrorCode::format, what, recording.name, remedy};

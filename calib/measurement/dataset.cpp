@@ -26,12 +26,6 @@ bool same_robot(const RobotDescription& a, const RobotDescription& b) {
          a.right_wheel_diameter == b.right_wheel_diameter && a.track_width == b.track_width;
 }
 
-double wheel_angle(const wheels::WheelTrack& track, const std::vector<double>& angle, double time) {
-  const std::size_t k = track.interval_at(time);
-  const double share = (time - track.t[k]) / (track.t[k + 1] - track.t[k]);
-  return angle[k] + share * (angle[k + 1] - angle[k]);
-}
-
 Dataset measured_by(Dataset dataset, const Eigen::VectorXd& parameters, const vehicle::EffectList& effects,
                     const PairOptions& options) {
   dataset.data.clear();
@@ -130,13 +124,9 @@ std::vector<wheels::WheelMotion> wheel_motions(std::span<const FitData> data, do
   std::vector<wheels::WheelMotion> motions;
   for (const FitData& d : data) {
     const wheels::WheelTrack& track = d.model->track();
-    for (const SensorPair& pair : d.pairs) {
-      const double begin = pair.interval.begin - delay;
-      const double end = pair.interval.end - delay;
-      motions.push_back({wheel_angle(track, track.left, end) - wheel_angle(track, track.left, begin),
-                         wheel_angle(track, track.right, end) - wheel_angle(track, track.right, begin),
-                         pair.motion});
-    }
+    for (const SensorPair& pair : d.pairs)
+      motions.push_back(
+          motion_between(track, pair.interval.begin - delay, pair.interval.end - delay, pair.motion));
   }
   return motions;
 }

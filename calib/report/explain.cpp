@@ -37,9 +37,8 @@ Calibration refused_for(const Error& cause, Calibration calibration) {
 Calibration explained(std::span<const Recording> recordings, Calibration calibration) {
   if (!needs_explanation(calibration)) return calibration;
   for (const Recording& recording : recordings)
-    if (const auto cause = estimation::first_look(recording))
-      return refused_for({ErrorCode::refused, cause->what, recording.name, cause->remedy},
-                         std::move(calibration));
+    if (const auto mistake = estimation::first_look(recording))
+      return refused_for(*mistake, std::move(calibration));
   return calibration;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "calib/math/significant.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/settings.hpp"
 
@@ -12,13 +12,6 @@ namespace odomcalib::calib::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string number(double value, int digits) {
-  std::ostringstream out;
-  out.precision(digits);
-  out << value;
-  return out.str();
-}
 
 bool is_length(Eigen::Index parameter) { return parameter < vehicle::kMountX; }
 
@@ -31,11 +24,11 @@ double value_of(const selection::Homogeneity& found, std::size_t recording, Eige
 
 std::string amount(const selection::Homogeneity& found, Eigen::Index parameter, double difference) {
   if (parameter == vehicle::kMountYaw)
-    return number(std::abs(difference) * 180.0 / math::kPi, 3) + " degrees";
-  if (!is_length(parameter)) return number(1e3 * std::abs(difference), 3) + " mm";
+    return math::significant(std::abs(difference) * 180.0 / math::kPi, 3) + " degrees";
+  if (!is_length(parameter)) return math::significant(1e3 * std::abs(difference), 3) + " mm";
   const double value = value_of(found, found.recording, parameter);
-  return number(100.0 * std::abs(difference / value), 3) + " % (" +
-         number(1e3 * factor_of(parameter) * std::abs(difference), 3) + " mm)";
+  return math::significant(100.0 * std::abs(difference / value), 3) + " % (" +
+         math::significant(1e3 * factor_of(parameter) * std::abs(difference), 3) + " mm)";
 }
 
 /// So large a difference is none that wider deviations could stand for.
@@ -82,7 +75,7 @@ std::optional<Apart> recordings_apart(const selection::Homogeneity& found,
       base_quantity_names()[static_cast<std::size_t>(found.parameter)] + " is " +
       amount(found, found.parameter, difference) + (difference > 0.0 ? " larger" : " smaller") +
       " than in the " + (recordings.size() > 2 ? "others" : "other") + ", " +
-      number(std::abs(found.sigmas(row, found.parameter)), 3) + " deviations";
+      math::significant(std::abs(found.sigmas(row, found.parameter)), 3) + " deviations";
   if (any_too_far(found))
     return Apart{true, what +
                            "; solve recordings of different robots, or of one before and after a change of "

@@ -9,6 +9,7 @@
 
 #include "calib/classical/length_factor.hpp"
 #include "calib/classical/sign_check.hpp"
+#include "calib/math/significant.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/selection/drive_error.hpp"
 
@@ -20,13 +21,7 @@ using Objections = std::vector<Objection>;
 Objection refusal(const std::string& reason) { return {true, reason}; }
 Objection warning(const std::string& reason) { return {false, reason}; }
 
-std::string number(double value, int digits) {
-  std::ostringstream out;
-  out << std::setprecision(digits) << value;
-  return out.str();
-}
-
-std::string percent(double share) { return number(100.0 * share, 3) + " %"; }
+std::string percent(double share) { return math::significant(100.0 * share, 3) + " %"; }
 
 std::string degrees(double angle) {
   std::ostringstream out;
@@ -60,8 +55,8 @@ const DriveError* error_of(const Footing& footing, const char* name) {
 }
 
 std::string amount(const DriveError& error, double value) {
-  return error.unit == "rad" ? number(value * 180.0 / math::kPi, 3) + " degrees"
-                             : number(1e3 * value, 3) + " mm";
+  return error.unit == "rad" ? math::significant(value * 180.0 / math::kPi, 3) + " degrees"
+                             : math::significant(1e3 * value, 3) + " mm";
 }
 
 bool is_no_better(const DriveError& error) {
@@ -331,7 +326,8 @@ Objections estimators_apart(const Calibration& calibration, const Footing&) {
       if (std::abs(apart) > settings::kEstimatorsApart * sigma &&
           std::abs(apart) > settings::kEstimatorsApartShare * std::abs(ours.value))
         found.push_back(warning("two estimators disagree on " + name + ": the closed form is " +
-                                percent(apart / ours.value) + " away, " + number(std::abs(apart) / sigma, 3) +
+                                percent(apart / ours.value) + " away, " +
+                                math::significant(std::abs(apart) / sigma, 3) +
                                 " of their common deviations; part of the recording says something else"));
     }
   return found;
@@ -342,7 +338,7 @@ Objections residual_in_rows(const Calibration& calibration, const Footing& footi
   for (const ResidualAxis& axis : footing.axes)
     if (axis.runs < settings::kTooFewRuns)
       return {warning("the residual in " + axis.name + " keeps its sign for long (runs test " +
-                      number(axis.runs, 3) +
+                      math::significant(axis.runs, 3) +
                       "): something that was not found acts for a while; the stated deviations may be too "
                       "small")};
   return {};

@@ -8,6 +8,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
@@ -193,11 +194,6 @@ double variance_between(const std::vector<Reduced>& estimates, Eigen::Index para
   return spare > 0.0 ? std::max(0.0, (q - static_cast<double>(estimates.size() - 1)) / spare) : 0.0;
 }
 
-double p_value_of(double q, double freedom) {
-  if (!(q > 0.0) || !std::isfinite(q)) return 1.0;
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), q));
-}
-
 }  // namespace
 
 std::optional<Homogeneity> homogeneity(const FitTask& task, const FittedModel& model, double metre,
@@ -214,8 +210,9 @@ std::optional<Homogeneity> homogeneity(const FitTask& task, const FittedModel& m
   const auto tests = static_cast<double>(estimates.size() * free.size());
   const double worst = std::abs(found.sigmas(static_cast<Eigen::Index>(found.recording), found.parameter));
   const double of_worst = std::min(1.0, tests * std::erfc(worst / std::sqrt(2.0)));
-  const auto freedom = static_cast<double>((estimates.size() - 1) * free.size());
-  found.p_value = std::min(1.0, 2.0 * std::min(of_worst, p_value_of(cochran(estimates), freedom)));
+  const double q = cochran(estimates);
+  const double of_all = std::isfinite(q) ? chi_squared_tail(q, (estimates.size() - 1) * free.size()) : 1.0;
+  found.p_value = std::min(1.0, 2.0 * std::min(of_worst, of_all));
   found.between = Eigen::VectorXd::Zero(kBase);
   for (std::size_t k = 0; k < free.size(); ++k)
     found.between(free[k]) = variance_between(estimates, static_cast<Eigen::Index>(k));

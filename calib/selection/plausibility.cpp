@@ -3,10 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <numeric>
-#include <sstream>
 
+#include "calib/math/significant.hpp"
 #include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/terms/smooth_term.hpp"
@@ -20,11 +19,8 @@ Eigen::VectorXd last_parameters(const vehicle::Effect& effect, const estimation:
 }
 
 std::string outside(const vehicle::EffectParameter& parameter, double value) {
-  std::ostringstream out;
-  out << std::setprecision(3) << parameter.name << " of " << value;
-  if (parameter.unit != "1") out << ' ' << parameter.unit;
-  out << " is outside its physical range";
-  return out.str();
+  const std::string unit = parameter.unit != "1" ? " " + parameter.unit : "";
+  return parameter.name + " of " + math::significant(value, 3) + unit + " is outside its physical range";
 }
 
 }  // namespace

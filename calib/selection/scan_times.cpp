@@ -15,17 +15,16 @@ namespace {
 /// stamps are right.
 std::optional<ingest::Recordings> with_even_scans(const estimation::Fit& fit) {
   const ingest::Recordings& given = fit.dataset.recordings;
-  std::vector<Recording> repaired;  // a copy of all, made when the first of them is changed
+  ingest::Repairs repairs(given.view());
   ingest::StampReport stamps = given.stamps();
   for (std::size_t i = 0; i < given.size(); ++i) {
     const auto even = even_scans(given[i], fit.dataset.data[i], fit.model.effects, fit.model.parameters);
     if (!even) continue;
-    if (repaired.empty()) repaired.assign(given.view().begin(), given.view().end());
-    ingest::set_stamps(repaired[i].scans, even->t);
+    ingest::set_stamps(repairs.own(i).scans, even->t);
     stamps.scans = std::max(stamps.scans, even->jitter);
   }
-  if (repaired.empty()) return std::nullopt;
-  return ingest::Recordings(std::move(repaired), stamps);
+  if (!repairs.any()) return std::nullopt;
+  return std::move(repairs).take(stamps);
 }
 
 /// A delay that is fitted anyway is counted from the middle of a sweep.

@@ -17,6 +17,12 @@ double without_wrap(std::int64_t count) {
   return static_cast<double>(count < -kFar && count >= -2 * kFar ? count + kWrap : count);
 }
 
+double angle_at(const WheelTrack& track, const std::vector<double>& angle, double time) {
+  const std::size_t k = track.interval_at(time);
+  const double share = (time - track.t[k]) / (track.t[k + 1] - track.t[k]);
+  return angle[k] + share * (angle[k + 1] - angle[k]);
+}
+
 }  // namespace
 
 std::size_t WheelTrack::interval_at(double time) const {
@@ -39,6 +45,12 @@ Bend WheelTrack::bend(std::size_t interval) const {
 bool WheelTrack::covers(double from, double to) const {
   if (empty() || from < t.front() || to > t.back()) return false;
   return segment[interval_at(from)] == segment[std::min(interval_at(to) + 1, t.size() - 1)];
+}
+
+WheelMotion motion_between(const WheelTrack& track, double begin, double end,
+                           const math::Pose& sensor_motion) {
+  return {angle_at(track, track.left, end) - angle_at(track, track.left, begin),
+          angle_at(track, track.right, end) - angle_at(track, track.right, begin), sensor_motion};
 }
 
 WheelTrack wheel_track_from_ticks(const Recording& recording) {

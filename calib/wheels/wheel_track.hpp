@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "calib/wheels/wheel_motion.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::wheels {
@@ -37,6 +38,11 @@ struct WheelTrack {
 
 /// Ticks of a recording as wheel angles; samples that do not advance in time are skipped.
 WheelTrack wheel_track_from_ticks(const Recording& recording);
+
+/// How far the wheels turned between two times, at constant speed between samples, beside the sensor's
+/// motion.
+WheelMotion motion_between(const WheelTrack& track, double begin, double end,
+                           const math::Pose& sensor_motion);
 
 /// Tuples laid end to end on one time axis; sample k is the start of tuple k.
 WheelTrack wheel_track_from_increments(const Recording& recording);

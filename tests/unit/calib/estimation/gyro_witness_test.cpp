@@ -6,12 +6,11 @@
 #include <random>
 
 #include "calib/vehicle/step_context.hpp"
+#include "tests/unit/calib/estimation/driven_wheels.hpp"
 
 namespace odomcalib::calib::estimation {
 namespace {
 
-const wheels::BaseParameters kTruth{0.0753, 0.0747, 0.407, {0.11, -0.015, 0.05}};
-const wheels::BaseParameters kNominal{0.075, 0.075, 0.4, {0.1, 0.0, 0.0}};
 constexpr double kDegree = math::kPi / 180.0;
 constexpr double kNoise = 0.1 * kDegree;  ///< rad/s, of a sample of the gyro
 constexpr double kRate = 0.01;            ///< s between its samples
@@ -22,18 +21,6 @@ constexpr double kSlip = 4e-3;            ///< rad in each of them
 struct GyroOptions {
   double scale = 1.02, bias = 0.01, offset = 0.0, noise = kNoise;
 };
-
-wheels::WheelTrack drive(double duration) {
-  wheels::WheelTrack track;
-  for (int k = 0; k * 0.02 <= duration; ++k) {
-    const double t = 0.02 * k;
-    track.t.push_back(t);
-    track.left.push_back(9.0 * std::sin(0.29 * t) + 4.0 * std::sin(0.11 * t));
-    track.right.push_back(9.0 * std::sin(0.37 * t) + 4.0 * std::sin(0.13 * t + 1.0));
-    track.segment.push_back(0);
-  }
-  return track;
-}
 
 /// A drive whose wheels slip a little all the time. Where there is little to see, the lidar tells one motion
 /// in `every`; the gyro never stops.

@@ -9,25 +9,12 @@
 
 #include "calib/terms/catalogue.hpp"
 #include "calib/vehicle/step_context.hpp"
+#include "tests/unit/calib/estimation/driven_wheels.hpp"
 
 namespace odomcalib::calib::estimation {
 namespace {
 
 constexpr unsigned kSeed = 3;
-const wheels::BaseParameters kTruth{0.0753, 0.0747, 0.407, {0.11, -0.015, 0.05}};
-const wheels::BaseParameters kNominal{0.075, 0.075, 0.4, {0.1, 0.0, 0.0}};
-
-wheels::WheelTrack drive(double duration) {
-  wheels::WheelTrack track;
-  for (int k = 0; k * 0.02 <= duration; ++k) {
-    const double t = 0.02 * k;
-    track.t.push_back(t);
-    track.left.push_back(9.0 * std::sin(0.29 * t) + 4.0 * std::sin(0.11 * t));
-    track.right.push_back(9.0 * std::sin(0.37 * t) + 4.0 * std::sin(0.13 * t + 1.0));
-    track.segment.push_back(0);
-  }
-  return track;
-}
 
 struct Fixture {
   explicit Fixture(double noise, unsigned seed = kSeed, double delay = 0.0, double outlier_share = 0.0)
