@@ -1,30 +1,15 @@
 #include "tests/blind/ablation.hpp"
 
-#include <ctime>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "calib/selection/rules.hpp"
-#include "calib/solve.hpp"
 #include "tests/blind/blind_table.hpp"
 
 namespace odomcalib::blind {
 namespace {
 
 using calib::selection::RuleSet;
-
-struct Solved {
-  Calibration calibration;
-  double seconds = 0.0;  ///< CPU
-};
-
-Solved solve_with(const RuleSet& rules, const Recording& recording) {
-  calib::SolveOptions options;
-  options.rules = rules;
-  const std::clock_t start = std::clock();
-  Calibration found = calib::solve({&recording, 1}, options);
-  return {std::move(found), static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC};
-}
 
 /// Every effect is named, or flagged with its variable; of a robot without one, nothing is reported. An
 /// effect that is too small to be seen may be reported or not.
@@ -37,28 +22,24 @@ bool is_right(const Trial& trial) {
 
 std::vector<Ablation> ablate(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options) {
   const Examination examination = make_examination(campaign, number, options);
-  const Recording& recording = examination.drawn.run.recording;
   calib::selection::RuleBits consulted;
-  const Solved whole = solve_with(RuleSet().noted_in(consulted), recording);
+  const Solution whole = solution_of(examination, RuleSet().noted_in(consulted));
   const std::string bytes = to_json(whole.calibration);
-  std::vector<Ablation> all{{"", false, judge(examination, whole.calibration, whole.seconds)}};
+  std::vector<Ablation> all{{"", false, judge(examination, whole)}};
   for (const auto& row : calib::selection::rule_table()) {
     if (!consulted.test(static_cast<std::size_t>(row.rule))) continue;
-    const Solved fewer = solve_with(RuleSet().without(row.rule), recording);
+    const Solution fewer = solution_of(examination, RuleSet().without(row.rule));
     const bool changes = to_json(fewer.calibration) != bytes;
-    all.push_back({row.name, changes,
-                   changes ? judge(examination, fewer.calibration, fewer.seconds) : all.front().trial});
+    all.push_back({row.name, changes, changes ? judge(examination, fewer) : all.front().trial});
   }
   return all;
 }
 
-Trial run_trial_without(const std::string& rule, std::uint64_t campaign, unsigned number,
-                        const sim::BlindOptions& options) {
+RuleSet rules_without(const std::string& rule) {
+  if (rule.empty()) return {};
   const auto known = calib::selection::rule_from(rule);
   if (!known) throw std::invalid_argument("no rule of the search is called \"" + rule + "\"");
-  const Examination examination = make_examination(campaign, number, options);
-  const Solved fewer = solve_with(RuleSet().without(*known), examination.drawn.run.recording);
-  return judge(examination, fewer.calibration, fewer.seconds);
+  return RuleSet().without(*known);
 }
 
 std::string to_json_line(const Ablation& ablation) {

@@ -20,9 +20,9 @@ struct Ablation {
 /// the calibration is the same.
 std::vector<Ablation> ablate(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options);
 
-/// The recording's calibration without the rule of that name. Throws std::invalid_argument if there is none.
-Trial run_trial_without(const std::string& rule, std::uint64_t campaign, unsigned number,
-                        const sim::BlindOptions& options);
+/// All rules but the one of that name; all of them where it is empty. Throws std::invalid_argument if there
+/// is none of that name.
+calib::selection::RuleSet rules_without(const std::string& rule);
 
 /// One line of JSON: the row, the rule, and what tests/blind/ablate counts.
 std::string to_json_line(const Ablation& ablation);

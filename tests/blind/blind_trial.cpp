@@ -5,6 +5,7 @@
 #include <ctime>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "calib/math/bootstrap.hpp"
 #include "calib/odometry/predict.hpp"
@@ -142,11 +143,20 @@ Examination make_examination(std::uint64_t campaign, unsigned number, const sim:
   return made;
 }
 
-Trial judge(const Examination& examination, const Calibration& found, double seconds) {
+Solution solution_of(const Examination& examination, const calib::selection::RuleSet& rules) {
+  calib::SolveOptions options;
+  options.rules = rules;
+  const std::clock_t start = std::clock();
+  Calibration found = calib::solve({&examination.drawn.run.recording, 1}, options);
+  return {std::move(found), static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC};
+}
+
+Trial judge(const Examination& examination, const Solution& solution) {
   const sim::BlindCase& drawn = examination.drawn;
+  const Calibration& found = solution.calibration;
   Trial trial;
   trial.answer = drawn.answer;
-  trial.solve_seconds = seconds;
+  trial.solve_seconds = solution.seconds;
   copy_findings(found, trial);
   copy_residual(examination.plain, trial);
   trial.sigmas = sigmas_of(found, drawn.answer.truth);
@@ -157,11 +167,10 @@ Trial judge(const Examination& examination, const Calibration& found, double sec
   return trial;
 }
 
-Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options) {
+Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options,
+                const calib::selection::RuleSet& rules) {
   const Examination examination = make_examination(campaign, number, options);
-  const std::clock_t start = std::clock();
-  const Calibration found = calib::solve({&examination.drawn.run.recording, 1}, {});
-  return judge(examination, found, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+  return judge(examination, solution_of(examination, rules));
 }
 
 }  // namespace odomcalib::blind

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/selection/rules.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "tests/sim/effects/blind_case.hpp"
 
@@ -46,11 +47,19 @@ struct Examination {
 };
 Examination make_examination(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options);
 
-/// A calibration of the drawn recording against the truth.
-/// @param seconds of CPU time that it took
-Trial judge(const Examination& examination, const Calibration& found, double seconds);
+struct Solution {
+  Calibration calibration;
+  double seconds = 0.0;  ///< CPU
+};
+/// Of the drawn recording.
+Solution solution_of(const Examination& examination, const calib::selection::RuleSet& rules);
 
-Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options);
+/// The solution against the truth.
+Trial judge(const Examination& examination, const Solution& solution);
+
+/// @param rules all of them but in an ablation
+Trial run_trial(std::uint64_t campaign, unsigned number, const sim::BlindOptions& options,
+                const calib::selection::RuleSet& rules = {});
 
 /// One line of JSON, and back; rows of several processes are put together before a table is made.
 std::string to_json_line(const Trial& trial);

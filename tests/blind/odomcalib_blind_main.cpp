@@ -31,10 +31,9 @@ void put_line(const std::string& line) {
 /// @param without_rule name of a rule of the search; empty: all hold
 int run(const Part& part, const std::string& without_rule) {
   namespace blind = odomcalib::blind;
+  const auto rules = blind::rules_without(without_rule);
   for (unsigned number = part.first; number < part.first + part.count; ++number)
-    put_line(blind::to_json_line(
-        without_rule.empty() ? blind::run_trial(part.campaign, number, part.options)
-                             : blind::run_trial_without(without_rule, part.campaign, number, part.options)));
+    put_line(blind::to_json_line(blind::run_trial(part.campaign, number, part.options, rules)));
   return 0;
 }
 
