@@ -24,27 +24,34 @@ Error out_of_range(const std::string& what) {
 
 bool within(double value, double least, double most) { return value >= least && value <= most; }
 
+std::optional<Error> wrong_speed(double speed) {
+  if (within(speed, 0.02, 10.0)) return std::nullopt;
+  return out_of_range("speed is not between 0.02 and 10 m/s");
+}
+
+std::optional<Error> wrong_repeat(int repeat) {
+  if (repeat >= 1 && repeat <= 20) return std::nullopt;
+  return out_of_range("repeat is not between 1 and 20");
+}
+
 std::optional<Error> wrong_straight(const routines::StraightOptions& options) {
   if (!within(std::abs(options.distance), 0.05, 5.0))
     return out_of_range("distance is not between 0.05 and 5 m");
-  if (!within(options.speed, 0.02, 10.0)) return out_of_range("speed is not between 0.02 and 10 m/s");
-  if (options.repeat < 1 || options.repeat > 20) return out_of_range("repeat is not between 1 and 20");
-  return std::nullopt;
+  if (auto wrong = wrong_speed(options.speed)) return wrong;
+  return wrong_repeat(options.repeat);
 }
 
 std::optional<Error> wrong_square(const routines::SquareOptions& options) {
   if (!within(options.side, 0.3, 5.0))
     return out_of_range("the side of the square is not between 0.3 and 5 m");
-  if (!within(options.speed, 0.02, 10.0)) return out_of_range("speed is not between 0.02 and 10 m/s");
-  if (options.repeat < 1 || options.repeat > 20) return out_of_range("repeat is not between 1 and 20");
-  return std::nullopt;
+  if (auto wrong = wrong_speed(options.speed)) return wrong;
+  return wrong_repeat(options.repeat);
 }
 
 std::optional<Error> wrong_spin(const routines::SpinOptions& options) {
   if (!within(options.turns, 0.05, 10.0)) return out_of_range("turns is not between 0.05 and 10");
   if (!within(options.rate, 0.05, 10.0)) return out_of_range("rate is not between 0.05 and 10 rad/s");
-  if (options.repeat < 1 || options.repeat > 20) return out_of_range("repeat is not between 1 and 20");
-  return std::nullopt;
+  return wrong_repeat(options.repeat);
 }
 
 constexpr std::size_t kMostRecordings = 8;

@@ -11,6 +11,7 @@ namespace {
 // recording may be out of order. Topics whose differences lie farther apart are stamped by clocks that do not
 // know each other.
 constexpr std::int64_t kClocksApart_ns = 1'000'000'000;
+constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 
 enum class Part { scan, wheels, wheel_speeds, odometry, gyro, pose };
 constexpr std::array<const char*, 6> kParts{"scan", "wheels", "wheel_speeds", "odometry", "gyro", "pose"};
@@ -356,14 +357,12 @@ class Clock {
     const std::int64_t time = time_ns(one.stamp_ns, one.received_ns);
     std::int64_t since = 0;
     if (__builtin_sub_overflow(time, start_, &since)) return std::nan("");
-    constexpr std::int64_t kSecond = 1'000'000'000;
     const std::int64_t seconds = since / kSecond, rest = since % kSecond;
     return static_cast<double>(seconds) + 1e-9 * static_cast<double>(rest);
   }
 
  private:
   void set_start(const Topic& topic) {
-    constexpr std::int64_t kSecond = 1'000'000'000;
     each_time(topic, [&](std::int64_t stamp, std::int64_t received) {
       if (start_ == 0) start_ = time_ns(stamp, received) / kSecond * kSecond;
     });
