@@ -9,7 +9,6 @@
 #include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
-namespace {}  // namespace
 
 SearchRound::SearchRound(const FitTask& task, FittedModel basis, const std::vector<Candidate>& candidates)
     : task_(task),

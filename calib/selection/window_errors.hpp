@@ -12,15 +12,15 @@
 namespace odomcalib::calib::selection {
 
 struct WindowErrors {
-  std::vector<double> position;    ///< per stretch, m
-  std::vector<double> heading;     ///< per stretch, rad
-  std::vector<std::size_t> fold;   ///< that each stretch was held out in
-  std::vector<std::size_t> block;  ///< see Stretch
+  std::vector<double> position;    ///< per window, m
+  std::vector<double> heading;     ///< per window, rad
+  std::vector<std::size_t> fold;   ///< that each window was held out in
+  std::vector<std::size_t> block;  ///< see EvaluationWindow
   [[nodiscard]] double rms_position() const;
   [[nodiscard]] double rms_heading() const;
 };
 
-/// Error of the predicted sensor motion over each stretch. The parameters for a window's fold come from all
+/// Error of the predicted sensor motion over each window. The parameters for a window's fold come from all
 /// other folds (one Gauss-Newton step from the full fit, which for a nearly linear problem is the refit).
 WindowErrors window_errors(std::span<const measurement::FitData> data,
                            const std::vector<EvaluationWindow>& windows, const vehicle::EffectList& effects,

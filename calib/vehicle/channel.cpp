@@ -12,7 +12,7 @@ struct CovariateRow {
   const char* manoeuvre;  ///< that shows the most of what depends on it, in a small area; empty: none
 };
 
-/// In the order of Variable.
+/// In the order of Covariate.
 constexpr std::array<CovariateRow, static_cast<std::size_t>(kLastCovariate) + 1> kCovariates = {{
     {"left_speed", "straights"},
     {"right_speed", "straights"},

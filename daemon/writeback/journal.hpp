@@ -12,7 +12,8 @@
 
 namespace odomcalib {
 
-/// The steps of a write-back in their order (manual: "Write-back"). A record announces the action behind it.
+/// The steps of a write-back in their order (docs/evidence/faults.md). A record announces the action behind
+/// it.
 enum class JournalState {
   begin,           ///< old values are known, nothing is changed
   write,           ///< new values go to the controller's RAM

@@ -45,7 +45,7 @@ std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, boo
 }
 
 // One recovery each time the controller was configured: each may store once, and permanent memory wears out.
-// After it only reads are repeated. It waits for rest (B6 step 2), reading alone does not.
+// After it only reads are repeated. It waits for rest, reading alone does not.
 void WriteBack::begin_reading(const drivers::Controller& controller, bool values_known, double now) {
   const bool recover = operator_needed && !recovery_tried_ && now >= next_recovery_;
   if (recover ? !controller.at_rest() : values_known) return;
