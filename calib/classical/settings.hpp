@@ -15,7 +15,7 @@ inline constexpr double kSameFactor = 0.12;
 
 // --- Rest to rest ----------------------------------------------------------------------------------------
 
-/// m, of a straight move; Chosen: below it errors at rest weigh too much.
+/// m, of a straight move. Chosen: below it errors at rest weigh too much.
 inline constexpr double kLeastDistance_m = 0.2;
 /// rad, by which a straight move may turn. Chosen.
 inline constexpr double kMostYaw_rad = 0.5;

@@ -44,8 +44,8 @@ class Repairs {
   /// The copy of one, to be changed.
   Recording& own(std::size_t k);
   [[nodiscard]] bool any() const { return !own_.empty(); }
-  /// Those given where none was changed, which say nothing of times.
-  /// @param stamps what the others say of times that were replaced
+  /// The copies, or the recordings given where none was changed.
+  /// @param stamps that were replaced in the copies
   Recordings take(const StampReport& stamps = {}) &&;
 
  private:

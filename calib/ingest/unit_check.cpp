@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "calib/ingest/settings.hpp"
 #include "calib/matching/surface.hpp"
 #include "calib/math/median.hpp"
+#include "calib/math/se2.hpp"
 #include "calib/math/significant.hpp"
 
 namespace odomcalib::calib::ingest {
@@ -100,7 +100,7 @@ std::optional<Error> too_many_turns(const Recording& recording) {
     sweeps.push_back(std::abs(scan.angle(scan.ranges.size() - 1) - scan.angle(0)));
   if (sweeps.empty()) return std::nullopt;
   const double sweep = math::median_of(std::move(sweeps));
-  constexpr double kTurn = 2.0 * std::numbers::pi;
+  constexpr double kTurn = 2.0 * math::kPi;
   if (sweep <= settings::kMostTurns * kTurn) return std::nullopt;
   const bool degrees = sweep > 4.0 * kTurn;
   return wrong(recording,
@@ -144,7 +144,7 @@ std::optional<Error> wrong_lidar_pose(const Recording& recording) {
     return wrong(recording,
                  "lidar_pose puts the lidar " + number(std::hypot(x, y)) + " m from the middle of the axle",
                  "write x and y of lidar_pose in metres");
-  if (std::abs(yaw) > 2.0 * std::numbers::pi)
+  if (std::abs(yaw) > 2.0 * math::kPi)
     return wrong(recording,
                  "lidar_pose turns the lidar by " + number(yaw) + " rad: its yaw looks like degrees",
                  "write the yaw of lidar_pose in radians");
