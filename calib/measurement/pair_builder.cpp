@@ -38,17 +38,29 @@ std::vector<std::size_t> choose_keyframes(const std::vector<double>& times,
   return chosen;
 }
 
+/// Why a motion by so much is no measurement; null when it is one.
+const char* ambiguity_of(double turn) {
+  return std::abs(turn) > settings::kMostTurn_rad ? "turned by nearly half a turn or more" : nullptr;
+}
+
 PairSet pairs_from_increments(const Recording& recording) {
   PairSet set;
   double t = 0.0;
+  bool linked = false;
   for (const IncrementSample& sample : recording.increments) {
     SensorPair pair;
     pair.interval = {t, t + sample.duration};
+    t += sample.duration;
+    if (const char* reason = ambiguity_of(sample.lidar_motion[2])) {
+      ++set.rejected[reason];
+      linked = false;
+      continue;
+    }
     pair.motion = {sample.lidar_motion[0], sample.lidar_motion[1], sample.lidar_motion[2]};
     pair.covariance = diagonal_covariance(settings::kTupleNoise_m, settings::kTupleNoise_rad);
-    pair.follows_previous = t > 0.0;
+    pair.follows_previous = linked;
     set.pairs.push_back(pair);
-    t += sample.duration;
+    linked = true;
   }
   return set;
 }
@@ -92,9 +104,12 @@ PairSet pairs_from_poses(const Recording& recording, const vehicle::DriveModel& 
   bool linked = false;
   for (std::size_t k = 0; k + 1 < keyframes.size(); ++k) {
     const vehicle::Interval interval{times[keyframes[k]], times[keyframes[k + 1]]};
-    const bool interrupted = ingest::has_gap(times, keyframes[k], keyframes[k + 1]);
-    if (interrupted || !model.track().covers(interval.begin, interval.end)) {
-      ++set.rejected[interrupted ? "reference interrupted" : "no ticks"];
+    const double turn = trajectory.at(interval.end).yaw - trajectory.at(interval.begin).yaw;
+    const char* reason = ambiguity_of(turn);
+    if (!model.track().covers(interval.begin, interval.end)) reason = "no ticks";
+    if (ingest::has_gap(times, keyframes[k], keyframes[k + 1])) reason = "reference interrupted";
+    if (reason != nullptr) {
+      ++set.rejected[reason];
       linked = false;
       continue;
     }
@@ -133,6 +148,7 @@ class ScanChain {
     match.range_noise = set_.range_noise;
     match.min_overlap = options_.min_overlap;
     const math::Pose guess = scans_.guess(from, to);
+    if (const char* reason = ambiguity_of(guess.yaw)) return reject(reason);
     const matching::MatchResult result = options_.rough
                                              ? match_point_to_line(reference, scan.surface(), guess, match)
                                              : match_both_ways(reference, scan, guess, match);

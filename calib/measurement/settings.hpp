@@ -62,6 +62,9 @@ inline constexpr double kWinsor = 2.5;
 inline constexpr double kTupleNoise_m = 1e-3;
 /// rad, the same. Chosen.
 inline constexpr double kTupleNoise_rad = 2e-3;
+/// rad, of a measured motion: sensor and base turn alike modulo a whole turn only, and near half a turn noise
+/// decides which way it was. Chosen: 160 degrees.
+inline constexpr double kMostTurn_rad = 2.8;
 /// m, of a mean; scan matching is no better. Chosen.
 inline constexpr double kGoodMatch_m = 5e-4;
 
