@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kConvincing = 0.8;         ///< overlap above which no better pose is looked for
 constexpr std::size_t kSearchPoints = 150;  ///< of the scan; more add little on cells of 10 cm
+constexpr std::size_t kFewestPoints = 10;   ///< that a score says something about
 
 matching::MatchResult match_after_search(const matching::MatchReference& reference,
                                          const matching::MatchReference& scan, const math::Pose& guess,
@@ -58,6 +59,29 @@ ScanMatch match_scans(const Scan& reference, const Scan& scan, const std::array<
   const matching::MatchReference other(matching::make_surface(scan, at_rest, options.range_noise),
                                        options.range_noise);
   return describe(match_best(prepared, other, {guess[0], guess[1], guess[2]}, options));
+}
+
+ScanMatch search_scans(const Scan& reference, const Scan& scan, const std::array<double, 3>& guess,
+                       Matcher matcher) {
+  const Scan both[] = {reference, scan};
+  const double noise = matching::estimate_range_noise(both);
+  const matching::BeamMotion at_rest = [](double) { return math::Pose{}; };
+  const auto wanted = positions(matching::make_surface(reference, at_rest, noise));
+  const auto points =
+      matching::thinned(positions(matching::make_surface(scan, at_rest, noise)), kSearchPoints);
+  ScanMatch match;
+  match.status = to_string(matching::MatchStatus::too_few_points);
+  if (wanted.size() < kFewestPoints || points.size() < kFewestPoints) return match;
+  const matching::LikelihoodField field(wanted, {});
+  const math::Pose start{guess[0], guess[1], guess[2]};
+  const matching::SearchResult found = matcher == Matcher::brute
+                                           ? search_brute_force(field, points, {.centre = start})
+                                           : search_hill_climb(field, points, start, {});
+  match.status = to_string(matching::MatchStatus::ok);
+  match.pose = {found.pose.x, found.pose.y, found.pose.yaw};
+  match.score = found.score;
+  match.inliers = points.size();
+  return match;
 }
 
 }  // namespace odomcalib::calib

@@ -71,11 +71,19 @@ ordered_json describe(const calib::ScanMatch& match, std::chrono::microseconds t
   if (match.status == "degenerate") body["weak_direction"] = match.weak_direction;
   if (!match.ok()) return body;
   body["pose"] = match.pose;
-  body["covariance"] = match.covariance;
+  if (match.score)
+    body["score"] = *match.score;
+  else
+    body["covariance"] = match.covariance;
   return body;
 }
 
-ordered_json match_pair(const ordered_json& pair) {
+calib::Matcher matcher_of(const std::string& name) {
+  if (name == "brute") return calib::Matcher::brute;
+  return name == "fast" ? calib::Matcher::fast : calib::Matcher::lines;
+}
+
+ordered_json match_pair(const ordered_json& pair, calib::Matcher matcher) {
   if (!pair.is_object()) return refused("malformed", "the line is no JSON object");
   const auto reference = scan_of(pair, "reference");
   if (!reference) return refused("malformed", reference.error().text());
@@ -89,11 +97,13 @@ ordered_json match_pair(const ordered_json& pair) {
     if (!(*sigma > 0.0 && *sigma < 10.0)) return refused("malformed", "sigma is not a length in m above 0");
   }
   const auto begin = processor_time();
-  const auto match = calib::match_scans(reference.value(), scan.value(), *guess, sigma);
+  const auto match = matcher == calib::Matcher::lines
+                         ? calib::match_scans(reference.value(), scan.value(), *guess, sigma)
+                         : calib::search_scans(reference.value(), scan.value(), *guess, matcher);
   return describe(match, processor_time() - begin);
 }
 
-int match_file(const std::string& path, const Session& session) {
+int match_file(const std::string& path, calib::Matcher matcher, const Session& session) {
   const auto bytes = read_file_bytes(path);
   if (!bytes) return report_error(bytes.error(), session.json);
   const Unpacked text = is_gzip(bytes.value()) ? gunzip(bytes.value()) : Unpacked{bytes.value(), true, ""};
@@ -103,7 +113,7 @@ int match_file(const std::string& path, const Session& session) {
   for (std::string line; std::getline(file, line);) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     ++pairs;
-    std::cout << match_pair(ordered_json::parse(line, nullptr, false)).dump() << '\n';
+    std::cout << match_pair(ordered_json::parse(line, nullptr, false), matcher).dump() << '\n';
   }
   if (pairs == 0)
     return report_error({ErrorCode::empty, "no pair of scans", path, "one JSON object a line"}, session.json);
@@ -117,7 +127,13 @@ void add_match(CLI::App& app, Session& session) {
   auto path = std::make_shared<std::string>();
   verb->add_option("PAIRS", *path, R"(lines {"reference":scan,"scan":scan,"guess":[x,y,yaw],"sigma":m})")
       ->required();
-  verb->callback([&session, path] { session.run = [&session, path] { return match_file(*path, session); }; });
+  auto matcher = std::make_shared<std::string>("lines");
+  verb->add_option("--matcher", *matcher, "lines: point to line; brute: best of a grid; fast: hill climb")
+      ->check(CLI::IsMember({"lines", "brute", "fast"}))
+      ->capture_default_str();
+  verb->callback([&session, path, matcher] {
+    session.run = [&session, path, matcher] { return match_file(*path, matcher_of(*matcher), session); };
+  });
 }
 
 }  // namespace odomcalib::cli

@@ -32,6 +32,28 @@ TEST(Matching, S2_04_recovers_a_known_motion_from_noise_free_scans) {
   EXPECT_NEAR(match.pose[2], 0.15, 1e-6);
 }
 
+TEST(Matching, S2_02_brute_force_needs_no_guess_and_a_climb_needs_one_nearby) {
+  const math::Pose a{0.2, -0.1, 0.1};
+  const Scan reference = scan_from(kRoom, a, 0.005, 1);
+  for (const math::Pose& motion : {math::Pose{0.1, -0.05, 0.05}, math::Pose{0.7, -0.5, 0.6}}) {
+    const Scan scan = scan_from(kRoom, compose(a, motion), 0.005, 2);
+    const ScanMatch brute = search_scans(reference, scan, {0, 0, 0}, Matcher::brute);
+    ASSERT_TRUE(brute.ok()) << brute.status;
+    EXPECT_NEAR(brute.pose[0], motion.x, 0.11);
+    EXPECT_NEAR(brute.pose[1], motion.y, 0.11);
+    EXPECT_NEAR(brute.pose[2], motion.yaw, 0.03);
+    const ScanMatch fast =
+        search_scans(reference, scan, {motion.x + 0.05, motion.y - 0.05, motion.yaw}, Matcher::fast);
+    ASSERT_TRUE(fast.ok()) << fast.status;
+    EXPECT_NEAR(fast.pose[0], motion.x, 0.08);
+    EXPECT_NEAR(fast.pose[1], motion.y, 0.08);
+    EXPECT_NEAR(fast.pose[2], motion.yaw, 0.03);
+  }
+  Scan empty = reference;
+  empty.ranges.assign(empty.ranges.size(), 0.0F);
+  EXPECT_EQ(search_scans(reference, empty, {0, 0, 0}, Matcher::brute).status, "too_few_points");
+}
+
 double normalised_error_squared(const ScanMatch& match, const math::Pose& motion) {
   return testing::normalised_squared(match, testing::error_of(match, {motion.x, motion.y, motion.yaw}));
 }
