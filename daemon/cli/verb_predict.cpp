@@ -2,13 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "calib/odometry/path_noise.hpp"
 #include "calib/odometry/predict.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/usable_calibration.hpp"
@@ -21,7 +25,13 @@ namespace {
 
 struct Options {
   std::string recording, calibration, trajectory;
+  std::vector<double> noise;
   RecordingOptions reading;
+};
+
+struct Predicted {
+  std::vector<PoseSample> poses;
+  double track_width = 0.0;  ///< m
 };
 
 Result<Calibration> chosen_calibration(const Options& options, const RobotDescription& robot) {
@@ -61,7 +71,7 @@ std::string to_tum(const std::vector<PoseSample>& poses) {
   return text;
 }
 
-Result<std::vector<PoseSample>> predicted(const Options& options) {
+Result<Predicted> predicted(const Options& options) {
   const auto recordings = read_recordings({options.recording}, options.reading);
   if (!recordings) return recordings.error();
   const Recording& recording = recordings.value().front();
@@ -71,7 +81,31 @@ Result<std::vector<PoseSample>> predicted(const Options& options) {
   const auto calibration = chosen_calibration(options, recording.robot);
   if (!calibration) return calibration.error();
   warn_of(calibration.value(), options.calibration);
-  return finite_poses(calib::odometry::predict(recording, calibration.value()), options.recording);
+  auto poses = finite_poses(calib::odometry::predict(recording, calibration.value()), options.recording);
+  if (!poses) return poses.error();
+  return Predicted{std::move(poses).value(), calibration.value().parameter("track_width").value_or(0.0)};
+}
+
+/// Of the last pose; nullopt where nobody stated the noise.
+std::optional<std::array<double, 3>> deviation_of(const Predicted& found, const std::vector<double>& noise) {
+  if (noise.empty()) return std::nullopt;
+  return calib::odometry::deviation_at_end(found.poses, {noise.at(0), noise.at(1), noise.at(2)},
+                                           found.track_width);
+}
+
+void print_end(const std::vector<PoseSample>& poses, const std::optional<std::array<double, 3>>& deviation,
+               const Session& session) {
+  const PoseSample end = poses.empty() ? PoseSample{} : poses.back();
+  if (session.json != JsonMode::off) {
+    nlohmann::ordered_json body{{"poses", poses.size()}, {"end", {end.x, end.y, end.yaw}}};
+    if (deviation) body["std"] = *deviation;
+    return print_json(body.dump(), session.json);
+  }
+  std::cout << fmt::format("{} poses, end x {:.4f} m, y {:.4f} m, yaw {:.5f} rad\n", poses.size(), end.x,
+                           end.y, end.yaw);
+  if (deviation)
+    std::cout << fmt::format("standard deviations there: x {:.4f} m, y {:.4f} m, yaw {:.5f} rad\n",
+                             (*deviation)[0], (*deviation)[1], (*deviation)[2]);
 }
 
 int predict_trajectory(const Options& options, const Session& session) {
@@ -82,18 +116,12 @@ int predict_trajectory(const Options& options, const Session& session) {
                                                                  {"--robot", options.reading.robot_file}});
       !files)
     return report_error(files.error(), session.json);
-  const auto poses = predicted(options);
-  if (!poses) return report_error(poses.error(), session.json);
-  if (auto written = write_output(options.trajectory, to_tum(poses.value())); !written)
+  const auto found = predicted(options);
+  if (!found) return report_error(found.error(), session.json);
+  const std::vector<PoseSample>& poses = found.value().poses;
+  if (auto written = write_output(options.trajectory, to_tum(poses)); !written)
     return report_error(written.error(), session.json);
-  const PoseSample end = poses.value().empty() ? PoseSample{} : poses.value().back();
-  if (session.json == JsonMode::off)
-    std::cout << fmt::format("{} poses, end x {:.4f} m, y {:.4f} m, yaw {:.5f} rad\n", poses.value().size(),
-                             end.x, end.y, end.yaw);
-  else
-    print_json(
-        nlohmann::ordered_json{{"poses", poses.value().size()}, {"end", {end.x, end.y, end.yaw}}}.dump(),
-        session.json);
+  print_end(poses, deviation_of(found.value(), options.noise), session);
   return kDone;
 }
 
@@ -105,6 +133,11 @@ void add_predict(CLI::App& app, Session& session) {
   verb->add_option("RECORDING", options->recording)->required();
   verb->add_option("--calibration", options->calibration, "calibration file, or \"nominal\"")->required();
   verb->add_option("--trajectory", options->trajectory, "file to write, TUM format")->required();
+  verb->add_option("--noise", options->noise,
+                   "FORWARD,SIDEWAYS,YAW: deviations in m, m, rad of a metre rolled; tells those of the end")
+      ->delimiter(',')
+      ->expected(3)
+      ->check(finite(0.0, 10.0));
   add_reading_options(*verb, options->reading);
   verb->callback([&session, options] {
     session.run = [&session, options] { return predict_trajectory(*options, session); };

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
+#include "calib/odometry/path_noise.hpp"
 #include "calib/odometry/predict.hpp"
 #include "calib/report/next_test.hpp"
 #include "calib/selection/selection_json.hpp"
@@ -207,6 +209,63 @@ TEST(Odometry, the_phase_of_a_wheel_is_that_of_its_counter) {
     };
     EXPECT_NEAR(moved(part, 0, k), moved(whole, kCut, kCut + k), 1e-9);
   }
+}
+
+/// A turn on the spot, a straight line and a bend, in increments of a few centimetres.
+std::vector<PoseSample> increments_of_a_drive() {
+  std::vector<PoseSample> increments(20, {0.0, 0.0, 0.0, 0.08});
+  increments.insert(increments.end(), 60, {0.0, 0.05, 0.0, 0.0});
+  increments.insert(increments.end(), 60, {0.0, 0.05, 0.0, -0.03});
+  return increments;
+}
+
+PoseSample moved(const PoseSample& from, const PoseSample& by) {
+  return {0.0, from.x + std::cos(from.yaw) * by.x - std::sin(from.yaw) * by.y,
+          from.y + std::sin(from.yaw) * by.x + std::cos(from.yaw) * by.y, from.yaw + by.yaw};
+}
+
+double deviation(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0;
+  for (const double v : values) sum += v, squares += v * v;
+  const auto n = static_cast<double>(values.size());
+  return std::sqrt((squares - sum * sum / n) / (n - 1.0));
+}
+
+TEST(PathNoise, S0_04_first_order_deviations_at_the_end_are_those_of_many_noisy_drives) {
+  constexpr double kTrack = 0.4;
+  constexpr int kDrives = 100'000;
+  constexpr unsigned kSeed = 4;
+  const IncrementNoise noise{0.004, 0.002, 0.01};
+  const auto increments = increments_of_a_drive();
+  std::vector<PoseSample> path{{}};
+  for (const PoseSample& step : increments) path.push_back(moved(path.back(), step));
+  const auto stated = deviation_at_end(path, noise, kTrack);
+
+  std::mt19937 random(kSeed);
+  std::normal_distribution<double> unit(0.0, 1.0);
+  std::array<std::vector<double>, 3> ends, first;
+  for (int drive = 0; drive < kDrives; ++drive) {
+    PoseSample at;
+    for (std::size_t k = 0; k < increments.size(); ++k) {
+      const PoseSample& step = increments[k];
+      const double rolled =
+          0.5 * (std::abs(step.x - 0.5 * kTrack * step.yaw) + std::abs(step.x + 0.5 * kTrack * step.yaw));
+      const double root = std::sqrt(rolled);
+      const std::array error{noise[0] * root * unit(random), noise[1] * root * unit(random),
+                             noise[2] * root * unit(random)};
+      if (k == 0)
+        for (std::size_t axis = 0; axis < 3; ++axis) first[axis].push_back(error[axis] / root);
+      at = moved(at, {0.0, step.x + error[0], step.y + error[1], step.yaw + error[2]});
+    }
+    ends[0].push_back(at.x);
+    ends[1].push_back(at.y);
+    ends[2].push_back(at.yaw);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(deviation(first[axis]) / noise[axis], 1.0, 0.03) << "the noise itself, axis " << axis;
+    EXPECT_NEAR(deviation(ends[axis]) / stated[axis], 1.0, 0.05) << "axis " << axis;
+  }
+  EXPECT_EQ(deviation_at_end(std::span(path).first(1), noise, kTrack), (std::array{0.0, 0.0, 0.0}));
 }
 
 Calibration accepted(double diameter_std, double track_std) {
