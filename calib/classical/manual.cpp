@@ -4,19 +4,17 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/classical/settings.hpp"
 #include "calib/math/median.hpp"
 
 namespace odomcalib::calib::classical {
 namespace {
 
-constexpr double kStraightYaw = 0.02;    ///< rad per pair that still counts as straight
 constexpr double kMinPairTravel = 0.02;  ///< m
-constexpr double kMinTravel = 0.3;       ///< m in all
 constexpr double kSpinLever =
     0.1;  ///< travel over rotation in units of the track width that still is on the spot
 constexpr double kMinPairTurn = 0.03;  ///< rad
-constexpr double kMinTurn = math::kPi / 2.0;
-constexpr double kOutlier = 5.0;  ///< robust sigma
+constexpr double kOutlier = 5.0;       ///< robust sigma
 
 struct Comparison {
   double claimed = 0.0;
@@ -66,13 +64,13 @@ Result<Ratio> straight_ratio(std::span<const wheels::WheelMotion> samples,
     const double left = nominal.left_radius * sample.left;
     const double right = nominal.right_radius * sample.right;
     const double claimed = (left + right) / 2.0;
-    if (std::abs(sample.sensor_motion.yaw) > kStraightYaw || std::abs(claimed) < kMinPairTravel ||
-        left * right <= 0.0)
+    if (std::abs(sample.sensor_motion.yaw) > settings::kStraightYaw_rad ||
+        std::abs(claimed) < kMinPairTravel || left * right <= 0.0)
       continue;
     straight.push_back({std::abs(claimed), std::hypot(sample.sensor_motion.x, sample.sensor_motion.y)});
     travel += std::abs(claimed);
   }
-  if (travel < kMinTravel)
+  if (travel < settings::kLeastTravel_m)
     return Error{ErrorCode::refused, "only " + std::to_string(travel) + " m were driven straight",
                  "straight method", "drive at least 0.3 m straight"};
   return robust_slope(straight);
@@ -91,7 +89,7 @@ Result<Ratio> spin_ratio(std::span<const wheels::WheelMotion> samples, const whe
     turns.push_back({sample.sensor_motion.yaw, claimed});
     turned += std::abs(claimed);
   }
-  if (turned < kMinTurn)
+  if (turned < settings::kLeastTurn_rad)
     return Error{ErrorCode::refused,
                  "only " + std::to_string(turned * 180.0 / math::kPi) + " degrees were turned on the spot",
                  "spin method", "turn at least a quarter turn on the spot, better one turn each way"};

@@ -13,6 +13,13 @@ inline constexpr double kSameLength = 1.2;
 /// values are right to 10 %, and neighbouring factors of the table are 27 % apart at least.
 inline constexpr double kSameFactor = 0.12;
 
+// --- Straight and spin -----------------------------------------------------------------------------------
+
+/// rad, by which a stretch may turn that still counts as straight. Chosen.
+inline constexpr double kStraightYaw_rad = 0.02;
+/// m in all, of straight motion that shows a diameter. Chosen.
+inline constexpr double kLeastTravel_m = 0.3;
+
 // --- Rest to rest ----------------------------------------------------------------------------------------
 
 /// m, of a straight move. Chosen: below it errors at rest weigh too much.

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/document.hpp"
@@ -37,6 +38,20 @@ int ask(const Session& session, const std::string& method, const std::string& pa
   return kDone;
 }
 
+/// Of a recording: what it holds of each kind of motion, and what a solve would miss.
+std::vector<std::vector<std::string>> motion_rows(const ordered_json& motion) {
+  const auto degrees = [&](const char* way) {
+    return fmt::format("{} {} ({:.0f} deg)", motion[way]["stretches"].get<int>(), way,
+                       motion[way]["rad"].get<double>() * 180.0 / std::numbers::pi);
+  };
+  std::vector<std::vector<std::string>> rows = {
+      {"recorded",
+       fmt::format("stretches: {} straight ({:.2f} m), {}, {}", motion["straight"]["stretches"].get<int>(),
+                   motion["straight"]["m"].get<double>(), degrees("left"), degrees("right"))}};
+  for (const auto& missing : motion["missing"]) rows.push_back({"missing for a solve", text_of(missing)});
+  return rows;
+}
+
 void print_status(const ordered_json& status, const Session& session) {
   Document document{"odomcalibd: " + text_of(status["state"]), {}};
   const auto& controller = status["controller"];
@@ -47,6 +62,8 @@ void print_status(const ordered_json& status, const Session& session) {
                                       text_of(lidar["device"])},
                         {"calibrated", status["calibrated"] == true ? "yes" : "no"},
                         {"last stop", text_of(status["last_stop"])}};
+  if (status["recording_bytes"] > 0)
+    for (auto& row : motion_rows(status["recorded_motion"])) section.table.rows.push_back(std::move(row));
   for (const auto* device : {&controller, &lidar})
     if ((*device)["problem"] != "") section.lines.push_back(text_of((*device)["problem"]));
   document.sections.push_back(section);

@@ -80,6 +80,7 @@ void Loop::serve_drive() {
   const RobotDescription robot = news.ticks.empty() ? RobotDescription{} : bench_.drive.robot();
   for (const TickSample& sample : news.ticks) {
     bench_.odometry.add(sample, robot);
+    if (bench_.outbox.telemetry.recorder.active()) bench_.recorded.add(sample, robot);
     bench_.outbox.ticks(sample, bench_.odometry.pose(), bench_.applied.corrected(sample));
   }
   for (const auto& happened : news.events) {

@@ -101,6 +101,13 @@ ordered_json robot_report(const Drive& drive) {
           {"in_controller", !drive.in_force.empty()}};
 }
 
+ordered_json motion_report(const MotionCount& recorded) {
+  return {{"straight", {{"stretches", recorded.straight().stretches}, {"m", recorded.straight().amount}}},
+          {"left", {{"stretches", recorded.left().stretches}, {"rad", recorded.left().amount}}},
+          {"right", {{"stretches", recorded.right().stretches}, {"rad", recorded.right().amount}}},
+          {"missing", recorded.missing()}};
+}
+
 ordered_json client_report(const ControlServer& server) {
   return {{"connected", server.clients()},
           {"not_permitted", server.counters().not_permitted},
@@ -142,6 +149,7 @@ ordered_json status_report(const Bench& bench, const Task* task) {
   body["loop"] = loop_report(bench);
   body["recording_bytes"] = telemetry.recorder.bytes();
   body["recording_bytes_waiting"] = telemetry.recorder.bytes_waiting();
+  body["recorded_motion"] = motion_report(bench.recorded);
   return body;
 }
 

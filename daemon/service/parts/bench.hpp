@@ -7,6 +7,7 @@
 #include "daemon/safety/lease.hpp"
 #include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/loop_watch.hpp"
+#include "daemon/service/motion_count.hpp"
 #include "daemon/service/parts/applied_calibration.hpp"
 #include "daemon/service/parts/drive.hpp"
 #include "daemon/service/parts/outbox.hpp"
@@ -34,6 +35,7 @@ struct Bench {
   Drive drive;
   Surroundings surroundings;
   DeadReckoning odometry;
+  MotionCount recorded;  ///< of the recording in progress, or of the last one
   AppliedCalibration applied;
   WriteBack write_back;
   safety::Lease lease;

@@ -20,6 +20,7 @@ Result<std::unique_ptr<Task>> MotionTask::begin(Bench& bench, const Caller& call
   const auto path = outbox.telemetry.recorder.start(
       fmt::format("{}-{}", order.plan.name, bench.clock.wall_us() / 1'000'000));
   if (!path) return path.error();
+  bench.recorded = {};
   outbox.send_robot(bench.drive.robot());
   bench.loop.motion_begins();
   const std::string name = order.plan.name;

@@ -6,6 +6,7 @@ Result<std::unique_ptr<Task>> RecordingTask::begin(Bench& bench, const Caller& c
                                                    const std::string& name, double duration) {
   const auto path = bench.outbox.telemetry.recorder.start(name);
   if (!path) return path.error();
+  bench.recorded = {};
   bench.outbox.send_robot_soon();
   const auto until = duration > 0.0 ? std::optional(bench.now + duration) : std::nullopt;
   return std::unique_ptr<Task>(new RecordingTask(caller, until));
