@@ -10,6 +10,7 @@
 #include "calib/report/explain.hpp"
 #include "calib/report/findings.hpp"
 #include "calib/report/one_robot.hpp"
+#include "calib/report/sample_pairs.hpp"
 #include "calib/selection/clocks.hpp"
 #include "calib/selection/lidar_correction.hpp"
 #include "calib/selection/placed_fit.hpp"
@@ -42,13 +43,12 @@ std::optional<Error> contradiction(const ingest::Recordings& recordings, bool sa
 }
 
 /// @param remarks on what was taken out of the recordings
-Calibration calibrate(measurement::Dataset opened, const terms::Request& request,
-                      const selection::RuleSet& rules, const std::vector<std::string>& remarks,
-                      const Progress& progress) {
+Solution calibrate(measurement::Dataset opened, const terms::Request& request, const SolveOptions& options,
+                   const std::vector<std::string>& remarks, const Progress& progress) {
   progress("matching", 0.0);
   measurement::Dataset rough = measured_roughly(std::move(opened));
   const auto start = estimation::start_model(rough, request);
-  if (!start) return report::refused(rough, start.error());
+  if (!start) return {report::refused(rough, start.error()), {}};
 
   // A stage that does not apply, that is rejected, or that follows a failed fit hands on the fit as it is.
   const estimation::Settling how = selection::settling(request.is_automatic, progress);
@@ -59,23 +59,24 @@ Calibration calibrate(measurement::Dataset opened, const terms::Request& request
   auto [corrected, lidar, placement] = selection::correct_lidar(std::move(fit), request, how);
   placement = selection::placement_of(corrected, std::move(placement), progress);
   fit = selection::locate(std::move(corrected), placement);
-  if (fit.failure) return report::refused(fit);
+  if (fit.failure) return {report::refused(fit, options.cuts), {}};
 
-  selection::SearchResult found = select_terms(fit, request.is_automatic, rules, progress);
+  selection::SearchResult found = select_terms(fit, request.is_automatic, options.rules, progress);
   const auto [outcome, every_scan_placed] =
       selection::fit_to_every_scan(std::move(found), fit.dataset, std::move(placement), progress);
 
   progress("validating", 0.0);
-  Calibration calibration =
-      report::calibrated({fit, outcome, lidar, request.is_automatic, every_scan_placed, remarks});
+  Calibration calibration = report::calibrated(
+      {fit, outcome, lidar, request.is_automatic, every_scan_placed, remarks, options.cuts});
   progress("validating", 1.0);
-  return calibration;
+  return {std::move(calibration),
+          report::sample_pairs(fit.dataset, outcome.model.effects, outcome.model.fit)};
 }
 
 }  // namespace
 
-Calibration solve(std::span<const Recording> recordings, const SolveOptions& options,
-                  const Progress& callback) {
+Solution solve_with_pairs(std::span<const Recording> recordings, const SolveOptions& options,
+                          const Progress& callback) {
   const Progress progress = callback ? callback : [](const std::string&, double) {};
 
   const auto scale = options.scale ? options.scale : ingest::scale_by_data_sheet(recordings);
@@ -83,17 +84,17 @@ Calibration solve(std::span<const Recording> recordings, const SolveOptions& opt
   const ingest::Cleaned cleaned = ingest::without_phantom_returns(scaled.view());
   const ingest::Recordings repaired = ingest::with_even_ticks(cleaned.recordings.view());
   auto opened = measurement::open_dataset(repaired);
-  if (!opened) return report::refused(repaired, opened.error());
+  if (!opened) return {report::refused(repaired, opened.error()), {}};
   if (const auto error = contradiction(repaired, options.same_robot))
-    return report::refused(repaired, *error);
+    return {report::refused(repaired, *error), {}};
   const auto request = terms::request_for(options.effects);
-  if (!request) return report::refused(repaired, request.error());
+  if (!request) return {report::refused(repaired, request.error()), {}};
 
-  Calibration calibration = report::explained(
-      recordings,
-      calibrate(std::move(opened).value(), request.value(), options.rules, cleaned.remarks, progress));
-  if (scale && !calibration.parameters.empty()) store_scale(*scale, calibration);
-  return calibration;
+  Solution solution =
+      calibrate(std::move(opened).value(), request.value(), options, cleaned.remarks, progress);
+  solution.calibration = report::explained(recordings, std::move(solution.calibration));
+  if (scale && !solution.calibration.parameters.empty()) store_scale(*scale, solution.calibration);
+  return solution;
 }
 
 }  // namespace odomcalib::calib

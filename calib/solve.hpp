@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/classical/closed_form_options.hpp"
 #include "calib/measurement/progress.hpp"
+#include "calib/measurement/sample_pair.hpp"
 #include "calib/selection/rules.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/scale.hpp"
@@ -23,6 +25,14 @@ struct SolveOptions {
   selection::RuleSet rules = {};
   /// Of the reference; without one a lidar's data sheet has to do.
   std::optional<Scale> scale = std::nullopt;
+  /// Outliers of the closed form; the joint estimator weighs its own.
+  classical::ClosedFormOptions cuts = {};
+};
+
+struct Solution {
+  Calibration calibration;
+  std::vector<measurement::SamplePair>
+      pairs;  ///< that it was fitted to, in order of time; none when refused before a fit
 };
 
 using Progress = measurement::Progress;
@@ -30,7 +40,13 @@ using Progress = measurement::Progress;
 /// Estimates wheel diameters, track width and lidar pose from the recordings of one robot, jointly.
 /// Never fails: a recording that cannot be calibrated yields a Calibration with verdict refused, the reasons,
 /// and what was measured. Deterministic: same input, same bytes.
-Calibration solve(std::span<const Recording> recordings, const SolveOptions& options,
-                  const Progress& progress = {});
+Solution solve_with_pairs(std::span<const Recording> recordings, const SolveOptions& options,
+                          const Progress& progress = {});
+
+/// The calibration alone.
+inline Calibration solve(std::span<const Recording> recordings, const SolveOptions& options,
+                         const Progress& progress = {}) {
+  return solve_with_pairs(recordings, options, progress).calibration;
+}
 
 }  // namespace odomcalib::calib

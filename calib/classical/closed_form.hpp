@@ -6,15 +6,11 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "calib/classical/closed_form_options.hpp"
 #include "calib/wheels/wheel_motion.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib::calib::classical {
-
-struct ClosedFormOptions {
-  int rounds = 4;               ///< outlier rounds; 0 keeps all samples
-  double drop_fraction = 0.01;  ///< share cut per round, separately by position and by heading error
-};
 
 struct ClosedFormResult {
   wheels::BaseParameters parameters;

@@ -118,9 +118,9 @@ Outliers outliers_of(const Findings& found) {
 /// nothing at all is reported although odometry is plainly off, what failed cross-validation.
 std::optional<Unexplained> unexplained(const Findings& found, const Outliers& outliers, bool has_effects,
                                        const std::vector<DriveError>& drive_errors) {
-  if (const auto smooths = unnamed_smooths(found)) return smooths;
+  if (auto smooths = unnamed_smooths(found)) return smooths;
   if (!found.was_searched) return std::nullopt;
-  if (const auto flagged = outliers ? flagged_outliers(*outliers) : std::nullopt) return flagged;
+  if (auto flagged = outliers ? flagged_outliers(*outliers) : std::nullopt) return flagged;
   if (has_effects || !odometry_is_off(drive_errors)) return std::nullopt;
   return failed_validation(found.outcome);
 }
@@ -194,9 +194,9 @@ Calibration begun(const ingest::Recordings& recordings, std::span<const measurem
   return calibration;
 }
 
-Calibration with_classical_methods(const estimation::Fit& fit) {
+Calibration with_classical_methods(const estimation::Fit& fit, const classical::ClosedFormOptions& cuts) {
   Calibration calibration = begun(fit.dataset.recordings, fit.dataset.pair_sets);
-  calibration.methods = classical_methods(fit.dataset, delay_of(fit.model), calibration);
+  calibration.methods = classical_methods(fit.dataset, delay_of(fit.model), cuts, calibration);
   return calibration;
 }
 
@@ -216,8 +216,8 @@ Calibration refused(const measurement::Dataset& dataset, const Error& error) {
   return refused(begun(dataset.recordings, dataset.pair_sets), error);
 }
 
-Calibration refused(const estimation::Fit& failed) {
-  Calibration calibration = with_classical_methods(failed);
+Calibration refused(const estimation::Fit& failed, const classical::ClosedFormOptions& cuts) {
+  Calibration calibration = with_classical_methods(failed, cuts);
   MethodResult joint;
   joint.name = "joint";
   joint.refused = failed.failure->what;
@@ -236,7 +236,7 @@ Calibration calibrated(const Findings& found) {
   const Outliers outliers = outliers_of(found);
   const ReportData data = make_report_data(found.fit.dataset, found.outcome, plain);
 
-  Calibration calibration = with_classical_methods(found.fit);
+  Calibration calibration = with_classical_methods(found.fit, found.cuts);
   calibration.methods.push_back(joint_method(fit));
   calibration.parameters = base.stated;
   calibration.covariance_order = base_quantity_names();

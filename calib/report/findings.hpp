@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/classical/closed_form_options.hpp"
 #include "calib/estimation/fit.hpp"
 #include "calib/selection/search_result.hpp"
 #include "calib/terms/lidar_finding.hpp"
@@ -19,6 +20,7 @@ struct Findings {
   bool was_searched = false;       ///< for effects that nobody named
   bool every_scan_placed = false;  ///< the parameters come from the whole path, not from matches of keyframes
   std::vector<std::string> remarks = {};  ///< on what was taken out of the recordings
+  classical::ClosedFormOptions cuts = {};
 };
 
 Calibration calibrated(const Findings& found);
@@ -30,6 +32,6 @@ Calibration refused(const ingest::Recordings& recordings, const Error& error);
 Calibration refused(const measurement::Dataset& dataset, const Error& error);
 
 /// The fit failed; classical methods may have not.
-Calibration refused(const estimation::Fit& failed);
+Calibration refused(const estimation::Fit& failed, const classical::ClosedFormOptions& cuts);
 
 }  // namespace odomcalib::calib::report

@@ -139,12 +139,13 @@ std::vector<std::vector<double>> diameter_covariance(const Eigen::MatrixXd& cova
 }
 
 std::vector<MethodResult> classical_methods(const measurement::Dataset& dataset, double delay,
+                                            const classical::ClosedFormOptions& cuts,
                                             Calibration& calibration) {
   const auto samples = wheel_motions(dataset.data, delay);
   std::vector<MethodResult> methods;
   methods.push_back(straight_method(samples, dataset.nominal));
   methods.push_back(spin_method(samples, dataset.nominal));
-  const auto closed = classical::solve_closed_form(samples);
+  const auto closed = classical::solve_closed_form(samples, cuts);
   methods.push_back(
       linear_method(samples, dataset.nominal, closed ? &closed.value().inliers : nullptr, calibration));
   if (!closed) {

@@ -1,6 +1,7 @@
 // From fits to the calibration file's members.
 #pragma once
 
+#include "calib/classical/closed_form_options.hpp"
 #include "calib/estimation/joint.hpp"
 #include "calib/measurement/dataset.hpp"
 #include "proto/calibration/calibration.hpp"
@@ -28,7 +29,9 @@ std::vector<std::string> base_quantity_names();
 
 /// The four classical estimators and the closed form on the same pairs: straight, spin, linear,
 /// joint_closed_form.
+/// @param cuts of the closed form, whose inliers the linear method takes too
 std::vector<MethodResult> classical_methods(const measurement::Dataset& dataset, double delay,
+                                            const classical::ClosedFormOptions& cuts,
                                             Calibration& calibration);
 
 MethodResult joint_method(const estimation::FitResult& fit);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/math/median.hpp"
 #include "calib/report/report.hpp"
 #include "calib/selection/drive_error.hpp"
 #include "calib/selection/folds.hpp"
@@ -24,7 +25,8 @@ std::size_t stride(std::size_t count, std::size_t most) {
 PathTrace path_of(const std::string& name, const std::vector<math::Pose>& poses) {
   PathTrace path{name, {}};
   const std::size_t step = stride(poses.size(), kMostPathPoints);
-  for (std::size_t k = 0; k < poses.size(); k += step) path.points.push_back({poses[k].x, poses[k].y});
+  for (std::size_t k = 0; k < poses.size(); k += step)
+    path.points.push_back({poses[k].x, poses[k].y, poses[k].yaw});
   return path;
 }
 
@@ -125,6 +127,27 @@ ResidualAxis axis_of(const estimation::FitResult& fit, Eigen::Index axis, const 
   return out;
 }
 
+/// Of the final model's noise: what it takes measurements and wheels to err by, axis by axis.
+void add_noise(const measurement::Dataset& dataset, const estimation::FitResult& fit,
+               std::vector<ResidualAxis>& axes) {
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    const auto row = static_cast<Eigen::Index>(axis);
+    std::vector<double> reference, wheels;
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < dataset.data.size(); ++i) {
+      const measurement::NoiseModel& noise = fit.noise[i];
+      for (const measurement::SensorPair& pair : dataset.data[i].pairs) {
+        if (fit.weights[k++] < kTrustedWeight) continue;
+        reference.push_back(noise.matcher_scale * std::sqrt(pair.covariance(row, row)));
+        wheels.push_back(axis < 2 ? noise.process_translation : noise.process_rotation);
+      }
+    }
+    if (reference.empty()) continue;
+    axes[axis].reference_std = math::median_of(std::move(reference));
+    axes[axis].wheels_std = math::median_of(std::move(wheels));
+  }
+}
+
 /// Of the first recording, over its time.
 std::vector<ResidualSample> series_of(const measurement::Dataset& dataset, const estimation::FitResult& fit) {
   std::vector<ResidualSample> series;
@@ -172,6 +195,7 @@ ReportData make_report_data(const measurement::Dataset& dataset, const selection
   data.detectable = found.detectable;
   data.paths = paths_of(dataset, effects, fit);
   data.axes = {axis_of(fit, 0, "x", "m"), axis_of(fit, 1, "y", "m"), axis_of(fit, 2, "yaw", "rad")};
+  add_noise(dataset, fit, data.axes);
   data.series = series_of(dataset, fit);
   data.left_out = left_out_of(dataset, fit, fixed);
   return data;

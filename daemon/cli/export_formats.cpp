@@ -71,9 +71,9 @@ std::string residual_csv(const ReportData& data) {
 }
 
 std::string paths_csv(const ReportData& data) {
-  std::string out = "path,x,y\n";
+  std::string out = "path,x,y,yaw\n";
   for (const auto& path : data.paths)
-    for (const auto& [x, y] : path.points) line(out, field(path.name), field(x), field(y));
+    for (const auto& [x, y, yaw] : path.points) line(out, field(path.name), field(x), field(y), field(yaw));
   return out;
 }
 
@@ -115,6 +115,17 @@ const std::vector<std::string>& export_formats() {
   static const std::vector<std::string> formats = {"parameters", "effects", "errors", "residual",
                                                    "paths",      "traces",  "toml",   "diff_drive"};
   return formats;
+}
+
+std::string pairs_csv(const std::vector<calib::measurement::SamplePair>& pairs,
+                      const std::vector<std::string>& recordings) {
+  std::string out =
+      "recording,begin,end,odometry_x,odometry_y,odometry_yaw,reference_x,reference_y,reference_yaw\n";
+  for (const auto& p : pairs)
+    line(out, field(recordings.at(p.recording)), field(p.begin), field(p.end), field(p.odometry[0]),
+         field(p.odometry[1]), field(p.odometry[2]), field(p.reference[0]), field(p.reference[1]),
+         field(p.reference[2]));
+  return out;
 }
 
 bool is_configuration(const std::string& what) { return what == "toml" || what == "diff_drive"; }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/measurement/sample_pair.hpp"
 #include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::cli {
@@ -18,5 +19,10 @@ bool is_configuration(const std::string& what);
 /// @param where the calibration is from, for errors
 Result<std::string> exported(const Calibration& calibration, const std::string& what,
                              const std::string& where = "calibration file");
+
+/// Measured motions beside those of odometry, with their times: CSV in m, rad and s.
+/// @param recordings names, in the order in which they were solved
+std::string pairs_csv(const std::vector<calib::measurement::SamplePair>& pairs,
+                      const std::vector<std::string>& recordings);
 
 }  // namespace odomcalib::cli

@@ -46,8 +46,11 @@ Figure figure_of_paths(const std::vector<PathTrace>& paths) {
       "y [m]",
       true,
       {}};
-  for (const PathTrace& path : paths)
-    figure.curves.push_back({label_of_path(path.name), Style::line, tone_of_path(path.name), path.points});
+  for (const PathTrace& path : paths) {
+    Curve curve{label_of_path(path.name), Style::line, tone_of_path(path.name), {}};
+    for (const auto& [x, y, yaw] : path.points) curve.points.push_back({x, y});
+    figure.curves.push_back(std::move(curve));
+  }
   return figure;
 }
 

@@ -185,12 +185,14 @@ Section residual_shape_section(const ReportData& data) {
   Section section{"Residual of the final model, in the frame of the sensor", {}, {}};
   for (const ResidualAxis& axis : data.axes) {
     const Display show = display_of(axis.unit);
-    section.table.rows.push_back({axis.name, show.unit, number(axis.mean * show.factor, 3),
-                                  number(axis.std * show.factor, 3), number(axis.normalised, 2),
-                                  number(axis.autocorrelation, 2), number(axis.runs, 1)});
+    section.table.rows.push_back(
+        {axis.name, show.unit, number(axis.mean * show.factor, 3), number(axis.std * show.factor, 3),
+         number(axis.normalised, 2), number(axis.autocorrelation, 2), number(axis.runs, 1),
+         significant(axis.reference_std * show.factor), significant(axis.wheels_std * show.factor)});
   }
   if (section.table.rows.empty()) return section;
-  section.table.head = {"", "", "mean", "std", "std/expected", "autocorrelation", "runs test"};
+  section.table.head = {
+      "", "", "mean", "std", "std/expected", "autocorrelation", "runs test", "std of reference", "of wheels"};
   section.figures = figures_of_residual(data);
   return section;
 }

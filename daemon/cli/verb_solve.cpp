@@ -9,6 +9,8 @@
 #include "calib/terms/effect_names.hpp"
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/export_formats.hpp"
+#include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/verbs.hpp"
@@ -23,12 +25,17 @@ namespace {
 struct Options {
   std::vector<std::string> recordings;
   std::vector<std::string> effects{"auto"};
-  std::string scale, out, report, note;
+  std::string scale, out, report, pairs, note;
+  calib::classical::ClosedFormOptions cuts;
   RecordingOptions reading;
   bool same_robot = false;
 };
 
-Result<void> write_results(const Options& options, const Calibration& calibration) {
+Result<void> write_results(const Options& options, const calib::Solution& solution) {
+  const Calibration& calibration = solution.calibration;
+  if (!options.pairs.empty())
+    if (auto written = write_output(options.pairs, pairs_csv(solution.pairs, options.recordings)); !written)
+      return written;
   if (!options.out.empty())
     if (auto written = write_output(options.out, to_json(calibration)); !written) return written;
   if (!options.report.empty()) return write_output(options.report, to_html(report(calibration)));
@@ -39,6 +46,9 @@ Result<void> write_results(const Options& options, const Calibration& calibratio
 std::string settings_of(const Options& options) {
   nlohmann::ordered_json settings = {{"version", kVersion}, {"effects", options.effects}};
   if (!options.scale.empty()) settings["scale"] = options.scale;
+  const calib::classical::ClosedFormOptions usual;
+  if (options.cuts.rounds != usual.rounds) settings["rounds"] = options.cuts.rounds;
+  if (options.cuts.drop_fraction != usual.drop_fraction) settings["cut"] = options.cuts.drop_fraction;
   if (!options.note.empty()) settings["note"] = options.note;
   return settings.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
@@ -46,14 +56,15 @@ std::string settings_of(const Options& options) {
 Result<void> check_files(const Options& options) {
   auto inputs = named("a recording", options.recordings);
   inputs.push_back({"--robot", options.reading.robot_file});
-  return check_outputs({{"--out", options.out}, {"--report", options.report}}, inputs);
+  return check_outputs({{"--out", options.out}, {"--report", options.report}, {"--pairs", options.pairs}},
+                       inputs);
 }
 
 int solve_recordings(const Options& options, const Session& session) {
   if (const auto wrong = calib::terms::wrong_effects(options.effects))
     return report_error(*wrong, session.json);
   if (const auto files = check_files(options); !files) return report_error(files.error(), session.json);
-  calib::SolveOptions how{.effects = options.effects, .same_robot = options.same_robot};
+  calib::SolveOptions how{.effects = options.effects, .same_robot = options.same_robot, .cuts = options.cuts};
   if (!options.scale.empty()) {
     const auto scale = scale_from_text(options.scale);
     if (!scale) return report_error(scale.error(), session.json);
@@ -65,10 +76,11 @@ int solve_recordings(const Options& options, const Session& session) {
   const auto progress = [&line](const std::string& phase, double fraction) {
     line.show(fmt::format("{} {:3.0f} %", phase, 100.0 * fraction));
   };
-  Calibration calibration = calib::solve(recordings.value(), how, progress);
+  calib::Solution solution = calib::solve_with_pairs(recordings.value(), how, progress);
+  Calibration& calibration = solution.calibration;
   calibration.extensions["settings"] = settings_of(options);
   line.clear();
-  if (auto written = write_results(options, calibration); !written)
+  if (auto written = write_results(options, solution); !written)
     return report_error(written.error(), session.json);
   if (session.json == JsonMode::off)
     std::cout << to_text(describe(calibration), session.legend);
@@ -92,6 +104,13 @@ void add_solve(CLI::App& app, Session& session) {
   verb->add_flag("--same-robot", options->same_robot, "recordings with different robot_id are of one robot");
   verb->add_option("--out", options->out, "calibration file to write, also when refused");
   verb->add_option("--report", options->report, "HTML report to write");
+  verb->add_option("--pairs", options->pairs,
+                   "CSV to write: each measured motion beside that of odometry, with its times");
+  verb->add_option("--rounds", options->cuts.rounds, "of the closed form, that cut outliers (4)")
+      ->check(CLI::Range(0, 100));
+  verb->add_option("--cut", options->cuts.drop_fraction,
+                   "share that each round of the closed form cuts (0.01)")
+      ->check(finite(0.0, 0.5));
   verb->add_option("--note", options->note, "surface, load, tyres: kept in file and report");
   verb->callback([&session, options] {
     session.run = [&session, options] { return solve_recordings(*options, session); };

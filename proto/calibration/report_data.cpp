@@ -68,7 +68,7 @@ Json to_json(const Detectable& effect) {
 
 Json to_json(const PathTrace& path) {
   Json points = Json::array();
-  for (const auto& [x, y] : path.points) points.push_back(row(x, y));
+  for (const auto& [x, y, yaw] : path.points) points.push_back(row(x, y, yaw));
   return {{"name", path.name}, {"points", points}};
 }
 
@@ -80,7 +80,9 @@ Json to_json(const ResidualAxis& axis) {
           {"normalised", number(axis.normalised)},
           {"autocorrelation", number(axis.autocorrelation)},
           {"runs", number(axis.runs)},
-          {"histogram", axis.histogram}};
+          {"histogram", axis.histogram},
+          {"reference_std", number(axis.reference_std)},
+          {"wheels_std", number(axis.wheels_std)}};
 }
 
 Json to_json(const ResidualSample& sample) {
@@ -149,8 +151,8 @@ Detectable detectable_of(const Json& value) {
 PathTrace path_of(const Json& value) {
   PathTrace path{value.at("name"), {}};
   for (const auto& point : value.at("points")) {
-    const auto p = numbers_of(point, 2);
-    path.points.push_back({p[0], p[1]});
+    const auto p = numbers_of(point, 3);
+    path.points.push_back({p[0], p[1], p[2]});
   }
   return path;
 }
@@ -163,7 +165,9 @@ ResidualAxis axis_of(const Json& value) {
           number_of(value.at("normalised")),
           number_of(value.at("autocorrelation")),
           number_of(value.at("runs")),
-          value.at("histogram").get<std::vector<std::size_t>>()};
+          value.at("histogram").get<std::vector<std::size_t>>(),
+          number_of(value.value("reference_std", Json())),
+          number_of(value.value("wheels_std", Json()))};
 }
 
 ResidualSample sample_of(const Json& value) {

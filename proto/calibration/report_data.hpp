@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -59,7 +60,7 @@ struct Detectable {
 
 struct PathTrace {
   std::string name;                           ///< odometry (nominal values), calibrated, reference
-  std::vector<std::array<double, 2>> points;  ///< m, frame of the base at the start
+  std::vector<std::array<double, 3>> points;  ///< x, y, yaw: m, m, rad, frame of the base at the start
 };
 
 /// Residual of the final model in one axis of the sensor.
@@ -70,6 +71,10 @@ struct ResidualAxis {
   double autocorrelation = 0.0;        ///< of neighbours, normalised residual
   double runs = 0.0;                   ///< runs test: standard normal when the order is random
   std::vector<std::size_t> histogram;  ///< of the normalised residual, equal bins over -5 to 5
+  /// Standard deviations that a pair is weighed with, the median of the trusted ones, in the unit: of the
+  /// measurement by scans or poses, and of the wheels and the floor; NaN where the file does not say.
+  double reference_std = std::numeric_limits<double>::quiet_NaN();
+  double wheels_std = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct ResidualSample {

@@ -287,6 +287,42 @@ TEST_F(CommandLine, pairs_may_be_packed_and_a_folder_is_called_one) {
   EXPECT_THAT(got.err, HasSubstr("folder"));
 }
 
+TEST_F(CommandLine, S2_02_matchers_have_names_and_searches_tell_their_score) {
+  // A corner: two walls, seen from the same place twice.
+  json scan{{"angle_min", 0.0}, {"angle_increment", 0.01}, {"range_max", 9.0}, {"ranges", json::array()}};
+  for (int i = 0; i < 157; ++i)
+    scan["ranges"].push_back(
+        std::min(2.0 / std::max(std::cos(0.01 * i), 1e-6), 3.0 / std::max(std::sin(0.01 * i), 1e-6)));
+  write("pairs.jsonl", json{{"reference", scan}, {"scan", scan}, {"guess", {0.0, 0.0, 0.0}}}.dump() + "\n");
+  for (const std::string matcher : {"brute", "fast"}) {
+    const auto got = json::parse(ctl("match pairs.jsonl --matcher " + matcher).out);
+    EXPECT_EQ(got["status"], "ok") << got;
+    EXPECT_GT(got["score"].get<double>(), 0.9) << got;
+    EXPECT_TRUE(got["covariance"].is_null()) << got;
+    EXPECT_NEAR(got["pose"][0].get<double>(), 0.0, 0.11) << got;
+  }
+  const auto lines = json::parse(ctl("match pairs.jsonl --matcher lines").out);
+  EXPECT_FALSE(lines.contains("score")) << lines;
+  EXPECT_EQ(ctl("match pairs.jsonl --matcher flann").status, 2);
+}
+
+TEST_F(CommandLine, S0_04_noise_of_the_wheels_tells_the_deviation_of_the_end) {
+  const std::string call = "predict drive.jsonl --calibration nominal --trajectory out --json --noise ";
+  const auto small = json::parse(ctl(call + "0.002,0.001,0.01").out);
+  const auto large = json::parse(ctl(call + "0.004,0.002,0.02").out);
+  for (const std::size_t axis : {0U, 1U, 2U}) {
+    EXPECT_GT(small["std"][axis].get<double>(), 0.0) << small;
+    EXPECT_NEAR(large["std"][axis].get<double>(), 2.0 * small["std"][axis].get<double>(), 1e-9) << large;
+  }
+  for (const std::string wrong : {"0.1", "0.1,0.1", "0.1,0.1,nan", "-1,0.1,0.1"})
+    EXPECT_EQ(ctl(call + wrong).status, 2) << wrong;
+}
+
+TEST_F(CommandLine, S3_11_rounds_and_cut_of_the_closed_form_have_limits) {
+  for (const std::string wrong : {"--rounds -1", "--rounds 1000", "--cut 0.9", "--cut nan"})
+    EXPECT_EQ(ctl("solve drive.jsonl " + wrong).status, 2) << wrong;
+}
+
 // A FIFO that nobody writes holds the program up while it reads.
 TEST_F(CommandLine, an_interrupted_solve_is_cancelled) {
   ASSERT_EQ(mkfifo((folder_ / "fifo").c_str(), 0600), 0);

@@ -35,9 +35,9 @@ class SampleRecording : public ::testing::Test {
     return path;
   }
   static void solve(const std::string& name) {
-    const std::string command = "cd '" + folder().string() +
-                                "' && '" ODOMCALIB_CTL "' solve '" ODOMCALIB_SAMPLE "' --out " + name +
-                                ".json --report " + name + ".html > " + name + ".txt 2> " + name + ".err";
+    const std::string command =
+        "cd '" + folder().string() + "' && '" ODOMCALIB_CTL "' solve '" ODOMCALIB_SAMPLE "' --out " + name +
+        ".json --report " + name + ".html --pairs " + name + ".csv > " + name + ".txt 2> " + name + ".err";
     ASSERT_EQ(WEXITSTATUS(system(command.c_str())), 0) << read(name + ".err");
   }
   static std::string read(const std::string& name) {
@@ -70,6 +70,33 @@ TEST_F(SampleRecording, S0_23_shows_the_matrix_in_text_and_json_and_what_it_chan
     }
   EXPECT_THAT(text, ContainsRegex("a full turn: heading +deg +[0-9]"));
   EXPECT_THAT(text, ContainsRegex("10 s without reference: position +mm +[0-9]"));
+}
+
+TEST_F(SampleRecording, S0_08_exports_the_measured_motions_with_their_times) {
+  std::istringstream lines(read("first.csv"));
+  std::string line;
+  ASSERT_TRUE(std::getline(lines, line));
+  EXPECT_EQ(line,
+            "recording,begin,end,odometry_x,odometry_y,odometry_yaw,reference_x,reference_y,reference_yaw");
+  std::size_t count = 0;
+  for (; std::getline(lines, line); ++count) {
+    std::array<double, 8> v{};
+    std::istringstream fields(line.substr(line.find(',') + 1));
+    char comma = 0;
+    for (double& value : v) fields >> value >> comma;
+    EXPECT_LT(v[0], v[1]) << line;
+    EXPECT_NEAR(v[2], v[5], 0.03) << line;
+    EXPECT_NEAR(v[4], v[7], 0.05) << line;
+  }
+  EXPECT_EQ(count, calibration()["data"][0]["counts"]["pairs"].get<std::size_t>());
+}
+
+TEST_F(SampleRecording, S1_09_states_how_far_lidar_and_wheels_err_side_by_side) {
+  EXPECT_THAT(read("first.txt"), HasSubstr("std of reference"));
+  for (const auto& axis : calibration()["picture"]["axes"]) {
+    EXPECT_GT(axis["reference_std"].get<double>(), 0.0) << axis;
+    EXPECT_GT(axis["wheels_std"].get<double>(), 0.0) << axis;
+  }
 }
 
 TEST_F(SampleRecording, S0_19_SD_06_draws_three_labelled_paths_in_one_frame) {

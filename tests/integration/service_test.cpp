@@ -8,7 +8,12 @@
 #include <set>
 #include <thread>
 
+#include <odomcalib/path_t.hpp>
+
 #include "drivers/can/candump.hpp"
+#include "proto/calibration/report_data.hpp"
+#include "proto/file_bytes.hpp"
+#include "proto/wire/event_log.hpp"
 #include "tests/integration/service_loop.hpp"
 
 namespace odomcalib {
@@ -519,6 +524,22 @@ TEST_F(ServiceLoop, what_a_check_found_follows_its_outcome) {
   }
 }
 
+TEST_F(ServiceLoop, S0_21_status_counts_the_motions_of_the_newest_recording) {
+  EXPECT_EQ(status()["recorded_motion"]["missing"].size(), 2U);
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Straight", {{"lease", lease_}, {"distance", 1.0}}, true);
+  ASSERT_EQ(wait_reply(mover, 60.0).error, "");
+  json motion = status()["recorded_motion"];
+  EXPECT_NEAR(motion["straight"]["m"].get<double>(), 2.0, 0.2) << motion;
+  EXPECT_EQ(motion["missing"].size(), 1U) << motion;
+  mover.call("Spin", {{"lease", lease_}, {"turns", 1}}, true);
+  ASSERT_EQ(wait_reply(mover, 120.0).error, "");
+  motion = status()["recorded_motion"];
+  EXPECT_GT(motion["left"]["stretches"].get<int>() + motion["right"]["stretches"].get<int>(), 20) << motion;
+  EXPECT_LT(motion["straight"]["m"].get<double>(), 0.2) << "that of the recording before";
+}
+
 TEST_F(ServiceLoop, a_recording_ends_with_the_client_that_asked_for_it) {
   TestClient recorder(folder_ / "control");
   recorder.call("Record", {{"name", "left_alone"}}, true);
@@ -571,6 +592,58 @@ TEST_F(EndlessSolve, stop_ends_a_solve_at_its_next_progress_report) {
   EXPECT_EQ(reply->error, "org.odomcalib.Calibration.Cancelled") << reply->parameters;
   EXPECT_NE(reply->parameters.find("headings"), std::string::npos) << "where the recording is";
   EXPECT_EQ(status()["state"], "idle");
+}
+
+// LCM goes to a file in place of the network, as the library has it.
+class PathsOnLcm : public ServiceLoop {
+ protected:
+  void adjust(Config& config) override {
+    config.lcm_enabled = true;
+    config.lcm_url = "file://" + (folder_ / "sent.lcmlog").string() + "?mode=w";
+  }
+  Calibrator calibrator() override {
+    Calibrator functions;
+    functions.solve = [](const auto&, const auto&, const auto&) -> Result<Calibration> {
+      ReportData drive;
+      drive.paths = {{"odometry", {{0.0, 0.0, 0.0}, {1.0, 0.5, 0.25}}},
+                     {"calibrated", {{0.0, 0.0, 0.0}, {1.1, 0.4, 0.2}}},
+                     {"reference", {{0.0, 0.0, 0.0}, {1.2, 0.3, 0.1}}}};
+      Calibration calibration;
+      store_report_data(drive, calibration);
+      return calibration;
+    };
+    return functions;
+  }
+  std::vector<odomcalib::path_t> sent_paths() const {
+    const auto bytes = read_file_bytes(folder_ / "sent.lcmlog");
+    std::vector<odomcalib::path_t> paths;
+    if (!bytes) return paths;
+    EventLogReader log(bytes.value());
+    while (const auto event = log.next()) {
+      if (event->channel != "ODOMCALIB_PATH") continue;
+      const auto size = static_cast<int>(event->data.size());
+      if (path_t path{}; path.decode(event->data.data(), 0, size) == size) paths.push_back(path);
+    }
+    return paths;
+  }
+};
+
+TEST_F(PathsOnLcm, S0_19_three_paths_in_one_frame_follow_a_solve) {
+  acquire();
+  TestClient caller(folder_ / "control");
+  caller.call("Calibrate", {{"lease", lease_}, {"options", {{"manoeuvre", "headings"}}}}, true);
+  std::optional<control::Reply> reply;
+  ASSERT_TRUE(run_until([&] { return (reply = caller.reply()).has_value(); }, 600.0));
+  ASSERT_EQ(reply->error, "") << reply->parameters;
+  service_.reset();  // closes the file
+  const auto paths = sent_paths();
+  ASSERT_EQ(paths.size(), 3U);
+  EXPECT_EQ(paths[0].name, "odometry");
+  EXPECT_EQ(paths[1].name, "calibrated");
+  EXPECT_EQ(paths[2].name, "scan");
+  EXPECT_EQ(paths[2].x, (std::vector{0.0, 1.2}));
+  EXPECT_EQ(paths[2].y, (std::vector{0.0, 0.3}));
+  EXPECT_EQ(paths[2].yaw, (std::vector{0.0, 0.1}));
 }
 
 // The names are asked before anything moves.

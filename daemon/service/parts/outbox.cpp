@@ -15,6 +15,9 @@ PoseSample pose_sample(double t, const routines::Pose& pose) {
   return {t, pose.x, pose.y, routines::wrapped(pose.yaw)};
 }
 
+/// The reference is called by its usual kind on LCM.
+std::string lcm_name_of(const PathTrace& path) { return path.name == "reference" ? "scan" : path.name; }
+
 }  // namespace
 
 Outbox::Outbox(ControlServer control_server, const Config& config, const Clock& time)
@@ -71,6 +74,15 @@ void Outbox::send_status(const ordered_json& status) {
 void Outbox::send_result(const std::string& calibration) {
   telemetry.publisher.send("RESULT",
                            messages::encode_json(clock_.wall_us(), "odomcalib-calibration/1", calibration));
+}
+
+void Outbox::send_paths(const std::vector<PathTrace>& paths) {
+  const std::int64_t utime = clock_.wall_us();
+  for (const PathTrace& path : paths) {
+    std::vector<PoseSample> poses;
+    for (const auto& [x, y, yaw] : path.points) poses.push_back({0.0, x, y, yaw});
+    telemetry.publisher.send("PATH", messages::encode_path(utime, lcm_name_of(path), poses));
+  }
 }
 
 void Outbox::ticks(const TickSample& sample, const routines::Pose& odometry,

@@ -5,11 +5,13 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "daemon/config/config.hpp"
 #include "daemon/service/clock.hpp"
 #include "daemon/service/control_server.hpp"
 #include "daemon/service/telemetry.hpp"
+#include "proto/calibration/report_data.hpp"
 
 namespace odomcalib {
 
@@ -47,6 +49,8 @@ class Outbox {
   [[nodiscard]] bool status_due() const { return now_ >= next_status_; }
   void send_status(const ordered_json& status);
   void send_result(const std::string& calibration);
+  /// Of the drive that was solved, for viewers: one message a path, all in one frame.
+  void send_paths(const std::vector<PathTrace>& paths);
   void ticks(const TickSample& sample, const routines::Pose& odometry,
              const std::optional<PoseSample>& corrected);
   void scan(const Scan& scan);

@@ -38,6 +38,7 @@ TaskTurn SolvingTask::turn(Bench& bench) {
   if (!*result) return Failed{result->error()};
   const std::string text = to_json(result->value());
   bench.outbox.send_result(text);
+  bench.outbox.send_paths(report_data_of(result->value()).paths);
   return Done{{{"result", report_of(bench.calibrator, result->value(), text, recording_)}}};
 }
 

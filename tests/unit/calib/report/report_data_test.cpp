@@ -1,4 +1,4 @@
-#include "proto/calibration/report_data.hpp"
+#include "calib/report/report_data.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,13 @@
 #include <cmath>
 #include <random>
 
+#include "calib/report/report.hpp"
+#include "calib/report/sample_pairs.hpp"
 #include "calib/selection/drive_error.hpp"
 #include "calib/selection/residual_trace.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/vehicle/step_context.hpp"
+#include "tests/unit/calib/driven_fit.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -257,13 +260,78 @@ TEST(Trace, is_not_shown_of_an_effect_that_is_too_small_to_be_told) {
   EXPECT_EQ(traces.front().effect, "scan_skew");
 }
 
+/// A drive whose wheels slip at random, by so much a sample, m.
+Recording slipping_recording(double slip) {
+  Recording recording = testing::driven_recording({});
+  std::mt19937 random(testing::kDriveSeed);
+  std::normal_distribution<double> error(0.0, slip / testing::kLeftRadius / (2.0 * math::kPi) * 65536.0);
+  double left = 0.0, right = 0.0;
+  for (TickSample& tick : recording.ticks) {
+    tick.left += std::llround(left += error(random));
+    tick.right += std::llround(right += error(random));
+  }
+  return recording;
+}
+
+ReportData report_of(const Recording& recording) {
+  estimation::Fit fit = testing::settled_fit({&recording, 1});
+  EXPECT_FALSE(fit.failure);
+  selection::SearchResult found;
+  found.model = {fit.model.effects, fit.result};
+  return make_report_data(fit.dataset, found, std::nullopt);
+}
+
+// Poses err by 0.5 mm and 0.5 mrad. What a pair is weighed with holds both errors, so that a reference worse
+// than the wheels weighs less than they do.
+TEST(ReportData, S1_09_states_the_error_of_the_reference_beside_that_of_the_wheels) {
+  const ReportData good = report_of(slipping_recording(0.0)), bad = report_of(slipping_recording(1e-3));
+  ASSERT_EQ(good.axes.size(), 3U);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_LT(good.axes[axis].wheels_std, good.axes[axis].reference_std) << good.axes[axis].name;
+    EXPECT_GT(bad.axes[axis].wheels_std, 2.0 * good.axes[axis].wheels_std) << bad.axes[axis].name;
+  }
+  EXPECT_GT(bad.axes[2].wheels_std, bad.axes[2].reference_std);
+}
+
+TEST(SamplePairs, S0_08_hold_both_motions_of_the_base_over_the_same_time) {
+  const Recording recording = testing::driven_recording({});
+  const estimation::Fit fit = testing::settled_fit({&recording, 1});
+  ASSERT_FALSE(fit.failure);
+  const auto samples = sample_pairs(fit.dataset, fit.model.effects, fit.result);
+  ASSERT_EQ(samples.size(), fit.dataset.data.front().pairs.size());
+  double end = 0.0;
+  for (const measurement::SamplePair& sample : samples) {
+    EXPECT_EQ(sample.recording, 0U);
+    EXPECT_GE(sample.begin, end - 1e-9);
+    EXPECT_GT(sample.end, sample.begin);
+    end = sample.end;
+    // Nominal wheels are off by a per cent, the track width by 2.5; a pair is half a metre or half a radian.
+    EXPECT_NEAR(sample.odometry[0], sample.reference[0], 0.02);
+    EXPECT_NEAR(sample.odometry[1], sample.reference[1], 0.02);
+    EXPECT_NEAR(sample.odometry[2], sample.reference[2], 0.05);
+  }
+}
+
+TEST(ClassicalMethods, S3_11_rounds_and_shares_of_the_closed_form_are_those_asked_for) {
+  const Recording recording = testing::driven_recording({});
+  const measurement::Dataset dataset = testing::rough_dataset({&recording, 1});
+  const auto discarded = [&](const classical::ClosedFormOptions& cuts) {
+    Calibration calibration;
+    return classical_methods(dataset, 0.0, cuts, calibration).back().discarded;
+  };
+  EXPECT_EQ(discarded({0, 0.01}), 0U);
+  const std::size_t pairs = dataset.data.front().pairs.size();
+  EXPECT_GE(discarded({1, 0.2}), pairs / 4) << "two cuts of a fifth, by position and by heading";
+  EXPECT_GT(discarded({3, 0.2}), discarded({1, 0.2}));
+}
+
 ReportData example() {
   ReportData data;
   data.drive_errors = {{"straight_metre_length", "m", 9, Bounded{0.02, 0.01, 0.03}, std::nullopt,
                         Bounded{0.001, 0.0005, 0.002}, 0.0008}};
   data.traces = {{"backlash", "speed", "m/s", "heading", "rad", 0.8, {{0.1, 0.2, 0.3}}, {{1, 2, 3, 4, 5}}}};
-  data.paths = {{"odometry", {{0.0, 0.0}, {1.0, -2.5}}}};
-  data.axes = {{"x", "m", 1e-4, 2e-3, 1.1, 0.2, -1.5, {1, 2, 3}}};
+  data.paths = {{"odometry", {{0.0, 0.0, 0.0}, {1.0, -2.5, 0.5}}}};
+  data.axes = {{"x", "m", 1e-4, 2e-3, 1.1, 0.2, -1.5, {1, 2, 3}, 3e-4, 4e-4}};
   data.series = {{1.5, {0.1, -0.2, 3.0}}};
   data.left_out = {{"track_width", {0.4, 0.41}}};
   return data;
@@ -282,8 +350,10 @@ TEST(ReportData, survives_the_calibration_file) {
   ASSERT_EQ(data.traces.size(), 1U);
   EXPECT_DOUBLE_EQ(data.traces[0].points.at(0).after, 0.3);
   EXPECT_DOUBLE_EQ(data.traces[0].bins.at(0).after_error, 5.0);
-  EXPECT_EQ(data.paths.at(0).points.at(1)[1], -2.5);
+  EXPECT_EQ(data.paths.at(0).points.at(1), (std::array{1.0, -2.5, 0.5}));
   EXPECT_EQ(data.axes.at(0).histogram, (std::vector<std::size_t>{1, 2, 3}));
+  EXPECT_EQ(data.axes.at(0).reference_std, 3e-4);
+  EXPECT_EQ(data.axes.at(0).wheels_std, 4e-4);
   EXPECT_EQ(data.series.at(0).sigmas[2], 3.0);
   EXPECT_EQ(data.left_out.at(0).second.size(), 2U);
 }

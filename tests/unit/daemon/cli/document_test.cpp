@@ -33,7 +33,8 @@ Calibration example() {
   ReportData data;
   data.drive_errors = {{"straight_metre_length", "m", 12, Bounded{0.0204, 0.02, 0.021}, std::nullopt,
                         Bounded{0.0011, 0.0009, 0.0014}, 0.001}};
-  data.paths = {{"odometry", {{0.0, 0.0}, {1.0, 0.5}}}, {"calibrated", {{0.0, 0.0}, {0.9, 0.4}}}};
+  data.paths = {{"odometry", {{0.0, 0.0, 0.0}, {1.0, 0.5, 0.1}}},
+                {"calibrated", {{0.0, 0.0, 0.0}, {0.9, 0.4, 0.1}}}};
   data.traces = {
       {"backlash", "speed", "m/s", "heading", "rad", 0.9, {{0.1, 0.01, 0.0}}, {{0.1, 0.01, 1e-3, 0, 1e-3}}}};
   data.detectable = {{"backlash", "left_play", "rad", 0.002, 0.02, "reversals"},

@@ -117,7 +117,7 @@ TEST(WheelMotion, angles_kept_within_a_turn_are_continued) {
   }
 }
 
-TEST(WheelMotion, speeds_are_held_until_the_next_line) {
+TEST(WheelMotion, S3_17_speeds_in_radians_a_second_are_held_until_the_next_line) {
   std::string text = kRobotWithoutTicks;
   const auto counted = drive();
   for (std::size_t i = 0; i + 1 < counted.size(); ++i) {
