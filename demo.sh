@@ -121,7 +121,7 @@ TOML
 ready() {
   "$bin/odomcalibctl" --socket "$dir/control" --json=short check 2> /dev/null | python3 -c '
 import json, sys
-checks = json.load(sys.stdin)
+checks = json.load(sys.stdin)["checks"]
 read = any(c["found"] == "from the controller" for c in checks)
 sys.exit(not read or any(c["outcome"] != "ok" for c in checks))' 2> /dev/null
 }

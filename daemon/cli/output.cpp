@@ -19,6 +19,12 @@ void print_json(const std::string& text, JsonMode mode) {
   std::cout << value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }
 
+void print_document(const std::string& name, const nlohmann::ordered_json& body, JsonMode mode) {
+  nlohmann::ordered_json document = {{"format", "odomcalib-" + name + "/1"}};
+  document.update(body);
+  print_json(document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), mode);
+}
+
 int report_error(const Error& error, JsonMode mode) {
   std::cerr << "odomcalibctl: " << error.text() << '\n';
   print_error_json(error, mode);
@@ -27,12 +33,13 @@ int report_error(const Error& error, JsonMode mode) {
 
 void print_error_json(const Error& error, JsonMode mode) {
   if (mode == JsonMode::off) return;
-  const nlohmann::ordered_json body = {{"error",
-                                        {{"code", code_name(error.code)},
-                                         {"what", error.what},
-                                         {"where", error.where},
-                                         {"remedy", error.remedy}}}};
-  print_json(body.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), mode);
+  print_document("error",
+                 {{"error",
+                   {{"code", code_name(error.code)},
+                    {"what", error.what},
+                    {"where", error.where},
+                    {"remedy", error.remedy}}}},
+                 mode);
 }
 
 void tell(const std::string& text) { std::cerr << text << '\n'; }

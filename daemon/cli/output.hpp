@@ -1,6 +1,7 @@
 // What verbs print, and where: results on standard output, everything else on standard error.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "proto/result.hpp"
@@ -13,7 +14,11 @@ enum class JsonMode { off, pretty, shortened };
 /// on other text: what is printed here is JSON, or nothing.
 void print_json(const std::string& text, JsonMode mode);
 
-/// One line for people on standard error, with --json also an object {"error":{...}} on standard output.
+/// Prints an object of ours with its format, "odomcalib-NAME/1", as the first member. docs/schema/NAME-1.json
+/// says what else is in it: members are only ever added to a version.
+void print_document(const std::string& name, const nlohmann::ordered_json& body, JsonMode mode);
+
+/// One line for people on standard error, with --json also the document "error" on standard output.
 /// @return the exit status that belongs to the error
 int report_error(const Error& error, JsonMode mode);
 

@@ -55,7 +55,7 @@ int convert_recording(const Options& options, const Session& session) {
   if (session.json == JsonMode::off)
     print_summary(recording, options.out);
   else
-    print_json(counts_of(recording).dump(), session.json);
+    print_document("conversion", counts_of(recording), session.json);
   return kDone;
 }
 

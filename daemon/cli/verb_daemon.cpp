@@ -23,18 +23,29 @@ std::string text_of(const ordered_json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-int ask(const Session& session, const std::string& method, const std::string& parameters,
-        const std::string& member, const Printer& print) {
+/// What is asked, and what the answer is printed as.
+struct Question {
+  std::string method;
+  std::string member;    ///< of the answer that people are told; empty: all of it
+  std::string document;  ///< of the answer
+  Printer print;
+};
+
+/// The state is a document by itself: its members are those of the answer's only one.
+ordered_json document_of(const ordered_json& answer, const Question& question) {
+  return question.document == "status" ? answer.value(question.member, ordered_json::object()) : answer;
+}
+
+int ask(const Session& session, const Question& question) {
   auto client = Client::connect(session.socket);
   if (!client) return report_error(client.error(), session.json);
-  const auto answer = client.value().call(method, parameters);
+  const auto answer = client.value().call(question.method, "{}");
   if (!answer) return report_error(answer.error(), session.json);
   const auto body = ordered_json::parse(answer.value(), nullptr, false);
-  const ordered_json value = member.empty() ? body : body.value(member, ordered_json());
   if (session.json != JsonMode::off)
-    print_json(value.dump(), session.json);
+    print_document(question.document, document_of(body, question), session.json);
   else
-    print(value, session);
+    question.print(question.member.empty() ? body : body.value(question.member, ordered_json()), session);
   return kDone;
 }
 
@@ -82,32 +93,33 @@ void print_history(const ordered_json& entries, const Session& session) {
   std::cout << to_text(describe_history(entries), session.legend);
 }
 
-void add_question(CLI::App& app, Session& session, const char* verb, const char* help, const char* method,
-                  const char* member, const Printer& print) {
-  app.add_subcommand(verb, help)->callback([&session, method, member, print] {
-    session.run = [&session, method, member, print] { return ask(session, method, "{}", member, print); };
+void add_question(CLI::App& app, Session& session, const char* verb, const char* help,
+                  const Question& question) {
+  app.add_subcommand(verb, help)->callback([&session, question] {
+    session.run = [&session, question] { return ask(session, question); };
   });
 }
 
+Question status_question() { return {"GetStatus", "status", "status", print_status}; }
+
 }  // namespace
 
-int show_status(const Session& session) { return ask(session, "GetStatus", "{}", "status", print_status); }
+int show_status(const Session& session) { return ask(session, status_question()); }
 
-int show_checks(const Session& session) { return ask(session, "Check", "{}", "checks", print_checks); }
+int show_checks(const Session& session) { return ask(session, {"Check", "checks", "checks", print_checks}); }
 
 void add_questions(CLI::App& app, Session& session) {
-  add_question(app, session, "status", "What the daemon and its devices do (default)", "GetStatus", "status",
-               print_status);
-  add_question(app, session, "stop", "Stop the robot and whatever runs", "Stop", "",
-               [](const ordered_json&, const Session&) { std::cout << "stopped\n"; });
-  add_question(app, session, "history", "What was written to the controller", "History", "entries",
-               print_history);
+  add_question(app, session, "status", "What the daemon and its devices do (default)", status_question());
+  add_question(app, session, "stop", "Stop the robot and whatever runs",
+               {"Stop", "", "stop", [](const ordered_json&, const Session&) { std::cout << "stopped\n"; }});
+  add_question(app, session, "history", "What was written to the controller",
+               {"History", "entries", "history", print_history});
   auto* params = app.add_subcommand("params", "Parameters of the controller");
   params->require_subcommand(1);
   params->fallthrough();
-  add_question(*params, session, "get", "Values in force", "GetParameters", "parameters", print_parameters);
-  add_question(*params, session, "diff", "Values in force against calibrated ones", "GetParameters",
-               "parameters", print_parameters);
+  const Question parameters{"GetParameters", "parameters", "parameters", print_parameters};
+  add_question(*params, session, "get", "Values in force", parameters);
+  add_question(*params, session, "diff", "Values in force against calibrated ones", parameters);
 }
 
 }  // namespace odomcalib::cli

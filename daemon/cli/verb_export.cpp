@@ -23,7 +23,7 @@ void print(const std::string& what, const std::string& text, const Session& sess
   if (session.json == JsonMode::off)
     std::cout << text;
   else
-    print_json(nlohmann::ordered_json{{"what", what}, {"text", text}}.dump(), session.json);
+    print_document("export", {{"what", what}, {"text", text}}, session.json);
 }
 
 int export_calibration(const Options& options, const Session& session) {

@@ -36,11 +36,11 @@ struct BuildOptions {
 };
 
 template <typename... Described>
-void print(const Session& session, const Described&... described) {
+void print(const Session& session, const std::string& document, const Described&... described) {
   if (session.json == JsonMode::off)
     std::cout << to_text(describe(described...), session.legend);
   else
-    print_json(to_json(described...).dump(), session.json);
+    print_document(document, to_json(described...), session.json);
 }
 
 Result<void> write_results(const Options& options, const GraphRun& run) {
@@ -64,7 +64,7 @@ int optimize(const Options& options, const Session& session) {
                         session.json);
   if (auto written = write_results(options, run); !written)
     return report_error(written.error(), session.json);
-  print(session, run);
+  print(session, "graph-optimize", run);
   return kDone;
 }
 
@@ -79,7 +79,7 @@ int tell(const Options& options, const Session& session) {
       anchored.vertices[v].fixed = graph.value().vertices[v].fixed;
     graph = std::move(anchored);
   }
-  print(session, graph.value(), calib::slam::inspect_graph(graph.value()));
+  print(session, "graph-info", graph.value(), calib::slam::inspect_graph(graph.value()));
   return kDone;
 }
 
@@ -103,7 +103,7 @@ int build(const BuildOptions& options, const Session& session) {
   if (!map) return report_error(map.error(), session.json);
   if (auto written = write_results(options, map.value()); !written)
     return report_error(written.error(), session.json);
-  print(session, map.value());
+  print(session, "graph-build", map.value());
   return kDone;
 }
 

@@ -165,7 +165,7 @@ void print(const Session& session, const Outcome& outcome) {
   const auto& [driven, proposal, plan] = outcome;
   if (!plan.is_null()) {
     session.json == JsonMode::off ? void(std::cout << plan.dump(2) << '\n')
-                                  : print_json(plan.dump(), session.json);
+                                  : print_document("plan", plan, session.json);
     return;
   }
   if (session.json != JsonMode::off) {
@@ -174,7 +174,7 @@ void print(const Session& session, const Outcome& outcome) {
     body["proposal"] = proposal ? to_json(*proposal) : ordered_json(nullptr);
     if (!driven.recordings.empty()) body["recording"] = driven.recordings.back();
     body["recordings"] = driven.recordings;
-    return print_json(body.dump(), session.json);
+    return print_document("moves", body, session.json);
   }
   for (const auto& one : driven.moves) std::cout << describe_move(one) << '\n';
   for (const auto& recording : driven.recordings) std::cout << "recording " << recording << '\n';

@@ -37,11 +37,12 @@ struct Options {
   std::vector<std::string> assignments;
 };
 
-int print_result(const Session& session, const Result<ordered_json>& result) {
+/// @param document that the result is
+int print_result(const Session& session, const std::string& document, const Result<ordered_json>& result) {
   if (!result) return report_error(result.error(), session.json);
   const ordered_json& body = result.value();
   if (session.json != JsonMode::off) {
-    print_json(body.dump(), session.json);
+    print_document(document, body, session.json);
   } else if (body.contains("steps") || body.contains("parameters")) {
     std::cout << to_text(describe_write_back(body), session.legend);
   } else {
@@ -98,7 +99,8 @@ int calibrate(const Session& session, const Options& options) {
     return report_error(files.error(), session.json);
   const ordered_json wanted = {{"quick", options.quick}};
   if (options.consent.dry_run)
-    return print_result(session, run_method(session, options.consent, "Calibrate", {{"options", wanted}}));
+    return print_result(session, "plan",
+                        run_method(session, options.consent, "Calibrate", {{"options", wanted}}));
   auto solved = drive_and_solve(session, options, wanted);
   if (!solved) return report_error(solved.error(), session.json);
   const Solved best = second_drive(session, options, std::move(solved).value());
@@ -118,17 +120,18 @@ int apply(const Session& session, const Options& options) {
   const auto body = ordered_json::parse(bytes.value(), nullptr, false);
   if (!body.is_object())
     return report_error({ErrorCode::format, "no calibration file", options.file, ""}, session.json);
-  return print_result(session, run_method(session, options.consent, "Apply", {{"calibration", body}}));
+  return print_result(session, "write-back",
+                      run_method(session, options.consent, "Apply", {{"calibration", body}}));
 }
 
 // A wire in the wrong place is a failure, one that could not be told is none.
 int check(const Session& session, const Options& options) {
   if (!options.nudge) return show_checks(session);
   const auto result = run_method(session, options.consent, "Check", {{"nudge", true}});
-  if (!result || options.consent.dry_run) return print_result(session, result);
+  if (!result || options.consent.dry_run) return print_result(session, "plan", result);
   const ordered_json& checks = result.value().value("checks", ordered_json::array());
   if (session.json != JsonMode::off)
-    print_json(result.value().dump(), session.json);
+    print_document("checks", result.value(), session.json);
   else
     std::cout << to_text(describe_checks(checks), session.legend);
   return result.value()["wiring"].value("outcome", "") == "fail" ? kFailure : kDone;
@@ -153,14 +156,14 @@ Result<ordered_json> parsed_values(const std::vector<std::string>& assignments) 
 int set_parameters(const Session& session, const Options& options) {
   const auto values = parsed_values(options.assignments);
   if (!values) return report_error(values.error(), session.json);
-  return print_result(session,
+  return print_result(session, "write-back",
                       run_method(session, options.consent, "SetParameters", {{"values", values.value()}}));
 }
 
 int rollback(const Session& session, const Options& options) {
   ordered_json parameters = ordered_json::object();
   if (!options.id.empty()) parameters["id"] = options.id;
-  return print_result(session, run_method(session, options.consent, "Rollback", parameters));
+  return print_result(session, "write-back", run_method(session, options.consent, "Rollback", parameters));
 }
 
 template <typename Action>

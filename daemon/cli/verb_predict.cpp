@@ -99,7 +99,7 @@ void print_end(const std::vector<PoseSample>& poses, const std::optional<std::ar
   if (session.json != JsonMode::off) {
     nlohmann::ordered_json body{{"poses", poses.size()}, {"end", {end.x, end.y, end.yaw}}};
     if (deviation) body["std"] = *deviation;
-    return print_json(body.dump(), session.json);
+    return print_document("prediction", body, session.json);
   }
   std::cout << fmt::format("{} poses, end x {:.4f} m, y {:.4f} m, yaw {:.5f} rad\n", poses.size(), end.x,
                            end.y, end.yaw);

@@ -69,7 +69,7 @@ int record(const Options& options, const Session& session) {
   const auto answer = await_path(client.value(), session.socket);
   if (!answer) return report_error(answer.error(), session.json);
   if (session.json != JsonMode::off)
-    print_json(answer.value(), session.json);
+    print_document("record", ordered_json::parse(answer.value(), nullptr, false), session.json);
   else
     std::cout << ordered_json::parse(answer.value(), nullptr, false).value("path", "") << '\n';
   return kDone;

@@ -134,7 +134,7 @@ ordered_json status_report(const Bench& bench, const Task* task) {
   const Telemetry& telemetry = bench.outbox.telemetry;
   const auto& pose = bench.odometry.pose();
   ordered_json body;
-  body["schema"] = 1;
+  body["format"] = "odomcalib-status/1";
   body["state"] = activity(bench, task);
   body["version"] = kVersion;
   body["controller"] = controller_report(bench);

@@ -124,7 +124,7 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     calibration, truth = load(folder, "calibration.json"), load(folder, "truth.json")
     names = ("left_wheel_diameter", "right_wheel_diameter", "track_width")
-    kept = {p["name"]: p["value"] for p in load(folder, "params-after.json") if p["name"] in names}
+    kept = {p["name"]: p["value"] for p in load(folder, "params-after.json")["parameters"] if p["name"] in names}
     print_parameters(calibration, truth, kept)
     print_defect(calibration, truth)
     better = print_errors(folder)

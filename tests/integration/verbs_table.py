@@ -1,65 +1,77 @@
 #!/usr/bin/env python3
-"""Every verb of odomcalibctl in one table: what --help says, which exit status a call has, and which members its JSON.
-A verb that the program lists and the table lacks is a failure, and so is one that the program lacks.
+"""Every verb of odomcalibctl in one table: what --help says, which exit status a call has, and which published schema its JSON
+keeps to. A verb that the program lists and the table lacks is a failure, and so is one that the program lacks, and a schema
+that no call shows.
 
-usage: tests/integration/verbs_table.py ODOMCALIBCTL"""
+usage: tests/integration/verbs_table.py ODOMCALIBCTL SCHEMAS SAMPLE"""
 
 import json
+import math
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 
+import live_verbs
+from schemas import Schemas
+
 DONE, FAILURE, USAGE, REFUSED, NO_DAEMON = 0, 1, 2, 3, 9
 ABSENT = "/nonexistent/file"
-ERROR = {"error"}
-MEMBERS_OF_ERROR = {"code", "what", "where", "remedy"}
-CALIBRATION = {"format", "verdict", "reasons", "robot", "parameters", "covariance", "residual", "data"}
 
-# verb, arguments, exit status, members that its JSON has at least (None: JSON Lines, each line an object).
+# verb, arguments, exit status, schema of its JSON: one document, or lines where LINES has the schema.
 # A straight drive alone does not determine the track width: it is refused.
+LINES = {"decoded", "match"}
 TABLE = [
-    ("solve", "drive.jsonl --out cal.json", REFUSED, CALIBRATION),
-    ("solve", ABSENT, FAILURE, ERROR),
-    ("predict", "drive.jsonl --calibration nominal --trajectory path.tum", DONE, {"poses", "end"}),
-    ("predict", "drive.jsonl --trajectory path.tum --calibration " + ABSENT, FAILURE, ERROR),
-    ("convert", "drive.jsonl --out copy.jsonl", DONE, {"motion", "samples", "scans", "poses", "gyro"}),
-    ("convert", ABSENT + " --out copy.jsonl", FAILURE, ERROR),
-    ("decode", "ld06 drive.jsonl", DONE, {"type", "bytes_in", "good", "skipped", "buffered", "rejected"}),
-    ("decode", "no_such_driver drive.jsonl", USAGE, ERROR),
-    ("match", "pairs.jsonl", DONE, None),
-    ("match", ABSENT, FAILURE, ERROR),
-    ("report", "cal.json", DONE, CALIBRATION),
-    ("report", "drive.jsonl", FAILURE, ERROR),
-    ("export", "cal.json --what parameters", DONE, {"what", "text"}),
-    ("export", "cal.json --what toml", REFUSED, ERROR),
-    ("export", "cal.json --what fax", USAGE, ERROR),
-    ("graph info", "map.g2o", DONE, {"poses", "pose_edges", "chi2", "notes"}),
-    ("graph info", ABSENT, FAILURE, ERROR),
-    ("graph optimize", "map.g2o --out better.g2o", DONE, {"state", "chi2_before", "chi2_after", "vertices", "edges"}),
-    ("graph optimize", ABSENT + " --out better.g2o", FAILURE, ERROR),
-    ("graph build", "drive.jsonl --out built.g2o", FAILURE, ERROR),
-    ("status", "", NO_DAEMON, ERROR),
-    ("stop", "", NO_DAEMON, ERROR),
-    ("history", "", NO_DAEMON, ERROR),
-    ("params get", "", NO_DAEMON, ERROR),
-    ("params diff", "", NO_DAEMON, ERROR),
-    ("params set", "--yes track_width=0.4", NO_DAEMON, ERROR),
-    ("monitor", "", NO_DAEMON, ERROR),
-    ("record", "--duration 1", NO_DAEMON, ERROR),
-    ("check", "", NO_DAEMON, ERROR),
-    ("straight", "--yes", NO_DAEMON, ERROR),
-    ("spin", "--yes", NO_DAEMON, ERROR),
-    ("calibrate", "--yes --out drawn.json", NO_DAEMON, ERROR),
-    ("apply", "cal.json --yes", NO_DAEMON, ERROR),
-    ("rollback", "--yes", NO_DAEMON, ERROR),
+    ("solve", "drive.jsonl --out cal.json", REFUSED, "calibration"),
+    ("solve", "sample.jsonl.gz --out good.json", DONE, "calibration"),
+    ("solve", "drive.jsonl --rounds 2 --cut 0.02 --pairs motions.csv", REFUSED, "calibration"),
+    ("solve", ABSENT, FAILURE, "error"),
+    ("predict", "drive.jsonl --calibration nominal --trajectory path.tum", DONE, "prediction"),
+    ("predict", "drive.jsonl --calibration nominal --trajectory path.tum --noise 0.01,0.001,0.01", DONE, "prediction"),
+    ("predict", "drive.jsonl --trajectory path.tum --calibration " + ABSENT, FAILURE, "error"),
+    ("convert", "drive.jsonl --out copy.jsonl", DONE, "conversion"),
+    ("convert", ABSENT + " --out copy.jsonl", FAILURE, "error"),
+    ("decode", "ld06 drive.jsonl", DONE, "decoded"),
+    ("decode", "no_such_driver drive.jsonl", USAGE, "error"),
+    ("match", "pairs.jsonl", DONE, "match"),
+    ("match", "pairs.jsonl --matcher brute", DONE, "match"),
+    ("match", ABSENT, FAILURE, "error"),
+    ("report", "cal.json", DONE, "calibration"),
+    ("report", "drive.jsonl", FAILURE, "error"),
+    ("export", "cal.json --what parameters", DONE, "export"),
+    ("export", "cal.json --what toml", REFUSED, "error"),
+    ("export", "cal.json --what fax", USAGE, "error"),
+    ("graph info", "map.g2o", DONE, "graph-info"),
+    ("graph info", ABSENT, FAILURE, "error"),
+    ("graph optimize", "map.g2o --out better.g2o", DONE, "graph-optimize"),
+    ("graph optimize", ABSENT + " --out better.g2o", FAILURE, "error"),
+    ("graph build", "sample.jsonl.gz --out built.g2o", DONE, "graph-build"),
+    ("graph build", "drive.jsonl --out built.g2o", FAILURE, "error"),
+    ("status", "", NO_DAEMON, "error"),
+    ("stop", "", NO_DAEMON, "error"),
+    ("history", "", NO_DAEMON, "error"),
+    ("params get", "", NO_DAEMON, "error"),
+    ("params diff", "", NO_DAEMON, "error"),
+    ("params set", "--yes track_width=0.4", NO_DAEMON, "error"),
+    ("monitor", "", NO_DAEMON, "error"),
+    ("record", "--duration 1", NO_DAEMON, "error"),
+    ("check", "", NO_DAEMON, "error"),
+    ("straight", "--yes", NO_DAEMON, "error"),
+    ("spin", "--yes", NO_DAEMON, "error"),
+    ("calibrate", "--yes --out drawn.json", NO_DAEMON, "error"),
+    ("apply", "cal.json --yes", NO_DAEMON, "error"),
+    ("rollback", "--yes", NO_DAEMON, "error"),
 ]
+# Files that the calls above read and write, and the schema of each or of its lines.
+FILES = [("cal.json", "calibration"), ("good.json", "calibration"), ("drive.jsonl", "recording"), ("copy.jsonl", "recording"),
+         ("pairs.jsonl", "pair")]
 
 
 class Program:
-    def __init__(self, path, folder):
-        self.path, self.folder, self.faults = os.path.abspath(path), folder, []
+    def __init__(self, path, folder, schemas):
+        self.path, self.folder, self.schemas, self.faults = os.path.abspath(path), folder, schemas, []
 
     def run(self, *words):
         return subprocess.run([self.path, *words], cwd=self.folder, check=False, text=True, timeout=60,
@@ -80,8 +92,17 @@ class Program:
                 for verb in self.subcommands() for below in self.subcommands(verb) or [None]}
 
 
-def prepare(folder):
-    """Two metres straight with poses that agree, a graph of two poses, and a pair that is none."""
+def room(x):
+    """What a lidar sees in a room of 6 m by 4 m from x m beside its middle."""
+    ranges = []
+    for k in range(180):
+        c, s = math.cos(math.radians(2 * k)), math.sin(math.radians(2 * k))
+        ranges.append(round(min(((3.0 if c > 0 else -3.0) - x) / c if c else 99.0, (2.0 if s > 0 else -2.0) / s if s else 99.0), 4))
+    return {"angle_min": 0.0, "angle_increment": math.radians(2), "range_min": 0.1, "range_max": 12.0, "ranges": ranges}
+
+
+def prepare(folder, sample):
+    """Two metres straight with poses that agree, a graph of two poses, and two scans of one room."""
     with open(os.path.join(folder, "drive.jsonl"), "w", encoding="utf-8") as file:
         lines = [{"type": "robot", "wheel_diameter": 0.15, "track_width": 0.4, "ticks_per_rev": 4096}]
         for i in range(101):
@@ -91,7 +112,8 @@ def prepare(folder):
     with open(os.path.join(folder, "map.g2o"), "w", encoding="utf-8") as file:
         file.write("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n")
     with open(os.path.join(folder, "pairs.jsonl"), "w", encoding="utf-8") as file:
-        file.write("{}\n")
+        file.write(json.dumps({"reference": room(0.0), "scan": room(0.1), "guess": [0.0, 0.0, 0.0]}) + "\n")
+    shutil.copy(sample, os.path.join(folder, "sample.jsonl.gz"))
 
 
 def check_help(program, verb):
@@ -101,52 +123,63 @@ def check_help(program, verb):
         program.demand(said in done.stdout, '%s --help does not say "%s"' % (verb, said))
     wrong = program.run(*verb.split(), "--no-such-option", "--json=short")
     program.demand(wrong.returncode == USAGE, "%s --no-such-option: status %d" % (verb, wrong.returncode))
-    check_json(program, verb + " --no-such-option", wrong.stdout, ERROR)
+    check_json(program, verb + " --no-such-option", wrong.stdout, "error")
 
 
-def check_json(program, call, text, members):
+def check_json(program, call, text, schema):
     try:
         documents = [json.loads(line) for line in text.splitlines()]
     except ValueError as error:
         program.demand(False, "%s: no JSON: %s: %s" % (call, error, text[:200]))
         return
-    program.demand(all(isinstance(document, dict) for document in documents), call + ": an object a line")
-    if members is None:
-        program.demand(len(documents) > 0, call + ": prints nothing")
-        return
-    program.demand(len(documents) == 1, "%s: %d documents" % (call, len(documents)))
-    for document in documents[:1]:
-        program.demand(members <= document.keys(), "%s: lacks %s" % (call, sorted(members - document.keys())))
-        program.demand(("error" in document) == (members == ERROR), call + ": an error or none")
-        if members == ERROR and "error" in document:
-            program.demand(document["error"].keys() == MEMBERS_OF_ERROR, "%s: %s" % (call, document["error"]))
+    program.demand(documents and (len(documents) == 1 or schema in LINES), "%s: %d documents" % (call, len(documents)))
+    for document in documents:
+        for fault in program.schemas.faults(document, schema):
+            program.demand(False, call + ": " + fault)
 
 
-def check_call(program, verb, arguments, status, members):
+def check_call(program, verb, arguments, status, schema):
     call = " ".join([verb, arguments]).strip()
     done = program.run("--socket", "/nonexistent/control", *call.split(), "--json=short")
     program.demand(done.returncode == status, "%s: status %d, not %d: %s" % (call, done.returncode, status, done.stderr))
-    check_json(program, call, done.stdout, members)
-    program.demand(members != ERROR or done.stderr.strip(), call + ": nothing for people on standard error")
+    check_json(program, call, done.stdout, schema)
+    program.demand(schema != "error" or done.stderr.strip(), call + ": nothing for people on standard error")
 
 
-def main(path):
+def check_file(program, name, schema):
+    with open(os.path.join(program.folder, name), encoding="utf-8") as file:
+        text = file.read()
+    documents = [json.loads(text)] if name.endswith(".json") else [json.loads(line) for line in text.splitlines()]
+    for document in documents:
+        for fault in program.schemas.faults(document, schema):
+            program.demand(False, "%s: %s" % (name, fault))
+
+
+def main(path, schema_folder, sample):
+    schemas = Schemas(schema_folder)
     with tempfile.TemporaryDirectory() as folder:
-        prepare(folder)
-        program = Program(path, folder)
+        prepare(folder, sample)
+        program = Program(path, folder, schemas)
         listed, known = program.verbs(), {row[0] for row in TABLE}
         program.demand(listed == known, "not in both table and program: %s" % sorted(listed ^ known))
         for verb in sorted(listed & known):
             check_help(program, verb)
         for row in TABLE:
             check_call(program, *row)
+        for row in FILES:
+            check_file(program, *row)
+    shown = {row[-1] for row in TABLE + FILES + live_verbs.TABLE}
+    program.demand(shown == schemas.names(), "not in both tables and %s: %s" % (schema_folder, sorted(shown ^ schemas.names())))
+    live = {row[0] for row in live_verbs.TABLE if row[-1] != "error"}
+    shows_result = live | {row[0] for row in TABLE if row[-1] != "error"}
+    program.demand(shows_result >= listed, "only ever fails: %s" % sorted(listed - shows_result))
     for fault in program.faults:
         print(fault)
-    print("%d verbs, %d calls, %d faults" % (len(listed), len(TABLE), len(program.faults)))
+    print("%d verbs, %d calls, %d files, %d faults" % (len(listed), len(TABLE), len(FILES), len(program.faults)))
     return 1 if program.faults or not listed else 0
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    if len(sys.argv) != 4:
         sys.exit(__doc__)
-    sys.exit(main(sys.argv[1]))
+    sys.exit(main(*sys.argv[1:]))

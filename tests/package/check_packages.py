@@ -82,6 +82,10 @@ class Packages(unittest.TestCase):
         interface = self.installed("usr/share/odomcalib/varlink/org.odomcalib.Calibration.varlink").read_text()
         self.assertIn("interface org.odomcalib.Calibration", interface)
 
+    def test_every_json_schema_is_there(self):
+        schemas = {path.name for path in (source / "docs/schema").iterdir()}
+        self.assertEqual({path.name for path in self.installed("usr/share/odomcalib/schema").iterdir()}, schemas)
+
     def test_the_sample_is_small_and_solved_by_the_first_command_of_the_readme(self):
         sample = self.installed("usr/share/odomcalib/examples/drive.jsonl.gz")
         self.assertLess(sample.stat().st_size, 600_000)

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""The verbs that need the daemon, against the simulated robot in real time: exit status, and the published schema of their JSON.
+
+usage: tests/integration/live_verbs.py PROGRAMS SCHEMAS PROFILE"""
+
+import json
+import sys
+
+from schemas import Schemas
+from simulated_robot import SimulatedRobot
+
+DONE, USAGE = 0, 2
+STOPPED = {4, 5, 6}  # protective stops: on a busy machine the simulated robot itself may be late
+TRIES = 4
+
+# verb, arguments, exit status, schema; in this order, each with what the calls before it left.
+TABLE = [
+    ("status", "", DONE, "status"),
+    ("check", "", DONE, "checks"),
+    ("check", "--nudge --dry-run", DONE, "plan"),
+    ("check", "--nudge --yes", DONE, "checks"),
+    ("params get", "", DONE, "parameters"),
+    ("history", "", DONE, "history"),
+    ("rollback", "--yes", USAGE, "error"),
+    ("calibrate", "--dry-run", DONE, "plan"),
+    ("straight", "--one-way --yes --distance 0.3 --out lengths.json", DONE, "moves"),
+    ("spin", "--dry-run", DONE, "plan"),
+    ("spin", "--turns 0.3 --direction cw --yes", DONE, "moves"),
+    ("apply", "lengths.json --dry-run", DONE, "write-back"),
+    ("params set", "--yes track_width=0.4003", DONE, "write-back"),
+    ("apply", "lengths.json --yes", DONE, "write-back"),
+    ("params diff", "", DONE, "parameters"),
+    ("rollback", "--yes", DONE, "write-back"),
+    ("history", "", DONE, "history"),
+    ("record", "--duration 0.3", DONE, "record"),
+    ("monitor", "--duration 0.6", DONE, "event"),
+    ("stop", "", DONE, "stop"),
+]
+FILES = [("lengths.json", "calibration")]
+
+
+def call_until_it_goes(robot, words):
+    for _ in range(TRIES):
+        robot.wait_until(robot.ready, "the controller does not come to rest")
+        done = robot.ctl("--json=short", *words)
+        if done.returncode not in STOPPED:
+            break
+        print("once more, after exit status %d: %s" % (done.returncode, done.stderr.strip()))
+    return done
+
+
+def check_call(robot, schemas, verb, arguments, status, schema):
+    call = (verb + " " + arguments).strip()
+    done = call_until_it_goes(robot, call.split())
+    found = [] if done.returncode == status else ["status %d, not %d: %s" % (done.returncode, status, done.stderr.strip())]
+    documents = [json.loads(line) for line in done.stdout.splitlines()]
+    found += ["no document"] if not documents else []
+    for document in documents:
+        found += schemas.faults(document, schema if done.returncode == status else "error")
+    return [call + ": " + fault for fault in found]
+
+
+def main(programs, schema_folder, profile):
+    schemas, faults = Schemas(schema_folder), []
+    with SimulatedRobot(programs, profile, seed=3) as robot:
+        for row in TABLE:
+            faults += check_call(robot, schemas, *row)
+        for name, schema in FILES:
+            with open(robot.path(name), encoding="utf-8") as file:
+                faults += schemas.faults(json.load(file), schema)
+    for fault in faults:
+        print(fault)
+    print("%d calls, %d faults" % (len(TABLE), len(faults)))
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
+    sys.exit(main(*sys.argv[1:]))
