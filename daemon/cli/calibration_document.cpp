@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 
@@ -182,6 +183,30 @@ Section residual_of(const ResidualReport& residual) {
   return section;
 }
 
+/// Which robot, what it was calibrated from, and by what.
+Section subject_section(const Calibration& calibration) {
+  Section section{"Robot and recording", {}, {}};
+  const auto add = [&section](const char* what, const std::string& text) {
+    if (!text.empty()) section.table.rows.push_back({what, text});
+  };
+  add("robot", calibration.robot.robot_id);
+  add("controller", calibration.robot.controller);
+  for (const auto& data : calibration.data)
+    add("recording", fmt::format("{}, {:.0f} s", data.name, data.duration));
+  const auto settings = calibration.extensions.find("settings");
+  if (settings == calibration.extensions.end()) return section;
+  const auto members = nlohmann::json::parse(settings->second, nullptr, false);
+  if (!members.is_object()) return section;
+  add("solved by", "odomcalib " + members.value("version", ""));
+  add("note", members.value("note", ""));
+  return section;
+}
+
+Document::Tone tone_of(Verdict verdict) {
+  if (verdict == Verdict::accepted) return Document::Tone::good;
+  return verdict == Verdict::refused ? Document::Tone::bad : Document::Tone::doubtful;
+}
+
 Section data_of(const Calibration& calibration) {
   Section section{"Data", {}, {}};
   for (const auto& data : calibration.data) {
@@ -227,7 +252,8 @@ std::string next_step(const Calibration& calibration) {
 
 Document describe(const Calibration& calibration) {
   const ReportData data = report_data_of(calibration);
-  Document document{headline(calibration.verdict), {{"", calibration.reasons, {}}}};
+  Document document{
+      headline(calibration.verdict), {{"", calibration.reasons, {}}}, tone_of(calibration.verdict)};
   document.sections.front().lines.push_back(next_step(calibration));
   std::vector<Section> sections = {parameters_of(calibration),
                                    drive_errors_section(data),
@@ -251,6 +277,11 @@ Document describe(const Calibration& calibration) {
 
 Document report(const Calibration& calibration) {
   Document document = describe(calibration);
+  document.sections.insert(document.sections.begin() + 1, subject_section(calibration));
+  // Who sees the paths knows at once what it is about.
+  const auto drive = std::find_if(document.sections.begin(), document.sections.end(),
+                                  [](const Section& section) { return section.title == kDriveTitle; });
+  if (drive != document.sections.end()) std::rotate(document.sections.begin() + 2, drive, drive + 1);
   document.sections.push_back(reading_section());
   return document;
 }

@@ -39,8 +39,11 @@ struct Section {
 };
 
 struct Document {
+  /// How good the news in the headline is; a page shows it as a colour too.
+  enum class Tone { plain, good, doubtful, bad };
   std::string headline;
   std::vector<Section> sections;
+  Tone tone = Tone::plain;
 };
 
 /// @param legend whether tables show their head

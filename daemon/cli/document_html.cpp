@@ -1,48 +1,121 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "daemon/cli/document.hpp"
 #include "daemon/cli/figure_svg.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
-// One palette a scheme; orange and blue stay apart for colour-blind readers.
+// One palette a scheme; orange and blue stay apart for colour-blind readers. On paper it is the light one. On
+// a narrow screen a wide table turns: a row becomes a block, each value beside the head of its column.
 constexpr const char* kStyle = R"(
-:root{color-scheme:light dark;--ink:#222;--paper:#fff;--rule:#d8d8d8;--before:#c2571a;--after:#1769aa;--reference:#777}
-@media(prefers-color-scheme:dark){:root{--ink:#ddd;--paper:#16181b;--rule:#3a3d42;--before:#f0975a;--after:#6cb6f5;
---reference:#9a9a9a}}
+:root{color-scheme:light dark;--ink:#222;--paper:#fff;--rule:#d8d8d8;--before:#b84f14;--after:#1769aa;--reference:#6b6b6b;
+--good:#1a7f37;--doubtful:#8a5a00;--bad:#b3261e}
+@media screen and (prefers-color-scheme:dark){:root{--ink:#ddd;--paper:#16181b;--rule:#3a3d42;--before:#f0975a;
+--after:#6cb6f5;--reference:#a8a8a8;--good:#5fce7e;--doubtful:#e5b34a;--bad:#ff8a80}}
+@media print{:root{color-scheme:light}}
 body{font:15px/1.45 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:var(--ink);
-background:var(--paper)}
+background:var(--paper);overflow-wrap:anywhere}
+h1{border-left:.35em solid var(--rule);padding-left:.5em}
+h1.good{border-color:var(--good);color:var(--good)}h1.doubtful{border-color:var(--doubtful);color:var(--doubtful)}
+h1.bad{border-color:var(--bad);color:var(--bad)}
 h2{margin:1.6em 0 .3em;font-size:1.15em}p{margin:.35em 0}
-.t{overflow-x:auto}table{border-collapse:collapse;margin:.5em 0;font-variant-numeric:tabular-nums}
-td,th{padding:.2em .8em;border-bottom:1px solid var(--rule);text-align:right;white-space:nowrap}
+table{border-collapse:collapse;margin:.5em 0;font-variant-numeric:tabular-nums}
+td,th{padding:.2em .7em;border-bottom:1px solid var(--rule);text-align:right;vertical-align:bottom;overflow-wrap:normal}
 td:first-child,th:first-child{text-align:left}
-figure{margin:1em 0}figcaption{font-size:.92em}svg{width:100%;max-width:680px;height:auto}
-svg text{font-size:11.5px;fill:var(--ink)}.m{text-anchor:middle}.e{text-anchor:end}.s{text-anchor:start}
+figure{margin:1em 0;break-inside:avoid}figcaption{font-size:.92em}svg{display:block;width:100%;max-width:680px;height:auto}
+.k{margin:.2em 0}.k span{white-space:nowrap;margin-right:1.4em}.k svg{display:inline;width:1.5em;height:.7em;margin-right:.4em}
+svg text{font-size:13px;fill:var(--ink)}.m{text-anchor:middle}.e{text-anchor:end}
+.map .l.r{stroke-width:6;opacity:.45}
 .g{stroke:var(--rule);stroke-width:.7}.l{fill:none;stroke-width:1.8}
-.d{fill:none;stroke-width:3.2;stroke-linecap:round;opacity:.4}
+.d{fill:none;stroke-width:3.4;stroke-linecap:round;opacity:.55}
 .b{stroke:var(--before)}.a{stroke:var(--after)}.r{stroke:var(--reference)}
-@media print{body{margin:0}}
+@media screen and (max-width:600px){body{margin:1em auto}td,th{padding:.2em .35em}svg text{font-size:21px}
+.l{stroke-width:3}.d{stroke-width:6}.w,.w tbody,.w tr,.w td{display:block}.w .h{display:none}
+.w tr{padding:.4em 0;border-bottom:1px solid var(--rule)}.w td{border:0;padding:.05em 0;display:flex;gap:1em;overflow-wrap:anywhere}
+.w td:first-child{font-weight:600}.w td:empty{display:none}
+.w td[data-h]::before{content:attr(data-h);margin-right:auto;text-align:left}}
+@media print{body{margin:0;max-width:none;padding:0;font-size:10.5pt}td,th{padding:.15em .45em}tr{break-inside:avoid}
+h2{break-after:avoid}}
 )";
 
-std::string html_row(const std::vector<std::string>& row, const char* cell) {
+constexpr double kNarrow = 360.0;    // px, what a phone has for a table
+constexpr double kCharacter = 8.5;   // px of a character, at most
+constexpr double kColumnGap = 10.5;  // px, the padding of a cell
+
+const char* class_of(Document::Tone tone) {
+  switch (tone) {
+    case Document::Tone::good:
+      return "good";
+    case Document::Tone::doubtful:
+      return "doubtful";
+    case Document::Tone::bad:
+      return "bad";
+    case Document::Tone::plain:
+      break;
+  }
+  return "plain";
+}
+
+/// Whether a phone has no room for it.
+bool is_wide(const Table& table) {
+  std::vector<std::size_t> widths;
+  const auto take = [&widths](const std::vector<std::string>& row) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  };
+  take(table.head);
+  for (const auto& row : table.rows) take(row);
+  double width = 0.0;
+  for (const std::size_t characters : widths)
+    width += kColumnGap + kCharacter * static_cast<double>(characters);
+  return width > kNarrow;
+}
+
+std::string head_of(const std::vector<std::string>& head) {
+  std::string out = "<tr class=\"h\">";
+  for (const auto& text : head) out += fmt::format("<th>{}</th>", escaped(text));
+  return out + "</tr>\n";
+}
+
+/// Each cell carries the head of its column, for where the table turns.
+std::string row_of(const std::vector<std::string>& row, const std::vector<std::string>& head) {
   std::string out = "<tr>";
-  for (const auto& text : row) out += fmt::format("<{0}>{1}</{0}>", cell, escaped(text));
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    const bool is_named = k > 0 && k < head.size() && !head[k].empty();
+    out += is_named ? fmt::format("<td data-h=\"{}\">", escaped(head[k])) : "<td>";
+    out += escaped(row[k]) + "</td>";
+  }
   return out + "</tr>\n";
 }
 
 std::string html_of(const Table& table) {
   if (table.rows.empty()) return "";
-  std::string out = "<div class=\"t\"><table>\n";
-  if (!table.head.empty()) out += html_row(table.head, "th");
-  for (const auto& row : table.rows) out += html_row(row, "td");
-  return out + "</table></div>\n";
+  std::string out = is_wide(table) ? "<table class=\"w\">\n" : "<table>\n";
+  if (!table.head.empty()) out += head_of(table.head);
+  for (const auto& row : table.rows) out += row_of(row, table.head);
+  return out + "</table>\n";
+}
+
+/// What is drawn upwards, and what is what.
+std::string key_of(const Figure& figure) {
+  std::string out = fmt::format("<p class=\"k\"><span>{}</span>", escaped(figure.y_label));
+  for (const Curve& curve : figure.curves)
+    if (!curve.label.empty())
+      out += fmt::format(
+          "<span><svg viewBox=\"0 0 24 10\" aria-hidden=\"true\"><path class=\"l {}\" d=\"M0 "
+          "5h24\"/></svg>{}</span>",
+          class_of(curve.tone), escaped(curve.label));
+  return out + "</p>\n";
 }
 
 std::string html_of(const Figure& figure) {
   const std::string svg = to_svg(figure);
   if (svg.empty()) return "";
-  return "<figure>\n" + svg + fmt::format("<figcaption>{}</figcaption></figure>\n", escaped(figure.caption));
+  return "<figure>\n" + key_of(figure) + svg +
+         fmt::format("<figcaption>{}</figcaption></figure>\n", escaped(figure.caption));
 }
 
 std::string html_of(const Section& section) {
@@ -60,8 +133,8 @@ std::string to_html(const Document& document) {
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width\"><title>{0}</title>\n"
-      "<style>{1}</style></head><body>\n<h1>{0}</h1>\n",
-      escaped(document.headline), kStyle);
+      "<style>{1}</style></head><body>\n<h1 class=\"{2}\">{0}</h1>\n",
+      escaped(document.headline), kStyle, class_of(document.tone));
   for (const Section& section : document.sections) out += html_of(section);
   return out + "</body></html>\n";
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr double kWidth = 680.0;
 constexpr double kHeight = 340.0;
 constexpr double kMapHeight = 460.0;
-constexpr double kLeft = 70.0, kRight = 14.0, kTop = 26.0, kBottom = 42.0;
+constexpr double kLeft = 70.0, kRight = 14.0, kTop = 12.0, kBottom = 62.0;
 constexpr double kMargin = 0.04;  // of the range, so that nothing touches the frame
 
 struct Range {
@@ -44,11 +44,6 @@ struct Range {
   }
 };
 
-const char* class_of(Curve::Tone tone) {
-  if (tone == Curve::Tone::before) return "b";
-  return tone == Curve::Tone::after ? "a" : "r";
-}
-
 bool drawable(const std::array<double, 2>& point) {
   return std::isfinite(point[0]) && std::isfinite(point[1]);
 }
@@ -65,11 +60,10 @@ class Drawing {
 
   std::string svg() {
     settle_scales();
-    fmt::format_to(out(), "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n", kWidth, height_,
-                   escaped(figure_.caption));
+    fmt::format_to(out(), "<svg{} viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n",
+                   figure_.equal_scales ? " class=\"map\"" : "", kWidth, height_, escaped(figure_.caption));
     frame();
     for (const Curve& curve : figure_.curves) draw(curve);
-    legend();
     return text_ + "</svg>\n";
   }
 
@@ -105,16 +99,14 @@ class Drawing {
       fmt::format_to(out(),
                      "<path class=\"g\" d=\"M{0:.1f} {1:.1f}V{2:.1f}\"/>"
                      "<text class=\"m\" x=\"{0:.1f}\" y=\"{3:.1f}\">{4:g}</text>\n",
-                     px(x), kTop, height_ - kBottom, height_ - kBottom + 16.0, x);
+                     px(x), kTop, height_ - kBottom, height_ - kBottom + 21.0, x);
     for (const double y : axis_marks(y_.low, y_.high, 6))
       fmt::format_to(out(),
                      "<path class=\"g\" d=\"M{0:.1f} {1:.1f}H{2:.1f}\"/>"
                      "<text class=\"e\" x=\"{3:.1f}\" y=\"{4:.1f}\">{5:g}</text>\n",
                      kLeft, py(y), kWidth - kRight, kLeft - 6.0, py(y) + 4.0, y);
     fmt::format_to(out(), "<text class=\"m\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                   (kLeft + kWidth - kRight) / 2.0, height_ - 6.0, escaped(figure_.x_label));
-    fmt::format_to(out(), "<text class=\"m\" transform=\"translate(14 {:.1f}) rotate(-90)\">{}</text>\n",
-                   (kTop + height_ - kBottom) / 2.0, escaped(figure_.y_label));
+                   (kLeft + kWidth - kRight) / 2.0, height_ - 10.0, escaped(figure_.x_label));
   }
 
   void draw(const Curve& curve) {
@@ -134,7 +126,7 @@ class Drawing {
                        py(point[1]));
       pen_down = true;
     }
-    fmt::format_to(out(), "<path class=\"l {}\" d=\"{}\"/>\n", class_of(curve.tone), path);
+    append("l", curve, path);
     bars(curve);
   }
 
@@ -144,7 +136,7 @@ class Drawing {
     for (const auto& point : curve.points)
       if (drawable(point))
         fmt::format_to(std::back_inserter(path), "M{:.1f} {:.1f}h0", px(point[0]), py(point[1]));
-    fmt::format_to(out(), "<path class=\"d {}\" d=\"{}\"/>\n", class_of(curve.tone), path);
+    append("d", curve, path);
   }
 
   void bars(const Curve& curve) {
@@ -155,19 +147,13 @@ class Drawing {
       fmt::format_to(std::back_inserter(path), "M{:.1f} {:.1f}V{:.1f}", px(point[0]),
                      py(point[1] - curve.errors[k]), py(point[1] + curve.errors[k]));
     }
-    if (!path.empty()) fmt::format_to(out(), "<path class=\"l {}\" d=\"{}\"/>\n", class_of(curve.tone), path);
+    if (!path.empty()) append("l", curve, path);
   }
 
-  void legend() {
-    double x = kLeft;
-    for (const Curve& curve : figure_.curves) {
-      if (curve.label.empty()) continue;
-      fmt::format_to(out(),
-                     "<path class=\"l {}\" d=\"M{:.1f} 13h18\"/>"
-                     "<text class=\"s\" x=\"{:.1f}\" y=\"17\">{}</text>\n",
-                     class_of(curve.tone), x, x + 23.0, escaped(curve.label));
-      x += 44.0 + 6.6 * static_cast<double>(curve.label.size());
-    }
+  /// A pointer that rests on a curve is told what it is.
+  void append(const char* style, const Curve& curve, const std::string& path) {
+    fmt::format_to(out(), "<path class=\"{} {}\" d=\"{}\"><title>{}</title></path>\n", style,
+                   class_of(curve.tone), path, escaped(curve.label));
   }
 
   const Figure& figure_;
@@ -177,6 +163,11 @@ class Drawing {
 };
 
 }  // namespace
+
+const char* class_of(Curve::Tone tone) {
+  if (tone == Curve::Tone::before) return "b";
+  return tone == Curve::Tone::after ? "a" : "r";
+}
 
 std::string escaped(const std::string& text) {
   std::string out;

@@ -10,7 +10,11 @@ namespace odomcalib::cli {
 /// Text for HTML and SVG: markup characters replaced.
 std::string escaped(const std::string& text);
 
-/// Empty when there is nothing finite to draw.
+/// Class of the page's style that has the colour of a curve.
+const char* class_of(Curve::Tone tone);
+
+/// What the curves are called stands beside the drawing: the page sets it in letters that do not shrink with
+/// it. Empty when there is nothing finite to draw.
 std::string to_svg(const Figure& figure);
 
 /// Round values that divide [low, high] into about `wanted` parts.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "daemon/cli/display.hpp"
 
 namespace odomcalib::cli {
@@ -51,6 +53,9 @@ Figure figure_of_paths(const std::vector<PathTrace>& paths) {
     for (const auto& [x, y, yaw] : path.points) curve.points.push_back({x, y});
     figure.curves.push_back(std::move(curve));
   }
+  // Broad and below the others: what agrees with it would hide it, or be hidden.
+  std::stable_partition(figure.curves.begin(), figure.curves.end(),
+                        [](const Curve& curve) { return curve.tone == Tone::reference; });
   return figure;
 }
 

@@ -122,7 +122,7 @@ Section detectable_section(const ReportData& data) {
 }
 
 Section path_section(const ReportData& data) {
-  Section section{"The drive", {}, {}};
+  Section section{kDriveTitle, {}, {}};
   for (const PathTrace& path : data.paths) {
     if (path.points.empty()) continue;
     const auto& end = path.points.back();

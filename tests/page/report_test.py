@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""The report as readers see it, in a headless Chromium: on a desk, on a phone, on a dark screen, on paper.
+
+usage: tests/page/report_test.py ODOMCALIBCTL SAMPLE"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+from browser import Browser
+
+# px; and a name of the reader
+SCREENS = [(1400, "desk"), (400, "phone")]
+CONTRAST = 4.5  # of text and its background, as WCAG 2 asks
+
+FUNCTIONS = """
+const width = () => [document.documentElement.scrollWidth, document.documentElement.clientWidth];
+const label = (e) => e.tagName + " " + (e.textContent || "").trim().slice(0, 60);
+// Elements that hold more than they show, or reach beyond the page.
+const cut = () => [...document.body.querySelectorAll("*")].filter((e) => !e.closest("svg")).filter((e) => {
+  const box = e.getBoundingClientRect(), shown = getComputedStyle(e);
+  return box.width > 0 && (box.right > document.documentElement.clientWidth + 1 || box.left < -1
+    || (shown.overflowX !== "visible" && e.scrollWidth > e.clientWidth + 1));
+}).map(label);
+// Letters of drawings that lie outside of them, on each other, or are too small to read.
+const letters = () => [...document.querySelectorAll("figure > svg")].flatMap((svg) => {
+  const frame = svg.getBoundingClientRect(), texts = [...svg.querySelectorAll("text")];
+  return texts.filter((t, i) => {
+    const a = t.getBoundingClientRect();
+    return a.left < frame.left - 1 || a.right > frame.right + 1 || a.height < 8 || texts.slice(0, i).some((o) => {
+      const b = o.getBoundingClientRect();
+      return a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+    });
+  }).map(label);
+});
+// A drawing without marks: dots are strokes without a length, lines have one. Marks lie within the frame.
+const empty = () => [...document.querySelectorAll("figure")].filter((f) => {
+  const paths = [...f.querySelectorAll(":scope > svg path.l, :scope > svg path.d")], frame = f.querySelector(":scope > svg")?.viewBox.baseVal;
+  return !frame || !paths.length || paths.some((p) => {
+    const box = p.getBBox();
+    return (p.classList.contains("d") ? !/M[^M]*h0/.test(p.getAttribute("d")) : !(p.getTotalLength() > 1))
+      || box.x < -1 || box.y < -1 || box.x + box.width > frame.width + 1 || box.y + box.height > frame.height + 1
+      || getComputedStyle(p).stroke === "none";
+  });
+}).map(label);
+const light = (c) => c.match(/[\\d.]+/g).slice(0, 3).map((v) => v / 255)
+  .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)).reduce((s, v, i) => s + v * [0.2126, 0.7152, 0.0722][i], 0);
+const pale = (least) => {
+  const paper = light(getComputedStyle(document.body).backgroundColor);
+  return [...document.body.querySelectorAll("h1,h2,p,td,th,figcaption,svg text")].filter((e) => {
+    const ink = light(getComputedStyle(e)[e.tagName === "text" ? "fill" : "color"]);
+    return (Math.max(ink, paper) + 0.05) / (Math.min(ink, paper) + 0.05) < least;
+  }).map(label);
+};
+"""
+
+
+def ask(browser, expression):
+    return browser.evaluate("() => {%s return %s; }" % (FUNCTIONS, expression))
+
+
+def faults_on_screen(browser, url, width, dark):
+    browser.open(url, width, dark=dark)
+    scroll, client = ask(browser, "width()")
+    found = ["%d px of %d" % (scroll, client)] if scroll > client or client != width else []
+    found += ["cut off: " + text for text in ask(browser, "cut()")]
+    found += ["letters of a drawing: " + text for text in ask(browser, "letters()")]
+    found += ["no marks: " + text for text in ask(browser, "empty()")]
+    found += ["pale: " + text for text in ask(browser, "pale(%g)" % CONTRAST)]
+    found += ["asks for " + other[:80] for other in browser.requests if other != url]
+    return found + browser.complaints
+
+
+def words_on_paper(pdf, folder):
+    path = os.path.join(folder, "page.pdf")
+    with open(path, "wb") as file:
+        file.write(pdf)
+    text = subprocess.run(["pdftotext", "-raw", path, "-"], check=True, text=True, stdout=subprocess.PIPE).stdout
+    return "".join(text.split())
+
+
+def faults_on_paper(browser, url, folder):
+    """Every cell of every table is on the paper, and nothing is wider than it."""
+    browser.open(url, 718, media="print")  # A4 between its margins
+    scroll, client = ask(browser, "width()")
+    found = ["%d px of %d" % (scroll, client)] if scroll > client else []
+    cells = browser.evaluate('() => [...document.querySelectorAll("td,th,p,h2")].map((e) => e.textContent)')
+    printed = words_on_paper(browser.pdf(), folder)
+    return found + ["not printed: " + cell for cell in cells if "".join(cell.split()) not in printed] + (
+        [] if len(cells) > 10 else ["only %d cells" % len(cells)])
+
+
+def with_a_finding(calibration):
+    """The same, as if backlash had been found: an effect, its picture, reasons, long names."""
+    body = json.loads(json.dumps(calibration))
+    body["verdict"] = "accepted_with_warnings"
+    body["reasons"] = ["backlash on reversals was found; what it leaves behind has no name and is stored on the host only"] * 2
+    body["robot"]["robot_id"] = "warehouse-" + "7" * 60
+    body["settings"]["note"] = "epoxy floor, 40 kg of load"
+    quantity = {"value": 0.06, "std": 0.0003, "unit": "rad"}
+    body["effects"] = [{"name": "backlash", "parameters": {"left_play": quantity, "right_play": quantity},
+                        "evidence": {"p_value": 5e-4, "held_out_before": 0.004, "held_out_after": 0.001}, "aliases": [],
+                        "stored_in": "host"}]
+    points = [[k / 10 - 2, 0.01 * (k % 7 - 3), 0.002 * (k % 5 - 2)] for k in range(40)]
+    bins = [[k - 2, 0.01 * k - 0.02, 0.002, 0.001 * k - 0.002, 0.002] for k in range(5)]
+    body["picture"]["traces"] = [{"effect": "backlash", "variable": "reversals, right less left wheel", "variable_unit": "",
+                                  "residual": "heading", "residual_unit": "rad", "explained": 0.9, "points": points,
+                                  "bins": bins}]
+    return body
+
+
+def write_reports(program, sample, folder):
+    """Names and addresses of pages, one for each verdict."""
+    def ctl(*words):
+        return subprocess.run([program, *words], cwd=folder, check=False, text=True, stdout=subprocess.DEVNULL).returncode
+    ctl("solve", sample, "--out", "good.json")
+    with open(os.path.join(folder, "good.json"), encoding="utf-8") as file:
+        good = json.load(file)
+    refused = {**good, "verdict": "refused", "reasons": ["the motion does not separate the parameters"], "picture": None,
+               "drive_errors": [], "detectable": []}
+    pages = []
+    for name, body in (("good", good), ("finding", with_a_finding(good)), ("refused", refused)):
+        with open(os.path.join(folder, name + ".json"), "w", encoding="utf-8") as file:
+            json.dump(body, file)
+        if ctl("report", name + ".json", "--html", name + ".html") != 0:
+            sys.exit("no report of " + name)
+        pages.append((name, "file://" + os.path.join(folder, name + ".html")))
+    return pages
+
+
+def plant(folder):
+    """A page with one fault of each kind that is looked for."""
+    path = os.path.join(folder, "planted.html")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write('<!DOCTYPE html><meta name="viewport" content="width=device-width"><body style="background:#fff">'
+                   '<img src="http://localhost:1/x.png"><script>nobody.knows()</script><p style="color:#ccc">pale</p>'
+                   '<table><tr><td style="white-space:nowrap">' + "wide " * 200 + "</td></tr></table>"
+                   '<div style="width:90px;overflow-x:hidden;white-space:nowrap">hidden behind its edge, all of this</div>'
+                   '<figure><svg viewBox="0 0 100 50"><path class="l" d="M0 0h90" stroke="none"/><text x="1" y="20">1</text>'
+                   '<text x="1" y="20">2</text></svg></figure>')
+    return "file://" + path
+
+
+def blind_spots(browser, folder):
+    """What of the planted faults is not seen."""
+    url = plant(folder)
+    seen = "\n".join(faults_on_screen(browser, url, 400, False))
+    return ["a planted fault is not seen: " + kind for kind in
+            ("px of 400", "cut off: DIV hidden", "cut off: TD wide", "letters of a drawing", "no marks", "pale: P pale",
+             "asks for http://localhost", "script error") if kind not in seen]
+
+
+def main(program, sample):
+    faults = []
+    with tempfile.TemporaryDirectory() as folder, Browser() as browser:
+        faults += blind_spots(browser, folder)
+        for name, url in write_reports(os.path.abspath(program), os.path.abspath(sample), folder):
+            for width, screen in SCREENS:
+                for dark in (False, True):
+                    where = "%s, %s%s: " % (name, screen, ", dark" * dark)
+                    faults += [where + fault for fault in faults_on_screen(browser, url, width, dark)]
+            faults += [name + ", paper: " + fault for fault in faults_on_paper(browser, url, folder)]
+    for fault in faults:
+        print(fault)
+    print("%d faults" % len(faults))
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    sys.exit(main(*sys.argv[1:]))
