@@ -38,7 +38,7 @@ svg text{font-size:13px;fill:var(--ink)}.m{text-anchor:middle}.e{text-anchor:end
 .w td:first-child{font-weight:600}.w td:empty{display:none}
 .w td[data-h]::before{content:attr(data-h);margin-right:auto;text-align:left}}
 @media print{body{margin:0;max-width:none;padding:0;font-size:10.5pt}td,th{padding:.15em .45em}tr{break-inside:avoid}
-h2{break-after:avoid}}
+h2{break-after:avoid}figure>svg{max-width:140mm}}
 )";
 
 constexpr double kNarrow = 360.0;    // px, what a phone has for a table

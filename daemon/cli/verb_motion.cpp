@@ -10,7 +10,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <vector>
 
 #include "daemon/cli/calibration_document.hpp"
@@ -27,8 +26,6 @@ namespace odomcalib::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct Options {
   Consent consent;

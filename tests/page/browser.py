@@ -89,6 +89,7 @@ class Browser:
 
     def pdf(self):
         """A4, as the print dialogue makes it."""
+        self.call("Emulation.setEmulatedMedia", media="print", features=[])
         return base64.b64decode(self.call("Page.printToPDF", paperWidth=8.27, paperHeight=11.69, printBackground=True)["data"])
 
     def picture(self, height=None):
