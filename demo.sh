@@ -11,7 +11,7 @@
 #     SEED           number that robot and defect are drawn from; default: another each time
 #     --full         the long pattern instead of the quick one
 #     --effect NAME  this defect instead of one drawn (odomcalib-sim --help lists them); none: no defect
-# Exit status 0: the calibration was accepted and odometry is better than before. Results: build/demo.
+# Exit status 0: the calibration was accepted and more figures of odometry are better than worse; the last line says which. Results: build/demo.
 set -euo pipefail
 cd "$(dirname "$0")"
 
