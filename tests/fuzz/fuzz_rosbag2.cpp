@@ -2,6 +2,6 @@
 #include "tests/fuzz/recording_harness.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  odomcalib::fuzz::read_and_check(std::string("SQLite format 3\0", 16), data, size);
+  odomcalib::fuzz::read_topics_and_check(std::string("SQLite format 3\0", 16), data, size);
   return 0;
 }

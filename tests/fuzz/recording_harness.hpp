@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -44,6 +45,30 @@ inline void read_and_check(const std::string& prefix, const std::uint8_t* data, 
   const auto result =
       read_recording_bytes(prefix + std::string(reinterpret_cast<const char*>(data), size), "fuzz", &robot);
   if (result.ok()) check(result.value());
+}
+
+/// A ROS recording, also with topics that somebody chooses: those of the seeds, and some that are not there.
+inline void read_topics_and_check(const std::string& prefix, const std::uint8_t* data, std::size_t size) {
+  read_and_check(prefix, data, size);
+  if (!thorough(data, size)) return;
+  using Choices = TopicChoices;
+  static const std::array kChoices = {Choices{{"wheels", "/joints", {}}},
+                                      Choices{{"wheels", "/joints", {"left", "right"}}},
+                                      Choices{{"wheels", "/joints", {"left", "middle"}}},
+                                      Choices{{"wheel_speeds", "/joints", {}}, {"pose", "/pose", {}}},
+                                      Choices{{"odometry", "/odometry", {}}, {"gyro", "/imu", {}}},
+                                      Choices{{"pose", "/odometry", {}}},
+                                      Choices{{"scan", "/imu", {}}},
+                                      Choices{{"scan", "/nowhere", {}}},
+                                      Choices{{"scan", "/scan", {}}, {"scan", "/scan", {}}},
+                                      Choices{{"wheels", "/joints", {}}, {"wheel_speeds", "/joints", {}}},
+                                      Choices{{"fan", "/scan", {}}}};
+  const RobotDescription robot{0.1, 0.1, 0.3, 1000.0, std::nullopt, "", ""};
+  const std::string bytes = prefix + std::string(reinterpret_cast<const char*>(data), size);
+  for (const Choices& choices : kChoices) {
+    const auto result = read_recording_bytes(bytes, "fuzz", &robot, choices);
+    if (result.ok()) check(result.value());
+  }
 }
 
 }  // namespace odomcalib::fuzz

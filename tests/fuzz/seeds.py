@@ -36,6 +36,9 @@ def candump():
          "(1.25) can0 20000004#0004000000000000\n(1.5) can0 123##1AABB\n(1.6) can0 080#\nrubbish\n\n"
          "(1.7) can0 123#AA.BB\n(1.8) can0 123#1122334455667788_9\n(1.9) can0 123#112233445566")
     seed("candump", "cut", "(1.0) can0 123#AA\n(1.1) can0 12")
+    seed("candump", "screen", "  can0  123   [2]  AA BB\n  can0  124   [1]  AA\n")
+    for name, begin in (("blf", "LOGG"), ("asc", "date Mon\n"), ("trace", ";$FILEVERSION=1.1\n"), ("lcm", b"\xed\xa1\xda\x01")):
+        seed("candump", name, begin)
 
 
 def slcan():
@@ -397,6 +400,8 @@ def recordings():
         '{"type":"pose","t":2,"x":1,"y":2,"yaw":0.5}', '{"type":"gyro","t":2,"yaw_rate":null}',
         '{"type":"gyro","t":2,"yaw_rate":0.5}', '{"type":"scan","t":2,"angle_min":0,"angle_increment":0.1,"ranges":[1,2]}',
         '{"type":"scan","t":2.1,"angles":[0.1],"ranges":[1,2]}', '{"type":"scan","t":2.2,"angles":[0.1,0.2],"ranges":[1,-2]}',
+        '{"type":"scan","t":2.3,"angles":[0.1,0.2,0.3],"times":[0.02,0.01,0.03],"ranges":[1,2,3],"intensities":[7,8,9]}',
+        '{"type":"scan","t":2.4,"angle_min":0,"angle_increment":0.1,"time_increment":-1,"ranges":[1,2]}',
         '{"type":"noise"}', '{}', '[1]', '{"type":"robot","wheel_diameter":0.2,"track_width":0.3,"ticks_per_rev":1000}',
         '{"type":"robot","left_wheel_diameter":0.1,"right_wheel_diameter":0.11,"track_width":0.3,"ticks_per_rev":1000,'
         '"lidar_pose":[1,2,3]}'))
@@ -493,22 +498,60 @@ def rosbag():
     seed("rosbag", "strangers", begin + record(b"", op=b"\2", conn=number(9), time=bytes(8)) + record(b"", op=b"\7"))
 
 
-def mcap():
-    def text(value):
-        return struct.pack("<I", len(value)) + value.encode()
+def mcap_text(value):
+    return struct.pack("<I", len(value)) + value.encode()
 
-    def record(op, data):
-        return bytes([op]) + struct.pack("<Q", len(data)) + data
+
+def mcap_record(op, data):
+    return bytes([op]) + struct.pack("<Q", len(data)) + data
+
+
+def mcap_topic(i, name, kind, count=3, cdr=1, change=lambda message: message, type_name=None):
+    """Schema, channel and messages of one topic."""
+    type_name = type_name or ROS_TYPES[kind]
+    schema = type_name.replace("/", "/msg/") if cdr else type_name
+    out = mcap_record(3, struct.pack("<H", i) + mcap_text(schema) + mcap_text("ros2msg") + mcap_text(""))
+    out += mcap_record(4, struct.pack("<HH", i, i) + mcap_text(name) + mcap_text("cdr" if cdr else "ros1") + mcap_text(""))
+    for k in range(count):
+        out += mcap_record(5, struct.pack("<HIQQ", i, k, 10**12 + k, 0) + change(ros_message(kind, k, cdr)))
+    return out
+
+
+def mcap_topics(begin):
+    """Choices that a reader of several topics has to make."""
+    def whole(*topics):
+        return begin + b"".join(mcap_topic(i, *topic) for i, topic in enumerate(topics, 1))
+
+    scan, joints, odometry, imu, pose = (("/" + kind, kind) for kind in ("scan", "joints", "odometry", "imu", "pose"))
+    seed("mcap", "two_scans", whole(scan, ("/rear", "scan"), joints))
+    seed("mcap", "two_odometries", whole(scan, odometry, ("/odom", "odometry")))
+    seed("mcap", "odometry_decides", whole(scan, odometry))
+    seed("mcap", "two_gyros", whole(scan, joints, imu, ("/imu2", "imu")))
+    seed("mcap", "poses_for_scans", whole(joints, pose))
+    seed("mcap", "no_view", whole(joints))
+    seed("mcap", "many", whole(*(("/t%d" % i, "imu", 1) for i in range(20)), scan, ("/rear", "scan")))
+    # Names and numbers of the same length, so that the message stays whole.
+    named = {"elbows": (b"right\0", b"elbow\0"), "wheels": (b"left\0", b"lft_\0")}
+    for name, (old, new) in named.items():
+        seed("mcap", name, whole(scan, ("/joints", "joints", 3, 1, lambda m, o=old, n=new: m.replace(o, n))))
+    seed("mcap", "unstamped", whole(("/scan", "scan", 3, 1, lambda m: m[:4] + bytes(8) + m[12:]), joints))
+    seed("mcap", "two_clocks", whole(("/scan", "scan", 3, 1, lambda m: m[:4] + struct.pack("<I", 5000) + m[8:]), joints))
+    seed("mcap", "foreign", whole(scan, joints, ("/x", "imu", 2, 1, lambda m: m, "std_msgs/String")))
+    speeds = struct.pack("<2d", 0.1, 0.2)
+    seed("mcap", "speeds", whole(scan, ("/joints", "joints", 3, 1, lambda m: joint_speeds(m, speeds))))
+
+
+def joint_speeds(message, speeds):
+    """The same joints with speeds in place of positions: no positions, two speeds, no efforts."""
+    head = message[:-28]  # count of positions with its padding, two positions, two empty lists
+    return head + struct.pack("<II", 0, 2) + speeds + struct.pack("<I", 0)
+
+
+def mcap():
+    text, record = mcap_text, mcap_record
 
     def records(cdr):
-        out = b""
-        for i, (kind, name) in enumerate(ROS_TYPES.items(), 1):
-            schema = name.replace("/", "/msg/") if cdr else name
-            out += record(3, struct.pack("<H", i) + text(schema) + text("ros2msg") + text(""))
-            out += record(4, struct.pack("<HH", i, i) + text("/" + kind) + text("cdr" if cdr else "ros1") + text(""))
-            for k in range(3):
-                out += record(5, struct.pack("<HIQQ", i, k, 10**12 + k, 0) + ros_message(kind, k, cdr))
-        return out
+        return b"".join(mcap_topic(i, "/" + kind, kind, cdr=cdr) for i, kind in enumerate(ROS_TYPES, 1))
 
     def chunk(name, packed, whole, crc=0):
         return record(6, struct.pack("<QQQI", 0, 9, len(whole), crc) + text(name) + struct.pack("<Q", len(packed)) + packed)
@@ -522,6 +565,14 @@ def mcap():
     seed("mcap", "zstd", begin + chunk("zstd", zstd_frame(plain), plain) + end)
     seed("mcap", "crc", begin + chunk("", plain, plain, 1) + end)
     seed("mcap", "packing", begin + chunk("zip", plain, plain) + end)
+    mcap_topics(begin)
+    magic = b"\x89MCAP0\r\n"
+    for name, file in (("whole", magic + begin + plain + end), ("nonsense", b"no recording at all"), ("empty", b"")):
+        seed("recording", "zstd_" + name, zstd_frame(file))
+    seed("recording", "zstd_cut", zstd_frame(magic + begin + plain + end)[:-400])
+    seed("recording", "zstd_broken", b"\x28\xb5\x2f\xfd" + b"\xff" * 20)
+    seed("recording", "old_bag", b"#ROSBAG V1.2\n")
+    seed("recording", "rosrecord", b"#ROSRECORD V1.1\n")
     seed("mcap", "strangers", begin + record(5, struct.pack("<HIQQ", 9, 0, 0, 0)) + record(4, b"x") + record(5, b"x"))
 
 
