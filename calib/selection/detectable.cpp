@@ -41,7 +41,7 @@ Detectable detectable(const vehicle::Effect& effect, const std::vector<double>& 
 
 std::vector<Detectable> smallest_detectable(const FitTask& task, const FittedModel& model) {
   const std::vector<Candidate> names = textbook_names(task, model);
-  const ScoreTable table(task.data, model.effects, model.fit, task.fixed(model.effects), names);
+  const ScoreTable table(task, model, names);
   std::vector<Detectable> all;
   for (std::size_t k = 0; k < names.size(); ++k)
     all.push_back(detectable(*names[k].effect, table.scores()[k].deviations));

@@ -15,22 +15,32 @@ void add_once(const T& value, std::vector<T>& list) {
 }  // namespace
 
 /// The expected gap between the true and the wrong one is T (1 - rho^2).
-bool are_too_close(const ScoreTable& table, std::size_t a, std::size_t b) {
-  const double rho = table.correlation(a, b);
-  return rho > settings::kAlias && table.scores()[a].statistic * (1.0 - rho * rho) < settings::kSeparable;
+std::vector<std::size_t> too_close(const ScoreTable& table, std::size_t candidate,
+                                   const std::vector<std::size_t>& others) {
+  const std::vector<double> correlations = table.correlations(candidate, others);
+  const double statistic = table.scores()[candidate].statistic;
+  std::vector<std::size_t> close;
+  for (std::size_t k = 0; k < others.size(); ++k)
+    if (const double rho = correlations[k];
+        rho > settings::kAlias && statistic * (1.0 - rho * rho) < settings::kSeparable)
+      close.push_back(others[k]);
+  return close;
 }
 
 std::vector<vehicle::Covariate> covariates_like(const std::vector<Candidate>& candidates,
                                                 const ScoreTable& table, std::size_t index) {
   const vehicle::Covariate own = candidates[index].smooth->dependence.covariate;
+  const double least = settings::kMostOfStatistic * table.scores()[index].statistic;
+  std::vector<std::size_t> others;
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    if (!candidates[k].excluded && candidates[k].smooth &&
+        candidates[k].smooth->dependence.covariate != own && table.scores()[k].statistic >= least)
+      others.push_back(k);
+  const std::vector<double> correlations = table.correlations(index, others);
   std::vector<vehicle::Covariate> alike;
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    if (candidates[k].excluded || !candidates[k].smooth || candidates[k].smooth->dependence.covariate == own)
-      continue;
-    if (table.scores()[k].statistic >= settings::kMostOfStatistic * table.scores()[index].statistic &&
-        table.correlation(index, k) > settings::kAlias)
-      add_once(candidates[k].smooth->dependence.covariate, alike);
-  }
+  for (std::size_t k = 0; k < others.size(); ++k)
+    if (correlations[k] > settings::kAlias)
+      add_once(candidates[others[k]].smooth->dependence.covariate, alike);
   return alike;
 }
 

@@ -10,9 +10,10 @@
 
 namespace odomcalib::calib::selection {
 
-/// Whether the gap of -2 log L that this data would show between both is too small to separate them.
-/// @param a, b candidates of the table, `a` the one believed to be there
-bool are_too_close(const ScoreTable& table, std::size_t a, std::size_t b);
+/// Those of the others for which the gap of -2 log L that this data would show is too small to separate them
+/// from the candidate that is believed to be there.
+std::vector<std::size_t> too_close(const ScoreTable& table, std::size_t candidate,
+                                   const std::vector<std::size_t>& others);
 
 /// Covariates, other than the smooth term's own, whose smooth terms would have explained most of what it
 /// explains.

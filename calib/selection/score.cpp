@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <random>
 
 #include "calib/selection/candidate_columns.hpp"
@@ -45,7 +46,9 @@ Blocks blocks_of(std::span<const measurement::FitData> data) {
 }
 
 /// Orthonormal basis of the candidate's columns after projection; rank-deficient directions are left out.
+/// @param scale size of the columns before it
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double scale) {
+  if (!(scale > 0.0)) return {columns.rows(), 0};
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
   Eigen::Index rank = 0;
   const auto& r = qr.matrixR();
@@ -126,16 +129,15 @@ double significance(double statistic, Eigen::Index degrees) {
   return -std::log10(std::max(chi_squared_tail(statistic, static_cast<std::size_t>(degrees)), 1e-300));
 }
 
-ScoreTable::ScoreTable(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
-                       const estimation::FitResult& fit, const std::vector<bool>& fixed,
+ScoreTable::ScoreTable(const FitTask& task, const FittedModel& model,
                        const std::vector<Candidate>& candidates)
-    : residual_(clipped(fit.whitened_residual)) {
+    : task_(task), model_(model), candidates_(candidates), residual_(clipped(model.fit.whitened_residual)) {
   variance_ = residual_.squaredNorm() / std::max(static_cast<double>(residual_.size()), 1.0);
-  Blocks blocks = blocks_of(data);
+  Blocks blocks = blocks_of(task.data);
   borders_ = std::move(blocks.borders);
   block_folds_ = std::move(blocks.folds);
-  const Projection projection(fit, fixed);
-  for_each_candidate(data, effects, fit, candidates,
+  const Projection projection(model.fit, task.fixed(model.effects));
+  for_each_candidate(task.data, model.effects, model.fit, candidates,
                      [&](const Eigen::MatrixXd& raw) { add(raw, projection.rest(raw)); });
   largest_ = largest_of_draws(block_scores_, variance_);
   for (Score& score : scores_) score.family_p_value = family_p_value(score.statistic, score.degrees);
@@ -143,10 +145,10 @@ ScoreTable::ScoreTable(std::span<const measurement::FitData> data, const vehicle
 
 void ScoreTable::add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected) {
   const double scale = raw.norm();
-  bases_.push_back(scale > 0.0 ? orthonormal(projected, scale) : Eigen::MatrixXd(raw.rows(), 0));
-  block_scores_.push_back(block_scores(bases_.back(), residual_, borders_));
+  const Eigen::MatrixXd basis = orthonormal(projected, scale);
+  block_scores_.push_back(block_scores(basis, residual_, borders_));
   Score score;
-  score.degrees = static_cast<std::size_t>(bases_.back().cols());
+  score.degrees = static_cast<std::size_t>(basis.cols());
   score.statistic = block_scores_.back().rowwise().sum().squaredNorm() / variance_;
   score.p_value = chi_squared_tail(score.statistic, score.degrees);
   for (Eigen::Index k = 0; k < raw.cols(); ++k) {
@@ -170,27 +172,54 @@ double ScoreTable::family_p_value(double statistic, std::size_t degrees) const {
   return (1.0 + static_cast<double>(above)) / (1.0 + settings::kSignDraws);
 }
 
-double ScoreTable::correlation(std::size_t a, std::size_t b) const {
-  const Eigen::MatrixXd overlap = bases_[a].transpose() * bases_[b];
-  if (overlap.size() == 0) return 0.0;
-  return std::min(Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues()(0), 1.0);
+void ScoreTable::for_each_basis(const std::vector<std::size_t>& candidates,
+                                const std::function<void(std::size_t, const Eigen::MatrixXd&)>& visit) const {
+  if (candidates.empty()) return;
+  std::vector<Candidate> wanted;
+  for (const std::size_t k : candidates) wanted.push_back(candidates_[k]);
+  const Projection projection(model_.fit, task_.fixed(model_.effects));
+  auto next = candidates.begin();
+  for_each_candidate(task_.data, model_.effects, model_.fit, wanted, [&](const Eigen::MatrixXd& raw) {
+    visit(*next++, orthonormal(projection.rest(raw), raw.norm()));
+  });
 }
 
-FoldFlags ScoreTable::selected_without(std::size_t candidate, double level) const {
-  FoldFlags selected{};
-  const Eigen::MatrixXd& basis = bases_[candidate];
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    Eigen::VectorXd score = Eigen::VectorXd::Zero(basis.cols());
-    Eigen::MatrixXd gram = kRidge * Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
-    for (std::size_t b = 0; b + 1 < borders_.size(); ++b) {
-      if (block_folds_[b] == fold) continue;
-      const auto rows = basis.middleRows(borders_[b], borders_[b + 1] - borders_[b]);
-      score += block_scores_[candidate].col(static_cast<Eigen::Index>(b));
-      gram.noalias() += rows.transpose() * rows;
+std::vector<double> ScoreTable::correlations(std::size_t candidate,
+                                             const std::vector<std::size_t>& others) const {
+  std::vector<std::size_t> all = {candidate};
+  all.insert(all.end(), others.begin(), others.end());
+  if (others.empty()) return {};
+  std::optional<Eigen::MatrixXd> own;
+  std::vector<double> found;
+  for_each_basis(all, [&](std::size_t, const Eigen::MatrixXd& basis) {
+    if (!own) {
+      own = basis;
+      return;
     }
-    const double statistic = score.dot(gram.ldlt().solve(score)) / variance_;
-    selected[fold] = family_p_value(statistic, scores_[candidate].degrees) <= level;
-  }
+    const Eigen::MatrixXd overlap = own->transpose() * basis;
+    found.push_back(overlap.size() == 0
+                        ? 0.0
+                        : std::min(Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues()(0), 1.0));
+  });
+  return found;
+}
+
+FoldFlags ScoreTable::selected_without(const std::vector<std::size_t>& candidates, double level) const {
+  FoldFlags selected{};
+  for_each_basis(candidates, [&](std::size_t candidate, const Eigen::MatrixXd& basis) {
+    for (std::size_t fold = 0; fold < kFolds; ++fold) {
+      Eigen::VectorXd score = Eigen::VectorXd::Zero(basis.cols());
+      Eigen::MatrixXd gram = kRidge * Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
+      for (std::size_t b = 0; b + 1 < borders_.size(); ++b) {
+        if (block_folds_[b] == fold) continue;
+        const auto rows = basis.middleRows(borders_[b], borders_[b + 1] - borders_[b]);
+        score += block_scores_[candidate].col(static_cast<Eigen::Index>(b));
+        gram.noalias() += rows.transpose() * rows;
+      }
+      const double statistic = score.dot(gram.ldlt().solve(score)) / variance_;
+      selected[fold] |= family_p_value(statistic, scores_[candidate].degrees) <= level;
+    }
+  });
   return selected;
 }
 

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "calib/estimation/joint.hpp"
 #include "calib/selection/candidate.hpp"
+#include "calib/selection/fitted_model.hpp"
 #include "calib/selection/window_errors.hpp"
 
 namespace odomcalib::calib::selection {
@@ -35,27 +37,34 @@ double significance(double statistic, Eigen::Index degrees);
 /// Family-wise significance: block scores of 5 s get random signs (Rademacher), 1999 draws with a fixed seed;
 /// the largest significance of each draw is compared, so that correlation between candidates, heavy tails and
 /// what autocorrelation is left are respected.
+/// What is kept of a candidate does not grow with its columns: of more than a thousand a few are looked at
+/// again, and theirs are made again.
 class ScoreTable {
  public:
-  ScoreTable(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
-             const estimation::FitResult& fit, const std::vector<bool>& fixed,
-             const std::vector<Candidate>& candidates);
+  /// @param task, model, candidates must outlive the table, in the same order
+  ScoreTable(const FitTask& task, const FittedModel& model, const std::vector<Candidate>& candidates);
 
   [[nodiscard]] const std::vector<Score>& scores() const { return scores_; }  ///< in the candidates' order
-  /// Largest canonical correlation of two candidates' projected signatures.
-  [[nodiscard]] double correlation(std::size_t a, std::size_t b) const;
-  /// Whether the candidate passes the family-wise level without the data of each fold.
-  [[nodiscard]] FoldFlags selected_without(std::size_t candidate, double level) const;
+  /// Largest canonical correlation of a candidate's projected signature and that of each of the others.
+  [[nodiscard]] std::vector<double> correlations(std::size_t candidate,
+                                                 const std::vector<std::size_t>& others) const;
+  /// Whether any of these passes the family-wise level without the data of each fold.
+  [[nodiscard]] FoldFlags selected_without(const std::vector<std::size_t>& candidates, double level) const;
 
  private:
   void add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected);
   [[nodiscard]] double family_p_value(double statistic, std::size_t degrees) const;
+  /// Visits the orthonormal basis of each, 3 n x degrees.
+  void for_each_basis(const std::vector<std::size_t>& candidates,
+                      const std::function<void(std::size_t, const Eigen::MatrixXd&)>& visit) const;
 
+  const FitTask& task_;
+  const FittedModel& model_;
+  const std::vector<Candidate>& candidates_;
   Eigen::VectorXd residual_;
   double variance_ = 1.0;
   std::vector<Eigen::Index> borders_;          ///< first row of each block, and the end
   std::vector<std::size_t> block_folds_;       ///< fold of each block
-  std::vector<Eigen::MatrixXd> bases_;         ///< orthonormal, 3 n x degrees
   std::vector<Eigen::MatrixXd> block_scores_;  ///< degrees x blocks
   std::vector<double> largest_;                ///< significance of the best candidate in each draw, ascending
   std::vector<Score> scores_;

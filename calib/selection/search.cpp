@@ -254,13 +254,10 @@ class Search {
 
   /// Whether what lies outside each fold points to the candidate, in whichever of its shapes.
   [[nodiscard]] FoldFlags selected_without_fold(std::size_t candidate) const {
-    FoldFlags selected{};
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      if (candidates_[k].key != candidates_[candidate].key) continue;
-      const FoldFlags of_shape = round_->table().selected_without(k, settings::kFoldLevel);
-      for (std::size_t fold = 0; fold < selected.size(); ++fold) selected[fold] |= of_shape[fold];
-    }
-    return selected;
+    std::vector<std::size_t> shapes;
+    for (std::size_t k = 0; k < candidates_.size(); ++k)
+      if (candidates_[k].key == candidates_[candidate].key) shapes.push_back(k);
+    return round_->table().selected_without(shapes, settings::kFoldLevel);
   }
 
   /// How the trial fails cross-validation; empty when it does not.

@@ -11,10 +11,7 @@
 namespace odomcalib::calib::selection {
 
 SearchRound::SearchRound(const FitTask& task, FittedModel basis, const std::vector<Candidate>& candidates)
-    : task_(task),
-      candidates_(candidates),
-      basis_(std::move(basis)),
-      table_(task_.data, basis_.effects, basis_.fit, task_.fixed(basis_.effects), candidates_) {}
+    : task_(task), candidates_(candidates), basis_(std::move(basis)), table_(task_, basis_, candidates_) {}
 
 double SearchRound::penalty(std::size_t degrees) const {
   return static_cast<double>(degrees) * schwarz(basis_.fit);
@@ -77,7 +74,7 @@ bool SearchRound::smooth_beats(std::size_t smooth, std::size_t name) const {
   if (penalised(smooth) - penalised(name) <= settings::kAmbiguity) return false;
   const bool same_ground =
       contains(candidates_[name].effect->dependences(), candidates_[smooth].smooth->dependence) ||
-      table_.correlation(name, smooth) > settings::kAlias;
+      table_.correlations(name, {smooth}).front() > settings::kAlias;
   const auto has_key_of_name = [&](std::size_t k) { return candidates_[k].key == candidates_[name].key; };
   const double of_best_shape = score(by_score(has_key_of_name).front()).statistic;
   const double of_smooth = score(smooth).statistic;
@@ -91,10 +88,13 @@ std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {
     if (is_open(trial.candidate) && best.gain - trial.gain < settings::kAmbiguity &&
         task_.rules.has(Rule::close_rivals))
       rivals.push_back(trial.candidate);
+  std::vector<std::size_t> names;
   for (std::size_t k = 0; k < candidates_.size(); ++k)
-    if (is_open(k) && !candidates_[k].smooth && score(k).family_p_value <= settings::kNamedLevel &&
-        are_too_close(table_, best.candidate, k) && task_.rules.has(Rule::close_rivals))
-      rivals.push_back(k);
+    if (is_open(k) && !candidates_[k].smooth && score(k).family_p_value <= settings::kNamedLevel)
+      names.push_back(k);
+  const std::vector<std::size_t> close = too_close(table_, best.candidate, names);
+  if (!close.empty() && task_.rules.has(Rule::close_rivals))
+    rivals.insert(rivals.end(), close.begin(), close.end());
   return rivals;
 }
 
