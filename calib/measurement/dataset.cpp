@@ -113,8 +113,10 @@ Dataset measured(Dataset dataset, const Eigen::VectorXd& parameters, const vehic
 Dataset located(Dataset dataset, std::span<const std::vector<vehicle::Fix>> fixes,
                 const Eigen::VectorXd& parameters, const vehicle::EffectList& effects) {
   for (std::size_t i = 0; i < dataset.models.size(); ++i) {
+    wheels::WheelTrack track = dataset.models[i]->track();
+    dataset.models[i].reset();  // two of an hour's drive would be half a gigabyte
     dataset.models[i] = std::make_shared<const vehicle::DriveModel>(
-        dataset.models[i]->located(fixes[i], vehicle::as_span(parameters), effects));
+        vehicle::DriveModel::located(std::move(track), fixes[i], vehicle::as_span(parameters), effects));
     dataset.data[i].model = dataset.models[i].get();
   }
   return dataset;

@@ -1,5 +1,6 @@
 #include "calib/selection/candidate_columns.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -39,8 +40,12 @@ class Tried {
       : model_(*data.model),
         trajectory_(model_.trajectory(vehicle::as_span(fit.parameters), effects)),
         sensitivity_(model_, trajectory_, estimation::intervals_of(data.pairs)),
-        responses_(sensitivity_.by_steps({std::make_shared<Defects>()}, std::vector<double>(kChannels, 0.0))),
         whitener_(std::move(whitener)) {}
+
+  /// Before smooth terms are tried: what each channel of each tick interval changes.
+  void prepare_smooth_terms() {
+    responses_ = sensitivity_.by_steps({std::make_shared<Defects>()}, std::vector<double>(kChannels, 0.0));
+  }
 
   [[nodiscard]] Eigen::MatrixXd by_smooth(const terms::SmoothTerm& smooth) const {
     const std::span<const vehicle::Channel> channels = acts_on(smooth);
@@ -123,8 +128,8 @@ std::vector<std::size_t> sweep_from(const std::vector<Candidate>& candidates, st
   return sweep;
 }
 
-void fill_names(const AllTried& recordings, const std::vector<Candidate>& candidates,
-                std::vector<Eigen::MatrixXd>& columns) {
+void visit_names(const AllTried& recordings, const std::vector<Candidate>& candidates,
+                 const CandidateVisit& visit) {
   for (auto sweep = sweep_from(candidates, 0); !sweep.empty();
        sweep = sweep_from(candidates, sweep.back() + 1)) {
     vehicle::EffectList effects;
@@ -133,7 +138,7 @@ void fill_names(const AllTried& recordings, const std::vector<Candidate>& candid
     Eigen::Index first = 0;
     for (const std::size_t k : sweep) {
       const auto size = static_cast<Eigen::Index>(candidates[k].effect->parameters().size());
-      columns[k] = all.middleCols(first, size);
+      visit(k, all.middleCols(first, size));
       first += size;
     }
   }
@@ -143,25 +148,23 @@ void fill_names(const AllTried& recordings, const std::vector<Candidate>& candid
 
 void for_each_candidate(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
                         const estimation::FitResult& fit, const std::vector<Candidate>& candidates,
-                        const std::function<void(Eigen::MatrixXd)>& visit) {
+                        const CandidateVisit& visit) {
   const AllTried recordings = try_along(data, effects, fit);
-  std::vector<Eigen::MatrixXd> names(candidates.size());  // empty where the candidate is a smooth term
-  fill_names(recordings, candidates, names);
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const auto& smooth = candidates[k].smooth;
-    visit(smooth ? stacked(recordings, [&](const Tried& t) { return t.by_smooth(*smooth); })
-                 : std::move(names[k]));
-  }
+  visit_names(recordings, candidates, visit);
+  if (std::none_of(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.smooth; })) return;
+  for (const auto& recording : recordings) recording->prepare_smooth_terms();
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    if (const auto& smooth = candidates[k].smooth)
+      visit(k, stacked(recordings, [&](const Tried& t) { return t.by_smooth(*smooth); }));
 }
 
 std::vector<Eigen::MatrixXd> candidate_columns(std::span<const measurement::FitData> data,
                                                const vehicle::EffectList& effects,
                                                const estimation::FitResult& fit,
                                                const std::vector<Candidate>& candidates) {
-  std::vector<Eigen::MatrixXd> columns;
-  columns.reserve(candidates.size());
+  std::vector<Eigen::MatrixXd> columns(candidates.size());
   for_each_candidate(data, effects, fit, candidates,
-                     [&](Eigen::MatrixXd one) { columns.push_back(std::move(one)); });
+                     [&](std::size_t k, Eigen::MatrixXd one) { columns[k] = std::move(one); });
   return columns;
 }
 

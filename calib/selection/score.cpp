@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 #include <random>
 
 #include "calib/selection/candidate_columns.hpp"
@@ -131,25 +130,30 @@ double significance(double statistic, Eigen::Index degrees) {
 
 ScoreTable::ScoreTable(const FitTask& task, const FittedModel& model,
                        const std::vector<Candidate>& candidates)
-    : task_(task), model_(model), candidates_(candidates), residual_(clipped(model.fit.whitened_residual)) {
+    : task_(task),
+      model_(model),
+      candidates_(candidates),
+      residual_(clipped(model.fit.whitened_residual)),
+      block_scores_(candidates.size()),
+      scores_(candidates.size()) {
   variance_ = residual_.squaredNorm() / std::max(static_cast<double>(residual_.size()), 1.0);
   Blocks blocks = blocks_of(task.data);
   borders_ = std::move(blocks.borders);
   block_folds_ = std::move(blocks.folds);
   const Projection projection(model.fit, task.fixed(model.effects));
   for_each_candidate(task.data, model.effects, model.fit, candidates,
-                     [&](const Eigen::MatrixXd& raw) { add(raw, projection.rest(raw)); });
+                     [&](std::size_t k, const Eigen::MatrixXd& raw) { take(k, raw, projection.rest(raw)); });
   largest_ = largest_of_draws(block_scores_, variance_);
   for (Score& score : scores_) score.family_p_value = family_p_value(score.statistic, score.degrees);
 }
 
-void ScoreTable::add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected) {
+void ScoreTable::take(std::size_t candidate, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected) {
   const double scale = raw.norm();
   const Eigen::MatrixXd basis = orthonormal(projected, scale);
-  block_scores_.push_back(block_scores(basis, residual_, borders_));
-  Score score;
+  block_scores_[candidate] = block_scores(basis, residual_, borders_);
+  Score& score = scores_[candidate];
   score.degrees = static_cast<std::size_t>(basis.cols());
-  score.statistic = block_scores_.back().rowwise().sum().squaredNorm() / variance_;
+  score.statistic = block_scores_[candidate].rowwise().sum().squaredNorm() / variance_;
   score.p_value = chi_squared_tail(score.statistic, score.degrees);
   for (Eigen::Index k = 0; k < raw.cols(); ++k) {
     const double left = projected.col(k).squaredNorm();
@@ -158,7 +162,6 @@ void ScoreTable::add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projecte
                                    : std::numeric_limits<double>::infinity());
   }
   score.unabsorbed = scale > 0.0 ? projected.squaredNorm() / raw.squaredNorm() : 0.0;
-  scores_.push_back(score);
 }
 
 double ScoreTable::family_p_value(double statistic, std::size_t degrees) const {
@@ -178,35 +181,30 @@ void ScoreTable::for_each_basis(const std::vector<std::size_t>& candidates,
   std::vector<Candidate> wanted;
   for (const std::size_t k : candidates) wanted.push_back(candidates_[k]);
   const Projection projection(model_.fit, task_.fixed(model_.effects));
-  auto next = candidates.begin();
-  for_each_candidate(task_.data, model_.effects, model_.fit, wanted, [&](const Eigen::MatrixXd& raw) {
-    visit(*next++, orthonormal(projection.rest(raw), raw.norm()));
-  });
+  for_each_candidate(task_.data, model_.effects, model_.fit, wanted,
+                     [&](std::size_t position, const Eigen::MatrixXd& raw) {
+                       visit(position, orthonormal(projection.rest(raw), raw.norm()));
+                     });
 }
 
 std::vector<double> ScoreTable::correlations(std::size_t candidate,
                                              const std::vector<std::size_t>& others) const {
-  std::vector<std::size_t> all = {candidate};
-  all.insert(all.end(), others.begin(), others.end());
   if (others.empty()) return {};
-  std::optional<Eigen::MatrixXd> own;
-  std::vector<double> found;
-  for_each_basis(all, [&](std::size_t, const Eigen::MatrixXd& basis) {
-    if (!own) {
-      own = basis;
-      return;
-    }
-    const Eigen::MatrixXd overlap = own->transpose() * basis;
-    found.push_back(overlap.size() == 0
-                        ? 0.0
-                        : std::min(Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues()(0), 1.0));
+  Eigen::MatrixXd own;
+  for_each_basis({candidate}, [&](std::size_t, const Eigen::MatrixXd& basis) { own = basis; });
+  std::vector<double> found(others.size());
+  for_each_basis(others, [&](std::size_t position, const Eigen::MatrixXd& basis) {
+    const Eigen::MatrixXd overlap = own.transpose() * basis;
+    if (overlap.size() == 0) return;
+    found[position] = std::min(Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues()(0), 1.0);
   });
   return found;
 }
 
 FoldFlags ScoreTable::selected_without(const std::vector<std::size_t>& candidates, double level) const {
   FoldFlags selected{};
-  for_each_basis(candidates, [&](std::size_t candidate, const Eigen::MatrixXd& basis) {
+  for_each_basis(candidates, [&](std::size_t position, const Eigen::MatrixXd& basis) {
+    const std::size_t candidate = candidates[position];
     for (std::size_t fold = 0; fold < kFolds; ++fold) {
       Eigen::VectorXd score = Eigen::VectorXd::Zero(basis.cols());
       Eigen::MatrixXd gram = kRidge * Eigen::MatrixXd::Identity(basis.cols(), basis.cols());

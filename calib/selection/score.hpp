@@ -52,9 +52,9 @@ class ScoreTable {
   [[nodiscard]] FoldFlags selected_without(const std::vector<std::size_t>& candidates, double level) const;
 
  private:
-  void add(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected);
+  void take(std::size_t candidate, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected);
   [[nodiscard]] double family_p_value(double statistic, std::size_t degrees) const;
-  /// Visits the orthonormal basis of each, 3 n x degrees.
+  /// Visits the orthonormal basis of each, 3 n x degrees, with its position in the list.
   void for_each_basis(const std::vector<std::size_t>& candidates,
                       const std::function<void(std::size_t, const Eigen::MatrixXd&)>& visit) const;
 

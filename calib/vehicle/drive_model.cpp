@@ -48,15 +48,17 @@ std::span<const StepContext> DriveModel::context_within(const Interval& interval
   return std::span(context_).subspan(first, last - first + 1);
 }
 
-DriveModel DriveModel::located(std::span<const Fix> fixes, std::span<const double> parameters,
-                               const EffectList& effects) const {
-  DriveModel model(track_, make_context(track_, to_base(parameters)));
+DriveModel DriveModel::located(wheels::WheelTrack track, std::span<const Fix> fixes,
+                               std::span<const double> parameters, const EffectList& effects) {
+  std::vector<StepContext> context = make_context(track, to_base(parameters));
+  DriveModel model(std::move(track), std::move(context));
   const Trajectory path = model.trajectory(parameters, effects);
   math::Pose origin;  // of dead reckoning, in the frame of the fixes
   std::size_t next = 0;
   for (std::size_t k = 0; k < model.context_.size(); ++k) {
     StepContext& c = model.context_[k];
-    for (; next < fixes.size() && (next == 0 || path.encoder_time(fixes[next].time) <= track_.t[k]); ++next)
+    for (; next < fixes.size() && (next == 0 || path.encoder_time(fixes[next].time) <= model.track_.t[k]);
+         ++next)
       origin = compose(fixes[next].pose, inverse(path.at(fixes[next].time)));
     const math::Pose here = compose(origin, path.poses_[k]);
     c.face(here.yaw + path.twists_[k].yaw / 2.0);

@@ -76,10 +76,10 @@ class DriveModel {
   /// Of the tick intervals that a measured motion touches: one at least.
   [[nodiscard]] std::span<const StepContext> context_within(const Interval& interval) const;
 
-  /// The same wheels with every interval observed anew, with these base parameters. Heading and place are the
-  /// latest fix (in time order) and dead reckoning from there on; without fixes dead reckoning alone.
-  [[nodiscard]] DriveModel located(std::span<const Fix> fixes, std::span<const double> parameters,
-                                   const EffectList& effects) const;
+  /// Wheels with every interval observed with these base parameters. Heading and place are the latest fix (in
+  /// time order) and dead reckoning from there on; without fixes dead reckoning alone.
+  [[nodiscard]] static DriveModel located(wheels::WheelTrack track, std::span<const Fix> fixes,
+                                          std::span<const double> parameters, const EffectList& effects);
 
   /// Dead reckoning with these parameters, from which poses are read. Throws std::invalid_argument if they
   /// are too few.

@@ -69,8 +69,8 @@ TEST(DriveModel, heading_and_place_follow_the_fixes_whatever_the_wheels_say) {
     return distance;
   };
   EXPECT_GT(worst(nominal), 0.05);
-  EXPECT_LT(worst(nominal.located(fixes, as_span(to_vector(wrong)), {})), 0.01);
-  EXPECT_LT(worst(nominal.located({}, as_span(p), {})), 1e-12);
+  EXPECT_LT(worst(DriveModel::located(nominal.track(), fixes, as_span(to_vector(wrong)), {})), 0.01);
+  EXPECT_LT(worst(DriveModel::located(nominal.track(), {}, as_span(p), {})), 1e-12);
   EXPECT_GT(worst(nominal), 0.05) << "it stays as it was";
 }
 
