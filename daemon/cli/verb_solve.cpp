@@ -70,8 +70,9 @@ int solve_recordings(const Options& options, const Session& session) {
     if (!scale) return report_error(scale.error(), session.json);
     how.scale = scale.value();
   }
-  const auto recordings = read_recordings(options.recordings, options.reading);
+  auto recordings = read_recordings(options.recordings, options.reading);
   if (!recordings) return report_error(recordings.error(), session.json);
+  for (Recording& recording : recordings.value()) recording = without_intensities(std::move(recording));
   ProgressLine line;
   const auto progress = [&line](const std::string& phase, double fraction) {
     line.show(fmt::format("{} {:3.0f} %", phase, 100.0 * fraction));

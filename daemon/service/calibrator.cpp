@@ -53,7 +53,7 @@ Result<Calibration> read_and_solve(const std::vector<std::filesystem::path>& pat
   for (const auto& path : paths) {
     auto recording = read_recording(path);
     if (!recording) return recording.error();
-    recordings.push_back(std::move(recording).value());
+    recordings.push_back(without_intensities(std::move(recording).value()));
   }
   return calib::solve(recordings, {.effects = effects}, progress);
 }

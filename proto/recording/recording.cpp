@@ -157,4 +157,9 @@ Result<Recording> read_recording(const std::filesystem::path& path, const RobotD
   return recording;
 }
 
+Recording without_intensities(Recording recording) {
+  for (Scan& scan : recording.scans) std::vector<float>().swap(scan.intensities);  // clear() would keep them
+  return recording;
+}
+
 }  // namespace odomcalib

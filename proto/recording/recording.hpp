@@ -77,6 +77,9 @@ Result<Recording> read_recording_bytes(const std::string& bytes, const std::file
                                        const RobotDescription* fallback = nullptr,
                                        const TopicChoices& topics = {});
 
+/// Without what no calibration reads, in an hour's recording as much memory as the ranges.
+Recording without_intensities(Recording recording);
+
 /// Writes JSON Lines (gzip when the name ends in .gz), as write_output does. Counterpart of read_recording:
 /// numbers survive unchanged, and wheel motion is written as it was recorded.
 Result<void> write_recording_jsonl(const Recording& recording, const std::filesystem::path& path);
