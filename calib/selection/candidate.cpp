@@ -50,6 +50,18 @@ void add_smooths(std::span<const vehicle::DriveModel* const> models, std::vector
     candidates.push_back(candidate_of(as_of_the_drive(smooth, models)));
 }
 
+std::vector<vehicle::Dependence> dependences_of(const Candidate& candidate) {
+  return candidate.smooth ? std::vector<vehicle::Dependence>{candidate.smooth->dependence}
+                          : candidate.effect->dependences();
+}
+
+/// A smooth term of what the robot did before.
+bool depends_on_history(const Candidate& candidate) {
+  if (!candidate.smooth) return false;
+  const vehicle::Covariate covariate = candidate.smooth->dependence.covariate;
+  return is_memory(covariate) || is_distance_since(covariate);
+}
+
 }  // namespace
 
 Candidate candidate_of(const terms::SmoothTerm& smooth) {
@@ -86,17 +98,6 @@ std::vector<Candidate> floor_waves(std::span<const vehicle::DriveModel* const> m
 
 bool contains(const std::vector<vehicle::Dependence>& dependences, const vehicle::Dependence& dependence) {
   return std::find(dependences.begin(), dependences.end(), dependence) != dependences.end();
-}
-
-std::vector<vehicle::Dependence> dependences_of(const Candidate& candidate) {
-  return candidate.smooth ? std::vector<vehicle::Dependence>{candidate.smooth->dependence}
-                          : candidate.effect->dependences();
-}
-
-bool depends_on_history(const Candidate& candidate) {
-  if (!candidate.smooth) return false;
-  const vehicle::Covariate covariate = candidate.smooth->dependence.covariate;
-  return is_memory(covariate) || is_distance_since(covariate);
 }
 
 bool must_be_worthwhile(const Candidate& candidate) {

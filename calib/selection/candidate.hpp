@@ -36,10 +36,6 @@ Candidate candidate_of(const terms::SmoothTerm& smooth);
 std::vector<Candidate> floor_waves(std::span<const vehicle::DriveModel* const> models);
 
 bool contains(const std::vector<vehicle::Dependence>& dependences, const vehicle::Dependence& dependence);
-std::vector<vehicle::Dependence> dependences_of(const Candidate& candidate);
-
-/// A smooth term of what the robot did before.
-bool depends_on_history(const Candidate& candidate);
 
 /// Scan matching has a bias of its own in a room, and in a scripted drive what happened before stands for
 /// the place in the script: what goes with such covariates must be more than that. So must an event, which is

@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "calib/selection/hyperparameters.hpp"
-#include "calib/selection/settings.hpp"
-#include "calib/terms/smooth_term.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
 #include "calib/terms/smooth_term_on_drives.hpp"
 
@@ -35,33 +33,12 @@ Reshaped at_best_change_point(const FitTask& task, Reshaped now) {
   return now;
 }
 
-std::optional<Reshaped> likeliest(const FitTask& task, const FittedModel& model,
-                                  const terms::SmoothTerm& event) {
-  auto with_event = with_effect(task, model, make_smooth_term_effect(event), model.fit.noise);
-  if (!with_event) return std::nullopt;
-  return at_best_change_point(task, {event, std::move(*with_event)});
-}
-
 }  // namespace
 
 terms::SmoothTerm at_likeliest_change_point(const FitTask& task, const FittedModel& model,
                                             const terms::SmoothTerm& event) {
-  const auto best = likeliest(task, model, event);
-  return best ? best->smooth : event;
-}
-
-std::optional<std::size_t> event_instead_of(const FitTask& task, const SearchRound& round,
-                                            const Trial& name) {
-  const auto events = round.by_score([&](std::size_t k) {
-    const auto& smooth = round.candidate(k).smooth;
-    return smooth && happens_at_once(*smooth) && acts_on(*smooth).size() > 1 &&
-           round.score(k).family_p_value <= settings::kNamedLevel;
-  });
-  if (events.empty()) return std::nullopt;
-  const auto best = likeliest(task, round.basis(), *round.candidate(events.front()).smooth);
-  // Its moment is one more choice.
-  const bool is_better = best && best->model.fit.cost + schwarz(name.model.fit) < name.model.fit.cost;
-  return is_better ? std::optional(events.front()) : std::nullopt;
+  auto with_event = with_effect(task, model, make_smooth_term_effect(event), model.fit.noise);
+  return with_event ? at_best_change_point(task, {event, std::move(*with_event)}).smooth : event;
 }
 
 }  // namespace odomcalib::calib::selection

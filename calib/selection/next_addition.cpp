@@ -80,9 +80,4 @@ std::optional<Trial> best_name_beside(std::optional<std::size_t> smooth, SearchR
   return own && !round.smooth_beats(*smooth, own->candidate) ? own : std::nullopt;
 }
 
-std::optional<Trial> best_clock(const SearchRound& round) {
-  const auto best = round.best_trial([&](std::size_t k) { return is_clock(round.candidate(k)); });
-  return best && best->gain > 0.0 ? best : std::nullopt;
-}
-
 }  // namespace odomcalib::calib::selection

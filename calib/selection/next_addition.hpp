@@ -23,8 +23,4 @@ std::optional<std::size_t> best_smooth(const SearchRound& round, const SearchRes
 std::optional<Trial> best_name_beside(std::optional<std::size_t> smooth, SearchRound& round,
                                       const SearchResult& found);
 
-/// Where motions begin, clocks that disagree look like anything that goes with beginnings. A clock cannot
-/// spoil odometry, so it is tried first.
-std::optional<Trial> best_clock(const SearchRound& round);
-
 }  // namespace odomcalib::calib::selection

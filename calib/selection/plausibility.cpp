@@ -23,6 +23,13 @@ std::string outside(const vehicle::EffectParameter& parameter, double value) {
   return parameter.name + " of " + math::significant(value, 3) + unit + " is outside its physical range";
 }
 
+bool moves_lengths(const estimation::FitResult& before, const estimation::FitResult& after) {
+  for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth})
+    if (std::abs(after.parameters(k) - before.parameters(k)) > settings::kFarOff * before.parameters(k))
+      return true;
+  return false;
+}
+
 }  // namespace
 
 std::string impossibility(const vehicle::Effect& effect, const estimation::FitResult& fit) {
@@ -96,13 +103,6 @@ bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& bef
         deviation > most * std::sqrt(before.covariance(k, k)))
       return true;
   }
-  return false;
-}
-
-bool moves_lengths(const estimation::FitResult& before, const estimation::FitResult& after) {
-  for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth})
-    if (std::abs(after.parameters(k) - before.parameters(k)) > settings::kFarOff * before.parameters(k))
-      return true;
   return false;
 }
 

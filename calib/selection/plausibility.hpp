@@ -33,10 +33,8 @@ bool is_hidden_by_ticks(const terms::SmoothTerm& smooth, const estimation::FitRe
 bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& before,
                  const estimation::FitResult& after);
 
-/// It changes a length by a quarter, which a name may have to (a track that scrubs) but no term without one.
-bool moves_lengths(const estimation::FitResult& before, const estimation::FitResult& after);
-
-/// Either of both, of a term without a name.
+/// The same of a term without a name, or that it changes a length by a quarter, which only a name may have to
+/// (a track that scrubs).
 bool smooth_spoils_base(const vehicle::Effect& smooth, const estimation::FitResult& before,
                         const estimation::FitResult& after);
 

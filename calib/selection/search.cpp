@@ -14,7 +14,6 @@
 #include "calib/selection/hyperparameter_selection.hpp"
 #include "calib/selection/hyperparameters.hpp"
 #include "calib/selection/next_addition.hpp"
-#include "calib/selection/outlier_trace.hpp"
 #include "calib/selection/plausibility.hpp"
 #include "calib/selection/rolling_waves.hpp"
 #include "calib/selection/search_round.hpp"
@@ -42,8 +41,7 @@ class Search {
   }
 
   SearchResult run() {
-    go_on(0.0, 0.4);
-    propose_from_outliers();
+    go_on(0.0, 0.5);
     propose_waves();
     go_on(0.5, 1.0);
     eliminate_unhelpful_smooths();
@@ -100,9 +98,6 @@ class Search {
     if (const auto late = name ? unnoticed_clock(*name) : std::nullopt; late && has(Rule::clock_before_name))
       return accept_name(*late);
     if (name && accept_name(*name)) return true;
-    const auto clock =
-        smooth && depends_on_history(candidates_[*smooth]) ? best_clock(*round_) : std::nullopt;
-    if (clock && has(Rule::clock_before_history)) return accept_name(*clock);
     return smooth && accept_smooth(*smooth);
   }
 
@@ -117,25 +112,6 @@ class Search {
     return is_much ? std::move(clock) : std::nullopt;
   }
 
-  /// What happens so seldom that the fit leaves its pairs out no score sees, until they count as noise.
-  void propose_from_outliers() {
-    const auto trace = trace_outliers(task_.data, result_.model.fit);
-    if (!trace || !has(Rule::outliers_first)) return;
-    const auto goes_with = [&](const vehicle::Dependence& dependence) {
-      return !belongs_to_the_place(dependence.covariate) &&
-             std::count(trace->depends_on.begin(), trace->depends_on.end(), dependence.covariate) > 0;
-    };
-    std::erase_if(candidates_, [&](const Candidate& c) {
-      const auto dependences = dependences_of(c);
-      return std::none_of(dependences.begin(), dependences.end(), goes_with);
-    });
-    if (candidates_.empty()) return;
-    noise_share_ = 1.0 - 0.5 * static_cast<double>(trace->outliers) / static_cast<double>(trace->pairs);
-    begin_again();
-    go_on(0.4, 0.5);
-    noise_share_ = settings::kNoiseShare;
-  }
-
   /// What repeats itself along the floor or as something rolls, when nothing else is left to say.
   void propose_waves() {
     candidates_ = floor_waves(task_.models());
@@ -147,7 +123,6 @@ class Search {
   void begin_again() {
     round_.reset();
     has_changed_ = true;
-    no_more_smooths_ = false;
   }
 
   /// Waves are many, and what was nothing before one of them was found is not scored again.
@@ -162,9 +137,10 @@ class Search {
   void look_again() {
     exclude_hopeless_waves();
     std::erase_if(candidates_, [](const Candidate& c) { return c.excluded; });
-    round_.emplace(
-        task_, FittedModel{result_.model.effects, widened_where_outlying(task_, result_.model, noise_share_)},
-        candidates_);
+    round_.emplace(task_,
+                   FittedModel{result_.model.effects,
+                               widened_where_outlying(task_, result_.model, settings::kNoiseShare)},
+                   candidates_);
     has_changed_ = false;
   }
 
@@ -183,8 +159,7 @@ class Search {
     if (is_negligible(effect, fit) && has(Rule::size_that_matters)) return "too small to matter";
     if (auto reason = contradiction(effect, fit); !reason.empty() && has(Rule::no_contradiction))
       return reason;
-    const bool spoils = (spoils_base(effect, basis().fit, fit) && has(Rule::base_determined)) ||
-                        (candidate.smooth && moves_lengths(basis().fit, fit) && has(Rule::lengths_kept));
+    const bool spoils = spoils_base(effect, basis().fit, fit) && has(Rule::base_determined);
     return spoils ? "this drive cannot separate it from the wheels" : "";
   }
 
@@ -269,7 +244,6 @@ class Search {
                                    largest_ratio(candidates_[trial.candidate]), validation);
     if (!reason.empty()) return reason;
     if (may_be_chance(candidates_[trial.candidate], validation) && has(Rule::gain_in_most_drives)) {
-      no_more_smooths_ = has(Rule::one_chance_of_smooth_terms);
       if (!has_drives(validation))
         return "may be chance, and the reference is too broken for drives to prove it";
       return "a gain that may be chance: error times " +
@@ -280,18 +254,7 @@ class Search {
     const bool is_followed = odometry_uses(candidates_[trial.candidate]);
     const DriveChange drives = change_of_drives(task_, basis(), settled->model);
     const bool is_worse = drives.is_spoilt || (is_followed && drives.ratio.value_or(0.0) > 1.0);
-    if (is_worse && has(Rule::drives_not_worse)) return "drives get worse";
-    return is_followed && is_worse_than(result_.model, settled->model) && has(Rule::model_not_worse)
-               ? kUnhelpful
-               : "";
-  }
-
-  /// With noise wide enough for what is systematic the plain model has moved as well. A smooth term that
-  /// stands for a few motions which a robust fit would have left out must not cost the others what that fit
-  /// gives them.
-  [[nodiscard]] bool is_worse_than(const FittedModel& before, const FittedModel& after) const {
-    const DriveChange drives = change_of_drives(task_, before, after);
-    return drives.is_spoilt || drives.ratio.value_or(0.0) > 1.0;
+    return is_worse && has(Rule::drives_not_worse) ? "drives get worse" : "";
   }
 
   /// Whether it was cross-validated on drives of ten seconds, not on single pairs.
@@ -305,8 +268,7 @@ class Search {
   }
 
   /// Of a smooth term that odometry would use, whose gain must show over ten seconds; where the reference is
-  /// too broken for that, its score must be decisive. A reference that errs with the motion, as in a
-  /// nearly round room, suggests one smooth term after the other: where the best is none, no other is.
+  /// too broken for that, its score must be decisive.
   [[nodiscard]] bool may_be_chance(const Candidate& candidate, const CrossValidation& validation) const {
     if (!odometry_uses(candidate) || result_.owner_of(candidate.smooth->dependence)) return false;
     return has_drives(validation) ? !validation.improvement.is_plain()
@@ -347,7 +309,6 @@ class Search {
   /// From the model as it is now.
   void start_again() {
     has_changed_ = true;
-    no_more_smooths_ = false;
     unconfirmed_.clear();
   }
 
@@ -366,20 +327,8 @@ class Search {
     return free && has(Rule::name_against_smooth_term) ? std::optional(smooths.front()) : std::nullopt;
   }
 
-  /// What seems to have changed bit by bit may have changed at once.
-  [[nodiscard]] std::optional<std::size_t> better_event(const Trial& name) const {
-    const std::vector<vehicle::Dependence> dependences = candidates_[name.candidate].effect->dependences();
-    const bool goes_with_time =
-        std::any_of(dependences.begin(), dependences.end(), [](const vehicle::Dependence& dependence) {
-          return dependence.covariate == vehicle::Covariate::time;
-        });
-    const auto event = goes_with_time ? event_instead_of(task_, *round_, name) : std::nullopt;
-    return event && has(Rule::name_against_event) ? event : std::nullopt;
-  }
-
   bool accept_name(const Trial& best) {
     if (const auto smooth = better_smooth(best)) return accept_smooth(*smooth);
-    if (const auto event = better_event(best)) return accept_smooth(*event);
     const Candidate candidate = candidates_[best.candidate];
     const std::vector<std::size_t> rivals = round_->rivals_of(best);
     const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, rivals);
@@ -393,7 +342,7 @@ class Search {
   }
 
   bool accept_smooth(std::size_t index) {
-    if (no_more_smooths_ || result_.smooths.size() >= settings::kMostSmooths) return false;
+    if (result_.smooths.size() >= settings::kMostSmooths) return false;
     auto trial = happens_at_once(*candidates_[index].smooth)
                      ? refit_as(index, at_likeliest_change_point(task_, basis(), *candidates_[index].smooth))
                      : round_->refit(index);
@@ -409,7 +358,6 @@ class Search {
       exclude(candidates_[index].key);
       return true;
     }
-    const SearchResult before = result_;
     auto validation = accept(*trial);
     const bool may_replace =
         named_term && !result_.is_completed(named_term) && !happens_at_once(*candidates_[index].smooth);
@@ -419,22 +367,9 @@ class Search {
     const Candidate& candidate = candidates_[index];
     result_.smooths.push_back({candidate.effect, *candidate.smooth, *validation, named_term, alike});
     select_hyperparameters_of_newest(task_, result_);
-    if (odometry_uses(candidate) && is_worse_than(before.model, result_.model) &&
-        has(Rule::final_shape_not_worse)) {
-      go_back_to(before);
-      return true;
-    }
     exclude_what_is_covered_by(*result_.smooths.back().effect);
     drop_superfluous();
     return true;
-  }
-
-  /// What was added passed cross-validation, but not with its final hyperparameters.
-  void go_back_to(SearchResult before) {
-    before.considered = std::move(result_.considered);
-    before.considered.back().outcome = kUnhelpful;
-    result_ = std::move(before);
-    start_again();
   }
 
   void exclude_what_is_covered_by(const vehicle::Effect& found) {
@@ -499,8 +434,6 @@ class Search {
   std::function<void(double)> progress_;
   std::vector<Candidate> candidates_;
   std::optional<SearchRound> round_;
-  double noise_share_ = settings::kNoiseShare;
-  bool no_more_smooths_ = false;
   bool has_changed_ = true;  ///< the model or the candidates, since the round began
   SearchResult result_;
   /// What plausible names and plain smooth terms would make of the base parameters that the last model could

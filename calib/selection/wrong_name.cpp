@@ -3,14 +3,6 @@
 #include <utility>
 
 namespace odomcalib::calib::selection {
-namespace {
-
-/// A moment is sought among all of the drive: with fewer sizes than a name it is no plainer.
-bool is_plainly_an_event(const FittedModel& named, const Reshaped& dependence) {
-  return named.fit.cost - dependence.model.fit.cost > schwarz(named.fit);
-}
-
-}  // namespace
 
 std::optional<FreeTerm> free_term_instead_of(const FitTask& task, const FittedModel& model, std::size_t index,
                                              const Candidate& candidate) {
@@ -21,9 +13,6 @@ std::optional<FreeTerm> free_term_instead_of(const FitTask& task, const FittedMo
       (explains_nearly_all(task, model, index, dependence->model) &&
        task.rules.has(Rule::nearly_all_explained)) ||
       !is_better(task, model, dependence->model, schwarz(model.fit)))
-    return std::nullopt;
-  if (happens_at_once(dependence->smooth) && !is_plainly_an_event(model, *dependence) &&
-      task.rules.has(Rule::plain_event))
     return std::nullopt;
   CrossValidation validation;
   const auto missing =
