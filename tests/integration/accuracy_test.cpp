@@ -91,11 +91,13 @@ struct Solved {
 };
 
 /// A robot with the effect, after such a drive of five minutes at most.
-Solved solved(const Injected& injected, sim::SimulationConfig config, const sim::Drive& drive) {
+/// @param seed of what the effect draws beside its size
+Solved solved(const Injected& injected, sim::SimulationConfig config, const sim::Drive& drive,
+              std::uint64_t seed = 5) {
   const sim::EffectKind* kind = sim::find_effect(injected.simulated);
   EXPECT_NE(kind, nullptr) << injected.simulated;
   if (kind == nullptr) return {};
-  sim::Random random(5);
+  sim::Random random(seed);
   config.disturbances = {kind->make(injected.size, random)};
   const sim::SimulatedRun run = sim::simulate_recording(config, drive);
   EXPECT_GT(run.least_clearance, 0.2);
@@ -133,6 +135,34 @@ INSTANTIATE_TEST_SUITE_P(Simulated, NamesTheEffect,
                          [](const auto& tested) {
                            return std::string(tested.param.name) + "_" + std::to_string(tested.index);
                          });
+
+/// Robots of which a second effect was reported beside the one that they have.
+struct Lone {
+  std::uint64_t seed;
+  Injected injected;
+};
+
+std::ostream& operator<<(std::ostream& out, const Lone& lone) { return out << lone.injected; }
+
+class LoneEffect : public ::testing::TestWithParam<Lone> {};
+
+TEST_P(LoneEffect, gets_its_name_and_no_second_effect_for_the_rest) {
+  const Lone& lone = GetParam();
+  SCOPED_TRACE("seed " + std::to_string(lone.seed));
+  sim::SimulationConfig config = sim::standard_config(lone.seed);
+  const std::vector<sim::Manoeuvre> pattern = sim::guided_pattern();
+  config.duration = sim::total_duration(pattern);
+  const Solved drive = solved(lone.injected, config, sim::follow(config.nominal, pattern), lone.seed);
+  expect_wheels_right(drive);
+  EXPECT_TRUE(testing::is_told(drive.result, lone.injected.name)) << testing::told(drive.result);
+  EXPECT_EQ(drive.result.effects.size(), 1U) << testing::told(drive.result);
+  EXPECT_FALSE(drive.result.unexplained) << testing::told(drive.result);
+}
+
+INSTANTIATE_TEST_SUITE_P(Simulated, LoneEffect,
+                         ::testing::Values(Lone{4202, {"rim_growth", 0.02, "speed_dependent_radius"}},
+                                           Lone{4212, {"missed_counts", 0.03, "tick_loss"}}),
+                         [](const auto& tested) { return std::string(tested.param.injected.simulated); });
 
 /// Forward only, at one speed, in wide turns: few scans face each other, and few motions part two causes.
 class LazyDrive : public ::testing::TestWithParam<Injected> {};
