@@ -23,7 +23,7 @@ std::string key_of(const vehicle::Effect& effect) {
 
 /// What distinguishes a basis from others of the same dependence that are candidates of their own; empty for
 /// all that are shapes of one dependence.
-constexpr auto kind_of = []<typename Kind>(const Kind& basis) -> std::string {
+constexpr auto kKindOf = []<typename Kind>(const Kind& basis) -> std::string {
   if constexpr (std::is_same_v<Kind, terms::Cycle>) return "/cycle " + std::to_string(basis.period);
   if constexpr (std::is_same_v<Kind, terms::Harmonics>) return "/harmonic " + std::to_string(basis.only);
   if constexpr (std::is_same_v<Kind, terms::Wave>)
@@ -35,7 +35,7 @@ constexpr auto kind_of = []<typename Kind>(const Kind& basis) -> std::string {
 };
 
 std::string key_of(const vehicle::Effect& effect, const terms::SmoothTerm& smooth) {
-  return effect.name() + (smooth.with_motion ? "/pace" : "") + std::visit(kind_of, smooth.basis);
+  return effect.name() + (smooth.with_motion ? "/pace" : "") + std::visit(kKindOf, smooth.basis);
 }
 
 bool belongs_to_one_recording(const vehicle::Effect& effect) {
