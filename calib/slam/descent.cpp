@@ -3,24 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/slam/settings.hpp"
+
 namespace odomcalib::calib::slam {
 namespace {
 
-constexpr double kFirstLambda = 1e-4;     // beside a diagonal scaled to 1
-constexpr double kLargestLambda = 1e12;   // steps are rounding then
-constexpr double kSlightLambda = 1e-3;    // a small step says nothing about the slope under more damping
-constexpr double kShortestStep = 1e-6;    // of the full step, in the line search
-constexpr double kSufficientFall = 1e-4;  // of the promised fall (Armijo)
-constexpr double kFairFall = 0.75;        // of the promised fall: the linear model holds
-constexpr double kSmallestMove = 1e-13;   // m or rad, beside coordinates of size 1
-constexpr double kChi2Rounding = 1e-12;   // of chi2, relative: smaller falls cannot be separated from none
-constexpr double kSteadyRate = 0.1;       // falls that shrink at least this fast may be extrapolated
+constexpr double kSmallestMove = 1e-13;  // m or rad, beside coordinates of size 1
+constexpr double kChi2Rounding = 1e-12;  // of chi2, relative: smaller falls cannot be separated from none
 
 /// Damping after Nielsen (1999), "Damping parameter in Marquardt's method": falls smoothly with the quality
 /// of the prediction, rises ever faster while steps fail.
 class Damping {
  public:
-  explicit Damping(bool on) : lambda_(on ? kFirstLambda : 0.0) {}
+  explicit Damping(bool on) : lambda_(on ? settings::kFirstLambda : 0.0) {}
   [[nodiscard]] double lambda() const { return lambda_; }
   void accepted(double quality) {
     lambda_ *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * quality - 1.0, 3));
@@ -39,7 +34,7 @@ class Damping {
 /// What is left to gain, judged from how fast the last two falls shrank.
 double left_to_gain(double fall_before, double fall) {
   const double rate = fall / fall_before;
-  return rate >= 0.0 && rate < kSteadyRate ? fall * rate / (1.0 - rate) : std::abs(fall);
+  return rate >= 0.0 && rate < settings::kSteadyRate ? fall * rate / (1.0 - rate) : std::abs(fall);
 }
 
 double largest_coordinate(const Placement& at) {
@@ -92,7 +87,7 @@ class Run {
     report({trial.chi2, move * trial.length, damping_.lambda(), trial.accepted});
     const bool flat =
         !(promised > options_.tolerance * chi2_) || move <= kSmallestMove * largest_coordinate(at_);
-    if (flat && damping_.lambda() <= kSlightLambda) result_.state = GraphState::converged;
+    if (flat && damping_.lambda() <= settings::kSlightLambda) result_.state = GraphState::converged;
     if (trial.accepted)
       take(std::move(trial), promised);
     else
@@ -119,9 +114,9 @@ class Run {
       Trial trial = moved(step, length);
       // The model is a parabola with its vertex at the full step.
       const double fall = promised * length * (2.0 - length);
-      if (!(chi2_ - trial.chi2 >= kFairFall * fall)) settle_positions(trial);
-      trial.accepted = chi2_ - trial.chi2 >= kSufficientFall * fall;
-      if (trial.accepted || length < kShortestStep) return trial;
+      if (!(chi2_ - trial.chi2 >= settings::kFairFall * fall)) settle_positions(trial);
+      trial.accepted = chi2_ - trial.chi2 >= settings::kSufficientFall * fall;
+      if (trial.accepted || length < settings::kShortestStep) return trial;
     }
   }
 
@@ -143,7 +138,7 @@ class Run {
     const double fall = chi2_ - trial.chi2;
     const bool near = std::abs(fall) > kChi2Rounding * chi2_ &&
                       left_to_gain(fall_, fall) <= options_.tolerance * trial.chi2;
-    if (near && trial.length == 1.0 && damping_.lambda() <= kSlightLambda)
+    if (near && trial.length == 1.0 && damping_.lambda() <= settings::kSlightLambda)
       result_.state = GraphState::converged;
     if (damping_.lambda() > 0.0) damping_.accepted(fall / promised);
     fall_ = fall;
@@ -164,7 +159,7 @@ class Run {
       result_.state = GraphState::stalled;
     } else {
       damping_.rejected();
-      if (damping_.lambda() > kLargestLambda) result_.state = GraphState::stalled;
+      if (damping_.lambda() > settings::kLargestLambda) result_.state = GraphState::stalled;
     }
   }
 

@@ -6,11 +6,10 @@
 #include "calib/slam/connectivity.hpp"
 #include "calib/slam/edge_error.hpp"
 #include "calib/slam/loops.hpp"
+#include "calib/slam/settings.hpp"
 
 namespace odomcalib::calib::slam {
 namespace {
-
-constexpr std::size_t kWorstEdges = 5;
 
 void count_vertices_and_edges(const PoseGraph& graph, GraphInfo& info) {
   for (const GraphVertex& vertex : graph.vertices) {
@@ -35,7 +34,7 @@ std::vector<WorstEdge> worst_edges(const PoseGraph& graph, const Placement& at) 
   for (std::size_t k = 0; k < graph.edges.size(); ++k) edges.push_back({k, chi2(graph.edges[k], at)});
   std::stable_sort(edges.begin(), edges.end(),
                    [](const WorstEdge& a, const WorstEdge& b) { return a.chi2 > b.chi2; });
-  edges.resize(std::min(edges.size(), kWorstEdges));
+  edges.resize(std::min(edges.size(), settings::kWorstEdges));
   return edges;
 }
 

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "calib/math/se2.hpp"
+#include "calib/slam/settings.hpp"
 
 namespace odomcalib::calib::slam {
 
 struct KeyframeSpacing {
-  double distance = 0.5;  ///< m of travel, or ...
-  double rotation = 0.5;  ///< rad turned either way
+  double distance = settings::kKeyframeDistance_m;    ///< m of travel, or ...
+  double rotation = settings::kKeyframeRotation_rad;  ///< rad turned either way
 };
 
 /// The first pose, and each after which one of the two is reached since the last one chosen. Travel and turn

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "calib/matching/point_to_line.hpp"
+#include "calib/matching/settings.hpp"
+#include "calib/slam/settings.hpp"
 
 namespace odomcalib::calib::slam {
 
@@ -29,13 +31,15 @@ struct LoopMatch {
 };
 
 struct LoopCheckOptions {
-  double range_noise = 0.01;    ///< m
-  double half_width = 1.0;      ///< m, of the search for the motion
-  double half_angle = 0.5;      ///< rad
-  double min_overlap = 0.55;    ///< share of the scan's lines that find their partner
-  double max_intrusion = 0.08;  ///< share of points of one scan in what the other saw as free
-  double rival =
-      0.97;  ///< a far pose that fits this well compared with the best one makes the match ambiguous
+  double range_noise = matching::settings::kUsualRangeNoise_m;  ///< m
+  double half_width = settings::kLoopHalfWidth_m;               ///< m, of the search for the motion
+  double half_angle = settings::kLoopHalfAngle_rad;             ///< rad
+  /// Share of the scan's lines that find their partner.
+  double min_overlap = settings::kLoopOverlap;
+  /// Share of points of one scan in what the other saw as free.
+  double max_intrusion = settings::kMostIntrusion;
+  /// A far pose that fits this well compared with the best one makes the match ambiguous.
+  double rival = settings::kRivalScore;
 };
 
 /// Searches for the motion about `guess`, refines it and questions the result.

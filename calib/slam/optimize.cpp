@@ -7,12 +7,10 @@
 #include "calib/slam/descent.hpp"
 #include "calib/slam/first_guess.hpp"
 #include "calib/slam/loops.hpp"
+#include "calib/slam/settings.hpp"
 
 namespace odomcalib::calib::slam {
 namespace {
-
-/// A good first guess needs three to five steps. One that needs more is not as good as it might be.
-constexpr std::size_t kManyIterations = 8;
 
 std::string name_of(const GraphVertex& vertex) {
   return (vertex.kind == VertexKind::pose ? "pose " : "point ") + std::to_string(vertex.id);
@@ -50,7 +48,7 @@ class Problem {
     return descend(graph_, places_, guess(start), options, observer);
   }
   [[nodiscard]] bool looks_wrong(const Descent& descent) const {
-    return descent.state != GraphState::converged || descent.iterations.size() > kManyIterations ||
+    return descent.state != GraphState::converged || descent.iterations.size() > settings::kManyIterations ||
            loops_with_a_turn_too_much(graph_, neighbours_, descent.at) > 0;
   }
   [[nodiscard]] const PoseGraph& graph() const { return graph_; }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/slam/settings.hpp"
 #include "proto/recording/pose_graph.hpp"
 
 namespace odomcalib::calib::slam {
@@ -41,8 +42,8 @@ struct GraphOptions {
   /// Tried first. Others follow where the result looks like a false minimum, unless a method is named too.
   GraphStart start = GraphStart::automatic;
   GraphMethod method = GraphMethod::automatic;
-  int max_iterations = 100;
-  double tolerance = 1e-10;  ///< of chi2, relative: what may be left to gain
+  int max_iterations = settings::kMostIterations;
+  double tolerance = settings::kGraphTolerance;  ///< of chi2, relative: what may be left to gain
 };
 
 struct GraphIteration {

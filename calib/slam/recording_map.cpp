@@ -7,16 +7,12 @@
 #include "calib/matching/probability_grid.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/scan_surfaces.hpp"
+#include "calib/slam/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "calib/wheels/nominal_base.hpp"
 
 namespace odomcalib::calib::slam {
 namespace {
-
-constexpr double kFinestCell = 0.05;      ///< m
-constexpr double kMostCells = 2000.0;     ///< from the origin to the map's edge: 64 MB
-constexpr double kOccupied = 0.6;         ///< probability; one beam that ended there says 0.7
-constexpr double kFarthestReading = 1e3;  ///< m from the origin; beyond it no map is drawn
 
 /// Scans of the first sensor during which the wheels are known, with the lidar's pose by odometry.
 struct Instants {
@@ -72,16 +68,17 @@ std::vector<Eigen::Vector2d> seen_in_map(const std::vector<matching::Surface>& s
     const auto here = seen_from(graph.vertices[k], surfaces[k]);
     seen.insert(seen.end(), here.begin(), here.end());
   }
-  std::erase_if(seen, [](const auto& p) { return !(p.cwiseAbs().maxCoeff() < kFarthestReading); });
+  std::erase_if(seen,
+                [](const auto& p) { return !(p.cwiseAbs().maxCoeff() < settings::kFarthestReading_m); });
   return seen;
 }
 
 matching::GridOptions grid_about(const std::vector<Eigen::Vector2d>& seen) {
   matching::GridOptions options;
-  options.half_size = kFinestCell;
+  options.half_size = settings::kFinestCell_m;
   for (const Eigen::Vector2d& p : seen)
-    options.half_size = std::max(options.half_size, p.cwiseAbs().maxCoeff() + kFinestCell);
-  options.cell = std::max(kFinestCell, options.half_size / kMostCells);
+    options.half_size = std::max(options.half_size, p.cwiseAbs().maxCoeff() + settings::kFinestCell_m);
+  options.cell = std::max(settings::kFinestCell_m, options.half_size / settings::kMostCells);
   return options;
 }
 
@@ -108,7 +105,8 @@ void draw_map(const std::vector<matching::Surface>& surfaces, RecordingMap& map)
   map.cell = options.cell;
   map.last_scan = seen_from(map.made.graph.vertices[surfaces.size() - 1], surfaces.back());
   map.occupied = cells_seen(seen, options.cell);
-  std::erase_if(map.occupied, [&grid](const auto& centre) { return grid.probability(centre) < kOccupied; });
+  std::erase_if(map.occupied,
+                [&grid](const auto& centre) { return grid.probability(centre) < settings::kOccupied; });
 }
 
 }  // namespace

@@ -4,14 +4,14 @@
 
 #include "calib/slam/edge_error.hpp"
 #include "calib/slam/optimize.hpp"
+#include "calib/slam/settings.hpp"
 
 namespace odomcalib::calib::slam {
 namespace {
 
-constexpr double kCut = 2.385;  ///< sigma; 95 % efficiency at the normal distribution
-constexpr int kRounds = 10;     ///< the weights change little from then on
-
-double cauchy_weight(double chi2) { return 1.0 / (1.0 + chi2 / (kCut * kCut)); }
+double cauchy_weight(double chi2) {
+  return 1.0 / (1.0 + chi2 / (settings::kCauchyCut * settings::kCauchyCut));
+}
 
 /// Weighs every edge by how far it is from the graph as it lies.
 void weigh(PoseGraph& graph, const std::vector<GraphEdge>& as_measured) {
@@ -27,7 +27,7 @@ void weigh(PoseGraph& graph, const std::vector<GraphEdge>& as_measured) {
 
 bool settle_robustly(PoseGraph& graph) {
   PoseGraph weighed = graph;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < settings::kWeightRounds; ++round) {
     if (!optimize_graph(weighed, {.start = GraphStart::file}).is_usable()) return false;
     weigh(weighed, graph.edges);
   }

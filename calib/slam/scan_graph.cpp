@@ -9,32 +9,15 @@
 #include "calib/slam/odometry_correction.hpp"
 #include "calib/slam/optimize.hpp"
 #include "calib/slam/robust_weights.hpp"
+#include "calib/slam/settings.hpp"
 
 namespace odomcalib::calib::slam {
 namespace {
 
-constexpr double kTried = 4.0;         ///< places that a keyframe is compared with, per least search window
-constexpr double kAllRound = 5.2;      ///< rad (300 degrees); what sees more sees the same in every direction
-constexpr std::size_t kAbout = 2;      ///< keyframes before and after that show the same place
-constexpr std::size_t kApart = 3;      ///< keyframes between two of them
-constexpr std::size_t kWait = 5;       ///< keyframes within which a loop must be confirmed
-constexpr std::size_t kSamePlace = 8;  ///< keyframes between what two loops that confirm each other lead to
-constexpr double kAgreement = 0.15;    ///< m, and with half the number rad, between two loops
-constexpr double kWidest = 3.0;        ///< m, of the search
-constexpr double kWidestAngle = 0.8;   ///< rad
-constexpr double kMostChi2 = 30.0;     ///< of a new loop after settling; three degrees of freedom
-/// m; neighbouring matches err together, which their covariance ignores. This and the next are what most
-/// edges of the Intel lab's graph leave; the few that leave more lose weight.
-constexpr double kMotionFloor = 2e-3;
-constexpr double kRotationFloor = 1.5e-3;  ///< rad
-constexpr double kNeighbourOverlap =
-    0.25;  ///< share of lines; doors and corners hide much from one step to the next
-constexpr double kMostFromOdometry = 0.5;  ///< m and rad between a match of neighbours and odometry
-constexpr double kMostSigmas = 6.0;        ///< the same in deviations of odometry, as learnt so far
-
 std::array<double, 6> information_of(const Eigen::Matrix3d& covariance) {
-  const Eigen::Matrix3d floor = Eigen::Vector3d(kMotionFloor * kMotionFloor, kMotionFloor * kMotionFloor,
-                                                kRotationFloor * kRotationFloor)
+  const Eigen::Matrix3d floor = Eigen::Vector3d(settings::kMotionFloor_m * settings::kMotionFloor_m,
+                                                settings::kMotionFloor_m * settings::kMotionFloor_m,
+                                                settings::kMotionFloor_rad * settings::kMotionFloor_rad)
                                     .asDiagonal();
   const Eigen::Matrix3d i = (covariance + floor).ldlt().solve(Eigen::Matrix3d::Identity());
   return {i(0, 0), i(0, 1), i(0, 2), i(1, 1), i(1, 2), i(2, 2)};
@@ -97,8 +80,8 @@ class Builder {
       out_.graph.edges.push_back(edge);
       at = compose(pose(k - 1), math::Pose{edge.motion[0], edge.motion[1], edge.motion[2]});
       const math::Pose step = between(pose(k - 1), at);
-      way_.push_back(way_.back() +
-                     std::max(std::hypot(step.x, step.y), 0.5 * std::abs(math::wrap_angle(step.yaw))));
+      way_.push_back(way_.back() + std::max(std::hypot(step.x, step.y),
+                                            settings::kTurnLever_m * std::abs(math::wrap_angle(step.yaw))));
     } else {
       way_.push_back(0.0);
     }
@@ -133,7 +116,8 @@ class Builder {
   /// As far as odometry is known by now.
   [[nodiscard]] bool agrees(const math::Pose& guess, const math::Pose& motion) const {
     const math::Pose apart = between(guess, motion);
-    const Eigen::Vector3d limit = (kMostSigmas * correction_.sigma()).cwiseMin(kMostFromOdometry);
+    const Eigen::Vector3d limit =
+        (settings::kMostOdometrySigmas * correction_.sigma()).cwiseMin(settings::kMostFromOdometry);
     return std::abs(apart.x) < limit(0) && std::abs(apart.y) < limit(1) &&
            std::abs(math::wrap_angle(apart.yaw)) < limit(2);
   }
@@ -146,7 +130,7 @@ class Builder {
   [[nodiscard]] StepMatch match_neighbour(std::size_t k, const math::Pose& guess) const {
     matching::MatchOptions match;
     match.range_noise = options_.loop.range_noise;
-    match.min_overlap = kNeighbourOverlap;
+    match.min_overlap = settings::kNeighbourOverlap;
     match.guess_information = odometry_covariance().ldlt().solve(Eigen::Matrix3d::Identity());
     const matching::MatchResult found = match_point_to_line(*references_[k - 1], surface(k), guess, match);
     if (found.is_usable()) return {{true, "", found.motion, found.covariance, found.overlap}};
@@ -155,8 +139,8 @@ class Builder {
           {true, "", found.motion, with_odometry(found.information, match.guess_information), found.overlap},
           true};
     LoopCheckOptions narrow = options_.loop;
-    narrow.half_width = narrow.half_angle = kMostFromOdometry;
-    narrow.min_overlap = kNeighbourOverlap;
+    narrow.half_width = narrow.half_angle = settings::kMostFromOdometry;
+    narrow.min_overlap = settings::kNeighbourOverlap;
     return {match_loop(*references_[k - 1], surface(k), guess, narrow)};
   }
 
@@ -174,14 +158,15 @@ class Builder {
   [[nodiscard]] double reach(std::size_t k) const {
     const double way = way_[k] - closed_at_;
     const double wander = options_.drift * (std::sqrt(way) + std::pow(way, 1.5) / std::sqrt(3.0));
-    return std::min(options_.loop.half_width + wander, kWidest);
+    return std::min(options_.loop.half_width + wander, settings::kWidestSearch_m);
   }
 
   /// Of two scans with a limited view, taken in directions that are `turned` apart, whether each sees half of
   /// what the other does.
   [[nodiscard]] bool share_view(std::size_t j, std::size_t k, double turned) const {
     const double view = std::min(views_[j], views_[k]);
-    return view > kAllRound || std::abs(math::wrap_angle(turned)) < 0.5 * view + kWidestAngle;
+    return view > settings::kAllRoundView_rad ||
+           std::abs(math::wrap_angle(turned)) < settings::kSharedView * view + settings::kWidestSearch_rad;
   }
 
   /// The nearest ones, some keyframes apart: more of them the less the graph knows where this is.
@@ -192,16 +177,17 @@ class Builder {
       const math::Pose apart = between(pose(j), pose(k));
       const double distance = std::hypot(apart.x, apart.y);
       if (distance < reach(k) && share_view(j, k, apart.yaw))
-        near.emplace_back(distance + 0.5 * std::abs(math::wrap_angle(apart.yaw)), j);
+        near.emplace_back(distance + settings::kTurnLever_m * std::abs(math::wrap_angle(apart.yaw)), j);
     }
     std::sort(near.begin(), near.end());
     std::vector<std::size_t> places;
     for (const auto& [distance, j] : near) {
       const bool close = std::any_of(places.begin(), places.end(), [j = j](std::size_t other) {
-        return (other > j ? other - j : j - other) < kApart;
+        return (other > j ? other - j : j - other) < settings::kPlacesApart;
       });
       if (!close) places.push_back(j);
-      if (static_cast<double>(places.size()) >= kTried * reach(k) / options_.loop.half_width) break;
+      if (static_cast<double>(places.size()) >= settings::kPlacesTried * reach(k) / options_.loop.half_width)
+        break;
     }
     return places;
   }
@@ -209,8 +195,8 @@ class Builder {
   /// What the keyframes next to j saw, in its frame, without those next to k.
   [[nodiscard]] std::vector<Eigen::Vector2d> seen_about(std::size_t j, std::size_t k) const {
     std::vector<Eigen::Vector2d> points;
-    const std::size_t last = std::min(j + kAbout, k - 1);
-    for (std::size_t i = j > kAbout ? j - kAbout : 0; i <= last; ++i) {
+    const std::size_t last = std::min(j + settings::kSamePlaceAbout, k - 1);
+    for (std::size_t i = j > settings::kSamePlaceAbout ? j - settings::kSamePlaceAbout : 0; i <= last; ++i) {
       if (i == j) continue;
       const math::Frame frame(between(pose(j), pose(i)));
       for (const matching::SurfacePoint& point : surface(i).points)
@@ -222,8 +208,8 @@ class Builder {
   void look(std::size_t j, std::size_t k) {
     LoopCheckOptions check = options_.loop;
     check.half_width = reach(k);
-    check.half_angle =
-        std::min(check.half_angle + options_.drift * std::sqrt(way_[k] - closed_at_), kWidestAngle);
+    check.half_angle = std::min(check.half_angle + options_.drift * std::sqrt(way_[k] - closed_at_),
+                                settings::kWidestSearch_rad);
     const math::Pose guess = between(pose(j), pose(k));
     const Loop loop{j, k, match_loop(*references_[j], surface(k), guess, check, seen_about(j, k))};
     if (!loop.match.ok) return refuse(loop, loop.match.reason);
@@ -237,7 +223,7 @@ class Builder {
     bool confirmed = false;
     std::vector<Loop> still;
     for (Loop& earlier : waiting_) {
-      if (earlier.to + kWait < loop.to)
+      if (earlier.to + settings::kConfirmedWithin < loop.to)
         refuse(earlier, "not confirmed");
       else if (earlier.to != loop.to && agree(earlier, loop))
         confirmed = tie(earlier) || confirmed;
@@ -253,12 +239,14 @@ class Builder {
 
   [[nodiscard]] bool agree(const Loop& a, const Loop& b) const {
     const std::size_t apart = a.from > b.from ? a.from - b.from : b.from - a.from;
-    if (apart > kSamePlace && size_of(between(pose(a.from), pose(b.from))) > 1.0) return false;
+    if (apart > settings::kSamePlaceKeyframes &&
+        size_of(between(pose(a.from), pose(b.from))) > settings::kSamePlace_m)
+      return false;
     const math::Pose by_a = compose(compose(between(pose(b.from), pose(a.from)), a.match.motion),
                                     between(pose(a.to), pose(b.to)));
     const math::Pose error = between(by_a, b.match.motion);
-    return std::hypot(error.x, error.y) < kAgreement &&
-           std::abs(math::wrap_angle(error.yaw)) < 0.5 * kAgreement;
+    return std::hypot(error.x, error.y) < settings::kLoopsAgree_m &&
+           std::abs(math::wrap_angle(error.yaw)) < settings::kLoopsAgree_rad;
   }
 
   /// The edge stays if the graph can live with it.
@@ -268,7 +256,7 @@ class Builder {
     const GraphSummary summary = optimize_graph(out_.graph);
     PoseGraph alone = out_.graph;
     alone.edges = {out_.graph.edges.back()};
-    if (!summary.is_usable() || graph_chi2(alone) > kMostChi2) {
+    if (!summary.is_usable() || graph_chi2(alone) > settings::kMostLoopChi2) {
       out_.graph = before;
       refuse(loop, "contradicts the graph");
       return false;

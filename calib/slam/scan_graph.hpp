@@ -11,16 +11,20 @@
 
 #include "calib/slam/keyframes.hpp"
 #include "calib/slam/loop_check.hpp"
+#include "calib/slam/settings.hpp"
 #include "proto/recording/pose_graph.hpp"
 
 namespace odomcalib::calib::slam {
 
 struct ScanGraphOptions {
   KeyframeSpacing spacing;
-  LoopCheckOptions loop;        ///< window: of the least search; it grows with the way since the last loop
-  double min_way_round = 4.0;   ///< m of path (or radians times 0.5 m) before a place counts as seen again
-  double drift = 0.04;          ///< m and rad of error that matches and odometry gather per root of a metre
-  double odometry_sigma = 0.1;  ///< m and rad per step, where a match fails and odometry stands in
+  LoopCheckOptions loop;  ///< window: of the least search; it grows with the way since the last loop
+  /// m of path, turns counted, before a place counts as seen again.
+  double min_way_round = settings::kLeastWayRound_m;
+  /// m and rad of error that matches and odometry gather per root of a metre.
+  double drift = settings::kDrift;
+  /// m and rad per step, where a match fails and odometry stands in.
+  double odometry_sigma = settings::kOdometrySigma;
 };
 
 /// How an edge came about.
