@@ -9,13 +9,15 @@
 #include <memory>
 #include <span>
 
+#include "calib/matching/settings.hpp"
 #include "calib/math/se2.hpp"
 
 namespace odomcalib::calib::matching {
 
 struct FieldOptions {
-  double cell = 0.1;  ///< m
-  double cap = 0.3;   ///< m; a point farther than this from the reference scores nothing, however far it is
+  double cell = settings::kFieldCell_m;  ///< m
+  /// m; a point farther than this from the reference scores nothing, however far it is.
+  double cap = settings::kFieldCap_m;
 };
 
 /// A rectangle of cells.

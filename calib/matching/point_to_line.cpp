@@ -96,7 +96,8 @@ bool lies_on(const Wall& wall, const Eigen::Vector2d& moved, const Eigen::Vector
 /// Both beams come from the same side of the wall, neither too flat, and the scan sees a line that is alike.
 bool faces(const Wall& wall, const SurfacePoint& partner, const SurfacePoint& point, const math::Frame& frame,
            double cosine) {
-  if (std::abs(cosine) < kMinWallIncidence || cosine * partner.beam.dot(wall.line.normal) < 0.0) return false;
+  if (std::abs(cosine) < settings::kFlattestWallBeam || cosine * partner.beam.dot(wall.line.normal) < 0.0)
+    return false;
   return !point.has_line ||
          std::abs(frame.rotate(point.normal).dot(wall.line.normal)) >= settings::kNormalsAgree;
 }
@@ -130,17 +131,19 @@ std::size_t count_lines(const Surface& surface) {
 }
 
 /// A few times the distance between neighbouring beams.
-double last_gate(const MatchOptions& options) { return std::max(0.10, 6.0 * options.range_noise); }
+double last_gate(const MatchOptions& options) {
+  return std::max(settings::kLastGate_m, settings::kLastGateSigmas * options.range_noise);
+}
 
 double gate_at(int iteration, const MatchOptions& options) {
-  return std::max(options.max_distance * std::pow(0.6, iteration), last_gate(options));
+  return std::max(options.max_distance * std::pow(settings::kGateShrinks, iteration), last_gate(options));
 }
 
 /// The variance of the distances in units of the expected one; 1 where chance alone may have made more of it.
 /// The median absolute deviation of n normal values scatters by 1.17 / sqrt(n) (Rousseeuw and Croux, JASA 88,
 /// 1993: efficiency 37 %).
 double excess_variance(double scale, std::size_t inliers) {
-  constexpr double kChance = 2.0 * 1.17;  // two deviations
+  constexpr double kChance = settings::kExcessSigmas * 1.17;
   const bool is_chance =
       scale < 1.0 + kChance / std::sqrt(static_cast<double>(std::max<std::size_t>(inliers, 1)));
   return is_chance ? 1.0 : scale * scale;

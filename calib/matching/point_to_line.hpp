@@ -7,6 +7,7 @@
 #include <string>
 
 #include "calib/matching/bearing_order.hpp"
+#include "calib/matching/settings.hpp"
 #include "calib/matching/surface.hpp"
 #include "calib/matching/walls.hpp"
 
@@ -22,11 +23,12 @@ enum class MatchStatus {
 std::string to_string(MatchStatus status);
 
 struct MatchOptions {
-  double range_noise = 0.01;           ///< m, standard deviation of one range
-  double max_distance = 0.5;           ///< m, first gate for correspondences
-  double min_overlap = 0.4;            ///< share of usable points that must find a partner
-  double min_eigenvalue_ratio = 0.01;  ///< of the translation information; below: degenerate
-  int max_iterations = 40;
+  double range_noise = settings::kUsualRangeNoise_m;  ///< m, standard deviation of one range
+  double max_distance = settings::kFirstDistance_m;   ///< m, first gate for correspondences
+  double min_overlap = settings::kLeastOverlap;       ///< share of usable points that must find a partner
+  /// Of the translation information; below: degenerate.
+  double min_eigenvalue_ratio = settings::kDegenerateRatio;
+  int max_iterations = settings::kMostSteps;
   bool guess_is_near = false;  ///< by a match before: the way from afar is spared
   /// Of the guess: x, y, yaw, in 1/m^2, 1/(m rad), 1/rad^2. Zero: the guess is a start and no prior. With it
   /// a scan does not slide along a corridor.

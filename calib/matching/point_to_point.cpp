@@ -3,13 +3,13 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/matching/settings.hpp"
 #include "calib/math/vector2.hpp"
 
 namespace odomcalib::calib::matching {
 namespace {
 
 constexpr double kStill = 1e-9;  ///< m and rad, a step that only rounding makes
-constexpr std::size_t kMinPoints = 3;
 
 struct Pairs {
   std::vector<Eigen::Vector2d> from, onto;
@@ -61,12 +61,13 @@ math::Pose align_points(std::span<const Eigen::Vector2d> from, std::span<const E
 IcpResult match_point_to_point(const NearestTree& reference, std::span<const Eigen::Vector2d> scan,
                                const math::Pose& guess, const IcpOptions& options) {
   IcpResult result{guess};
-  if (reference.points().size() < kMinPoints || scan.size() < kMinPoints) return result;
+  if (reference.points().size() < settings::kFewestIcpPoints || scan.size() < settings::kFewestIcpPoints)
+    return result;
   bool still = false;
   for (int i = 0; i < options.max_iterations && !still; ++i) {
     const Pairs pairs = correspond(reference, scan, result.motion, options.max_distance);
     result.overlap = static_cast<double>(pairs.from.size()) / static_cast<double>(scan.size());
-    if (pairs.from.size() < kMinPoints) return result;
+    if (pairs.from.size() < settings::kFewestIcpPoints) return result;
     result.rms = std::sqrt(pairs.squares / static_cast<double>(pairs.from.size()));
     const math::Pose next = align_points(pairs.from, pairs.onto);
     const math::Pose step = between(result.motion, next);

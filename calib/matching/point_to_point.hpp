@@ -7,14 +7,15 @@
 #include <span>
 
 #include "calib/matching/nearest.hpp"
+#include "calib/matching/settings.hpp"
 #include "calib/math/se2.hpp"
 
 namespace odomcalib::calib::matching {
 
 struct IcpOptions {
-  double max_distance = 0.5;  ///< m, correspondences farther apart are left out
-  double min_overlap = 0.4;   ///< share of the points that must find a partner
-  int max_iterations = 100;
+  double max_distance = settings::kIcpDistance_m;  ///< m, correspondences farther apart are left out
+  double min_overlap = settings::kIcpOverlap;      ///< share of the points that must find a partner
+  int max_iterations = settings::kMostIcpSteps;
 };
 
 struct IcpResult {

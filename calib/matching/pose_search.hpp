@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "calib/matching/likelihood_field.hpp"
+#include "calib/matching/settings.hpp"
 #include "calib/math/se2.hpp"
 
 namespace odomcalib::calib::matching {
@@ -20,9 +21,9 @@ namespace odomcalib::calib::matching {
 /// Poses about `centre`, both ends of each range included.
 struct SearchWindow {
   math::Pose centre{};
-  double half_width = 1.0;                ///< m, in x and in y
-  double half_angle = math::kPi / 4.0;    ///< rad
-  double angle_step = math::kPi / 120.0;  ///< rad; the step in x and y is the field's cell
+  double half_width = settings::kSearchHalfWidth_m;    ///< m, in x and in y
+  double half_angle = settings::kSearchHalfAngle_rad;  ///< rad
+  double angle_step = settings::kSearchAngleStep_rad;  ///< rad; the step in x and y is the field's cell
 };
 
 struct SearchResult {
@@ -43,9 +44,9 @@ SearchResult search_branch_and_bound(LikelihoodField& field, std::span<const Eig
                                      const SearchWindow& window);
 
 struct ClimbOptions {
-  double step = 0.05;                     ///< m, first step in x and y
-  double angle_step = math::kPi / 360.0;  ///< rad, first step in yaw
-  int halvings = 4;                       ///< finer steps after no neighbour is better
+  double step = settings::kClimbStep_m;          ///< m, first step in x and y
+  double angle_step = settings::kClimbStep_rad;  ///< rad, first step in yaw
+  int halvings = settings::kClimbHalvings;       ///< finer steps after no neighbour is better
 };
 
 /// To the better neighbour of six, again and again; never below the score of the start.

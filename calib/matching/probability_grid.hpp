@@ -6,16 +6,17 @@
 #include <span>
 #include <vector>
 
+#include "calib/matching/settings.hpp"
 #include "calib/math/se2.hpp"
 
 namespace odomcalib::calib::matching {
 
 struct GridOptions {
-  double cell = 0.05;       ///< m
-  double half_size = 15.0;  ///< m, the map is a square about the origin
-  double hit = 0.7;         ///< probability of a cell to be occupied, given that a beam ended in it
-  double pass = 0.4;        ///< the same, given that a beam passed it
-  double limit = 0.97;      ///< no cell becomes more certain, so that what moved can be unlearnt
+  double cell = settings::kGridCell_m;           ///< m
+  double half_size = settings::kGridHalfSize_m;  ///< m, the map is a square about the origin
+  double hit = settings::kGridHit;    ///< probability of a cell to be occupied, given that a beam ended in it
+  double pass = settings::kGridPass;  ///< the same, given that a beam passed it
+  double limit = settings::kGridLimit;  ///< no cell becomes more certain, so that what moved can be unlearnt
 };
 
 class ProbabilityGrid {

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 
+#include "calib/math/se2.hpp"
+
 namespace odomcalib::calib::matching::settings {
 
 // --- Both ways -------------------------------------------------------------------------------------------
@@ -24,6 +26,10 @@ inline constexpr double kLinesSettled = 0.02;
 
 /// m; what lies farther out is left out of the map. Chosen.
 inline constexpr double kLargestMap_m = 200.0;
+/// m, side of a cell. Chosen.
+inline constexpr double kFieldCell_m = 0.1;
+/// m; a point farther than this from the reference scores nothing, however far it is. Chosen.
+inline constexpr double kFieldCap_m = 0.3;
 
 // --- Point to line ---------------------------------------------------------------------------------------
 
@@ -43,6 +49,20 @@ inline constexpr int kDampedFrom = 12;
 inline constexpr double kPointsSettled = 0.5;
 /// sigma, without walls to refine on. Chosen.
 inline constexpr double kPointsSettledAlone = 0.05;
+/// m, first gate for correspondences. Chosen.
+inline constexpr double kFirstDistance_m = 0.5;
+/// Share of the gate that is left after a step. Chosen.
+inline constexpr double kGateShrinks = 0.6;
+/// m, and deviations of a range: the last gate, whichever is wider. Chosen.
+inline constexpr double kLastGate_m = 0.10, kLastGateSigmas = 6.0;
+/// Share of the usable points that must find a partner. Chosen.
+inline constexpr double kLeastOverlap = 0.4;
+/// Ratio of the translation information's eigenvalues, below which a direction is open. Chosen.
+inline constexpr double kDegenerateRatio = 0.01;
+/// Steps. Chosen.
+inline constexpr int kMostSteps = 40;
+/// Deviations of a median absolute deviation by which distances may scatter more by chance. Chosen.
+inline constexpr double kExcessSigmas = 2.0;
 
 // --- Surface ---------------------------------------------------------------------------------------------
 
@@ -73,6 +93,15 @@ inline constexpr double kBeamFloor_m = 1e-3;
 inline constexpr double kCertainSlope = 4.0;
 /// Of the range: some lidars' noise grows with it. Chosen.
 inline constexpr double kNoiseAfar = 0.03;
+/// rad, to either side, over which the bends are taken that show the noise of the ranges. Chosen: corners and
+/// edges lie in few of them.
+inline constexpr double kBendReach_rad = 1.25 * math::kPi / 180.0;
+/// Tangent of the flattest incidence at which a bend is looked at. Chosen: 45 degrees.
+inline constexpr double kSteepestBend = 1.0;
+/// Deviations at which the normal part of the bends is cut. Chosen.
+inline constexpr double kNormalCut = 2.5;
+/// Deviation of a normal distribution cut there. Derived from kNormalCut.
+inline constexpr double kOfCutNormal = 0.9546;
 
 // --- Walls -----------------------------------------------------------------------------------------------
 
@@ -98,5 +127,38 @@ inline constexpr double kSurfaceFloor_m = 1e-3;
 inline constexpr double kFlatCosine = 0.5;
 /// Standard deviations of the curvature of a wall that is none. Chosen.
 inline constexpr double kPlainArc = 5.0;
+/// Cosine of a beam on a wall; flatter beams say little and err much. Chosen: 80 degrees.
+inline constexpr double kFlattestWallBeam = 0.17;
+
+// --- Pose search ----------------------------------------------------------------------------------------
+
+/// m and rad, half of a search window without further knowledge. Chosen.
+inline constexpr double kSearchHalfWidth_m = 1.0, kSearchHalfAngle_rad = math::kPi / 4.0;
+/// rad, step in yaw. Chosen: one and a half degrees.
+inline constexpr double kSearchAngleStep_rad = math::kPi / 120.0;
+/// m and rad, first steps of a climb. Chosen: half a cell and half a degree.
+inline constexpr double kClimbStep_m = 0.05, kClimbStep_rad = math::kPi / 360.0;
+/// Finer steps of a climb after no neighbour is better. Chosen.
+inline constexpr int kClimbHalvings = 4;
+
+// --- Probability grid -----------------------------------------------------------------------------------
+
+/// m, side of a cell, and half the side of a map about the origin. Chosen.
+inline constexpr double kGridCell_m = 0.05, kGridHalfSize_m = 15.0;
+/// Probability of a cell to be occupied, given that a beam ended in it, and that one passed it. Chosen.
+inline constexpr double kGridHit = 0.7, kGridPass = 0.4;
+/// Probability that no cell exceeds, so that what moved can be unlearnt. Chosen.
+inline constexpr double kGridLimit = 0.97;
+
+// --- Point to point -------------------------------------------------------------------------------------
+
+/// Points in correspondence from which a motion is computed. Chosen.
+inline constexpr std::size_t kFewestIcpPoints = 3;
+/// m; correspondences farther apart are left out. Chosen as kFirstDistance_m.
+inline constexpr double kIcpDistance_m = 0.5;
+/// Share of the points that must find a partner. Chosen as kLeastOverlap.
+inline constexpr double kIcpOverlap = 0.4;
+/// Steps. Chosen.
+inline constexpr int kMostIcpSteps = 100;
 
 }  // namespace odomcalib::calib::matching::settings

@@ -77,7 +77,7 @@ std::size_t reach(const std::vector<SurfacePoint>& points, std::size_t i, int di
 bool acceptable(const Line& line, const SurfacePoint& point, double range_noise) {
   if (line.count < settings::kFewestLinePoints) return false;
   const double incidence = std::abs(line.normal.dot(point.beam));
-  if (incidence < 0.2) return false;
+  if (incidence < settings::kFlattestBeam) return false;
   return line.rms < settings::kLineNoise * std::hypot(range_noise * incidence, settings::kBeamFloor_m);
 }
 
@@ -158,7 +158,7 @@ std::optional<double> bend(const Scan& scan, std::size_t k, std::size_t lag) {
   const double whole = std::sin(before + after);
   const double slope =
       (u[0] / u[2] - 1.0) * u[1] / u[0] / (before + after);  // of the range, tangent of the incidence
-  if (std::abs(whole) < 1e-6 || std::abs(slope) > 1.0) return std::nullopt;
+  if (std::abs(whole) < 1e-6 || std::abs(slope) > settings::kSteepestBend) return std::nullopt;
   const double first = std::sin(after) / whole, last = std::sin(before) / whole;
   const double noise = std::hypot(u[1] * u[1], first * u[0] * u[0], last * u[2] * u[2]);
   return (u[1] - first * u[0] - last * u[2]) / noise;
@@ -166,10 +166,9 @@ std::optional<double> bend(const Scan& scan, std::size_t k, std::size_t lag) {
 
 /// Corners and edges lie in a part of all bends; over two and a half degrees few.
 void collect_bends(const Scan& scan, std::vector<double>& out) {
-  constexpr double kHalf = 1.25 * math::kPi / 180.0;
   const double step = angular_step(scan);
   if (!(step > 0.0)) return;
-  const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(kHalf / step)));
+  const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(settings::kBendReach_rad / step)));
   for (std::size_t k = lag; k + lag < scan.ranges.size(); ++k)
     if (const auto bent = bend(scan, k, lag)) out.push_back(std::abs(*bent));
 }
@@ -177,14 +176,13 @@ void collect_bends(const Scan& scan, std::vector<double>& out) {
 /// Standard deviation of the normal part of a list of sizes: root mean square of what lies within 2.5 of it,
 /// over that of a normal distribution cut there.
 double normal_part(const std::vector<double>& sizes) {
-  constexpr double kCut = 2.5, kOfCutNormal = 0.9546;
   double scale = math::kMadToSigma * math::median_of(sizes);
   for (int pass = 0; pass < 20; ++pass) {
     double sum = 0.0, count = 0.0;
     for (const double size : sizes)
-      if (size < kCut * scale) sum += size * size, count += 1.0;
+      if (size < settings::kNormalCut * scale) sum += size * size, count += 1.0;
     if (!(count > 0.0)) break;
-    scale = std::sqrt(sum / count) / kOfCutNormal;
+    scale = std::sqrt(sum / count) / settings::kOfCutNormal;
   }
   return scale;
 }

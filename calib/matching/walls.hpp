@@ -38,9 +38,6 @@ struct FittedLine {
 };
 FittedLine fit_line(const LineSums& sums);
 
-/// Cosine of the incidence (80 degrees): flatter beams say little and err much.
-inline constexpr double kMinWallIncidence = 0.17;
-
 /// Where a beam meets the line, along `line.direction()` from its centre, m. The reading's own noise moves
 /// its end along a slanted wall; what is chosen by where beams meet the wall is not chosen by its noise.
 /// @param end anywhere on the beam

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/matching/settings.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/sector_index.hpp"
 #include "calib/measurement/settings.hpp"
@@ -127,7 +128,8 @@ std::optional<std::size_t> WallMap::struck_by(const Eigen::Vector2d& from, const
     if (s < wall.low - settings::kShade_m || s > wall.high + settings::kShade_m) continue;
     nearest = range;
     const bool inside = s > wall.low && s < wall.high;
-    struck = inside && towards < -matching::kMinWallIncidence ? std::optional<std::size_t>(w) : std::nullopt;
+    struck = inside && towards < -matching::settings::kFlattestWallBeam ? std::optional<std::size_t>(w)
+                                                                        : std::nullopt;
   }
   return struck;
 }
