@@ -8,6 +8,7 @@
 
 #include "calib/estimation/settings.hpp"
 #include "calib/ingest/gaps.hpp"
+#include "calib/ingest/settings.hpp"
 #include "calib/math/cluster_robust.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/noise_estimate.hpp"
@@ -84,7 +85,7 @@ std::vector<Link> make_links(const PathData& data, const vehicle::EffectList& ef
   bool joined = false;
   for (std::size_t k = 0; k + 1 < data.scans.size(); ++k) {
     const double from = data.scans[k].time, to = data.scans[k + 1].time;
-    const bool whole = to - from < ingest::kMaxGap && data.model->track().covers(from, to);
+    const bool whole = to - from < ingest::settings::kMaxGap_s && data.model->track().covers(from, to);
     if (whole) {
       links.push_back(make_link(data, trajectory, base, k));
       links.back().follows = joined;

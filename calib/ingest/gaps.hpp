@@ -6,9 +6,6 @@
 
 namespace odomcalib::calib::ingest {
 
-/// Beyond this time between neighbouring scans or poses, s, the reference was interrupted.
-inline constexpr double kMaxGap = 2.0;
-
 /// @param times s, in time order
 bool has_gap(const std::vector<double>& times, std::size_t from, std::size_t to);
 

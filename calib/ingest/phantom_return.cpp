@@ -38,10 +38,9 @@ std::vector<Reading> readings_of(const std::vector<Scan>& scans, std::size_t fro
 
 /// Of the ten values next to one, five on either side.
 double usual_count(const std::vector<Reading>& readings, std::size_t place) {
-  constexpr std::size_t kBeside = 5;
   std::vector<double> counts{1.0};
-  for (std::size_t k = place - std::min(place, kBeside); k < std::min(place + kBeside + 1, readings.size());
-       ++k)
+  for (std::size_t k = place - std::min(place, settings::kPhantomBeside);
+       k < std::min(place + settings::kPhantomBeside + 1, readings.size()); ++k)
     if (k != place) counts.push_back(static_cast<double>(readings[k].count));
   return math::median_of(std::move(counts));
 }

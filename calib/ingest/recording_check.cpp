@@ -9,6 +9,7 @@
 
 #include "calib/ingest/gaps.hpp"
 #include "calib/ingest/pose_frame.hpp"
+#include "calib/ingest/settings.hpp"
 #include "calib/ingest/unit_check.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/significant.hpp"
@@ -73,14 +74,14 @@ double spacing(const Stream& stream) {
 
 std::optional<Error> too_seldom(const Recording& recording, const Stream& stream) {
   const double step = spacing(stream);
-  if (step <= kMaxGap) return std::nullopt;
+  if (step <= settings::kMaxGap_s) return std::nullopt;
   const std::string unit = unit_of_interval(step);
   if (!unit.empty())
     return Error{ErrorCode::format,
                  stream.name + " come every " + number(step) + " s: their times look like " + unit,
                  recording.name, "write every \"t\" in seconds"};
   return Error{ErrorCode::format, stream.name + " come every " + number(step) + " s only", recording.name,
-               "record them at least every " + number(kMaxGap) + " s"};
+               "record them at least every " + number(settings::kMaxGap_s) + " s"};
 }
 
 std::string span_text(const Stream& stream) {
@@ -99,11 +100,10 @@ std::optional<Error> clocks_apart(const Recording& recording, const Stream& tick
 
 template <typename Count>
 bool stands(const Recording& recording, Count count) {
-  constexpr std::int64_t kStanding = 2;  // counts that differ by no more are those of a wheel that stands
   const auto [low, high] =
       std::minmax_element(recording.ticks.begin(), recording.ticks.end(),
                           [&](const auto& a, const auto& b) { return count(a) < count(b); });
-  return count(*high) - count(*low) <= kStanding;
+  return count(*high) - count(*low) <= settings::kStandingCounts;
 }
 
 /// One recording may well be of a turn about a wheel.

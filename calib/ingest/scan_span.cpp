@@ -3,12 +3,11 @@
 #include <cmath>
 #include <cstddef>
 
+#include "calib/ingest/settings.hpp"
 #include "calib/math/se2.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
-
-constexpr double kAllRound = 6.1;  // rad (350 degrees)
 
 /// Angle from one beam to the next in the mean, rad; 0 with less than two.
 double mean_step(const Scan& scan) {
@@ -27,7 +26,8 @@ bool overstates_a_turn(const Scan& scan) {
 }
 
 bool sees_all_round(const Scan& scan) {
-  return mean_step(scan) * static_cast<double>(scan.ranges.size()) > kAllRound && !overstates_a_turn(scan);
+  return mean_step(scan) * static_cast<double>(scan.ranges.size()) > settings::kAllRoundScan_rad &&
+         !overstates_a_turn(scan);
 }
 
 }  // namespace odomcalib::calib::ingest

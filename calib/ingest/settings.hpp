@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
+
+#include "calib/matching/settings.hpp"
 
 namespace odomcalib::calib::ingest::settings {
 
@@ -29,12 +32,20 @@ inline constexpr double kSweepInOtherUnit = 20.0;
 inline constexpr double kSameSpan = 0.1;
 /// m, of a lidar from the middle of the axle. Chosen: larger robots are not driven by two wheels.
 inline constexpr double kFarthestLidar_m = 5.0;
+/// s, between neighbouring scans or poses, beyond which the reference was interrupted. Chosen.
+inline constexpr double kMaxGap_s = 2.0;
+/// Interval over the mean one, of samples that come at once. Chosen.
+inline constexpr double kSentAtOnce = 0.1;
 
 // --- Angles ----------------------------------------------------------------------------------------------
 
 /// Turns that the beams of one scan cover. Chosen: drivers repeat a few beams where turns overlap; what is
 /// stretched by a quarter is beyond.
 inline constexpr double kMostTurns = 1.15;
+/// rad that a scan spans whose sensor sees all round. Chosen: 350 degrees.
+inline constexpr double kAllRoundScan_rad = 6.1;
+/// Turns, of angles that look like degrees. Chosen.
+inline constexpr double kTurnsInDegrees = 4.0;
 
 // --- Ranges ----------------------------------------------------------------------------------------------
 
@@ -64,7 +75,9 @@ inline constexpr double kPhantomPeak = 15.0;
 inline constexpr std::size_t kPhantomParts = 8, kPhantomPartsNeeded = 6;
 
 /// Share of range_max from which a reading is no surface anyway (matching::far_limit). Derived from there.
-inline constexpr double kNearRangeMax = 0.97;
+inline constexpr double kNearRangeMax = 1.0 - matching::settings::kNoiseAfar;
+/// Neighbours on either side. Chosen.
+inline constexpr std::size_t kPhantomBeside = 5;
 
 // --- Poses -----------------------------------------------------------------------------------------------
 
@@ -77,5 +90,41 @@ inline constexpr std::size_t kFewestPoseSteps = 30;
 /// Derived: 0.64 where heading and way have nothing to do with each other; wheels slip by a few per cent, and
 /// a marker beside the middle of the axle moves sideways in turns.
 inline constexpr double kSidewaysAtLeast = 0.4, kSidewaysAtMost = 0.15;
+
+// --- Even stamps -----------------------------------------------------------------------------------------
+
+/// Stamps from which a period is looked for. Chosen.
+inline constexpr std::size_t kFewestStamps = 50;
+/// s, jitter up to which stamps are left as they are. Chosen: nothing moves so fast that it mattered.
+inline constexpr double kEvenEnough_s = 3e-4;
+/// Samples to either side whose middle is taken. Chosen.
+inline constexpr std::size_t kMiddleReach = 30;
+/// Deviations from their median of what belongs to it. Chosen: whatever follows a step is not part of it.
+inline constexpr double kMiddleSigmas = 3.0;
+/// Samples over which a period is measured. Chosen.
+inline constexpr std::size_t kPeriodSamples = 100;
+/// Mean interval over the usual one, up to which lost samples are counted. Chosen.
+inline constexpr double kFewLost = 3.0;
+/// Spread of the intervals, as a share of the usual one, up to which their number is certain. Chosen.
+inline constexpr double kCertainCount = 0.2;
+/// Times the usual interval: from the first on a sample was held up, and up to the second others follow at
+/// once. Chosen.
+inline constexpr double kHeldUp = 1.5, kFollowsAtOnce = 0.5;
+/// s, of jitter that is reported. Chosen.
+inline constexpr double kReportedJitter_s = 5e-3;
+
+// --- Contest of stamps -----------------------------------------------------------------------------------
+
+/// Rounds in which the errors that count and the share settle each other. Chosen.
+inline constexpr int kContestRounds = 5;
+/// Times the spread, of an error that counts in full. Chosen.
+inline constexpr double kContestLimit = 2.0;
+/// Share of the errors that speaks for even stamps, and deviations that it must be beyond. Chosen.
+inline constexpr double kEvenShare = 0.5, kEvenSigmas = 3.0;
+
+// --- Counts ----------------------------------------------------------------------------------------------
+
+/// Counts that differ by no more are those of a wheel that stands. Chosen.
+inline constexpr std::int64_t kStandingCounts = 2;
 
 }  // namespace odomcalib::calib::ingest::settings

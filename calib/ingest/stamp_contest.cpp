@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
 
 namespace odomcalib::calib::ingest {
@@ -35,12 +36,11 @@ double StampContest::spread(double share) const {
 }
 
 bool StampContest::is_for_even() const {
-  constexpr int kRounds = 5;
-  constexpr double kLimit = 2.0;  // times the spread
   if (errors_.empty()) return false;
   Share found{0.5, 0.0};
-  for (int round = 0; round < kRounds; ++round) found = share(kLimit * spread(found.value), found.value);
-  return found.value - 3.0 * found.deviation > 0.5;
+  for (int round = 0; round < settings::kContestRounds; ++round)
+    found = share(settings::kContestLimit * spread(found.value), found.value);
+  return found.value - settings::kEvenSigmas * found.deviation > settings::kEvenShare;
 }
 
 }  // namespace odomcalib::calib::ingest

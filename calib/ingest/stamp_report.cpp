@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "calib/ingest/settings.hpp"
 #include "calib/math/se2.hpp"
 #include "calib/terms/effects/factories.hpp"
 
@@ -15,10 +16,9 @@ std::string to_json(const StampReport& report) {
 }
 
 std::vector<std::string> remarks_on(const StampReport& report) {
-  constexpr double kWorthALook = 5e-3;  // s
   std::vector<std::string> remarks;
   const auto remark_on = [&](const std::string& what, double seconds) {
-    if (seconds > kWorthALook)
+    if (seconds > settings::kReportedJitter_s)
       remarks.push_back("stamps of the " + what + " jitter by " + std::to_string(std::lround(1e3 * seconds)) +
                         " ms although the motion shows that the " + what +
                         " were taken evenly: even times were used; stamp them where they are made");

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/ingest/settings.hpp"
 #include "calib/ingest/stamp_contest.hpp"
 #include "calib/math/median.hpp"
 
@@ -15,11 +16,11 @@ namespace {
 
 /// Of intervals between stamps, that of two samples which come at once, s; zero where most do anyway.
 double at_once(const std::vector<TickSample>& ticks) {
-  constexpr double kAtOnce = 0.1;  // of the usual interval
   std::vector<double> intervals = math::differences_of(stamps_of(ticks));
   if (intervals.empty()) return 0.0;
   const double mean = (ticks.back().t - ticks.front().t) / static_cast<double>(intervals.size());
-  return math::median_of(std::move(intervals)) > kAtOnce * mean ? kAtOnce * mean : 0.0;
+  return math::median_of(std::move(intervals)) > settings::kSentAtOnce * mean ? settings::kSentAtOnce * mean
+                                                                              : 0.0;
 }
 
 /// The same counts once more, at the same time, while the robot moves: sent twice.

@@ -102,7 +102,7 @@ std::optional<Error> too_many_turns(const Recording& recording) {
   const double sweep = math::median_of(std::move(sweeps));
   constexpr double kTurn = 2.0 * math::kPi;
   if (sweep <= settings::kMostTurns * kTurn) return std::nullopt;
-  const bool degrees = sweep > 4.0 * kTurn;
+  const bool degrees = sweep > settings::kTurnsInDegrees * kTurn;
   return wrong(recording,
                "a scan covers " + number(sweep) + " rad, " + number(sweep / kTurn) + " turns" +
                    (degrees ? ": its angles look like degrees" : ": its angles are stretched"),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calib/ingest/gaps.hpp"
+#include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/scan_surfaces.hpp"
@@ -20,7 +21,7 @@ std::vector<Eigen::Vector3d> steps_beyond_wheels(std::span<const PoseSample> pos
                                                  const PathOfWheels& wheels) {
   std::vector<Eigen::Vector3d> steps;
   for (std::size_t k = 1; k < poses.size(); ++k) {
-    if (poses[k].t - poses[k - 1].t > ingest::kMaxGap) continue;
+    if (poses[k].t - poses[k - 1].t > ingest::settings::kMaxGap_s) continue;
     steps.push_back(math::difference(between(pose_of(poses[k - 1]), pose_of(poses[k])),
                                      between(wheels(poses[k - 1].t), wheels(poses[k].t))));
   }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "calib/ingest/gaps.hpp"
+#include "calib/ingest/settings.hpp"
 #include "calib/matching/point_to_line.hpp"
 #include "calib/matching/surface.hpp"
 
@@ -50,7 +51,7 @@ ReferenceMotions of_poses(const Recording& recording, std::size_t most) {
   Collector collector;
   const auto& poses = recording.poses;
   for (std::size_t k = 1; k < std::min(poses.size(), most); ++k) {
-    if (poses[k].t - poses[k - 1].t > ingest::kMaxGap)
+    if (poses[k].t - poses[k - 1].t > ingest::settings::kMaxGap_s)
       collector.interrupt();
     else
       collector.add(poses[k - 1].t, poses[k].t, step_between(poses[k - 1], poses[k]));
@@ -91,7 +92,7 @@ class ScanFollower {
   void follow(const matching::MatchReference& from, const matching::MatchReference& to, double begin,
               double end) {
     const double step = end - begin;
-    if (!(step > 0.0) || step > ingest::kMaxGap) return lose();
+    if (!(step > 0.0) || step > ingest::settings::kMaxGap_s) return lose();
     matching::MatchOptions options;
     options.range_noise = range_noise_;
     auto match = match_point_to_line(from, to.surface(), scaled(velocity_, step), options);
