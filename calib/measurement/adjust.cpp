@@ -11,8 +11,6 @@
 namespace odomcalib::calib::measurement {
 namespace {
 
-constexpr double kPrior = 1e-6;  ///< relative to the largest, for walls that nobody strikes
-
 /// What one scan says about its pose and about what all scans share: shift and turn of each wall, and the
 /// error of the ranges.
 struct ScanTerms {
@@ -66,7 +64,8 @@ class Adjustment {
   /// Of the first unknowns alone.
   [[nodiscard]] Eigen::LDLT<Eigen::MatrixXd> factors(Eigen::Index count) const {
     Eigen::MatrixXd damped = matrix_.topLeftCorner(count, count);
-    damped.diagonal().head(of_walls_).array() += kPrior * matrix_.diagonal().head(of_walls_).maxCoeff();
+    damped.diagonal().head(of_walls_).array() +=
+        settings::kWallPrior * matrix_.diagonal().head(of_walls_).maxCoeff();
     return damped.ldlt();
   }
 

@@ -65,9 +65,8 @@ std::vector<bool> Dataset::fixed() const {
 }
 
 bool Dataset::is_measured_with(const Eigen::VectorXd& parameters) const {
-  constexpr double kNear = 1e-4;  // m, rad, s
   return parameters.size() == measured_with.size() &&
-         (parameters - measured_with).cwiseAbs().maxCoeff() < kNear;
+         (parameters - measured_with).cwiseAbs().maxCoeff() < settings::kSameParameters;
 }
 
 Result<Dataset> open_dataset(const ingest::Recordings& recordings) {

@@ -12,8 +12,6 @@
 namespace odomcalib::calib::measurement {
 namespace {
 
-constexpr std::array kTurns = {2.4, 1.2, 3.0, 0.7, 1.8};  // rad, wanted between the scans of a pair
-
 double turn_between(const math::Pose& a, const math::Pose& b) {
   return std::abs(math::wrap_angle(b.yaw - a.yaw));
 }
@@ -39,9 +37,11 @@ class Choice {
 
   /// All turns in equal numbers; a drive that has too few of some gives any of them.
   std::vector<HeadingPair> run() {
-    go_through([&](std::size_t from) { add(from, kTurns[chosen_.size() % kTurns.size()]); });
     go_through([&](std::size_t from) {
-      for (const double turn : kTurns)
+      add(from, settings::kWantedTurns_rad[chosen_.size() % settings::kWantedTurns_rad.size()]);
+    });
+    go_through([&](std::size_t from) {
+      for (const double turn : settings::kWantedTurns_rad)
         if (!used_[from]) add(from, turn);
     });
     return std::move(chosen_);
@@ -113,11 +113,10 @@ class Meeting {
  private:
   /// Of the readings near an index, the one on this wall whose beam meets it nearest to a place.
   [[nodiscard]] const matching::SurfacePoint* nearest_beam(std::size_t index, double place) const {
-    constexpr std::size_t kReach = 4;
     const matching::SurfacePoint* best = nullptr;
     double least = settings::kHeadingGate_m;
-    const std::size_t end = std::min(index + kReach + 1, surface_.points.size());
-    for (std::size_t k = index > kReach ? index - kReach : 0; k < end; ++k) {
+    const std::size_t end = std::min(index + settings::kBeamsBeside + 1, surface_.points.size());
+    for (std::size_t k = index > settings::kBeamsBeside ? index - settings::kBeamsBeside : 0; k < end; ++k) {
       const matching::SurfacePoint& point = surface_.points[k];
       if (walls_.of_point[k] != wall_ || !point.has_line) continue;
       const double off =
@@ -179,11 +178,11 @@ void fill(const ScanSurfaces& scans, HeadingPair& pair) {
 }  // namespace
 
 std::vector<HeadingPair> heading_pairs(const ScanSurfaces& scans, std::size_t most) {
-  constexpr std::size_t kFewest = 40;  // points
   std::vector<HeadingPair> pairs = Choice(scans, most).run();
   std::sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
   for (HeadingPair& pair : pairs) fill(scans, pair);
-  std::erase_if(pairs, [](const HeadingPair& pair) { return pair.points.size() < kFewest; });
+  std::erase_if(pairs,
+                [](const HeadingPair& pair) { return pair.points.size() < settings::kFewestHeadingPoints; });
   return pairs;
 }
 

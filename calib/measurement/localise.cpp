@@ -29,7 +29,9 @@ std::vector<RangeTerm> terms_within(const WallMap& map, const std::vector<Beam>&
   return terms;
 }
 
-double last_gate(const PlaceOptions& options) { return std::max(0.05, 6.0 * options.range_noise); }
+double last_gate(const PlaceOptions& options) {
+  return std::max(settings::kLastPlaceGate_m, settings::kLastPlaceGateSigmas * options.range_noise);
+}
 
 double robust_scale(const std::vector<RangeTerm>& terms) {
   std::vector<double> sizes;
@@ -39,8 +41,7 @@ double robust_scale(const std::vector<RangeTerm>& terms) {
 }
 
 bool is_apart(const math::Pose& a, const math::Pose& b) {
-  constexpr double kNear = 1e-3;  // m, rad
-  return math::difference(a, b).cwiseAbs().maxCoeff() > kNear;
+  return math::difference(a, b).cwiseAbs().maxCoeff() > settings::kSameStrikes;
 }
 
 /// One step, `share` of it taken; its whole length in sigmas.
@@ -99,7 +100,7 @@ Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const math:
   std::vector<Strike> struck;
   math::Pose cast_from;
   for (int i = 0; i < options.iterations && !place.converged; ++i) {
-    const double gate = std::max(options.gate * std::pow(0.4, i), last);
+    const double gate = std::max(options.gate * std::pow(settings::kPlaceGateShrinks, i), last);
     // A step so short leads few beams to another wall.
     if (i == 0 || is_apart(place.pose, cast_from)) {
       struck = map.strikes(beams, place.pose);

@@ -5,15 +5,17 @@
 #include <optional>
 #include <vector>
 
+#include "calib/matching/settings.hpp"
 #include "calib/measurement/range_error_terms.hpp"
+#include "calib/measurement/settings.hpp"
 #include "calib/measurement/wall_map.hpp"
 
 namespace odomcalib::calib::measurement {
 
 struct PlaceOptions {
-  double range_noise = 0.01;  ///< m
-  double gate = 0.3;          ///< m, largest difference of a range from what the map expects
-  int iterations = 12;
+  double range_noise = matching::settings::kUsualRangeNoise_m;  ///< m
+  double gate = settings::kPlaceGate_m;  ///< m, largest difference of a range from what the map expects
+  int iterations = settings::kMostPlaceSteps;
   RangeErrorTerms range_error = RangeErrorTerms::Zero();  ///< taken out of every reading
   /// m, where the sensor gives up; 0: nobody knows. Of walls near it only the readings come through that
   /// noise has shortened.

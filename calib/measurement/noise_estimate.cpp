@@ -46,10 +46,11 @@ struct Range {
   bool may_vanish;
 };
 
-constexpr std::array<Range, 4> kRanges = {{{&NoiseModel::process_rotation, 1e-5, 0.1, true},
-                                           {&NoiseModel::process_translation, 1e-5, 0.1, true},
-                                           {&NoiseModel::stamp_jitter, 2e-4, 0.1, true},
-                                           {&NoiseModel::matcher_scale, 0.2, 1.5, false}}};
+constexpr std::array<Range, 4> kRanges = {
+    {{&NoiseModel::process_rotation, settings::kLeastProcess, settings::kMostProcess, true},
+     {&NoiseModel::process_translation, settings::kLeastProcess, settings::kMostProcess, true},
+     {&NoiseModel::stamp_jitter, settings::kLeastJitter_s, settings::kMostJitter_s, true},
+     {&NoiseModel::matcher_scale, settings::kLeastMatcherScale, settings::kMostMatcherScale, false}}};
 
 /// Golden-section search on the logarithm, and zero where that is as good.
 void improve(const Observation& o, const Range& range, NoiseModel& noise) {
@@ -64,7 +65,7 @@ void improve(const Observation& o, const Range& range, NoiseModel& noise) {
   double d = a + ratio * (b - a);
   double at_c = value_at(c);
   double at_d = value_at(d);
-  while (b - a > 0.08) {
+  while (b - a > settings::kNoiseResolution) {
     if (at_c < at_d) {
       b = d;
       d = c;
@@ -119,7 +120,9 @@ std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseMod
   }
   std::array<double, 3> correlation{};
   for (std::size_t c = 0; c < 3; ++c)
-    if (weights[c] > 0.0) correlation[c] = std::clamp(products[c] / weights[c], -0.48, 0.3);
+    if (weights[c] > 0.0)
+      correlation[c] =
+          std::clamp(products[c] / weights[c], settings::kLeastCorrelation, settings::kMostCorrelation);
   return correlation;
 }
 

@@ -6,17 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "calib/measurement/settings.hpp"
 #include "calib/measurement/whitening.hpp"
 
 namespace odomcalib::calib::measurement {
 
-/// Degrees of freedom of the Student t distribution that stands for noise with outliers (failed matches,
-/// bumps).
-inline constexpr double kStudentDof = 4.0;
-
-/// Factor on squared distances that makes the t likelihood read normally distributed noise at its true size:
-/// the root f of E[(dof + 3) f q / (dof + f q)] = 3 for q ~ chi-squared with 3 degrees of freedom.
-inline constexpr double kStudentConsistency = 1.3229464;
+using settings::kStudentConsistency;
+using settings::kStudentDof;
 
 /// Maximises the t likelihood of the single pairs over matcher scale, process noise and stamp jitter by
 /// coordinate search; then the correlation of neighbours from what the jitter does not explain.

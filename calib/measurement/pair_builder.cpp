@@ -18,7 +18,7 @@ bool is_keyframe(const math::Pose& step, double elapsed, const PairOptions& opti
   const double travel = std::hypot(step.x, step.y);
   const double turn = std::abs(step.yaw);
   if (travel >= options.distance || turn >= options.rotation) return true;
-  return elapsed >= options.duration && (travel > 1e-3 || turn > 1e-3);
+  return elapsed >= options.duration && (travel > settings::kTurnedAtAll || turn > settings::kTurnedAtAll);
 }
 
 Eigen::Matrix3d diagonal_covariance(double position, double yaw) {

@@ -6,21 +6,25 @@
 #include <vector>
 
 #include "calib/measurement/sensor_pair.hpp"
+#include "calib/measurement/settings.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::measurement {
 
 struct PairOptions {
-  double distance = 0.15;  ///< m, a new keyframe after this travel ...
-  double rotation = 0.25;  ///< rad (14 degrees), ... or this rotation ...
-  double duration = 0.75;  ///< s, ... or this time, if the wheels turned at all
-  double min_overlap = 0.4;
+  double distance = settings::kPairDistance_m;    ///< m, a new keyframe after this travel ...
+  double rotation = settings::kPairRotation_rad;  ///< rad (14 degrees), ... or this rotation ...
+  double duration = settings::kPairDuration_s;    ///< s, ... or this time, if the wheels turned at all
+  double min_overlap = settings::kPairOverlap;
   bool rough = false;  ///< scans matched one way only, for a first look
 };
 
 /// The customary keyframe spacing of 0.5 m and 0.5 rad. A pose reference does not drift and its error does
 /// not grow with the baseline: there, and errors of its time stamps weigh less.
-inline PairOptions pose_pair_options() { return {0.5, 0.5, 10.0, 0.4}; }
+inline PairOptions pose_pair_options() {
+  return {settings::kPosePairDistance_m, settings::kPosePairRotation_rad, settings::kPosePairDuration_s,
+          settings::kPairOverlap};
+}
 
 struct PairSet {
   std::vector<SensorPair> pairs;

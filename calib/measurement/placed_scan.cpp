@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calib/math/vector2.hpp"
+#include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
@@ -40,11 +41,12 @@ PathOfWheels path_of_wheels(const vehicle::Trajectory& trajectory) {
 
 std::optional<PlacedScan> place_at(std::span<const PlacedScan> places, double time,
                                    const PathOfWheels& wheels) {
-  constexpr double kReach = 0.15;  // s
   const auto nearest = std::min_element(
-      first_since(places, time - kReach), first_since(places, time + kReach),
+      first_since(places, time - settings::kPlaceReach_s),
+      first_since(places, time + settings::kPlaceReach_s),
       [&](const auto& a, const auto& b) { return std::abs(a.time - time) < std::abs(b.time - time); });
-  if (nearest == places.end() || std::abs(nearest->time - time) > kReach) return std::nullopt;
+  if (nearest == places.end() || std::abs(nearest->time - time) > settings::kPlaceReach_s)
+    return std::nullopt;
   return carried(*nearest, time, wheels);
 }
 
@@ -70,9 +72,8 @@ PlacedScan mean_of(std::span<const PlacedScan> places, double time, const PathOf
 
 std::optional<PlacedScan> mean_place(std::span<const PlacedScan> places, double time,
                                      const PathOfWheels& wheels, double reach) {
-  constexpr std::ptrdiff_t kFewest = 2;
   const Place first = first_since(places, time - reach), last = first_since(places, time + reach);
-  if (last - first < kFewest) return std::nullopt;
+  if (last - first < settings::kFewestOfMean) return std::nullopt;
   return mean_of({first, last}, time, wheels);
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "calib/math/se2.hpp"
+#include "calib/measurement/settings.hpp"
 #include "calib/vehicle/drive_model.hpp"
 
 namespace odomcalib::calib::measurement {
@@ -47,8 +48,7 @@ std::optional<PlacedEnds> places_at_ends(std::span<const PlacedScan> places,
 /// Mean of places, at least one, each carried to the time, s.
 PlacedScan mean_of(std::span<const PlacedScan> places, double time, const PathOfWheels& wheels);
 
-/// s, to either side: over so much wheels err by less than a place does.
-inline constexpr double kMeanReach = 0.5;
+using settings::kMeanReach;
 
 /// Mean of all scans within `reach` of a time, s, if there are some. What the wheels do wrong before and
 /// after cancels, and what they do right is no noise: for the error of a model it is to be asked with its own

@@ -8,6 +8,7 @@
 #include "calib/ingest/settings.hpp"
 #include "calib/matching/point_to_line.hpp"
 #include "calib/matching/surface.hpp"
+#include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
@@ -32,7 +33,7 @@ class Collector {
     if (!open_) open_ = ReferenceMotion{begin, begin, {}};
     open_->motion = compose(open_->motion, step);
     open_->end = end;
-    if (end - open_->begin >= kFirstLookStep) close();
+    if (end - open_->begin >= settings::kFirstLookStep_s) close();
   }
   /// What comes next does not follow.
   void interrupt() { open_.reset(); }

@@ -16,12 +16,9 @@ struct ReferenceMotion {
 };
 
 struct ReferenceMotions {
-  std::vector<ReferenceMotion> motions;    ///< of about kFirstLookStep each, in order of time
+  std::vector<ReferenceMotion> motions;    ///< of about kFirstLookStep_s each, in order of time
   std::size_t matched = 0, unmatched = 0;  ///< neighbouring scans
 };
-
-/// s, of one motion: long enough that noise of a match is small against it.
-inline constexpr double kFirstLookStep = 0.5;
 
 /// Scans are matched one after the other, each from the motion before; poses are taken as they are.
 /// @param most scans or poses that are looked at, from the begin

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "calib/matching/settings.hpp"
 #include "calib/measurement/placed_scan.hpp"
 #include "calib/measurement/range_tracer.hpp"
 #include "calib/vehicle/drive_model.hpp"
@@ -23,7 +24,7 @@ struct ScanPath {
 };
 
 struct PathOptions {
-  double range_noise = 0.01;  ///< m
+  double range_noise = matching::settings::kUsualRangeNoise_m;  ///< m
   /// Look for errors of the ranges; an offset that is found is taken out before scans are placed.
   RangeTracer trace_ranges = {};
 };

@@ -2,6 +2,7 @@
 // (see calib/matching/settings.hpp).
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace odomcalib::calib::measurement::settings {
@@ -10,6 +11,8 @@ namespace odomcalib::calib::measurement::settings {
 
 /// Rounds of robust weights. Chosen.
 inline constexpr int kAdjustRounds = 3;
+/// Information of a wall that nobody strikes, relative to the largest. Chosen.
+inline constexpr double kWallPrior = 1e-6;
 
 // --- Dataset ---------------------------------------------------------------------------------------------
 
@@ -18,6 +21,8 @@ inline constexpr int kAdjustRounds = 3;
 inline constexpr double kUnknownRadius_m = 0.05;
 /// m, track width of a robot that states none. Chosen.
 inline constexpr double kUnknownTrack_m = 0.3;
+/// m, rad and s, between parameters with which scans need not be matched again. Chosen.
+inline constexpr double kSameParameters = 1e-4;
 
 // --- Heading pairs ---------------------------------------------------------------------------------------
 
@@ -35,6 +40,12 @@ inline constexpr double kHeadingIncidence = 0.3;
 inline constexpr double kHeadingMargin_m = 0.25;
 /// rad, from a turn that is wanted between the scans of a pair. Chosen.
 inline constexpr double kTurnTolerance_rad = 0.3;
+/// rad, wanted between the scans of a pair. Chosen.
+inline constexpr std::array kWantedTurns_rad = {2.4, 1.2, 3.0, 0.7, 1.8};
+/// Readings to either side among which the beam nearest to a place is looked for. Chosen.
+inline constexpr std::size_t kBeamsBeside = 4;
+/// Points of a pair. Chosen.
+inline constexpr std::size_t kFewestHeadingPoints = 40;
 
 // --- Localise --------------------------------------------------------------------------------------------
 
@@ -48,6 +59,16 @@ inline constexpr double kLeastEigenvalue = 0.01;
 inline constexpr double kPlaceSettled = 0.1;
 /// Steps before they are halved. Chosen.
 inline constexpr int kWholeSteps = 5;
+/// m, first gate: largest difference of a range from what the map expects. Chosen.
+inline constexpr double kPlaceGate_m = 0.3;
+/// Share of the gate that is left after a step. Chosen.
+inline constexpr double kPlaceGateShrinks = 0.4;
+/// m, and deviations of a range: the last gate, whichever is wider. Chosen.
+inline constexpr double kLastPlaceGate_m = 0.05, kLastPlaceGateSigmas = 6.0;
+/// Steps. Chosen.
+inline constexpr int kMostPlaceSteps = 12;
+/// m and rad, of a step so short that it leads few beams to another wall. Chosen.
+inline constexpr double kSameStrikes = 1e-3;
 
 // --- Noise estimate --------------------------------------------------------------------------------------
 
@@ -55,6 +76,20 @@ inline constexpr int kWholeSteps = 5;
 inline constexpr int kNoiseSweeps = 2;
 /// Standard deviations at which a residual is cut in the noise's likelihood. Chosen.
 inline constexpr double kWinsor = 2.5;
+/// Degrees of freedom of the Student t distribution that stands for noise with outliers (failed matches,
+/// bumps). Chosen.
+inline constexpr double kStudentDof = 4.0;
+/// Factor on squared distances that makes the t likelihood read normally distributed noise at its true size.
+/// Derived: the root f of E[(dof + 3) f q / (dof + f q)] = 3 for q ~ chi-squared with 3 degrees of freedom.
+inline constexpr double kStudentConsistency = 1.3229464;
+/// Bounds of the search: rad and m a pair, s, and the factor on the matcher's deviations. Chosen.
+inline constexpr double kLeastProcess = 1e-5, kMostProcess = 0.1;
+inline constexpr double kLeastJitter_s = 2e-4, kMostJitter_s = 0.1;
+inline constexpr double kLeastMatcherScale = 0.2, kMostMatcherScale = 1.5;
+/// Width of the search's last interval, of a logarithm. Chosen: 8 %.
+inline constexpr double kNoiseResolution = 0.08;
+/// Bounds of the correlation of neighbouring pairs. Chosen.
+inline constexpr double kLeastCorrelation = -0.48, kMostCorrelation = 0.3;
 
 // --- Pair builder ----------------------------------------------------------------------------------------
 
@@ -67,6 +102,15 @@ inline constexpr double kTupleNoise_rad = 2e-3;
 inline constexpr double kMostTurn_rad = 2.8;
 /// m, of a mean; scan matching is no better. Chosen.
 inline constexpr double kGoodMatch_m = 5e-4;
+/// m of travel, rad of rotation, or s, if the wheels turned at all: what makes the next keyframe. Chosen.
+inline constexpr double kPairDistance_m = 0.15, kPairRotation_rad = 0.25, kPairDuration_s = 0.75;
+/// m and rad, of wheels that turned. Chosen.
+inline constexpr double kTurnedAtAll = 1e-3;
+/// The same of a pose reference, which does not drift and whose error does not grow with the baseline.
+/// Chosen: the customary keyframe spacing.
+inline constexpr double kPosePairDistance_m = 0.5, kPosePairRotation_rad = 0.5, kPosePairDuration_s = 10.0;
+/// Share of the usable points that must find a partner. Chosen as matching's.
+inline constexpr double kPairOverlap = 0.4;
 
 // --- Placed poses ----------------------------------------------------------------------------------------
 
@@ -127,5 +171,26 @@ inline constexpr double kGapAlong_m = 0.5;
 inline constexpr double kOverhang_m = 0.1;
 /// m, a wall is longer than what counts of it: both its ends are cut. Chosen.
 inline constexpr double kShade_m = 0.03;
+
+// --- Placed scan -----------------------------------------------------------------------------------------
+
+/// s, to either side, within which a scan is carried to a time. Chosen.
+inline constexpr double kPlaceReach_s = 0.15;
+/// s, to either side, of scans whose mean is taken. Chosen: over so much wheels err by less than a place
+/// does.
+inline constexpr double kMeanReach = 0.5;
+/// Scans of a mean. Chosen.
+inline constexpr std::ptrdiff_t kFewestOfMean = 2;
+
+// --- Reference motion ------------------------------------------------------------------------------------
+
+/// s, of one motion of a first look. Chosen: long enough that noise of a match is small against it.
+inline constexpr double kFirstLookStep_s = 0.5;
+
+// --- Sweep motion ----------------------------------------------------------------------------------------
+
+/// s, between the poses that a sweep is interpolated from. Chosen: an arc of 1 m/s and 2 rad/s leaves its
+/// chord by 6e-6 m within it.
+inline constexpr double kSweepSpacing_s = 5e-3;
 
 }  // namespace odomcalib::calib::measurement::settings

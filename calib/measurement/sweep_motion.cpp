@@ -4,11 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/measurement/settings.hpp"
+
 namespace odomcalib::calib::measurement {
 namespace {
-
-/// s; an arc of 1 m/s and 2 rad/s leaves its chord by 6e-6 m within it.
-constexpr double kSpacing = 5e-3;
 
 /// Poses at equal steps of time.
 struct Knots {
@@ -32,7 +31,7 @@ matching::BeamMotion motion_in_sweep(const vehicle::Trajectory& trajectory, cons
   if (!(middle > 0.0)) return [](double) { return math::Pose{}; };
   const auto sensor_at = [&](double seconds) { return compose(trajectory.at(scan.t + seconds), mount); };
   const math::Pose origin = sensor_at(middle);
-  const double steps = std::ceil(2.0 * middle / kSpacing);
+  const double steps = std::ceil(2.0 * middle / settings::kSweepSpacing_s);
   Knots knots;
   knots.step = 2.0 * middle / steps;
   for (double k = 0.0; k <= steps; ++k) knots.poses.push_back(between(origin, sensor_at(k * knots.step)));
