@@ -65,8 +65,8 @@ LostToPlay DriveHistory::Gears::advance(double delta, double dither) {
 void DriveHistory::advance(StepContext& c) {
   const math::Pose step = wheels::wheel_arc(base_.left_radius * c.left_delta,
                                             base_.right_radius * c.right_delta, base_.track_width);
-  const double least =
-      std::max(settings::kStanding, settings::kOnTheSpot * 0.5 * base_.track_width * std::abs(c.turn_rate));
+  const double least = std::max(settings::kStandingSpeed,
+                                settings::kOnTheSpotShare * 0.5 * base_.track_width * std::abs(c.turn_rate));
   const double now = std::abs(c.speed) > least ? std::copysign(1.0, c.speed) : direction_;
   if (direction_ != 0.0 && now != direction_) since_reversal_ = 0.0;
   direction_ = now;

@@ -5,6 +5,7 @@
 
 #include "calib/math/se2.hpp"
 #include "calib/vehicle/motion_step.hpp"
+#include "calib/vehicle/settings.hpp"
 #include "calib/wheels/wheel_motion.hpp"
 
 namespace odomcalib::calib::vehicle {
@@ -14,20 +15,17 @@ class DriveHistory {
  public:
   /// @param tick_angle rad, of one count: a wheel that stands between two may show either
   DriveHistory(const wheels::BaseParameters& base, double tick_angle)
-      : base_(base), dither_(kDither * tick_angle) {
-    since_stop_.fill(kFarBack);
+      : base_(base), dither_(settings::kDither * tick_angle) {
+    since_stop_.fill(settings::kBeforeTheDrive);
   }
   /// Fills the fields of `context` that depend on the drive so far, then takes the interval in.
   void advance(StepContext& context);
 
  private:
-  /// m or rad: the drive begins as if the last reversal and the last stop lay so far back.
-  static constexpr double kFarBack = 1e3;
-  static constexpr double kDither = 1.5;  ///< counts; coming back by no more is no reversal
   struct Wheel {
     double direction = 0.0;
     double behind = 0.0;  ///< rad, its farthest point in that direction; without one, its way so far
-    double since = kFarBack;
+    double since = settings::kBeforeTheDrive;
     /// @return rotation since the last reversal before this interval, rad
     double advance(double delta, double dither);
   };
@@ -52,7 +50,7 @@ class DriveHistory {
   Wheel left_, right_;
   Gears left_gears_, right_gears_;
   double direction_ = 0.0;
-  double since_reversal_ = kFarBack;
+  double since_reversal_ = settings::kBeforeTheDrive;
   double distance_ = 0.0;
   double pace_ = 0.0;
   double stood_ = 0.0;  ///< s

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "calib/vehicle/part_of_step.hpp"
+#include "calib/vehicle/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "calib/vehicle/step_twist.hpp"
 
@@ -77,10 +78,9 @@ math::Pose Trajectory::at(double sensor_time) const {
 }
 
 Eigen::Vector3d sensor_velocity(const Trajectory& trajectory, const math::Pose& mount, double time) {
-  constexpr double kHalf = 0.02;
-  const math::Pose a = compose(trajectory.at(time - kHalf), mount);
-  const math::Pose b = compose(trajectory.at(time + kHalf), mount);
-  return Eigen::Vector3d(b.x - a.x, b.y - a.y, b.yaw - a.yaw) / (2.0 * kHalf);
+  const math::Pose a = compose(trajectory.at(time - settings::kVelocityReach_s), mount);
+  const math::Pose b = compose(trajectory.at(time + settings::kVelocityReach_s), mount);
+  return Eigen::Vector3d(b.x - a.x, b.y - a.y, b.yaw - a.yaw) / (2.0 * settings::kVelocityReach_s);
 }
 
 Trajectory DriveModel::trajectory(std::span<const double> parameters, const EffectList& effects) const {

@@ -9,10 +9,10 @@ namespace odomcalib::calib::vehicle::settings {
 // --- Drive history ---------------------------------------------------------------------------------------
 
 /// m/s; below, the direction of travel is undefined and the last one is kept ... Chosen.
-inline constexpr double kStanding = 0.005;
+inline constexpr double kStandingSpeed = 0.005;
 /// ... as below this share of the rims' speed in a turn: on the spot, wheels that are not quite alike and
 /// drives that do not quite keep their speed move the middle of the axle to and fro. Chosen.
-inline constexpr double kOnTheSpot = 0.1;
+inline constexpr double kOnTheSpotShare = 0.1;
 /// Track widths, of a caster's pivot behind the axle. Chosen: it only matters that a spin moves it
 /// sideways.
 inline constexpr double kCasterBehind = 0.6;
@@ -24,6 +24,10 @@ inline constexpr double kWindTurn_rad = 0.15;
 inline constexpr double kUnwind_s = 0.15;
 /// m/s, change of speed that a push is remembered over. Chosen.
 inline constexpr double kPushMemory = 0.1;
+/// m or rad: the drive begins as if the last reversal and the last stop lay so far back. Chosen.
+inline constexpr double kBeforeTheDrive = 1e3;
+/// Counts; coming back by no more is no reversal. Chosen.
+inline constexpr double kDither = 1.5;
 
 // --- Step context ----------------------------------------------------------------------------------------
 
@@ -41,5 +45,17 @@ inline constexpr double kFewCounts = 1.5;
 inline constexpr double kPushNoise = 0.03;
 /// s; stamps are no better than to a millisecond. Chosen.
 inline constexpr double kShortestPush_s = 0.08;
+/// Intervals that a curvature takes, and with some leeway. Derived: a parabola has three coefficients. The
+/// leeway is chosen.
+inline constexpr std::size_t kCurvatureIntervals = 3;
+inline constexpr double kCurvatureLeeway = 3.1;
+/// s, over which accelerations are smoothed that a mast with a lag of its own follows: about a moment, and up
+/// to it. Chosen: no more than that lag allows.
+inline constexpr double kSharp_s = 0.12, kSharpLatest_s = 0.1;
+
+// --- Drive model -----------------------------------------------------------------------------------------
+
+/// s, to either side, over which a velocity is taken. Chosen.
+inline constexpr double kVelocityReach_s = 0.02;
 
 }  // namespace odomcalib::calib::vehicle::settings

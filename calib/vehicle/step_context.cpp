@@ -82,12 +82,12 @@ struct WheelAccelerations {
   std::vector<double> left, right;
 };
 WheelAccelerations latest_accelerations(const wheels::WheelTrack& track, std::size_t first, double duration) {
-  constexpr std::size_t kFewest = 3;  // intervals that a curvature needs
   WheelAccelerations all;
   std::size_t low = 0;
   for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
     const double from = track.t[k + 1] - duration;
-    while (track.segment[low] != track.segment[k + 1] || (low + kFewest < k + 1 && track.t[low + 1] <= from))
+    while (track.segment[low] != track.segment[k + 1] ||
+           (low + settings::kCurvatureIntervals < k + 1 && track.t[low + 1] <= from))
       ++low;
     const double centre = (track.t[low] + track.t[k + 1]) / 2.0;
     all.left.push_back(local_derivatives(track.t, track.left, low, k + 1, centre).second);
@@ -142,13 +142,13 @@ void fill_speed_magnitudes(std::vector<StepContext>& contexts, const wheels::Whe
 /// A push may be short, but what lies beyond a threshold must not be noise: the curvature of a parabola
 /// through values of deviation s, one every dt over a time T, has the deviation sqrt(720 dt / T^5) s.
 double duration_of_push(const wheels::WheelTrack& track, const wheels::BaseParameters& base) {
-  constexpr double kFewest = 3.1;  // intervals that a curvature needs, with some leeway
   const double dt =
       (track.t.back() - track.t.front()) / std::max(1.0, static_cast<double>(track.t.size() - 1));
   const double count = track.tick_angle * std::max(base.left_radius, base.right_radius);
   const double variance = count * count / 12.0 / 2.0;  // of both wheels' mean
   const double wanted = std::pow(720.0 * dt * variance / (settings::kPushNoise * settings::kPushNoise), 0.2);
-  return std::max(std::clamp(wanted, settings::kShortestPush_s, settings::kSmoothing_s), kFewest * dt);
+  return std::max(std::clamp(wanted, settings::kShortestPush_s, settings::kSmoothing_s),
+                  settings::kCurvatureLeeway * dt);
 }
 
 double push_of(const WheelAccelerations& wheels, std::size_t k, const wheels::BaseParameters& base) {
@@ -173,8 +173,7 @@ void fill_pushes(std::vector<StepContext>& contexts, const wheels::WheelTrack& t
 /// mast with a lag of its own allows.
 void fill_accelerations_at_ends(std::vector<StepContext>& contexts, const wheels::WheelTrack& track,
                                 std::size_t first, const wheels::BaseParameters& base) {
-  constexpr double kSharp = 0.12;  // s
-  const auto wheels = centred_accelerations(track, first, duration_for(track, base, kSharp));
+  const auto wheels = centred_accelerations(track, first, duration_for(track, base, settings::kSharp_s));
   const auto in_middle = [&](std::size_t k) {
     return (base.right_radius * wheels.right[k] - base.left_radius * wheels.left[k]) / base.track_width;
   };
@@ -229,10 +228,9 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
 
 void see_from_the_past(StepContext& last, const wheels::WheelTrack& track,
                        const wheels::BaseParameters& base) {
-  constexpr double kSharp = 0.1;  // s
   const std::size_t n = track.t.size();
-  const auto wheels =
-      latest_accelerations(track, n - std::min<std::size_t>(n, 3), duration_for(track, base, kSharp));
+  const auto wheels = latest_accelerations(track, n - std::min<std::size_t>(n, 3),
+                                           duration_for(track, base, settings::kSharpLatest_s));
   last.left_acceleration_change = base.left_radius * (wheels.left.back() - wheels.left.front());
   last.right_acceleration_change = base.right_radius * (wheels.right.back() - wheels.right.front());
   const auto pushing =
