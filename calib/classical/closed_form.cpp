@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "calib/classical/settings.hpp"
 #include "calib/math/vector2.hpp"
 
 namespace odomcalib::calib::classical {
@@ -12,9 +13,6 @@ namespace {
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Indices = std::vector<std::size_t>;
-
-/// Above this the rotation rows cannot separate the two wheels (reference code: 75).
-constexpr double kMaxConditionRotation = 75.0;
 
 Error underdetermined(const std::string& what, const std::string& motion) {
   return {ErrorCode::refused, what, "joint closed form", "record " + motion};
@@ -30,7 +28,8 @@ Result<Eigen::Vector2d> solve_rotation(std::span<const wheels::WheelMotion> samp
     right_side += wheels * samples[i].sensor_motion.yaw;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(normal);
-  if (!(eigen.eigenvalues()(0) * kMaxConditionRotation * kMaxConditionRotation > eigen.eigenvalues()(1)))
+  if (!(eigen.eigenvalues()(0) * settings::kMostConditionOfRotation * settings::kMostConditionOfRotation >
+        eigen.eigenvalues()(1)))
     return underdetermined("the wheels always turned in the same proportion",
                            "straight lines and turns on the spot in one drive");
   return Eigen::Vector2d(eigen.eigenvectors() * (eigen.eigenvalues().cwiseInverse().asDiagonal() *

@@ -10,12 +10,6 @@
 namespace odomcalib::calib::classical {
 namespace {
 
-constexpr double kMinPairTravel = 0.02;  ///< m
-constexpr double kSpinLever =
-    0.1;  ///< travel over rotation in units of the track width that still is on the spot
-constexpr double kMinPairTurn = 0.03;  ///< rad
-constexpr double kOutlier = 5.0;       ///< robust sigma
-
 struct Comparison {
   double claimed = 0.0;
   double seen = 0.0;
@@ -31,7 +25,7 @@ Ratio robust_slope(const std::vector<Comparison>& all) {
   std::vector<double> deviations;
   deviations.reserve(all.size());
   for (const Comparison& c : all) deviations.push_back(std::abs(c.seen - centre * c.claimed));
-  const double limit = kOutlier * math::kMadToSigma * std::max(math::median_of(deviations), 1e-9);
+  const double limit = settings::kGrossPair * math::kMadToSigma * std::max(math::median_of(deviations), 1e-9);
   Ratio result;
   double xy = 0.0;
   double xx = 0.0;
@@ -65,7 +59,7 @@ Result<Ratio> straight_ratio(std::span<const wheels::WheelMotion> samples,
     const double right = nominal.right_radius * sample.right;
     const double claimed = (left + right) / 2.0;
     if (std::abs(sample.sensor_motion.yaw) > settings::kStraightYaw_rad ||
-        std::abs(claimed) < kMinPairTravel || left * right <= 0.0)
+        std::abs(claimed) < settings::kLeastPairTravel_m || left * right <= 0.0)
       continue;
     straight.push_back({std::abs(claimed), std::hypot(sample.sensor_motion.x, sample.sensor_motion.y)});
     travel += std::abs(claimed);
@@ -84,7 +78,8 @@ Result<Ratio> spin_ratio(std::span<const wheels::WheelMotion> samples, const whe
     const double right = base.right_radius * sample.right;
     const double claimed = (right - left) / base.track_width;
     const double lever = std::abs(left + right) / 2.0;
-    if (std::abs(claimed) < kMinPairTurn || lever > kSpinLever * base.track_width * std::abs(claimed))
+    if (std::abs(claimed) < settings::kLeastPairTurn_rad ||
+        lever > settings::kSpinLever * base.track_width * std::abs(claimed))
       continue;
     turns.push_back({sample.sensor_motion.yaw, claimed});
     turned += std::abs(claimed);

@@ -201,7 +201,7 @@ Result<SpinProposal> propose_track_width(std::span<const SpinMove> moves, const 
   }
   double turned = 0.0;
   for (const SpinMove& move : moves) turned += std::abs(move.turn) / static_cast<double>(moves.size());
-  const double unseen = std::hypot(reference.yaw / turned, kDiametersOfStraight);
+  const double unseen = std::hypot(reference.yaw / turned, settings::kDiametersOfStraight);
   return SpinProposal{with_reference(math::repeated(factor), unseen),
                       with_reference(math::repeated(width), unseen * used.track_width)};
 }
@@ -224,7 +224,8 @@ Result<SquareProposal> propose_from_squares(std::span<const SquarePair> pairs,
   }
   SquareProposal proposal;
   proposal.diameters = with_reference(math::repeated(diameters), errors.std(0));
-  proposal.track = with_reference(math::repeated(track), std::hypot(errors.std(1), kDiametersOfStraight));
+  proposal.track =
+      with_reference(math::repeated(track), std::hypot(errors.std(1), settings::kDiametersOfStraight));
   proposal.formula = by_formula(pairs, used, side);
   proposal.farthest_before = farthest(pairs, used);
   proposal.farthest_after =

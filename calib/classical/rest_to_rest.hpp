@@ -25,8 +25,6 @@ inline constexpr ReferenceError kLidarAtRest{3e-4, 2e-4};
 inline constexpr ReferenceError kTapeAndMark{3e-4, 1.3e-3};
 /// Where the lidar sits, as a ruler and the eye tell before a calibration does.
 inline constexpr ReferenceError kLidarByRuler{0.02, 0.05};
-/// Of the common scale of diameters that a straight metre gave, by either reference: relative.
-inline constexpr double kDiametersOfStraight = 3e-4;
 
 /// Wheel rotations of one move from rest to rest, rad, forward positive.
 struct WheelTurns {
@@ -67,7 +65,7 @@ struct SpinProposal {
 
 /// Corrected track width: what the rims rolled against each other over the true angle.
 /// @param used diameters that are right already, as a straight metre leaves them: the track width inherits
-/// their error, and its deviation holds that of kDiametersOfStraight
+/// their error, and its deviation holds that of settings::kDiametersOfStraight
 /// Errors: refused when a turn is less than a quarter of one.
 Result<SpinProposal> propose_track_width(std::span<const SpinMove> moves, const wheels::BaseParameters& used,
                                          const ReferenceError& reference = kLidarAtRest);

@@ -19,6 +19,12 @@ inline constexpr double kSameFactor = 0.12;
 inline constexpr double kStraightYaw_rad = 0.02;
 /// m in all, of straight motion that shows a diameter. Chosen.
 inline constexpr double kLeastTravel_m = 0.3;
+/// m and rad, of a pair of scans that shows a ratio. Chosen.
+inline constexpr double kLeastPairTravel_m = 0.02, kLeastPairTurn_rad = 0.03;
+/// Travel over rotation, in units of the track width, of a turn that still is on the spot. Chosen.
+inline constexpr double kSpinLever = 0.1;
+/// Robust deviations of a pair that is left out. Chosen.
+inline constexpr double kGrossPair = 5.0;
 
 // --- Rest to rest ----------------------------------------------------------------------------------------
 
@@ -30,5 +36,23 @@ inline constexpr double kMostYaw_rad = 0.5;
 inline constexpr double kLeastTurn_rad = math::kPi / 2.0;
 /// Share of a side; a drive that ends farther from its start is no square. Chosen.
 inline constexpr double kFarEnd = 0.5;
+/// Of the common scale of diameters that a straight metre gave, by either reference: relative. Chosen.
+inline constexpr double kDiametersOfStraight = 3e-4;
+
+// --- Closed form -----------------------------------------------------------------------------------------
+
+/// Condition of the rotation's equations above which they cannot separate the two wheels. Published: the
+/// authors' code.
+inline constexpr double kMostConditionOfRotation = 75.0;
+
+// --- Signs -----------------------------------------------------------------------------------------------
+
+/// rad from its nominal value, of a lidar's yaw that is a fault of its own. Chosen: 20 degrees.
+inline constexpr double kFarYaw_rad = math::kPi / 9.0;
+/// Deviations by which lengths stand clear of zero, on either side. Chosen.
+inline constexpr double kClearOfZero = 5.0;
+/// Share of what the wheels rolled, of a reference that stood. Chosen: a turn of four times the counts is
+/// more, and has its own message.
+inline constexpr double kHardlyMoved = 0.15;
 
 }  // namespace odomcalib::calib::classical::settings

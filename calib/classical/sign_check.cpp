@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calib/classical/closed_form.hpp"
+#include "calib/classical/settings.hpp"
 #include "calib/math/median.hpp"
 
 namespace odomcalib::calib::classical {
@@ -52,18 +53,15 @@ std::vector<Wires> all_wires() {
 bool looks_elsewhere(const wheels::BaseParameters& found, const RobotDescription& robot, bool of_base) {
   if (!of_base && !robot.lidar_pose) return false;
   const double nominal = of_base ? 0.0 : (*robot.lidar_pose)[2];
-  return std::abs(math::wrap_angle(found.mount.yaw - nominal)) > kFarYaw;
+  return std::abs(math::wrap_angle(found.mount.yaw - nominal)) > settings::kFarYaw_rad;
 }
-
-/// Lengths stand clear of zero, on either side.
-constexpr double kClear = 5.0;  // deviations
 
 bool is_clear(const ClosedFormResult& fit) {
   const wheels::BaseParameters& p = fit.parameters;
   const std::array<double, 3> lengths = {p.left_radius, p.right_radius, p.track_width};
   for (std::size_t k = 0; k < lengths.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    if (!(std::abs(lengths[k]) > kClear * std::sqrt(fit.covariance(i, i)))) return false;
+    if (!(std::abs(lengths[k]) > settings::kClearOfZero * std::sqrt(fit.covariance(i, i)))) return false;
   }
   return true;
 }
@@ -158,9 +156,8 @@ Movement movement(std::span<const wheels::WheelMotion> motions, const RobotDescr
 /// Wheels in the air, or a lidar that repeats itself: what is left is what de-skewing made of it.
 std::optional<Error> standing_reference(std::span<const wheels::WheelMotion> motions,
                                         const RobotDescription& robot) {
-  constexpr double kHardly = 0.15;  // a turn of four times the counts is more, and has its own message
   const Movement all = movement(motions, robot);
-  if (!(all.seen < kHardly * all.rolled)) return std::nullopt;
+  if (!(all.seen < settings::kHardlyMoved * all.rolled)) return std::nullopt;
   return Error{ErrorCode::refused, "the wheels turned, but the robot hardly moved", "",
                "check that the wheels are on the floor and that scans or reference poses are new each time"};
 }

@@ -11,9 +11,6 @@
 
 namespace odomcalib::calib::classical {
 
-/// Farther from its nominal value, a lidar's yaw is a fault of its own, rad (20 degrees).
-inline constexpr double kFarYaw = math::kPi / 9.0;
-
 /// Refused when wheels turned and the reference stood still, or when diameters and track width can be
 /// positive only with wires exchanged or counts inverted; says which, as few as explain everything. When the
 /// robot's lidar pose is known, a heading on the other side of it counts as one more fault. What a mirror

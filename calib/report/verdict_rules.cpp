@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "calib/classical/length_factor.hpp"
+#include "calib/classical/settings.hpp"
 #include "calib/classical/sign_check.hpp"
 #include "calib/math/significant.hpp"
 #include "calib/report/settings.hpp"
@@ -254,7 +255,7 @@ Objections lidar_yaw(const Calibration& calibration, const Footing&) {
   const auto yaw = calibration.parameter("lidar_yaw");
   if (!yaw || !calibration.robot.lidar_pose) return {};
   const double apart = math::wrap_angle(*yaw - (*calibration.robot.lidar_pose)[2]);
-  if (!(std::abs(apart) > classical::kFarYaw)) return {};
+  if (!(std::abs(apart) > classical::settings::kFarYaw_rad)) return {};
   return {warning("lidar_yaw differs from its nominal value by " + degrees(apart) +
                   ": correct lidar_pose, or check which end of the robot counts forward")};
 }

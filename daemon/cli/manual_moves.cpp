@@ -9,6 +9,7 @@
 #include <span>
 
 #include "calib/classical/rest_to_rest.hpp"
+#include "calib/classical/settings.hpp"
 #include "daemon/cli/display.hpp"
 
 namespace odomcalib::cli {
@@ -247,7 +248,7 @@ Result<Proposal> spin_proposal(const DrivenMoves& driven, const std::vector<doub
   proposal.settled = is_settled(track.value().track);
   proposal.remarks.push_back(
       fmt::format("the diameters in force are taken as right to {:.2f} %, as straight leaves them",
-                  100.0 * calib::classical::kDiametersOfStraight));
+                  100.0 * calib::classical::settings::kDiametersOfStraight));
   remark_few(proposal);
   return proposal;
 }
@@ -269,7 +270,8 @@ Result<Proposal> square_proposal(const DrivenMoves& driven, double side) {
   // With the mean fixed, each wheel moves by half of what their ratio moves; the mean is as good as the
   // straight line that gave it.
   const auto diameter_of = [&](double radius) {
-    const double std = std::hypot(found.diameters.std, 2.0 * calib::classical::kDiametersOfStraight) * radius;
+    const double std =
+        std::hypot(found.diameters.std, 2.0 * calib::classical::settings::kDiametersOfStraight) * radius;
     return Quantity{2.0 * radius, found.diameters.std < 0.0 ? -1.0 : std, "m"};
   };
   const double track_std = found.track.std < 0.0 ? -1.0 : found.track.std * base.track_width;
