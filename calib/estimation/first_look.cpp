@@ -48,7 +48,7 @@ double explained_rotation(const std::vector<WheelMotion>& motions) {
   if (motions.size() < settings::kFewestMotions) return 0.0;
   Eigen::Vector2d gains = Eigen::Vector2d::Zero();
   double bound = 1e9, misfit = 0.0, all = 0.0;
-  for (int round = 0; round < 4; ++round) {
+  for (int round = 0; round < settings::kGainRounds; ++round) {
     Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-9;
     Eigen::Vector2d right_side = Eigen::Vector2d::Zero();
     for (const WheelMotion& m : motions) {
@@ -252,8 +252,7 @@ class Look {
   /// Beams spread wider, or less wide, than they were sent.
   [[nodiscard]] std::optional<Cause> stretched_angles() const {
     if (!recording_.poses.empty() || are_nominal(ratios(motions_))) return std::nullopt;
-    constexpr std::array kFactors = {0.75, 4.0 / 3.0, 0.5, 2.0, 2.0 / 3.0, 1.5};
-    for (const double factor : kFactors) {
+    for (const double factor : settings::kAngleFactors) {
       Recording mended = recording_;
       mended.scans.resize(std::min(mended.scans.size(), settings::kMostTried));
       for (Scan& scan : mended.scans) {

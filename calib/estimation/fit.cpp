@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/estimation/settings.hpp"
 #include "calib/estimation/start_values.hpp"
 
 namespace odomcalib::calib::estimation {
@@ -21,14 +22,13 @@ Fit fit_once(Dataset dataset, const VehicleModel& start) {
 }
 
 Fit settle(Dataset dataset, VehicleModel start, const Settling& how) {
-  constexpr int kPasses = 2, kMostPasses = 5;
   how.progress("fitting", 0.0);
   for (int pass = 0;; ++pass) {
     Fit fit = fit_once(std::move(dataset), start);
-    if (fit.failure || pass == kMostPasses) return fit;
+    if (fit.failure || pass == settings::kMostFitPasses) return fit;
     const bool clock_moves = std::abs(delay_of(fit.model) - delay_of(start)) > how.negligible_delay;
     start = pass == 0 || clock_moves ? how.pruned(fit) : fit.model;
-    const bool has_settled = pass >= kPasses && !clock_moves;
+    const bool has_settled = pass >= settings::kFitPasses && !clock_moves;
     if (has_settled || fit.dataset.is_measured_with(start.parameters)) return fit;
     how.progress("matching", std::min(0.33 * (pass + 1), 1.0));
     dataset = measured(std::move(fit.dataset), start.parameters, start.effects);

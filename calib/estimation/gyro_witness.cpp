@@ -204,7 +204,7 @@ std::optional<std::string> fault_of(const Line& line) {
     return "the gyro is left out: " + also + "it is in degrees per second" + remedy;
   if (is_about(size, 1.0 / kDegrees))
     return "the gyro is left out: " + also + "it was converted from degrees twice" + remedy;
-  if (size > 2.0 || size < 0.5)
+  if (size > settings::kGyroFactor || size < 1.0 / settings::kGyroFactor)
     return "the gyro is left out: " + also + "it reads " + std::to_string(size) +
            " times what the robot turns" + remedy;
   return "the gyro is left out: " + also + "it reads " + percent_off(size) +

@@ -67,7 +67,8 @@ std::string parameter_names(const Eigen::VectorXd& direction) {
       "left wheel diameter", "right wheel diameter", "track width", "lidar x", "lidar y", "lidar yaw"};
   std::string names;
   for (Eigen::Index k = 0; k < std::min<Eigen::Index>(direction.size(), vehicle::kBaseCount); ++k)
-    if (std::abs(direction(k)) > 0.3) names += std::string(names.empty() ? "" : ", ") + kNames[k];
+    if (std::abs(direction(k)) > settings::kNamedComponent)
+      names += std::string(names.empty() ? "" : ", ") + kNames[k];
   return names.empty() ? "an effect's parameters" : names;
 }
 
@@ -161,7 +162,7 @@ class Descent {
     damping_ = 1e-9;
     std::optional<Linear> linear;
     for (int i = 0; i < iterations; ++i) {
-      if (moved_ > kReach) linearise(), linear.reset();
+      if (moved_ > settings::kLinearReach) linearise(), linear.reset();
       if (!linear) {
         linear = whitened(noise, weights);
         if (auto error = check_rank(linear->system, linear->matrix, fixed_)) return *error;
@@ -178,8 +179,6 @@ class Descent {
   }
 
  private:
-  static constexpr double kReach = 1.0;  ///< sigma
-
   void linearise() {
     stack_ = make_stack(data_, effects_, p_, true);
     moved_ = 0.0;
@@ -202,7 +201,7 @@ class Descent {
     const double before = residual.squaredNorm() + prior_cost(prior_, p_);
     const Eigen::VectorXd right_side =
         system.jacobian.transpose() * residual - system.scale.cwiseProduct(prior_ * p_);
-    for (int attempt = 0; attempt < 8; ++attempt) {
+    for (int attempt = 0; attempt < settings::kMostDampings; ++attempt) {
       Eigen::MatrixXd damped = linear.matrix;
       for (Eigen::Index k = 0; k < damped.rows(); ++k)
         damped(k, k) = system.scale(k) > 0.0 ? damped(k, k) + damping_ : 1.0;

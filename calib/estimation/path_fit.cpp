@@ -197,22 +197,22 @@ struct Range {
   double PathNoise::*member;
   double low, high;
 };
-constexpr std::array<Range, 5> kRanges = {{{&PathNoise::place, 0.3, 4.0},
-                                           {&PathNoise::yaw, 1e-5, 0.1},
-                                           {&PathNoise::forward, 1e-5, 0.1},
-                                           {&PathNoise::sideways, 1e-5, 0.1},
-                                           {&PathNoise::stamp_jitter, 1e-5, 0.05}}};
+constexpr std::array<Range, 5> kRanges = {
+    {{&PathNoise::place, settings::kLeastPlaceScale, settings::kMostPlaceScale},
+     {&PathNoise::yaw, settings::kLeastPathNoise, settings::kMostPathNoise},
+     {&PathNoise::forward, settings::kLeastPathNoise, settings::kMostPathNoise},
+     {&PathNoise::sideways, settings::kLeastPathNoise, settings::kMostPathNoise},
+     {&PathNoise::stamp_jitter, settings::kLeastPathJitter_s, settings::kMostPathJitter_s}}};
 
 PathNoise estimate(const Part& part, PathNoise noise, const std::vector<bool>& out) {
-  constexpr int kBits = 7;  // about a hundredth of the logarithm's range
   for (int sweep = 0; sweep < settings::kPathSweeps; ++sweep)
     for (const Range& range : kRanges) {
       const auto at = [&](double log_value) {
         noise.*range.member = std::exp(log_value);
         return misfit(part, noise, out);
       };
-      const auto best =
-          boost::math::tools::brent_find_minima(at, std::log(range.low), std::log(range.high), kBits);
+      const auto best = boost::math::tools::brent_find_minima(at, std::log(range.low), std::log(range.high),
+                                                              settings::kPathNoiseBits);
       noise.*range.member = std::exp(best.first);
     }
   return noise;
@@ -232,7 +232,7 @@ class Fitter {
   }
 
   Result<PathFit> run() {
-    if (count_links() < 50)
+    if (count_links() < settings::kFewestLinks)
       return Error{ErrorCode::empty, "too few scans found their place", "path estimate",
                    "check the recording"};
     for (int round = 0; round < settings::kPathRounds; ++round) {

@@ -2,6 +2,7 @@
 // its unit and its origin (see calib/matching/settings.hpp).
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "calib/math/se2.hpp"
@@ -39,6 +40,10 @@ inline constexpr double kContradicting_rad = 0.1, kLeftWithDirection = 0.3;
 inline constexpr double kTurned_rad = 1.0;
 /// Ratio of a length to its nominal value, less one. Chosen: nominal values are right to that.
 inline constexpr double kNearNominal = 0.1;
+/// Ratios of the angles that a scan was sent with to those that are stated, which are tried. Chosen.
+inline constexpr std::array kAngleFactors = {0.75, 4.0 / 3.0, 0.5, 2.0, 2.0 / 3.0, 1.5};
+/// Rounds of bounded residuals. Chosen.
+inline constexpr int kGainRounds = 4;
 
 // --- Joint -----------------------------------------------------------------------------------------------
 
@@ -51,6 +56,12 @@ inline constexpr double kFitSettled = 1e-2;
 /// All recordings of one call come from one robot and one lidar; with few pairs each, they share a noise
 /// model. Chosen.
 inline constexpr std::size_t kPairsForOwnNoise = 100;
+/// Sigma that parameters may move before the model is linearised anew. Chosen.
+inline constexpr double kLinearReach = 1.0;
+/// Steps that are tried, each ten times as damped as the one before. Chosen.
+inline constexpr int kMostDampings = 8;
+/// Component of a direction without information, from which a parameter is named. Chosen.
+inline constexpr double kNamedComponent = 0.3;
 
 // --- Path fit --------------------------------------------------------------------------------------------
 
@@ -64,6 +75,15 @@ inline constexpr int kPathSweeps = 2;
 inline constexpr double kPathOutlierSquared = 30.0;
 /// m, even standing wheels are not ideal. Chosen.
 inline constexpr double kLeastRolled_m = 1e-4;
+/// Motions between placed scans that a fit takes. Chosen.
+inline constexpr std::size_t kFewestLinks = 50;
+/// Bits to which the logarithm of a noise is searched. Chosen: about a hundredth of its range.
+inline constexpr int kPathNoiseBits = 7;
+/// Bounds of the search: factor on the places' deviations, the wheels' noise in m or rad per root of a metre,
+/// and s. Chosen.
+inline constexpr double kLeastPlaceScale = 0.3, kMostPlaceScale = 4.0;
+inline constexpr double kLeastPathNoise = 1e-5, kMostPathNoise = 0.1;
+inline constexpr double kLeastPathJitter_s = 1e-5, kMostPathJitter_s = 0.05;
 
 // --- Start values ----------------------------------------------------------------------------------------
 
@@ -77,6 +97,8 @@ inline constexpr double kBelievableDelay = 0.9;
 /// Nearer to each other, delays of both halves are within reach of the fit from the delay of the whole, s.
 /// Chosen.
 inline constexpr double kClocksApart_s = 0.06;
+/// Rounds of one reweighting each. Chosen.
+inline constexpr int kMisfitRounds = 3;
 
 // --- Gyro witness ----------------------------------------------------------------------------------------
 
@@ -103,5 +125,12 @@ inline constexpr double kLeastGyroTurn_rad = math::kPi;
 inline constexpr double kLeastGyroShare = 0.5;
 /// Intervals that a verdict on a gyro needs. Chosen.
 inline constexpr std::size_t kFewestGyroTurns = 20;
+/// Ratio of a gyro's turns to the robot's, or its inverse, from which it is stated as a factor. Chosen.
+inline constexpr double kGyroFactor = 2.0;
+
+// --- Settling --------------------------------------------------------------------------------------------
+
+/// Passes of fitting and matching after which an unchanged clock is enough, and passes at most. Chosen.
+inline constexpr int kFitPasses = 2, kMostFitPasses = 5;
 
 }  // namespace odomcalib::calib::estimation::settings

@@ -20,7 +20,7 @@ double rotation_misfit(std::span<const measurement::FitData> data, double delay)
   const auto motions = wheel_motions(data, delay);
   Eigen::Vector2d gains = Eigen::Vector2d::Zero();
   double misfit = 0.0;
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < settings::kMisfitRounds; ++round) {
     Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-9;
     Eigen::Vector2d right_side = Eigen::Vector2d::Zero();
     const double limit = round == 0 ? 1e9 : misfit;
