@@ -14,6 +14,7 @@
 #include "calib/report/one_robot.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/report_data.hpp"
+#include "calib/report/settings.hpp"
 #include "calib/report/unexplained.hpp"
 #include "calib/selection/event_text.hpp"
 #include "calib/selection/held_out.hpp"
@@ -42,7 +43,7 @@ double scale_deviation(const Findings& found) {
   const measurement::Dataset& dataset = found.fit.dataset;
   if (!dataset.reference_is_scans()) return 0.0;
   if (found.every_scan_placed && found.outcome.model.effects.empty() && found.lidar.empty()) return 0.0;
-  return std::hypot(kMatcherScale,
+  return std::hypot(settings::kMatcherScale,
                     selection::range_scale_uncertainty(found.lidar, dataset.recordings.view()));
 }
 
@@ -57,7 +58,7 @@ Agreement agreement(const Findings& found) {
   if (dataset.recordings.size() < 2) return {};
   std::vector<std::string> names;
   for (const Recording& recording : dataset.recordings.view()) names.push_back(recording.name);
-  const double metre = dataset.reference_is_scans() ? kMatcherScale : 0.0;
+  const double metre = dataset.reference_is_scans() ? settings::kMatcherScale : 0.0;
   auto homogeneity =
       selection::homogeneity({dataset.data, dataset.fixed()}, found.outcome.model, metre, names);
   if (!homogeneity) return {};

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
+#include "calib/report/settings.hpp"
 #include "calib/terms/catalogue.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
-
-/// Relative deviation of a length that more driving hardly improves: scan matching in one room is no better.
-constexpr double kGoodEnough = 5e-4;
 
 /// Aliases that some motion separates from the effect.
 std::vector<std::string> separable(const EffectResult& result, const vehicle::Effect& effect) {
@@ -50,7 +48,7 @@ std::optional<NextTest> for_uncertainty(const Calibration& calibration) {
     if (parameter.first.starts_with("lidar_")) continue;
     if (worst == nullptr || relative(parameter.second) > relative(worst->second)) worst = &parameter;
   }
-  if (worst == nullptr || relative(worst->second) <= kGoodEnough) return std::nullopt;
+  if (worst == nullptr || relative(worst->second) <= settings::kGoodEnough) return std::nullopt;
   const bool track = worst->first == "track_width";
   return NextTest{track ? "turns" : "straights", worst->first + " is the least certain dimension"};
 }

@@ -12,10 +12,6 @@ namespace odomcalib::calib::report {
 /// @param covariance of the base parameters in radii; fixed ones have zero variance and get no deviation
 QuantityList base_quantities(const wheels::BaseParameters& base, const Eigen::MatrixXd& covariance);
 
-/// Relative, of a scan matcher's metre; it depends on the room and was 0.02 % over simulated rooms
-/// (tests/integration/accuracy_test.cpp).
-inline constexpr double kMatcherScale = 2e-4;
-
 /// Adds what the statistics of one recording cannot show: all lengths inherit the error of the metre they
 /// were measured with.
 /// @param deviation of the metre, relative

@@ -5,18 +5,14 @@
 
 #include "calib/math/median.hpp"
 #include "calib/report/report.hpp"
+#include "calib/report/settings.hpp"
 #include "calib/selection/drive_error.hpp"
 #include "calib/selection/folds.hpp"
 #include "calib/selection/residual_trace.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
-
-constexpr std::size_t kMostPathPoints = 600;
-constexpr std::size_t kMostSamples = 300;
-constexpr std::size_t kHistogramBins = 20;
-constexpr double kHistogramEnd = 5.0;  ///< sigma
-constexpr double kTrustedWeight = 0.3;
 
 std::size_t stride(std::size_t count, std::size_t most) {
   return std::max<std::size_t>(1, (count + most - 1) / most);
@@ -24,7 +20,7 @@ std::size_t stride(std::size_t count, std::size_t most) {
 
 PathTrace path_of(const std::string& name, const std::vector<math::Pose>& poses) {
   PathTrace path{name, {}};
-  const std::size_t step = stride(poses.size(), kMostPathPoints);
+  const std::size_t step = stride(poses.size(), settings::kMostPathPoints);
   for (std::size_t k = 0; k < poses.size(); k += step)
     path.points.push_back({poses[k].x, poses[k].y, poses[k].yaw});
   return path;
@@ -66,7 +62,7 @@ std::vector<PathTrace> paths_of(const measurement::Dataset& dataset, const vehic
 std::vector<double> sigmas_of(const estimation::FitResult& fit, Eigen::Index axis) {
   std::vector<double> sigmas;
   for (std::size_t k = 0; k < fit.weights.size(); ++k)
-    if (fit.weights[k] >= kTrustedWeight)
+    if (fit.weights[k] >= selection::settings::kTrustedWeight)
       sigmas.push_back(fit.whitened_residual(static_cast<Eigen::Index>(3 * k) + axis));
   return sigmas;
 }
@@ -93,10 +89,11 @@ double runs_test(const std::vector<double>& values) {
 }
 
 std::vector<std::size_t> histogram_of(const std::vector<double>& sigmas) {
-  std::vector<std::size_t> counts(kHistogramBins, 0);
+  std::vector<std::size_t> counts(settings::kHistogramBins, 0);
   for (const double s : sigmas) {
-    const double place = (s + kHistogramEnd) / (2.0 * kHistogramEnd) * static_cast<double>(kHistogramBins);
-    if (place >= 0.0 && place < static_cast<double>(kHistogramBins))
+    const double place = (s + settings::kHistogramEnd) / (2.0 * settings::kHistogramEnd) *
+                         static_cast<double>(settings::kHistogramBins);
+    if (place >= 0.0 && place < static_cast<double>(settings::kHistogramBins))
       ++counts[static_cast<std::size_t>(place)];
   }
   return counts;
@@ -110,7 +107,7 @@ ResidualAxis axis_of(const estimation::FitResult& fit, Eigen::Index axis, const 
   double count = 0.0;
   double squares = 0.0;
   for (std::size_t k = 0; k < fit.weights.size(); ++k) {
-    if (fit.weights[k] < kTrustedWeight) continue;
+    if (fit.weights[k] < selection::settings::kTrustedWeight) continue;
     const double r = fit.residuals(static_cast<Eigen::Index>(k), axis);
     out.mean += r;
     squares += r * r;
@@ -137,7 +134,7 @@ void add_noise(const measurement::Dataset& dataset, const estimation::FitResult&
     for (std::size_t i = 0; i < dataset.data.size(); ++i) {
       const measurement::NoiseModel& noise = fit.noise[i];
       for (const measurement::SensorPair& pair : dataset.data[i].pairs) {
-        if (fit.weights[k++] < kTrustedWeight) continue;
+        if (fit.weights[k++] < selection::settings::kTrustedWeight) continue;
         reference.push_back(noise.matcher_scale * std::sqrt(pair.covariance(row, row)));
         wheels.push_back(axis < 2 ? noise.process_translation : noise.process_rotation);
       }
@@ -152,7 +149,7 @@ void add_noise(const measurement::Dataset& dataset, const estimation::FitResult&
 std::vector<ResidualSample> series_of(const measurement::Dataset& dataset, const estimation::FitResult& fit) {
   std::vector<ResidualSample> series;
   const auto& pairs = dataset.data.front().pairs;
-  const std::size_t step = stride(pairs.size(), kMostSamples);
+  const std::size_t step = stride(pairs.size(), settings::kMostSamples);
   for (std::size_t k = 0; k < pairs.size(); k += step) {
     const auto row = static_cast<Eigen::Index>(3 * k);
     series.push_back(

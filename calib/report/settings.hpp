@@ -2,6 +2,8 @@
 // published (source), measured (where), chosen (for what reason).
 #pragma once
 
+#include <cstddef>
+
 namespace odomcalib::calib::report::settings {
 
 // --- Lengths -----------------------------------------------------------------------------------------------
@@ -13,6 +15,12 @@ inline constexpr double kWarnRelativeDeviation = 0.005;
 inline constexpr double kPlausibleLow = 0.5, kPlausibleHigh = 2.0;
 /// Relative difference from the nominal value to warn of. Chosen.
 inline constexpr double kWarnChange = 0.10;
+/// Relative, of a scan matcher's metre; it depends on the room. Measured: 0.02 % over simulated rooms
+/// (tests/integration/accuracy_test.cpp).
+inline constexpr double kMatcherScale = 2e-4;
+/// Relative deviation of a length that more driving hardly improves. Chosen: scan matching in one room is no
+/// better.
+inline constexpr double kGoodEnough = 5e-4;
 
 // --- Pairs of scans or poses
 // --------------------------------------------------------------------------------
@@ -59,5 +67,13 @@ inline constexpr double kPlainlyApart = 4.0;
 /// Share of a length, m and rad of the lidar's place: differences beyond are refused, smaller ones widen the
 /// deviations. Chosen: the first is what the verdict warns of where a length is not known better.
 inline constexpr double kLengthApart = kWarnRelativeDeviation, kMountApart_m = 0.01, kMountApart_rad = 0.02;
+
+// --- Pictures --------------------------------------------------------------------------------------------
+
+/// Poses of a path, and pairs. Chosen.
+inline constexpr std::size_t kMostPathPoints = 600, kMostSamples = 300;
+/// Bins of a histogram of residuals, and deviations at which it ends. Chosen.
+inline constexpr std::size_t kHistogramBins = 20;
+inline constexpr double kHistogramEnd = 5.0;
 
 }  // namespace odomcalib::calib::report::settings
