@@ -74,7 +74,7 @@ class OfSector final : public UnnamedError {
   [[nodiscard]] std::vector<LidarParameter> parameters() const override {
     std::vector<LidarParameter> all = UnnamedError::parameters();
     for (std::size_t k = 0; k < all.size(); ++k)
-      all[k].name = "radial_at_" + std::to_string(360 / kKnots * knots_[k + 1]);
+      all[k].name = "radial_at_" + std::to_string(360 / settings::kBearingKnots * knots_[k + 1]);
     return all;
   }
 
@@ -91,15 +91,14 @@ class OfSector final : public UnnamedError {
     return shift;
   }
 
-  static constexpr std::size_t kKnots = 24;
   static double place_of(double bearing) {
-    return static_cast<double>(kKnots) * math::angle_of_turn(bearing) / (2.0 * math::kPi);
+    return static_cast<double>(settings::kBearingKnots) * math::angle_of_turn(bearing) / (2.0 * math::kPi);
   }
 
  private:
   static double hat(double place, std::size_t knot) {
     const double apart = std::abs(place - static_cast<double>(knot));
-    return std::max(0.0, 1.0 - std::min(apart, static_cast<double>(kKnots) - apart));
+    return std::max(0.0, 1.0 - std::min(apart, static_cast<double>(settings::kBearingKnots) - apart));
   }
   [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
     const double place = place_of(s.bearing);
@@ -122,17 +121,15 @@ class OfSector final : public UnnamedError {
 /// outwards. What they have in common with a scale no scan shows.
 class OfRange final : public UnnamedError {
  public:
-  OfRange() : UnnamedError("range", true, kKnots) {}
+  OfRange() : UnnamedError("range", true, settings::kRangeKnots) {}
   [[nodiscard]] bool is_correctable() const override { return false; }
 
  private:
-  static constexpr std::size_t kKnots = 4;
-  static constexpr double kNearest = 0.5;  // m; the next ones at 1, 2, 4 m
   [[nodiscard]] std::vector<double> functions(const Sighting& s) const override {
-    const double place =
-        std::clamp(std::log2(std::max(s.range, 1e-3) / kNearest), 0.0, static_cast<double>(kKnots - 1));
+    const double place = std::clamp(std::log2(std::max(s.range, 1e-3) / settings::kNearestRange_m), 0.0,
+                                    static_cast<double>(settings::kRangeKnots - 1));
     std::vector<double> all;
-    for (std::size_t k = 0; k < kKnots; ++k)
+    for (std::size_t k = 0; k < settings::kRangeKnots; ++k)
       all.push_back(std::max(0.0, 1.0 - std::abs(place - static_cast<double>(k))));
     return all;
   }
@@ -161,12 +158,12 @@ std::array<double, 4> slants(const Sighting& s) {
 LidarEffectPtr make_incidence_error() { return std::make_shared<OfIncidence>(); }
 
 LidarEffectPtr make_sector_error(const std::vector<double>& bearings) {
-  std::array<std::size_t, OfSector::kKnots> seen{};
+  std::array<std::size_t, settings::kBearingKnots> seen{};
   for (const double bearing : bearings)
-    ++seen.at(static_cast<std::size_t>(std::round(OfSector::place_of(bearing))) % OfSector::kKnots);
+    ++seen.at(static_cast<std::size_t>(std::round(OfSector::place_of(bearing))) % settings::kBearingKnots);
   std::vector<std::size_t> knots;
   for (std::size_t k = 0; k < seen.size(); ++k)
-    if (seen.at(k) >= settings::kFewestPoints) knots.push_back(k);
+    if (seen.at(k) >= settings::kFewestReadings) knots.push_back(k);
   return knots.size() < 2 ? nullptr : std::make_shared<OfSector>(std::move(knots));
 }
 

@@ -32,7 +32,12 @@ inline constexpr double kLargestShift_m = 0.2;
 /// rad, largest. Chosen.
 inline constexpr double kLargestAngle_rad = 0.1;
 /// Points of a wall that a term of the ranges is fitted to. Chosen.
-inline constexpr std::size_t kFewestPoints = 30;
+inline constexpr std::size_t kFewestReadings = 30;
+/// Knots over the bearings of a turn. Chosen: 15 degrees apart.
+inline constexpr std::size_t kBearingKnots = 24;
+/// Knots over the ranges, m of the first; each of the others lies at twice the one before. Chosen.
+inline constexpr std::size_t kRangeKnots = 4;
+inline constexpr double kNearestRange_m = 0.5;
 
 // --- Periodic smooths ------------------------------------------------------------------------------------
 
@@ -53,5 +58,10 @@ inline constexpr double kMostWaves = 1500;
 inline constexpr double kMoving = 0.01;
 /// Share of the way that a drive must go the other way to count as one both ways. Chosen.
 inline constexpr double kLeastOfWay = 0.2;
+
+// --- Fading since an event -------------------------------------------------------------------------------
+
+/// m of the base, and rad of a wheel: the nearest knot. Chosen.
+inline constexpr double kNearestKnot_m = 0.03, kNearestKnot_rad = 0.2;
 
 }  // namespace odomcalib::calib::terms::settings
