@@ -2,19 +2,16 @@
 
 #include "calib/matching/both_ways.hpp"
 #include "calib/matching/pose_search.hpp"
+#include "calib/settings.hpp"
 
 namespace odomcalib::calib {
 namespace {
-
-constexpr double kConvincing = 0.8;         ///< overlap above which no better pose is looked for
-constexpr std::size_t kSearchPoints = 150;  ///< of the scan; more add little on cells of 10 cm
-constexpr std::size_t kFewestPoints = 10;   ///< that a score says something about
 
 matching::MatchResult match_after_search(const matching::MatchReference& reference,
                                          const matching::MatchReference& scan, const math::Pose& guess,
                                          const matching::MatchOptions& options) {
   matching::LikelihoodField field(positions(reference.surface()), matching::FieldOptions{});
-  const auto points = matching::thinned(positions(scan.surface()), kSearchPoints);
+  const auto points = matching::thinned(positions(scan.surface()), settings::kSearchPoints);
   const matching::SearchResult start = search_branch_and_bound(field, points, {.centre = guess});
   return match_both_ways(reference, scan, start.pose, options);
 }
@@ -26,7 +23,7 @@ matching::MatchResult match_best(const matching::MatchReference& reference,
                                  const matching::MatchOptions& options) {
   matching::MatchResult first = match_both_ways(reference, scan, guess, options);
   if (first.status == matching::MatchStatus::too_few_points) return first;
-  if (first.is_usable() && first.overlap >= kConvincing) return first;
+  if (first.is_usable() && first.overlap >= settings::kConvincing) return first;
   matching::MatchResult second = match_after_search(reference, scan, guess, options);
   // Refused or not, the pose with more agreement says more about the pair.
   return second.inliers > first.inliers ? second : first;
@@ -68,10 +65,10 @@ ScanMatch search_scans(const Scan& reference, const Scan& scan, const std::array
   const matching::BeamMotion at_rest = [](double) { return math::Pose{}; };
   const auto wanted = positions(matching::make_surface(reference, at_rest, noise));
   const auto points =
-      matching::thinned(positions(matching::make_surface(scan, at_rest, noise)), kSearchPoints);
+      matching::thinned(positions(matching::make_surface(scan, at_rest, noise)), settings::kSearchPoints);
   ScanMatch match;
   match.status = to_string(matching::MatchStatus::too_few_points);
-  if (wanted.size() < kFewestPoints || points.size() < kFewestPoints) return match;
+  if (wanted.size() < settings::kFewestScored || points.size() < settings::kFewestScored) return match;
   const matching::LikelihoodField field(wanted, {});
   const math::Pose start{guess[0], guess[1], guess[2]};
   const matching::SearchResult found = matcher == Matcher::brute

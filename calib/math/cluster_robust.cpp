@@ -4,18 +4,18 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "calib/math/settings.hpp"
+
 namespace odomcalib::calib::math {
 namespace {
 
-constexpr double kBlockSeconds = 5.0;
 constexpr double kNever = -1e300;
-constexpr double kFewestBlocks = 12.0;  ///< whose scatter still means something
-constexpr double kChance = 1e-3;        ///< that longer blocks are believed where errors do not drift
 
 /// How much larger the scatter of so many blocks may look by chance.
 double by_chance(double blocks) {
   const boost::math::chi_squared distribution(blocks - 1.0);
-  return boost::math::quantile(boost::math::complement(distribution, kChance)) / (blocks - 1.0);
+  return boost::math::quantile(boost::math::complement(distribution, settings::kLongerByChance)) /
+         (blocks - 1.0);
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ ClusterRobust::ClusterRobust(Eigen::MatrixXd inverse)
 
 void ClusterRobust::add(double time, const Eigen::VectorXd& score) {
   std::vector<Eigen::VectorXd>& blocks = recordings_.back();
-  if (time > begin_ + kBlockSeconds) {
+  if (time > begin_ + settings::kBlock_s) {
     blocks.emplace_back(Eigen::VectorXd::Zero(inverse_.rows()));
     begin_ = time;
   }
@@ -58,7 +58,7 @@ Eigen::VectorXd ClusterRobust::variances() const {
   for (const auto& blocks : recordings_) longest = std::max(longest, blocks.size());
   for (std::size_t joined = 2; joined <= longest; joined *= 2) {
     const Scatter longer = scatter(joined);
-    if (longer.blocks < kFewestBlocks) break;
+    if (longer.blocks < settings::kFewestScattered) break;
     const double limit = by_chance(longer.blocks);
     for (Eigen::Index k = 0; k < largest.size(); ++k)
       if (longer.variances(k) > limit * shortest(k)) largest(k) = std::max(largest(k), longer.variances(k));

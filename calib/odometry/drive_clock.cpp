@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
+#include "calib/odometry/settings.hpp"
+
 namespace odomcalib::calib::odometry {
-namespace {
-
-constexpr double kTogether = 1.0;  ///< s, between the first stamps of drives that both begin at zero
-
-}  // namespace
 
 DriveClock::DriveClock(const Calibration& calibration, double stamp) {
   if (calibration.data.empty()) return;
@@ -16,7 +13,7 @@ DriveClock::DriveClock(const Calibration& calibration, double stamp) {
   // Several drives share no zero of time.
   if (calibration.data.size() > 1 || !drive.begin) return;
   const double since = stamp - *drive.begin;
-  if (since >= -kTogether && since <= 2.0 * duration_) begin_ = drive.begin;
+  if (since >= -settings::kTogether_s && since <= settings::kAfterTheDrive * duration_) begin_ = drive.begin;
 }
 
 double DriveClock::at(double stamp) const {

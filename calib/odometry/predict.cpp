@@ -6,6 +6,7 @@
 
 #include "calib/ingest/tick_stamps.hpp"
 #include "calib/odometry/drive_clock.hpp"
+#include "calib/odometry/settings.hpp"
 #include "calib/selection/selection_json.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/effects/reference_effect.hpp"
@@ -17,9 +18,6 @@
 
 namespace odomcalib::calib::odometry {
 namespace {
-
-/// Samples kept for smoothing: effects see speeds, and speeds need a little history.
-constexpr std::size_t kHistory = 32;
 
 struct Correction {
   Eigen::VectorXd parameters;
@@ -208,7 +206,7 @@ PoseSample Odometry::update(const TickSample& sample) {
   if (s.history.empty()) s.begin(sample.t);
   const bool advances = !s.history.empty() && sample.t > s.history.back().t;
   if (s.history.empty() || advances) s.history.push_back(sample);
-  if (s.history.size() > kHistory) s.history.pop_front();
+  if (s.history.size() > settings::kHistory) s.history.pop_front();
   if (!advances || !(s.ticks_per_rev() > 0.0))
     return {sample.t, s.pose.x, s.pose.y, math::wrap_angle(s.pose.yaw)};
 

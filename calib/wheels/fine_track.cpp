@@ -13,7 +13,7 @@ namespace {
 
 using Cubic = boost::math::interpolators::makima<std::vector<double>>;
 
-constexpr std::size_t kFewest = 4;  // samples that a cubic needs
+constexpr std::size_t kOfCubic = 4;  // samples that a cubic needs
 
 std::vector<double> part_of(const std::vector<double>& all, std::size_t begin, std::size_t end) {
   return {all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end)};
@@ -42,7 +42,7 @@ void append_refined(const WheelTrack& track, std::size_t begin, std::size_t end,
   const auto copy = [&](std::size_t k) {
     append(out, track.t[k], track.left[k], track.right[k], track.segment[k]);
   };
-  if (end - begin < kFewest) {
+  if (end - begin < kOfCubic) {
     for (std::size_t k = begin; k < end; ++k) copy(k);
     return;
   }

@@ -1,0 +1,16 @@
+// Numbers that decide which errors are taken for independent, each once, with its unit and its origin (see
+// calib/matching/settings.hpp).
+#pragma once
+
+namespace odomcalib::calib::math::settings {
+
+// --- Scatter of blocks -----------------------------------------------------------------------------------
+
+/// s, of measurements whose errors may depend on each other. Chosen.
+inline constexpr double kBlock_s = 5.0;
+/// Blocks whose scatter still means something. Chosen.
+inline constexpr double kFewestScattered = 12.0;
+/// Probability that longer blocks are believed where errors do not drift. Chosen.
+inline constexpr double kLongerByChance = 1e-3;
+
+}  // namespace odomcalib::calib::math::settings
