@@ -28,7 +28,7 @@ struct MatchOptions {
   double min_overlap = settings::kLeastOverlap;       ///< share of usable points that must find a partner
   /// Of the translation information; below: degenerate.
   double min_eigenvalue_ratio = settings::kDegenerateRatio;
-  int max_iterations = settings::kMostSteps;
+  int max_iterations = settings::kMostMatchSteps;
   bool guess_is_near = false;  ///< by a match before: the way from afar is spared
   /// Of the guess: x, y, yaw, in 1/m^2, 1/(m rad), 1/rad^2. Zero: the guess is a start and no prior. With it
   /// a scan does not slide along a corridor.

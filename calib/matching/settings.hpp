@@ -60,7 +60,7 @@ inline constexpr double kLeastOverlap = 0.4;
 /// Ratio of the translation information's eigenvalues, below which a direction is open. Chosen.
 inline constexpr double kDegenerateRatio = 0.01;
 /// Steps. Chosen.
-inline constexpr int kMostSteps = 40;
+inline constexpr int kMostMatchSteps = 40;
 /// Deviations of a median absolute deviation by which distances may scatter more by chance. Chosen.
 inline constexpr double kExcessSigmas = 2.0;
 
