@@ -4,18 +4,13 @@
 
 #include "daemon/cli/document.hpp"
 #include "daemon/cli/figure_svg.hpp"
+#include "daemon/cli/palette.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
-// One palette a scheme; orange and blue stay apart for colour-blind readers. On paper it is the light one. On
-// a narrow screen a wide table turns: a row becomes a block, each value beside the head of its column.
-constexpr const char* kStyle = R"(
-:root{color-scheme:light dark;--ink:#222;--paper:#fff;--rule:#d8d8d8;--before:#b84f14;--after:#1769aa;--reference:#6b6b6b;
---good:#1a7f37;--doubtful:#8a5a00;--bad:#b3261e}
-@media screen and (prefers-color-scheme:dark){:root{--ink:#ddd;--paper:#16181b;--rule:#3a3d42;--before:#f0975a;
---after:#6cb6f5;--reference:#a8a8a8;--good:#5fce7e;--doubtful:#e5b34a;--bad:#ff8a80}}
-@media print{:root{color-scheme:light}}
+// On a narrow screen a wide table turns: a row becomes a block, each value beside the head of its column.
+constexpr const char* kStyle = R"(@media print{:root{color-scheme:light}}
 body{font:15px/1.45 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:var(--ink);
 background:var(--paper);overflow-wrap:anywhere}
 h1{border-left:.35em solid var(--rule);padding-left:.5em}
@@ -133,8 +128,8 @@ std::string to_html(const Document& document) {
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width\"><title>{0}</title>\n"
-      "<style>{1}</style></head><body>\n<h1 class=\"{2}\">{0}</h1>\n",
-      escaped(document.headline), kStyle, class_of(document.tone));
+      "<style>{3}{1}</style></head><body>\n<h1 class=\"{2}\">{0}</h1>\n",
+      escaped(document.headline), kStyle, class_of(document.tone), kPalette);
   for (const Section& section : document.sections) out += html_of(section);
   return out + "</body></html>\n";
 }

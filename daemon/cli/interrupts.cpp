@@ -16,6 +16,7 @@ constexpr std::string_view kObject =
     "\n";
 
 volatile sig_atomic_t prints_json = 0;
+volatile sig_atomic_t finish = 0;
 
 // Outputs are written whole or not at all, so the program may end anywhere. Nothing here but what a signal
 // handler may call.
@@ -24,6 +25,8 @@ void on_signal(int /*number*/) {
   if (prints_json != 0) (void)!write(STDOUT_FILENO, kObject.data(), kObject.size());
   _exit(kCancelled);
 }
+
+void on_finish(int /*number*/) { finish = 1; }
 
 }  // namespace
 
@@ -38,5 +41,15 @@ void end_when_interrupted(JsonMode json) {
     sigaction(number, &action, nullptr);
   }
 }
+
+void finish_when_interrupted() {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    action.sa_handler = on_finish;
+    sigaction(number, &action, nullptr);
+  }
+}
+
+bool interrupted() { return finish != 0; }
 
 }  // namespace odomcalib::cli

@@ -1,4 +1,4 @@
-// Ctrl-C where nothing moves: the program ends as cancelled, and has written nothing.
+// Ctrl-C where nothing moves.
 #pragma once
 
 #include "daemon/cli/output.hpp"
@@ -6,7 +6,11 @@
 namespace odomcalib::cli {
 
 /// Until a verb catches them itself, SIGINT, SIGTERM and SIGHUP end the program with the status of
-/// cancellation. What the parent lets this program ignore stays ignored.
+/// cancellation, and nothing is written. What the parent lets this program ignore stays ignored.
 void end_when_interrupted(JsonMode json);
+
+/// From now on these signals end nothing by themselves: a verb that runs until then asks, and ends as done.
+void finish_when_interrupted();
+bool interrupted();
 
 }  // namespace odomcalib::cli

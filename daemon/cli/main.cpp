@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   odomcalib::cli::add_graph(app, session);
   odomcalib::cli::add_questions(app, session);
   odomcalib::cli::add_monitor(app, session);
+  odomcalib::cli::add_view(app, session);
   odomcalib::cli::add_record(app, session);
   odomcalib::cli::add_manual(app, session);
   odomcalib::cli::add_motions(app, session);

@@ -1,7 +1,6 @@
 // What happens in the daemon while it happens: events, and its state when it changes.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -12,6 +11,7 @@
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/interrupts.hpp"
 #include "daemon/cli/numbers.hpp"
 #include "daemon/cli/verbs.hpp"
 
@@ -19,10 +19,6 @@ namespace odomcalib::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-volatile sig_atomic_t finish = 0;
-
-void on_signal(int /*number*/) { finish = 1; }
 
 struct Options {
   double duration = 0.0;
@@ -68,7 +64,7 @@ int watch(Client& events, Client& questions, const Options& options, const Sessi
   const auto begin = Clock::now();
   auto next = begin;
   std::string state;
-  while (finish == 0 && std::cout) {
+  while (!interrupted() && std::cout) {
     const auto now = Clock::now();
     if (options.duration > 0.0 && std::chrono::duration<double>(now - begin).count() >= options.duration)
       break;
@@ -88,11 +84,7 @@ int watch(Client& events, Client& questions, const Options& options, const Sessi
 }
 
 int monitor(const Options& options, const Session& session) {
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    sigaction(number, &action, nullptr);
-  }
+  finish_when_interrupted();
   auto events = Client::connect(session.socket);
   if (!events) return report_error(events.error(), session.json);
   auto questions = Client::connect(session.socket);

@@ -36,6 +36,7 @@ int show_status(const Session& session);
 int show_checks(const Session& session);
 void add_questions(CLI::App& app, Session& session);
 void add_monitor(CLI::App& app, Session& session);
+void add_view(CLI::App& app, Session& session);
 void add_record(CLI::App& app, Session& session);
 void add_manual(CLI::App& app, Session& session);
 void add_motions(CLI::App& app, Session& session);

@@ -34,6 +34,7 @@ TABLE = [
     ("rollback", "--yes", DONE, "write-back"),
     ("history", "", DONE, "history"),
     ("monitor", "--duration 0.6", DONE, "event"),
+    ("view", "--port 0 --duration 0.6", DONE, "view"),
     ("stop", "", DONE, "stop"),
 ]
 FILES = [("lengths.json", "calibration")]

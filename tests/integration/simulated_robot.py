@@ -20,7 +20,8 @@ track_width = 0.400
 [limits]
 countdown = 0.0
 [lcm]
-enabled = false
+enabled = {lcm_enabled}
+url = "{lcm_url}"
 [daemon]
 state_dir = "{folder}/state"
 socket = "{folder}/control"
@@ -28,9 +29,10 @@ socket = "{folder}/control"
 
 
 class SimulatedRobot:
-    """Use with "with". The programs are those in one folder."""
+    """Use with "with". The programs are those in one folder. Without a URL nothing is published."""
 
-    def __init__(self, programs, profile, seed):
+    def __init__(self, programs, profile, seed, lcm_url=""):
+        self._lcm_url = lcm_url
         self.programs, self.profile, self.seed, self.running = os.path.abspath(programs), profile, seed, []
         self._folder = tempfile.TemporaryDirectory(prefix="odomcalib-live-")
         self.folder = self._folder.name
@@ -41,7 +43,8 @@ class SimulatedRobot:
             # Robot and daemon share this machine's processors, which may stand still for longer than three life signs of 30 ms.
             ours.write(shipped.read().replace("\nperiod_ms = 30\n", "\nperiod_ms = 100\n"))
         with open(self.path("odomcalib.toml"), "w", encoding="utf-8") as file:
-            file.write(CONFIGURATION.format(folder=self.folder))
+            file.write(CONFIGURATION.format(folder=self.folder, lcm_enabled=str(bool(self._lcm_url)).lower(),
+                                            lcm_url=self._lcm_url or "memq://"))
         try:
             self.start("odomcalib-sim", "--seed", str(self.seed), "--link", self.path("ports"), "--truth",
                        self.path("truth.json"))

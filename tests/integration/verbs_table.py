@@ -56,6 +56,7 @@ TABLE = [
     ("params diff", "", NO_DAEMON, "error"),
     ("params set", "--yes track_width=0.4", NO_DAEMON, "error"),
     ("monitor", "", NO_DAEMON, "error"),
+    ("view", "--port 0", NO_DAEMON, "error"),
     ("record", "--duration 1", NO_DAEMON, "error"),
     ("check", "", NO_DAEMON, "error"),
     ("straight", "--yes", NO_DAEMON, "error"),

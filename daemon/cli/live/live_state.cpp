@@ -1,0 +1,286 @@
+#include "daemon/cli/live/live_state.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "proto/calibration/report_data.hpp"
+#include "proto/wire/messages.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array kLidarPose = {"lidar_x", "lidar_y", "lidar_yaw"};
+
+// The daemon's answers are checked member by member: what is missing is empty, what is of another type too.
+std::string text_in(const ordered_json& object, const char* member) {
+  const auto found = object.find(member);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+ordered_json object_in(const ordered_json& object, const char* member) {
+  const auto found = object.find(member);
+  return found != object.end() && found->is_object() ? *found : ordered_json::object();
+}
+
+ordered_json number_in(const ordered_json& object, const char* member) {
+  const auto found = object.find(member);
+  return found != object.end() && found->is_number() ? *found : ordered_json();
+}
+
+std::optional<Pose> pose_of(const ordered_json& values) {
+  if (!values.is_array() || values.size() != 3) return std::nullopt;
+  for (const auto& value : values)
+    if (!value.is_number()) return std::nullopt;
+  return Pose{values[0].get<double>(), values[1].get<double>(), values[2].get<double>()};
+}
+
+ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
+
+double millimetres(double value) { return std::round(value * 1e3) / 1e3; }
+
+ordered_json json_of(const Pose& pose) {
+  return {millimetres(pose.x), millimetres(pose.y), std::round(pose.yaw * 1e4) / 1e4};
+}
+
+ordered_json json_of(const std::vector<Pose>& path, const std::optional<Pose>& now = std::nullopt) {
+  ordered_json list = ordered_json::array();
+  for (const Pose& pose : path) list.push_back({millimetres(pose.x), millimetres(pose.y)});
+  if (now) list.push_back({millimetres(now->x), millimetres(now->y)});
+  return list;
+}
+
+bool is_finite(const Pose& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
+}
+
+Pose pose_of(const PoseSample& sample) { return {sample.x, sample.y, sample.yaw}; }
+
+/// A path of a result, in the frame of its first pose.
+std::vector<Pose> path_of(const Calibration& calibration, const std::string& name) {
+  std::vector<Pose> path;
+  for (const PathTrace& trace : report_data_of(calibration).paths)
+    if (trace.name == name)
+      for (const auto& [x, y, yaw] : trace.points)
+        if (const Pose pose{x, y, yaw}; is_finite(pose)) path.push_back(pose);
+  if (path.empty()) return path;
+  const Pose T_start_source = calib::math::inverse(path.front());
+  for (Pose& pose : path) pose = calib::math::compose(T_start_source, pose);
+  return path;
+}
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::accepted:
+      return "accepted";
+    case Verdict::accepted_with_warnings:
+      return "accepted_with_warnings";
+    case Verdict::refused:
+      break;
+  }
+  return "refused";
+}
+
+ordered_json row_of(const std::string& name, const std::string& unit) {
+  return {{"name", name},      {"unit", unit},   {"value", nullptr},   {"calibrated", nullptr},
+          {"solved", nullptr}, {"std", nullptr}, {"stored_in", "host"}};
+}
+
+ordered_json& row_in(ordered_json& rows, const std::string& name, const std::string& unit) {
+  for (auto& row : rows)
+    if (row["name"] == name) return row;
+  rows.push_back(row_of(name, unit));
+  return rows.back();
+}
+
+bool is_driving(const std::string& state) { return state.starts_with("moving") || state == "recording"; }
+
+}  // namespace
+
+void LiveState::connect(const ordered_json& description, bool lcm_opened) {
+  connected_ = true;
+  problem_.clear();
+  lcm_url_ = text_in(object_in(description, "lcm"), "url");
+  lcm_opened_ = lcm_opened;
+  answers_without_message_ = 0;
+  const ordered_json lidar = object_in(description, "lidar");
+  nominal_lidar_ = pose_of(lidar.value("pose", ordered_json())).value_or(Pose{});
+  // The frame of a daemon that was started again begins anew.
+  last_odometry_.reset();
+  last_calibrated_.reset();
+  begin_drive();
+}
+
+void LiveState::disconnect(const std::string& why) {
+  connected_ = drives_ = false;
+  problem_ = why;
+  progress_ = nullptr;
+  scan_.clear();
+}
+
+void LiveState::take_status(const ordered_json& status) {
+  if (!status.is_object()) return;
+  status_ = status;
+  const bool drove = std::exchange(drives_, is_driving(text_in(status, "state")));
+  if (drives_ && !drove) begin_drive();
+  if (text_in(status, "state") == "idle") progress_ = nullptr;
+  if (!text_in(object_in(status, "lidar"), "stale").empty()) scan_.clear();
+  if (answers_without_message_ < kPatience) ++answers_without_message_;
+  // The one path that is known without LCM.
+  const bool alone = !lcm_opened_ || answers_without_message_ >= kPatience;
+  if (const auto pose = pose_of(status.value("odometry", ordered_json())); alone && pose)
+    take_odometry(*pose);
+}
+
+void LiveState::take_parameters(const ordered_json& parameters) {
+  if (parameters.is_array()) parameters_ = parameters;
+}
+
+void LiveState::take_message(std::string_view channel, std::string_view bytes) {
+  answers_without_message_ = 0;
+  if (channel == "SCAN") return take_scan(bytes);
+  if (channel == "PROGRESS") return take_progress(bytes);
+  if (channel == "RESULT") return take_result(bytes);
+  const auto message = messages::decode_pose(bytes);
+  if (!message || !is_finite(pose_of(message->pose))) return;
+  if (channel == "ODOM") take_odometry(pose_of(message->pose));
+  if (channel != "ODOM_CALIBRATED") return;
+  last_calibrated_ = pose_of(message->pose);
+  calibrated_.add(*last_calibrated_);
+}
+
+void LiveState::take_odometry(const Pose& pose) {
+  last_odometry_ = pose;
+  odometry_.add(pose);
+}
+
+void LiveState::take_scan(std::string_view bytes) {
+  const auto message = messages::decode_scan(bytes);
+  if (!message) return;
+  const Scan& scan = message->scan;
+  const std::size_t step = scan.ranges.size() / kMostBeams + 1;
+  scan_.clear();
+  for (std::size_t k = 0; k < scan.ranges.size(); k += step) {
+    const double range = static_cast<double>(scan.ranges[k]);
+    const double angle = scan.angle(k);
+    if (!std::isfinite(angle) || !(range > 0.0 && range >= scan.range_min && range <= scan.range_max))
+      continue;
+    scan_.push_back({range * std::cos(angle), range * std::sin(angle)});
+  }
+}
+
+void LiveState::take_progress(std::string_view bytes) {
+  const auto message = messages::decode_json(bytes);
+  if (!message) return;
+  const auto body = ordered_json::parse(message->json, nullptr, false);
+  if (!body.is_object() || !number_in(body, "fraction").is_number()) return;
+  progress_ = {{"phase", text_in(body, "phase")},
+               {"fraction", std::clamp(body["fraction"].get<double>(), 0.0, 1.0)},
+               {"eta", number_in(body, "eta")}};
+}
+
+void LiveState::take_result(std::string_view bytes) {
+  const auto message = messages::decode_json(bytes);
+  if (!message) return;
+  auto calibration = calibration_from_json(message->json, "RESULT");
+  if (!calibration) return;
+  result_ = std::move(calibration).value();
+  // They are of one recording and one time; what follows continues from their ends.
+  reference_ = path_of(*result_, "reference");
+  if (reference_.size() > Trace::kMostPoints) {
+    Trace thin;
+    thin.restart(reference_);
+    reference_ = thin.points();
+  }
+  if (const auto path = path_of(*result_, "odometry"); !path.empty()) {
+    odometry_.restart(path);
+    if (last_odometry_) odometry_.continue_from(*last_odometry_);
+  }
+  if (const auto path = path_of(*result_, "calibrated"); !path.empty()) {
+    calibrated_.restart(path);
+    if (last_calibrated_) calibrated_.continue_from(*last_calibrated_);
+  }
+}
+
+void LiveState::begin_drive() {
+  reference_.clear();
+  odometry_.restart({Pose{}});
+  if (last_odometry_) odometry_.continue_from(*last_odometry_);
+  calibrated_.restart({});
+  if (last_calibrated_) calibrated_.continue_from(*last_calibrated_);
+}
+
+std::string LiveState::why_no_telemetry() const {
+  if (!connected_) return "";
+  if (lcm_url_.empty())
+    return "LCM is off in the daemon's configuration ([lcm] enabled): no scan, no progress, odometry alone";
+  if (!lcm_opened_)
+    return "LCM cannot be opened here (" + lcm_url_ + "): no scan, no progress, odometry alone";
+  if (answers_without_message_ >= kPatience)
+    return "no LCM message arrives (" + lcm_url_ +
+           "): no scan, no progress, odometry alone; see that multicast has a route";
+  return "";
+}
+
+Pose LiveState::lidar_pose() const {
+  if (!result_) return nominal_lidar_;
+  const auto x = result_->parameter("lidar_x"), y = result_->parameter("lidar_y"),
+             yaw = result_->parameter("lidar_yaw");
+  if (!x || !y || !yaw || !is_finite({*x, *y, *yaw})) return nominal_lidar_;
+  return {*x, *y, *yaw};
+}
+
+ordered_json LiveState::parameter_rows() const {
+  ordered_json rows = ordered_json::array();
+  for (const auto& parameter : parameters_) {
+    if (!parameter.is_object() || text_in(parameter, "name").empty()) continue;
+    ordered_json row = row_of(text_in(parameter, "name"), text_in(parameter, "unit"));
+    row["value"] = number_in(parameter, "value");
+    row["calibrated"] = number_in(parameter, "calibrated");
+    row["stored_in"] = text_in(parameter, "stored_in");
+    rows.push_back(row);
+  }
+  const std::array<double, 3> nominal = {nominal_lidar_.x, nominal_lidar_.y, nominal_lidar_.yaw};
+  for (std::size_t k = 0; connected_ && k < nominal.size(); ++k)
+    row_in(rows, kLidarPose.at(k), k == 2 ? "rad" : "m")["value"] = nominal.at(k);
+  if (!result_) return rows;
+  const auto add = [&rows](const std::string& name, const Quantity& quantity) {
+    ordered_json& row = row_in(rows, name, quantity.unit);
+    row["solved"] = finite_or_null(quantity.value);
+    if (quantity.std >= 0.0) row["std"] = finite_or_null(quantity.std);
+  };
+  for (const auto& [name, quantity] : result_->parameters) add(name, quantity);
+  for (const auto& effect : result_->effects)
+    for (const auto& [name, quantity] : effect.parameters) add(effect.name + "." + name, quantity);
+  return rows;
+}
+
+ordered_json LiveState::document() const {
+  const ordered_json controller = object_in(status_, "controller"), lidar = object_in(status_, "lidar");
+  ordered_json body = {{"format", "odomcalib-view/1"}, {"connected", connected_}, {"problem", problem_}};
+  body["telemetry"] = why_no_telemetry();
+  body["state"] = connected_ ? text_in(status_, "state") : "";
+  body["progress"] = progress_;
+  body["last_stop"] = text_in(status_, "last_stop");
+  body["controller"] = connected_ ? text_in(controller, "state") : "";
+  body["lidar"] = connected_ ? text_in(lidar, "stale") : "";
+  const auto& now = calibrated_.now() ? calibrated_.now() : odometry_.now();
+  body["pose"] = now ? json_of(*now) : ordered_json();
+  body["paths"] = {{"odometry", json_of(odometry_.points(), odometry_.now())},
+                   {"calibrated", json_of(calibrated_.points(), calibrated_.now())},
+                   {"reference", json_of(reference_)}};
+  body["scan"] = ordered_json::array();
+  for (const auto& [x, y] : scan_) {
+    const Pose point = calib::math::compose(lidar_pose(), Pose{x, y, 0.0});
+    body["scan"].push_back({millimetres(point.x), millimetres(point.y)});
+  }
+  body["verdict"] = result_ ? ordered_json(name_of(result_->verdict)) : ordered_json();
+  body["parameters"] = parameter_rows();
+  return body;
+}
+
+}  // namespace odomcalib::cli

@@ -1,0 +1,60 @@
+// What the page of `odomcalibctl view` shows, gathered from what the daemon answers and publishes.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/cli/live/trace.hpp"
+#include "proto/calibration/calibration.hpp"
+
+namespace odomcalib::cli {
+
+/// Values in, one JSON document out (docs/schema/view-1.json), of bounded size whatever came in. All paths
+/// begin at one pose, where the last drive began; there is no other frame that odometry, calibrated odometry
+/// and scans share.
+class LiveState {
+ public:
+  static constexpr std::size_t kMostBeams = 720;  ///< chosen: half a degree of a full turn
+  /// Answers without a message before it is said that none arrive; two seconds at five a second.
+  static constexpr int kPatience = 10;
+
+  /// @param description answer of Describe. @param lcm_opened whether its LCM URL could be opened
+  void connect(const nlohmann::ordered_json& description, bool lcm_opened);
+  void disconnect(const std::string& why);
+  void take_status(const nlohmann::ordered_json& status);
+  void take_parameters(const nlohmann::ordered_json& parameters);
+  /// @param channel without prefix. Bytes that are no message of this channel change nothing.
+  void take_message(std::string_view channel, std::string_view bytes);
+
+  /// Whether the robot drives or is recorded: then the daemon is asked for no more than its state.
+  [[nodiscard]] bool drives() const { return drives_; }
+  [[nodiscard]] nlohmann::ordered_json document() const;
+
+ private:
+  void take_odometry(const Pose& pose);
+  void take_progress(std::string_view bytes);
+  void take_scan(std::string_view bytes);
+  void take_result(std::string_view bytes);
+  void begin_drive();
+  [[nodiscard]] std::string why_no_telemetry() const;
+  [[nodiscard]] Pose lidar_pose() const;
+  [[nodiscard]] nlohmann::ordered_json parameter_rows() const;
+
+  bool connected_ = false, drives_ = false, lcm_opened_ = false;
+  std::string problem_ = "not asked yet", lcm_url_;
+  int answers_without_message_ = 0;
+  nlohmann::ordered_json status_ = nlohmann::ordered_json::object();
+  nlohmann::ordered_json parameters_ = nlohmann::ordered_json::array();
+  nlohmann::ordered_json progress_;  ///< null: none
+  Pose nominal_lidar_;
+  Trace odometry_, calibrated_;
+  std::optional<Pose> last_odometry_, last_calibrated_;  ///< in the frames of their sources
+  std::vector<Pose> reference_;
+  std::vector<std::array<double, 2>> scan_;  ///< m, frame of the lidar
+  std::optional<Calibration> result_;
+};
+
+}  // namespace odomcalib::cli
