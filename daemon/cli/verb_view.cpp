@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kPeriod = std::chrono::milliseconds(200);  // of the daemon's progress
-constexpr int kTurnsPerTable = 5;                         // parameters once a second, when nothing moves
+constexpr int kTurnsPerTable = 5;                         // parameters once a second
 constexpr int kTurnsPerTry = 5;                           // of a daemon that went away
 constexpr int kAnswerWithin = 1000;                       // ms
 
@@ -105,7 +105,7 @@ class Watch {
     const auto status = ask(*client_, "GetStatus", "status");
     if (!status) return status.error();
     state_.take_status(status.value());
-    if (state_.drives() || turn_ % kTurnsPerTable != 0) return {};
+    if (turn_ % kTurnsPerTable != 0) return {};
     const auto parameters = ask(*client_, "GetParameters", "parameters");
     if (!parameters) return parameters.error();
     state_.take_parameters(parameters.value());

@@ -29,8 +29,6 @@ class LiveState {
   /// @param channel without prefix. Bytes that are no message of this channel change nothing.
   void take_message(std::string_view channel, std::string_view bytes);
 
-  /// Whether the robot drives or is recorded: then the daemon is asked for no more than its state.
-  [[nodiscard]] bool drives() const { return drives_; }
   [[nodiscard]] nlohmann::ordered_json document() const;
 
  private:
