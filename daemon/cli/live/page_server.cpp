@@ -47,7 +47,7 @@ std::string source_hash(const std::string& text) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned size = 0;
   EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(), nullptr);
-  std::array<unsigned char, 2 * EVP_MAX_MD_SIZE> base64{};
+  std::array<unsigned char, std::size_t{2} * EVP_MAX_MD_SIZE> base64{};
   const int length = EVP_EncodeBlock(base64.data(), digest.data(), static_cast<int>(size));
   return "'sha256-" + std::string(base64.begin(), base64.begin() + length) + "'";
 }
@@ -146,7 +146,7 @@ bool is_own_host(const std::string& host) {
 }
 
 Result<std::unique_ptr<PageServer>> PageServer::open(int port, const std::string& page,
-                                                     std::function<std::string()> state) {
+                                                     const std::function<std::string()>& state) {
   auto server = std::make_unique<LoopbackServer>(page, state);
   if (!server->start(port))
     return Error{ErrorCode::io, "the port cannot be opened, another program may have it",

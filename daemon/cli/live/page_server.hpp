@@ -19,7 +19,7 @@ class PageServer {
   /// @param state makes the JSON document; called by the server's threads
   /// Errors: io (the port is taken).
   static Result<std::unique_ptr<PageServer>> open(int port, const std::string& page,
-                                                  std::function<std::string()> state);
+                                                  const std::function<std::string()>& state);
   /// Ends when requests that have begun are answered.
   virtual ~PageServer() = default;
   PageServer(const PageServer&) = delete;

@@ -8,18 +8,18 @@ void Trace::restart(const std::vector<Pose>& points) {
   points_.clear();
   spacing_ = kSpacing;
   now_.reset();
-  T_shown_source_.reset();
+  from_source_.reset();
   for (const Pose& point : points) append(point);
   if (!points.empty()) now_ = points.back();
 }
 
 void Trace::continue_from(const Pose& source) {
-  T_shown_source_ = calib::math::compose(now_.value_or(Pose{}), calib::math::inverse(source));
+  from_source_ = calib::math::compose(now_.value_or(Pose{}), calib::math::inverse(source));
 }
 
 void Trace::add(const Pose& source) {
-  if (!T_shown_source_) continue_from(source);
-  now_ = calib::math::compose(*T_shown_source_, source);
+  if (!from_source_) continue_from(source);
+  now_ = calib::math::compose(*from_source_, source);
   append(*now_);
 }
 

@@ -32,7 +32,7 @@ class Trace {
 
   std::vector<Pose> points_;
   std::optional<Pose> now_;
-  std::optional<Pose> T_shown_source_;
+  std::optional<Pose> from_source_;  ///< to what is shown
   double spacing_ = kSpacing;
 };
 
