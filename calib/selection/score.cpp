@@ -179,6 +179,7 @@ void ScoreTable::for_each_basis(const std::vector<std::size_t>& candidates,
                                 const std::function<void(std::size_t, const Eigen::MatrixXd&)>& visit) const {
   if (candidates.empty()) return;
   std::vector<Candidate> wanted;
+  wanted.reserve(candidates.size());
   for (const std::size_t k : candidates) wanted.push_back(candidates_[k]);
   const Projection projection(model_.fit, task_.fixed(model_.effects));
   for_each_candidate(task_.data, model_.effects, model_.fit, wanted,

@@ -61,7 +61,7 @@ TEST(Recording, reads_every_kind_of_line) {
   EXPECT_EQ(scan.angles, (std::vector<float>{1.0F, 0.4F, 0.0F}));
   EXPECT_EQ(scan.times, (std::vector<float>{0.0F, 0.002F, 0.003F}));
   EXPECT_EQ(scan.intensities, (std::vector<float>{9.0F, 0.0F, 7.0F}));
-  const Recording spare = without_intensities(recording.value());
+  const Recording spare = without_intensities(r);
   EXPECT_EQ(spare.scans.front().intensities.capacity(), 0U);
   EXPECT_EQ(spare.scans.front().ranges, scan.ranges);
   EXPECT_EQ(scan.sensor, "front");
