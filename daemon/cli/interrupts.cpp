@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::string_view kTold = "\nodomcalibctl: interrupted\n";
 constexpr std::string_view kObject =
-    R"({"error":{"code":"cancelled","what":"interrupted","where":"odomcalibctl","remedy":"start again"}})"
+    R"({"format":"odomcalib-error/1",)"
+    R"("error":{"code":"cancelled","what":"interrupted","where":"odomcalibctl","remedy":"start again"}})"
     "\n";
 
 volatile sig_atomic_t prints_json = 0;

@@ -334,6 +334,7 @@ TEST_F(CommandLine, an_interrupted_solve_is_cancelled) {
     EXPECT_EQ(solve.wait(5.0), 4);
   }
   EXPECT_THAT(read("said"), HasSubstr("\"cancelled\""));
+  EXPECT_THAT(read("said"), HasSubstr("\"format\":\"odomcalib-error/1\""));
 }
 
 /// Gives the lease to everybody, and its calibration to whoever wants to drive.
