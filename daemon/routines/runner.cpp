@@ -109,11 +109,6 @@ Step next_step(const Plan& plan, RunState state, const Pose& pose, double now) {
   return {twist, state};
 }
 
-double completed(const Plan& plan, const RunState& state) {
-  if (plan.moves.empty() || state.phase == Phase::done) return 1.0;
-  return static_cast<double>(state.move) / static_cast<double>(plan.moves.size());
-}
-
 Twist Runner::step(double now, const Pose& pose) {
   const Step taken = next_step(plan_, state_, pose, now);
   state_ = taken.state;

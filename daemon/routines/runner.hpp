@@ -41,9 +41,6 @@ struct Step {
 /// @param now s, not decreasing; @param pose of the odometry in the frame of the plan's start
 Step next_step(const Plan& plan, RunState state, const Pose& pose, double now);
 
-/// Share of the moves already finished, in [0, 1].
-double completed(const Plan& plan, const RunState& state);
-
 /// A plan with its state, for callers that need only the newest one.
 class Runner {
  public:

@@ -172,14 +172,13 @@ std::string MotionRun::activity() const {
   return on_move ? options_.plan.moves[runner_.state().move].name : name_of(phase_);
 }
 
-double MotionRun::fraction() const {
-  if (phase_ < Phase::driving) return 0.0;
-  return phase_ == Phase::driving ? routines::completed(options_.plan, runner_.state()) : 1.0;
+double MotionRun::remaining() const {
+  if (phase_ < Phase::driving) return preview_.duration;
+  return phase_ == Phase::driving ? std::max(0.0, preview_.duration - (now_ - drive_began_)) : 0.0;
 }
 
-double MotionRun::remaining(double now) const {
-  const double done = phase_ == Phase::driving ? now - drive_began_ : 0.0;
-  return std::max(0.0, preview_.duration - done);
+double MotionRun::fraction() const {
+  return preview_.duration > 0.0 ? 1.0 - remaining() / preview_.duration : 1.0;
 }
 
 }  // namespace odomcalib

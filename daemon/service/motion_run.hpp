@@ -63,10 +63,12 @@ class MotionRun {
   [[nodiscard]] const std::vector<Leg>& legs() const { return legs_; }
   [[nodiscard]] const routines::Twist& twist() const { return twist_; }
   [[nodiscard]] bool driving() const { return phase_ == Phase::driving; }
-  /// Phase name or name of the move, share of the whole in [0, 1], s until the end.
+  /// Name of the phase, or of the move.
   [[nodiscard]] std::string activity() const;
+  /// Of the drive, s, as it was planned.
+  [[nodiscard]] double remaining() const;
+  /// Of the drive's planned time, in [0, 1].
   [[nodiscard]] double fraction() const;
-  [[nodiscard]] double remaining(double now) const;
 
  private:
   void check(const Situation& situation);

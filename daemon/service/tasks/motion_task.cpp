@@ -83,7 +83,7 @@ TaskTurn MotionTask::turn(Bench& bench) {
   const auto rates = routines::to_wheels(run_->twist(), bench.drive.geometry());
   bench.drive.encoders.commanded(rates.left, rates.right, bench.now);
   if (run_->ended()) return ended(bench);
-  bench.outbox.progress(caller, run_->activity(), run_->fraction(), run_->remaining(bench.now));
+  bench.outbox.progress(caller, run_->activity(), run_->fraction(), run_->remaining());
   return Running{};
 }
 

@@ -117,6 +117,24 @@ TEST_F(Motion, that_nothing_disturbs_comes_to_its_end) {
   EXPECT_TRUE(controller_.stopped_last());
 }
 
+TEST_F(Motion, tells_how_far_it_is_while_it_drives_its_first_move) {
+  begin();
+  EXPECT_EQ(run_->fraction(), 0.0);
+  const double whole = run_->remaining();
+  EXPECT_GT(whole, 1.0);
+  go_on(2.0);
+  const std::string first = run_->activity();
+  const double early = run_->fraction();
+  EXPECT_GT(early, 0.0);
+  go_on(0.5);
+  EXPECT_EQ(run_->activity(), first);
+  EXPECT_GT(run_->fraction(), early);
+  EXPECT_NEAR(run_->remaining(), whole * (1.0 - run_->fraction()), 1e-9);
+  go_on(60.0);
+  EXPECT_EQ(run_->fraction(), 1.0);
+  EXPECT_EQ(run_->remaining(), 0.0);
+}
+
 TEST_F(Motion, begins_when_the_countdown_is_over_and_not_before) {
   begin(3.0);
   go_on(2.95);
