@@ -144,7 +144,7 @@ class ServiceLoop : public testing::Test {
   }
   json status() const { return json::parse(service_->status_json()); }
   bool ready() {
-    if (++steps_ % 25 != 0) return false;
+    if (++asked_ % 25 != 0) return false;
     const json now = status();
     return now["controller"]["state"] == "disabled" && now["state"] == "idle" &&
            now["robot"]["in_controller"] == true && now["lidar"]["stale"] == "" &&
@@ -182,7 +182,7 @@ class ServiceLoop : public testing::Test {
   std::unique_ptr<TestClient> client_;
   std::string lease_;
   bool renewing_ = false;
-  int steps_ = 0;
+  int steps_ = 0, asked_ = 0;
   bool linked_ = false;
 };
 
