@@ -1,15 +1,14 @@
 // Recording without motion: for a time, or until Ctrl-C or `odomcalibctl stop`.
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/interrupts.hpp"
 #include "daemon/cli/numbers.hpp"
 #include "daemon/cli/verbs.hpp"
 
@@ -17,10 +16,6 @@ namespace odomcalib::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-volatile sig_atomic_t finish = 0;
-
-void on_signal(int /*number*/) { finish = 1; }
 
 struct Options {
   std::string name = "record";
@@ -40,7 +35,7 @@ void show_progress(const control::Reply& reply, ProgressLine& line) {
 Result<std::string> await_path(Client& client, const std::string& socket) {
   ProgressLine line;
   for (bool told = false;;) {
-    if (finish != 0 && !told) {
+    if (interrupted() && !told) {
       auto other = Client::connect(socket);
       if (!other) return other.error();
       if (auto stopped = other.value().call("Stop"); !stopped) return stopped.error();
@@ -56,11 +51,7 @@ Result<std::string> await_path(Client& client, const std::string& socket) {
 }
 
 int record(const Options& options, const Session& session) {
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    sigaction(number, &action, nullptr);
-  }
+  finish_when_interrupted();
   auto client = Client::connect(session.socket);
   if (!client) return report_error(client.error(), session.json);
   const std::string wanted = ordered_json{{"name", options.name}, {"duration", options.duration}}.dump();

@@ -5,19 +5,22 @@
 
 namespace odomcalib {
 
-void DeadReckoning::add(const TickSample& sample, const RobotDescription& robot) {
-  const bool joined = last_ && last_->segment == sample.segment;
+std::optional<Increment> increment_between(const TickSample& from, const TickSample& to,
+                                           const RobotDescription& robot) {
   const bool known = robot.ticks_per_rev > 0.0 && robot.track_width > 0.0;
-  if (joined && known) {
-    const double per_tick = std::numbers::pi / robot.ticks_per_rev;
-    const double left = static_cast<double>(sample.left - last_->left) * per_tick * robot.left_wheel_diameter;
-    const double right =
-        static_cast<double>(sample.right - last_->right) * per_tick * robot.right_wheel_diameter;
-    const double turn = (right - left) / robot.track_width;
-    const double middle = pose_.yaw + 0.5 * turn;
-    pose_.x += 0.5 * (left + right) * std::cos(middle);
-    pose_.y += 0.5 * (left + right) * std::sin(middle);
-    pose_.yaw += turn;
+  if (from.segment != to.segment || !known) return std::nullopt;
+  const double per_tick = std::numbers::pi / robot.ticks_per_rev;
+  const double left = static_cast<double>(to.left - from.left) * per_tick * robot.left_wheel_diameter;
+  const double right = static_cast<double>(to.right - from.right) * per_tick * robot.right_wheel_diameter;
+  return Increment{0.5 * (left + right), (right - left) / robot.track_width};
+}
+
+void DeadReckoning::add(const TickSample& sample, const RobotDescription& robot) {
+  if (const auto step = last_ ? increment_between(*last_, sample, robot) : std::nullopt) {
+    const double middle = pose_.yaw + 0.5 * step->turn;
+    pose_.x += step->forward * std::cos(middle);
+    pose_.y += step->forward * std::sin(middle);
+    pose_.yaw += step->turn;
   }
   last_ = sample;
 }

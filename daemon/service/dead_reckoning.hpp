@@ -8,6 +8,15 @@
 
 namespace odomcalib {
 
+/// Motion between two samples.
+struct Increment {
+  double forward = 0.0;  ///< m
+  double turn = 0.0;     ///< rad
+};
+/// With the parameters in force; nullopt across segments, and where the geometry is unknown.
+std::optional<Increment> increment_between(const TickSample& from, const TickSample& to,
+                                           const RobotDescription& robot);
+
 class DeadReckoning {
  public:
   /// Adds the motion since the last sample; a new segment or an unknown geometry adds none.

@@ -6,13 +6,11 @@
 #include <numbers>
 
 #include "calib/classical/settings.hpp"
+#include "calib/measurement/settings.hpp"
+#include "daemon/service/dead_reckoning.hpp"
 
 namespace odomcalib {
 namespace {
-
-// Where pairs of scans are cut.
-constexpr double kStretch_m = 0.15;
-constexpr double kStretch_rad = 0.25;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
@@ -24,15 +22,12 @@ void count(MotionCount::Kind& kind, double amount) {
 }  // namespace
 
 void MotionCount::add(const TickSample& sample, const RobotDescription& robot) {
-  const bool joined = last_ && last_->segment == sample.segment;
-  if (joined && robot.ticks_per_rev > 0.0 && robot.track_width > 0.0) {
-    const double per_tick = std::numbers::pi / robot.ticks_per_rev;
-    const double left = static_cast<double>(sample.left - last_->left) * per_tick * robot.left_wheel_diameter;
-    const double right =
-        static_cast<double>(sample.right - last_->right) * per_tick * robot.right_wheel_diameter;
-    distance_ += 0.5 * std::abs(left + right);
-    turn_ += (right - left) / robot.track_width;
-    if (distance_ >= kStretch_m || std::abs(turn_) >= kStretch_rad) end_stretch();
+  using calib::measurement::settings::kPairDistance_m;
+  using calib::measurement::settings::kPairRotation_rad;
+  if (const auto step = last_ ? increment_between(*last_, sample, robot) : std::nullopt) {
+    distance_ += std::abs(step->forward);
+    turn_ += step->turn;
+    if (distance_ >= kPairDistance_m || std::abs(turn_) >= kPairRotation_rad) end_stretch();
   }
   last_ = sample;
 }

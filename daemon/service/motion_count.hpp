@@ -13,7 +13,7 @@ namespace odomcalib {
 class MotionCount {
  public:
   struct Kind {
-    std::size_t stretches = 0;  ///< about as long as the pairs of scans that a solve compares
+    std::size_t stretches = 0;  ///< each as long as a pair of scans that a solve compares
     double amount = 0.0;        ///< m driven straight, rad turned
   };
 

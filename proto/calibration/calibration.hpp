@@ -77,6 +77,8 @@ struct DataUse {
 };
 
 enum class Verdict { accepted, accepted_with_warnings, refused };
+/// As files and JSON have it.
+const char* name_of(Verdict verdict);
 
 struct Calibration {
   RobotDescription robot;  ///< nominal values used

@@ -113,18 +113,6 @@ Json residual(const ResidualReport& report) {
           {"noise_floor", by_axis(report.noise_floor)}};
 }
 
-const char* verdict(Verdict value) {
-  switch (value) {
-    case Verdict::accepted:
-      return "accepted";
-    case Verdict::accepted_with_warnings:
-      return "accepted_with_warnings";
-    case Verdict::refused:
-      break;
-  }
-  return "refused";
-}
-
 Json counts(const std::vector<std::pair<std::string, std::size_t>>& list) {
   Json out = Json::object();
   for (const auto& [name, count] : list) out[name] = count;
@@ -161,10 +149,22 @@ std::string extension_lines(const Json& known, const std::map<std::string, std::
 
 }  // namespace
 
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::accepted:
+      return "accepted";
+    case Verdict::accepted_with_warnings:
+      return "accepted_with_warnings";
+    case Verdict::refused:
+      break;
+  }
+  return "refused";
+}
+
 std::string to_json(const Calibration& calibration) {
   const Json out{
       {"format", "odomcalib-calibration/1"},
-      {"verdict", verdict(calibration.verdict)},
+      {"verdict", name_of(calibration.verdict)},
       {"reasons", calibration.reasons},
       {"robot", robot(calibration.robot)},
       {"parameters", parameters(calibration)},

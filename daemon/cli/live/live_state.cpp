@@ -73,18 +73,6 @@ std::vector<Pose> path_of(const Calibration& calibration, const std::string& nam
   return path;
 }
 
-const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::accepted:
-      return "accepted";
-    case Verdict::accepted_with_warnings:
-      return "accepted_with_warnings";
-    case Verdict::refused:
-      break;
-  }
-  return "refused";
-}
-
 ordered_json row_of(const std::string& name, const std::string& unit) {
   return {{"name", name},      {"unit", unit},   {"value", nullptr},   {"calibrated", nullptr},
           {"solved", nullptr}, {"std", nullptr}, {"stored_in", "host"}};
