@@ -6,13 +6,21 @@
 
 namespace odomcalib {
 
+Error axes_not_off(const Bench& bench) {
+  return {ErrorCode::device, "controller is " + name_of(bench.drive.controller().state()), "write-back",
+          "values are written only to a controller that answers and whose axes are off"};
+}
+
+bool comes_to_rest(const Bench& bench) {
+  const auto state = bench.drive.controller().state();
+  return state == drivers::ControllerState::enabled || state == drivers::ControllerState::enabling;
+}
+
 std::optional<Error> write_forbidden(const Bench& bench) {
   const auto state = bench.drive.controller().state();
   if (bench.write_back.busy())
     return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
-  if (state != drivers::ControllerState::disabled)
-    return Error{ErrorCode::device, "controller is " + name_of(state), "write-back",
-                 "values are written only to a controller that answers and whose axes are off"};
+  if (state != drivers::ControllerState::disabled && !comes_to_rest(bench)) return axes_not_off(bench);
   if (!bench.drive.values_known)
     return Error{ErrorCode::device, "the controller's values were not read yet", "write-back",
                  "wait, or check the bus"};

@@ -7,7 +7,11 @@
 
 namespace odomcalib {
 
-/// Why nothing may be written now.
+/// The axes have torque, or one of them: nothing drives them while a write-back may begin, so it goes.
+bool comes_to_rest(const Bench& bench);
+Error axes_not_off(const Bench& bench);
+
+/// Why nothing may be written now. Axes that come to rest are waited for, by whoever writes.
 std::optional<Error> write_forbidden(const Bench& bench);
 
 /// Why these values are not this robot's.

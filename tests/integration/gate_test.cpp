@@ -104,6 +104,15 @@ TEST_F(Gate, of_values_for_a_controller_in_fault) {
   expect_refused(call("SetParameters", track(0.4033)), "Device", "fault");
 }
 
+// Its axes still have torque when the motion has been answered.
+TEST_F(Gate, lets_values_pass_right_after_a_motion) {
+  ASSERT_EQ(call("Straight", straight()).error, "");
+  EXPECT_NE(status()["controller"]["state"], "disabled") << "nothing to wait for: this tests nothing";
+  EXPECT_EQ(call("SetParameters", track(0.4033)).error, "");
+  EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
+  EXPECT_EQ(robot_->node().store_count(), 1U);
+}
+
 TEST_F(Gate, of_values_while_the_robot_moves) {
   acquire();
   TestClient mover(folder_ / "control");

@@ -310,5 +310,30 @@ TEST_F(Applied, rollback_without_an_id_undoes_the_newest_that_was_committed) {
   EXPECT_FALSE(std::filesystem::exists(active()));
 }
 
+TEST_F(Applied, rollback_to_the_values_of_another_controller_is_refused_by_name) {
+  History others(folder_ / "state" / "history");
+  for (const char* device : {"0xfee/0xd15/4243", ""}) {
+    HistoryEntry entry;
+    entry.action = "apply";
+    entry.outcome = "committed";
+    entry.before = entry.after = kNew;
+    entry.device = device;
+    entry = others.numbered(entry);
+    ASSERT_TRUE(others.write(entry).ok());
+    others.keep(entry);
+  }
+  client_.reset();
+  service_.reset();
+  restart();
+  ASSERT_TRUE(settled(false));
+  const auto reply = call("Rollback", {{"id", "0001"}});
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused");
+  for (const char* name : {"0xfee/0xd15/4243", "0xfee/0xd15/4242"})
+    EXPECT_NE(reply.parameters.find(name), std::string::npos) << reply.parameters;
+  EXPECT_EQ(node().geometry_stored(), kOldRaw);
+  EXPECT_EQ(call("Rollback", {{"id", "0002"}}).error, "") << "of a controller that nobody named";
+  EXPECT_EQ(node().geometry_stored(), kNewRaw);
+}
+
 }  // namespace
 }  // namespace odomcalib

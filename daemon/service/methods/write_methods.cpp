@@ -61,6 +61,14 @@ std::optional<Error> of_another_robot(const Calibration& calibration, const std:
                "calibration", "solve a recording of this robot; its file or robot file names robot_id"};
 }
 
+/// Former values belong to the controller that held them. One that does not say who it is is believed.
+std::optional<Error> of_another_controller(const std::string& theirs, const std::string& ours) {
+  if (theirs.empty() || ours.empty() || theirs == ours) return std::nullopt;
+  return Error{ErrorCode::refused,
+               "these values are of the controller \"" + theirs + "\", this one is \"" + ours + "\"",
+               "rollback", "connect that controller, or apply a calibration to this one"};
+}
+
 /// The values of a calibration that a controller may hold.
 Result<Wish> wish_of(const Calibration& calibration, const std::string& robot) {
   if (calibration.verdict == Verdict::refused)
@@ -131,6 +139,8 @@ Reading rollback(Context& context, const Call& call) {
       return Error{ErrorCode::usage,
                    id.empty() ? "no write-back was committed" : "no history entry \"" + id + "\"", "",
                    "odomcalibctl history"};
+    if (auto wrong = of_another_controller(former->device, device_of(bench.drive.controller())))
+      return *wrong;
     return Wish{former->values, "rollback", former->calibration};
   });
 }

@@ -90,10 +90,10 @@ std::optional<FormerValues> WriteBack::former_values(const std::string& id,
                                                      const std::optional<std::string>& in_force) const {
   const auto interrupted = transaction.journal().unfinished();
   if (id.empty() && interrupted && !interrupted->before.empty())
-    return FormerValues{interrupted->before, in_force};
+    return FormerValues{interrupted->before, in_force, interrupted->device};
   const auto entry = id.empty() ? history.newest_committed() : history.find(id);
   if (!entry) return std::nullopt;
-  FormerValues former{entry->before, std::nullopt};
+  FormerValues former{entry->before, std::nullopt, entry->device};
   // The calibration in force before that entry is the one of the newest older entry that was committed.
   for (const auto& older : history.entries())
     if (older.id < entry->id && older.outcome == "committed" && !former.calibration)

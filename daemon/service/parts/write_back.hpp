@@ -15,6 +15,7 @@ namespace odomcalib {
 struct FormerValues {
   ParameterMap values;
   std::optional<std::string> calibration;  ///< JSON text; nullopt: none was in force
+  std::string device;                      ///< whose they are, see device_of(); empty: not known
 };
 
 /// How a write-back has ended, for whoever asked for it.

@@ -1,8 +1,14 @@
 #include "daemon/service/tasks/write_task.hpp"
 
 #include "daemon/service/status_report.hpp"
+#include "daemon/service/write_gate.hpp"
 
 namespace odomcalib {
+namespace {
+
+constexpr double kComesToRest = 2.0;  // s from the end of a motion until the drive has no torque; takes one
+
+}  // namespace
 
 ordered_json to_json(const RoundingError& error) {
   return {{"length", error.length}, {"heading", error.heading}, {"turn", error.turn}};
@@ -11,7 +17,7 @@ ordered_json to_json(const RoundingError& error) {
 Result<std::unique_ptr<Task>> WriteTask::begin(Bench& bench, const Caller& caller, const Order& order) {
   if (bench.write_back.busy())
     return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
-  std::unique_ptr<WriteTask> task(new WriteTask(caller, order));
+  std::unique_ptr<WriteTask> task(new WriteTask(caller, order, bench.now));
   task->announce(bench);
   return std::unique_ptr<Task>(std::move(task));
 }
@@ -30,6 +36,8 @@ TaskTurn WriteTask::begin_writing(Bench& bench) {
   if (bench.ending) return Failed{{ErrorCode::cancelled, "the daemon ends", "write-back", "start again"}};
   if (!announced_->done || bench.write_back.busy()) return Running{};
   if (!announced_->id) return Failed{announced_->id.error()};
+  if (comes_to_rest(bench))
+    return bench.now - asked_at_ < kComesToRest ? TaskTurn(Running{}) : Failed{axes_not_off(bench)};
   const auto begun = bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value());
   if (!begun) return Failed{begun.error()};
   begun_ = true;

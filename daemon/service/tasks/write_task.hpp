@@ -32,7 +32,8 @@ class WriteTask final : public Task {
   void abandoned(Bench& /*bench*/) override {}
 
  private:
-  WriteTask(const Caller& waits, Order order) : Task(waits), order_(std::move(order)) {}
+  WriteTask(const Caller& waits, Order order, double now)
+      : Task(waits), order_(std::move(order)), asked_at_(now) {}
   void announce(Bench& bench);
   TaskTurn begin_writing(Bench& bench);
 
@@ -41,6 +42,7 @@ class WriteTask final : public Task {
     bool done = false;
   };
   Order order_;
+  double asked_at_;  // s
   std::shared_ptr<Announcement> announced_ = std::make_shared<Announcement>();
   bool begun_ = false;  // the transaction
 };

@@ -217,8 +217,10 @@ ControllerState DualAxis::state() const {
   using enum canopen::DriveState;
   if (motion_.motion() == Motion::enabling) return ControllerState::enabling;
   if (any_axis(fault) || any_axis(fault_reaction)) return ControllerState::fault;
-  // While the axes are brought to rest they still have torque: not disabled before the drive says so.
-  return any_axis(enabled) ? ControllerState::enabled : ControllerState::disabled;
+  // While the axes are brought to rest they still have torque: not disabled before the drive says so, and not
+  // before it may be given a job.
+  const bool ending = motion_.motion() == Motion::disabling || motion_.motion() == Motion::stopping;
+  return ending || any_axis(enabled) ? ControllerState::enabled : ControllerState::disabled;
 }
 
 Counters DualAxis::counters() const {
