@@ -72,6 +72,7 @@ void MotionRun::fault(const std::string& text) {
 void MotionRun::check(const Situation& situation) {
   if (situation.lapsed) return stop({ErrorCode::cancelled, *situation.lapsed, "motion", "start again"});
   if (situation.stale) return stop(protective(*situation.stale));
+  if (situation.too_fast) return stop(protective(*situation.too_fast));
   if (phase_ == Phase::countdown || phase_ == Phase::enabling) return;
   if (controller_.state() != drivers::ControllerState::enabled)
     return stop({ErrorCode::device, "the controller left the enabled state", "controller",

@@ -86,9 +86,8 @@ TEST_P(DeceivingFault, is_found_by_the_lidar_before_half_a_metre_or_a_third_of_a
 }
 
 const Deceit kDeceiving[] = {
-    {"F19_left_sign_inverted", [](SimRobot& r) { r.scale_encoder(sim::kLeft, -1.0); }, "Straight", "turned"},
-    {"F19_right_sign_inverted", [](SimRobot& r) { r.scale_encoder(sim::kRight, -1.0); }, "Straight",
-     "turned"},
+    {"F19_left_sign_inverted", [](SimRobot& r) { r.scale_encoder(sim::kLeft, -1.0); }, "Straight", "rad/s"},
+    {"F19_right_sign_inverted", [](SimRobot& r) { r.scale_encoder(sim::kRight, -1.0); }, "Straight", "rad/s"},
     {"F19_both_signs_inverted",
      [](SimRobot& r) {
        r.scale_encoder(sim::kLeft, -1.0);
@@ -101,7 +100,7 @@ const Deceit kDeceiving[] = {
        r.scale_encoder(sim::kLeft, 2.0);
        r.scale_encoder(sim::kRight, 2.0);
      },
-     "Straight"},
+     "Straight", "m/s"},
     {"F21_ticks_per_turn_twice_the_truth",
      [](SimRobot& r) {
        r.scale_encoder(sim::kLeft, 0.5);

@@ -402,6 +402,21 @@ TEST_F(ForeignText, that_is_no_utf8_does_not_end_the_daemon) {
   EXPECT_EQ(status()["lidar"]["connected"], true);
 }
 
+// Rule M19: the robot is named who else drives it, and stands.
+TEST_F(ServiceLoop, another_program_that_commands_the_drive_stops_the_motion) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  robot_->inject(sim::make_frame(0x301, {0x10, 0, 0, 0, 0x10, 0, 0, 0}));
+  const double begin = clock_.time;
+  const auto reply = wait_reply(mover, 1.0);
+  EXPECT_LT(clock_.time - begin, 0.1);
+  EXPECT_EQ(reply.error, "org.odomcalib.Calibration.ProtectiveStop");
+  EXPECT_NE(reply.parameters.find("another program sends speeds or control words"), std::string::npos)
+      << reply.parameters;
+  EXPECT_LT(time_to_rest(), 1.0);
+}
+
 TEST_F(ServiceLoop, values_written_are_stored_and_survive_a_reset_of_the_node) {
   acquire();
   TestClient writer(folder_ / "control");

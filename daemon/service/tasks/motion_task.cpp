@@ -33,6 +33,7 @@ MotionTask::MotionTask(Bench& bench, const Caller& waits, Order order)
     : Task(waits),
       lease_(std::move(order.lease)),
       purpose_(std::move(order.purpose)),
+      speed_(order.plan.limits),
       stepped_at_(bench.now),
       suspended_at_(bench.clock.suspended()) {
   run_.emplace(MotionRun::Options{.plan = std::move(order.plan),
@@ -79,6 +80,7 @@ TaskTurn MotionTask::turn(Bench& bench) {
   next_step_ = bench.now + kControlStep;
   watch_loop(bench);
   if (const auto problem = bench.outbox.telemetry.recorder.problem()) run_->stop(*problem);
+  speed_.seen(bench.drive.newest_ticks.t, bench.odometry.pose());
   run_->step(situation(bench));
   const auto rates = routines::to_wheels(run_->twist(), bench.drive.geometry());
   bench.drive.encoders.commanded(rates.left, rates.right, bench.now);
@@ -95,6 +97,7 @@ Situation MotionTask::situation(const Bench& bench) const {
           .lapsed = lapsed(bench),
           .stale = encoders ? encoders : bench.surroundings.scans.stale(bench.now),
           .disagreement = agreement_.disagreement(),
+          .too_fast = speed_.too_fast(),
           .blocked = bench.surroundings.obstacles.blocked()};
 }
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "daemon/safety/speed_watch.hpp"
 #include "daemon/service/agreement.hpp"
 #include "daemon/service/motion_run.hpp"
 #include "daemon/service/tasks/task.hpp"
@@ -61,6 +62,7 @@ class MotionTask final : public Task {
   std::string lease_;
   MotionPurpose purpose_;
   AgreementWatch agreement_;
+  safety::SpeedWatch speed_;
   std::optional<MotionRun> run_;  // until it has ended
   ordered_json report_;           // of the motion, while its recording goes to the disk
   WrittenRecording written_;

@@ -49,7 +49,7 @@ void DualAxis::on_frame(const CanFrame& frame) {
   if (frame.id == 0x700u + profile_.node) return on_life_sign(frame);
   if (frame.id == 0x000 || frame.id == 0x600u + profile_.node) return on_other_master(frame);
   for (const canopen::Pdo& pdo : profile_.pdos)
-    if (pdo.transmit && pdo.cob_id == frame.id) return on_process_data(pdo, frame);
+    if (pdo.cob_id == frame.id) return pdo.transmit ? on_process_data(pdo, frame) : on_other_master(frame);
 }
 
 void DualAxis::on_error_frame(const CanFrame& frame) {
@@ -102,15 +102,30 @@ void DualAxis::on_boot_up() {
   look_after_ = now_;
 }
 
+/// NMT, an SDO download, or process data to the node. An SDO client that only reads commands nothing.
+bool DualAxis::commands_node(const CanFrame& frame) const {
+  if (frame.id == 0x000) return frame.length >= 2 && (frame.data[1] == 0 || frame.data[1] == profile_.node);
+  if (frame.id != 0x600u + profile_.node) return true;
+  constexpr unsigned kDownloadSegment = 0, kDownload = 1, kBlockDownload = 6;
+  const unsigned specifier = frame.data[0] >> 5;
+  return specifier == kDownloadSegment || specifier == kDownload || specifier == kBlockDownload;
+}
+
+/// Our own frames do not come back. What moves the wheels while somebody else commands them was not asked for
+/// here (M19).
 void DualAxis::on_other_master(const CanFrame& frame) {
   ++other_master_;
-  const bool first = now_ - last_other_master_ > kOtherMasterAgain_s;
-  last_other_master_ = now_;
-  if (first)
-    event("other_master",
-          frame.id == 0 ? "another program sends NMT commands on this bus"
-                        : "another SDO client talks to this node",
-          false);
+  const bool is_client = frame.id == 0x600u + profile_.node, is_nmt = frame.id == 0x000;
+  double& last = is_client || is_nmt ? last_other_master_ : last_foreign_data_;
+  const bool first = now_ - last > kOtherMasterAgain_s;
+  last = now_;
+  const bool stops = motion_.active() && commands_node(frame);
+  if (!first && !stops) return;
+  event("other_master",
+        is_nmt      ? "another program sends NMT commands on this bus"
+        : is_client ? "another SDO client talks to this node"
+                    : "another program sends speeds or control words to this node",
+        stops);
 }
 
 void DualAxis::check_life() {

@@ -63,6 +63,7 @@ class DualAxis final : public Controller, private MotionDevice {
   void on_emergency(const CanFrame& frame);
   void on_life_sign(const CanFrame& frame);
   void on_other_master(const CanFrame& frame);
+  [[nodiscard]] bool commands_node(const CanFrame& frame) const;
   void check_life();
   void lose(const std::string& code, const std::string& text);
   void on_boot_up();
@@ -124,7 +125,7 @@ class DualAxis final : public Controller, private MotionDevice {
   double own_heartbeat_due_ = 0.0;
   double sync_due_ = 0.0;
   double restarted_at_ = 0.0;  // when we reset the node to see what it stored
-  double last_other_master_ = -1e9;
+  double last_other_master_ = -1e9, last_foreign_data_ = -1e9;
 
   MotionCycle motion_;
   std::optional<double> positions_at_;  // s, last position frame

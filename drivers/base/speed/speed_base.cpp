@@ -1,6 +1,7 @@
 #include "drivers/base/speed/speed_base.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -12,6 +13,14 @@ namespace {
 using namespace speed;
 
 std::size_t index(Side side) { return static_cast<std::size_t>(side); }
+
+/// Messages of the tables that only somebody who commands the device sends.
+constexpr std::array kCommands = {"motion_command", "control_mode", "set_state", "controller_mode",
+                                  "input_speed",    "set_current",  "set_rpm"};
+
+bool is_command(const DeviceMessage& message) {
+  return std::find(kCommands.begin(), kCommands.end(), message.name) != kCommands.end();
+}
 
 }  // namespace
 
@@ -42,8 +51,18 @@ void SpeedBase::on_bytes(std::span<const std::uint8_t> bytes, double now) {
 }
 
 void SpeedBase::take_news() {
-  (void)protocol_->take_messages();  // for decode
+  for (const DeviceMessage& message : protocol_->take_messages())
+    if (is_command(message)) on_other_master();
   for (const SideCount& count : protocol_->take_counts()) on_count(count);
+}
+
+/// Our own frames do not come back (M19).
+void SpeedBase::on_other_master() {
+  ++other_master_;
+  const bool first = now_ - last_other_master_ > kOtherMasterAgain_s;
+  last_other_master_ = now_;
+  if (first || motion_.active())
+    event("other_master", "another program commands this controller", motion_.active());
 }
 
 void SpeedBase::on_count(const SideCount& count) {
@@ -177,6 +196,7 @@ std::vector<Capability> SpeedBase::capabilities() const { return host_capabiliti
 
 Counters SpeedBase::counters() const {
   Counters all = protocol_->counters();
+  all["other_master"] = other_master_;
   counts_.count_into(all);
   motion_.count_into(all);
   return all;

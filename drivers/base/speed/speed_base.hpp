@@ -52,6 +52,7 @@ class SpeedBase final : public Controller, private MotionDevice {
  private:
   void event(const std::string& code, const std::string& text, bool stop);
   void take_news();
+  void on_other_master();
   void on_count(const SideCount& count);
   void check_presence();
   void check_device();
@@ -72,6 +73,8 @@ class SpeedBase final : public Controller, private MotionDevice {
   WheelCounts counts_;
   double now_ = 0.0, greet_due_ = 0.0;
   std::array<double, 2> counted_at_{-1e9, -1e9};  ///< s
+  double last_other_master_ = -1e9;  ///< s
+  std::uint64_t other_master_ = 0;
   bool present_ = false;
   bool asked_ = false;  // for torque
   std::string last_fault_;

@@ -12,6 +12,7 @@
 #include "daemon/safety/freshness.hpp"
 #include "daemon/safety/lease.hpp"
 #include "daemon/safety/obstacle.hpp"
+#include "daemon/safety/speed_watch.hpp"
 #include "daemon/safety/stop_guard.hpp"
 
 namespace odomcalib::safety {
@@ -69,6 +70,43 @@ TEST(EncoderFreshness, a_turning_wheel_must_count_and_a_standing_one_need_not) {
   }
   ASSERT_TRUE(stale.has_value());
   EXPECT_NE(stale->find("left"), std::string::npos);
+}
+
+/// What is said of a robot that drives and turns steadily for a second, with a reading every `step` s.
+std::optional<std::string> said_of(double v, double w, double step, const routines::Limits& limits = {}) {
+  SpeedWatch watch(limits);
+  for (double t = 0.0; t < 1.0; t += step) {
+    watch.seen(t, {v * t, 0.0, w * t});
+    if (const auto said = watch.too_fast()) return said;
+  }
+  return std::nullopt;
+}
+
+TEST(SpeedWatch, holds_what_is_measured_to_the_limit_and_a_fifth) {
+  for (const double step : {0.01, 0.02, 0.1}) {
+    EXPECT_FALSE(said_of(0.37, 0.0, step)) << step;
+    EXPECT_TRUE(said_of(0.39, 0.0, step)) << step;
+    EXPECT_FALSE(said_of(-0.37, 0.0, step)) << step;
+    EXPECT_TRUE(said_of(-0.39, 0.0, step)) << step;
+    EXPECT_FALSE(said_of(0.0, 0.76, step)) << step;
+    EXPECT_TRUE(said_of(0.0, -0.78, step)) << step;
+    EXPECT_TRUE(said_of(std::nan(""), 0.0, step)) << step;
+  }
+}
+
+TEST(SpeedWatch, goes_by_the_limits_of_the_motion_and_never_beyond_the_caps) {
+  EXPECT_TRUE(said_of(0.15, 0.0, 0.02, {.speed = 0.1}));
+  EXPECT_FALSE(said_of(0.13, 0.0, 0.02, {.speed = 0.1}));
+  EXPECT_TRUE(said_of(0.39, 0.0, 0.02, {.speed = 2.0}));
+}
+
+// What was a count too many in one reading is not in the next.
+TEST(SpeedWatch, a_single_reading_of_a_few_counts_too_many_is_no_speed) {
+  SpeedWatch watch({});
+  for (int i = 0; i < 50; ++i) {
+    watch.seen(0.02 * i, {0.004 * i + (i == 30 ? 0.02 : 0.0), 0.0, 0.0});
+    EXPECT_FALSE(watch.too_fast()) << i;
+  }
 }
 
 TEST(Envelope, of_a_straight_metre_is_1_3_m_and_half_as_long_again) {

@@ -151,6 +151,13 @@ TEST_F(Motion, ends_when_the_client_no_longer_counts_as_present) {
   expect_stop(situation, ErrorCode::cancelled, "no longer renews");
 }
 
+TEST_F(Motion, ends_when_the_wheels_are_faster_than_they_may_be) {
+  drive();
+  Situation situation = good();
+  situation.too_fast = "0.41 m/s";
+  expect_stop(situation, ErrorCode::protective_stop, "0.41 m/s");
+}
+
 TEST_F(Motion, of_which_nobody_knows_whether_there_is_a_client_does_not_begin) {
   begin();
   Situation situation = good();

@@ -328,6 +328,59 @@ TEST(DualAxis, an_emergency_message_stops) {
   EXPECT_FALSE(bench.controller->command(1.0, 1.0, bench.now).ok());
 }
 
+struct Foreign {
+  const char* name;
+  std::uint32_t id;
+  std::vector<std::uint8_t> data;
+  bool stops;
+};
+
+// The node is 1.
+const Foreign kForeign[] = {
+    {"speeds", 0x301, {1, 0, 0, 0, 1, 0, 0, 0}, true},
+    {"control words", 0x201, {0x0F, 0, 0x0F, 0}, true},
+    {"NMT to the node", 0x000, {0x02, 1}, true},
+    {"NMT to all", 0x000, {0x02, 0}, true},
+    {"NMT to another node", 0x000, {0x02, 2}, false},
+    {"SDO download", 0x601, {0x23, 0xFF, 0x60, 1, 0, 0, 0, 0}, true},
+    {"SDO download segment", 0x601, {0x01, 0, 0, 0, 0, 0, 0, 0}, true},
+    {"SDO block download", 0x601, {0xC2, 0xFF, 0x60, 1, 0, 0, 0, 0}, true},
+    {"SDO upload", 0x601, {0x40, 0x18, 0x10, 1, 0, 0, 0, 0}, false},
+    {"SDO upload segment", 0x601, {0x60, 0, 0, 0, 0, 0, 0, 0}, false},
+    {"SDO abort", 0x601, {0x80, 0x18, 0x10, 1, 0, 0, 0, 0}, false},
+    {"speeds to another node", 0x302, {1, 0, 0, 0, 1, 0, 0, 0}, false},
+};
+
+TEST(DualAxis, another_program_that_commands_its_node_stops_the_wheels) {
+  for (const Foreign& foreign : kForeign) {
+    Bench bench;
+    ASSERT_TRUE(bench.enabled());
+    bench.drive(1.0, 1.0, 0.3);
+    const sim::Frame sent{foreign.id, false, false, static_cast<std::uint8_t>(foreign.data.size()), {}};
+    CanFrame frame = to_can(sent, bench.now);
+    std::copy(foreign.data.begin(), foreign.data.end(), frame.data.begin());
+    for (int twice = 0; twice < 2; ++twice) bench.controller->on_frame(frame);
+    bench.drive(1.0, 1.0, 0.05);
+    const auto* told = bench.find("other_master");
+    EXPECT_EQ(told != nullptr && told->stop, foreign.stops) << foreign.name;
+    EXPECT_NE(bench.controller->command(1.0, 1.0, bench.now).ok(), foreign.stops) << foreign.name;
+  }
+}
+
+// At rest it is told, once.
+TEST(DualAxis, another_program_is_no_stop_where_nothing_moves) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  CanFrame frame = to_can({0x301, false, false, 8, {}}, bench.now);
+  for (int i = 0; i < 20; ++i) bench.controller->on_frame(frame);
+  bench.run(0.1);
+  const auto told = std::count_if(bench.events.begin(), bench.events.end(),
+                                  [](const auto& event) { return event.code == "other_master"; });
+  EXPECT_EQ(told, 1);
+  EXPECT_FALSE(bench.find("other_master")->stop);
+  EXPECT_EQ(bench.controller->counters().at("other_master"), 20U);
+}
+
 TEST(DualAxis, enabling_resets_a_fault) {
   Bench bench;
   ASSERT_TRUE(bench.ready());

@@ -100,6 +100,27 @@ TYPED_TEST(Devices, is_found_moves_counts_and_stops) {
   EXPECT_FALSE(bench.happened("encoder_stuck")) << bench.story();
 }
 
+TYPED_TEST(Devices, another_program_that_commands_them_stops_the_wheels) {
+  TypeParam rig;
+  Bench& bench = *rig.bench;
+  if (bench.controller->wire() != Wire::can) return;  // a serial line has one sender
+  ASSERT_NO_FATAL_FAILURE(enable(bench));
+  bench.drive(3.0, 3.0, 0.5);
+  ASSERT_FALSE(bench.happened("other_master")) << "its own commands";
+  // What this program sends, as if somebody else had sent it.
+  (void)bench.controller->command(3.0, 3.0, bench.now);
+  bench.controller->on_time(bench.now += 0.05);
+  const auto sent = bench.controller->take_frames();
+  ASSERT_FALSE(sent.empty());
+  for (CanFrame frame : sent) {
+    frame.t = bench.now;
+    bench.controller->on_frame(frame);
+  }
+  bench.run(0.01);
+  EXPECT_TRUE(bench.happened("other_master"));
+  EXPECT_FALSE(bench.controller->command(3.0, 3.0, bench.now).ok());
+}
+
 TYPED_TEST(Devices, a_command_that_grows_old_becomes_zero) {
   TypeParam rig;
   Bench& bench = *rig.bench;
