@@ -2,7 +2,6 @@
 
 #include <poll.h>
 #include <sched.h>
-#include <signal.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -22,32 +21,13 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kRenewal = std::chrono::milliseconds(30);  // a quarter of the lease's 120 ms
 
-volatile sig_atomic_t interrupted = 0;
+volatile sig_atomic_t signalled = 0;
 
-void on_signal(int /*number*/) { interrupted = 1; }
+void on_signal(int /*number*/) { signalled = 1; }
 
 Error not_running(const std::string& socket, const std::string& what) {
   return {ErrorCode::not_running, what, socket, "start it with: systemctl start odomcalib"};
 }
-
-// While a motion runs, signals ask for its end instead of ending the process.
-class SignalsCaught {
- public:
-  SignalsCaught() {
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    for (std::size_t i = 0; i < kNumbers.size(); ++i) sigaction(kNumbers.at(i), &action, &before_.at(i));
-  }
-  ~SignalsCaught() {
-    for (std::size_t i = 0; i < kNumbers.size(); ++i) sigaction(kNumbers.at(i), &before_.at(i), nullptr);
-  }
-  SignalsCaught(const SignalsCaught&) = delete;
-  SignalsCaught& operator=(const SignalsCaught&) = delete;
-
- private:
-  static constexpr std::array kNumbers{SIGINT, SIGTERM, SIGHUP, SIGTSTP};
-  std::array<struct sigaction, 4> before_{};
-};
 
 // A busy machine must not delay the renewals. Without the right to this the robot may stop early, no more.
 void hurry() {
@@ -83,6 +63,16 @@ Result<std::string> value_of(const control::Reply& reply) {
 }
 
 }  // namespace
+
+SignalsCaught::SignalsCaught() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  for (std::size_t i = 0; i < kNumbers.size(); ++i) sigaction(kNumbers.at(i), &action, &before_.at(i));
+}
+
+SignalsCaught::~SignalsCaught() {
+  for (std::size_t i = 0; i < kNumbers.size(); ++i) sigaction(kNumbers.at(i), &before_.at(i), nullptr);
+}
 
 Client::~Client() {
   if (fd_ >= 0) close(fd_);
@@ -153,7 +143,10 @@ Result<std::string> Client::call(const std::string& method, const std::string& p
 
 Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
                                     const std::string& parameters,
-                                    const std::function<void(const std::string&)>& progress) {
+                                    const std::function<void(const std::string&)>& progress,
+                                    WhenInterrupted interrupted) {
+  const auto given_up = [interrupted] { return signalled != 0 && interrupted == WhenInterrupted::stop; };
+  if (given_up()) return Error{ErrorCode::cancelled, "interrupted", method, "start again"};
   auto keeper = Client::connect(socket);
   auto worker = Client::connect(socket);
   if (!keeper) return keeper.error();
@@ -166,7 +159,7 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
   if (auto sent = worker.value().send(method, with_lease(parameters, lease), true); !sent)
     return sent.error();
   auto next = Clock::now();
-  while (interrupted == 0) {
+  while (!given_up()) {
     if (Clock::now() >= next) {
       next = Clock::now() + kRenewal;
       if (auto sent = keeper.value().send("Renew", renewal_of(lease)); !sent) return sent.error();

@@ -1,6 +1,9 @@
 // A connection to the daemon's control socket, and the lease that keeps a motion going.
 #pragma once
 
+#include <signal.h>
+
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -33,6 +36,25 @@ class Client {
   control::FrameDecoder decoder_;
 };
 
+/// While one lives, Ctrl-C, Ctrl-Z, SIGTERM and SIGHUP ask for the end of the method that runs instead of
+/// ending the process, and a later method is not begun any more.
+class SignalsCaught {
+ public:
+  SignalsCaught();
+  ~SignalsCaught();
+  SignalsCaught(const SignalsCaught&) = delete;
+  SignalsCaught& operator=(const SignalsCaught&) = delete;
+
+ private:
+  static constexpr std::array kNumbers{SIGINT, SIGTERM, SIGHUP, SIGTSTP};
+  std::array<struct sigaction, 4> before_{};
+};
+
+enum class WhenInterrupted {
+  stop,  ///< the robot is stopped and the call given up
+  finish
+};
+
 /// Runs a method that needs the lease: acquires it, renews it every 30 ms on a connection of its own, and
 /// lets go of it on Ctrl-C, Ctrl-Z, SIGTERM and SIGHUP. A suspended or killed process renews nothing, and the
 /// robot stops.
@@ -40,6 +62,7 @@ class Client {
 /// @param progress called with the JSON text of each progress object
 Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
                                     const std::string& parameters,
-                                    const std::function<void(const std::string&)>& progress);
+                                    const std::function<void(const std::string&)>& progress,
+                                    WhenInterrupted interrupted = WhenInterrupted::stop);
 
 }  // namespace odomcalib::cli

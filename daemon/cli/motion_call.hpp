@@ -18,6 +18,7 @@ namespace odomcalib::cli {
 struct Consent {
   bool yes = false;
   bool dry_run = false;
+  bool finishes = false;  ///< Ctrl-C does not give it up
 };
 
 /// Asks for consent where it was not given, and runs the method with the lease. With dry_run nothing moves.

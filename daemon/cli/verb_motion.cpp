@@ -18,6 +18,7 @@
 #include "daemon/cli/motion_call.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/parameter_tables.hpp"
+#include "daemon/cli/proven_apply.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/file_bytes.hpp"
@@ -30,7 +31,7 @@ using nlohmann::ordered_json;
 struct Options {
   Consent consent;
   std::string file, id;
-  bool quick = false, one_drive = false, nudge = false;
+  bool quick = false, one_drive = false, nudge = false, apply = false;
   std::vector<std::string> assignments;
 };
 
@@ -90,6 +91,42 @@ int report_lost(Error error, const Solved& solved) {
   return report_error(error, JsonMode::off);
 }
 
+// What --apply needs beside a calibration: a controller whose odometry shows what was written, and its errors
+// before.
+Result<std::optional<DriveErrors>> before_apply(const Session& session, const Options& options,
+                                                const RunMethod& run) {
+  if (!options.apply) return std::optional<DriveErrors>();
+  auto client = Client::connect(session.socket);
+  if (!client) return client.error();
+  const auto answer = client.value().call("GetParameters");
+  if (!answer) return answer.error();
+  const auto held = ordered_json::parse(answer.value(), nullptr, false);
+  if (auto error = unprovable(held.value("parameters", ordered_json::array()))) return *error;
+  const auto errors = drive_errors(run);
+  if (!errors) return errors.error();
+  return std::optional(errors.value());
+}
+
+// From the write on until it is proven or taken back no signal ends this program.
+ProvenApply prove(const Session& session, const RunMethod& run, const Calibration& calibration,
+                  const DriveErrors& before) {
+  const SignalsCaught caught;
+  const auto take_back = [&session]() -> Result<void> {
+    const Consent nobody_is_asked{.yes = true, .dry_run = false, .finishes = true};
+    const auto done = run_method(session, nobody_is_asked, "Rollback", ordered_json::object());
+    if (!done) return done.error();
+    return {};
+  };
+  return apply_and_prove(run, take_back, calibration, before);
+}
+
+void print_calibration(const Session& session, Calibration calibration,
+                       const std::optional<ProvenApply>& applied) {
+  if (applied) calibration.extensions["proof"] = to_json(*applied).dump();
+  if (session.json != JsonMode::off) return print_json(to_json(calibration), session.json);
+  if (applied) std::cout << to_text(describe(*applied), session.legend);
+}
+
 int calibrate(const Session& session, const Options& options) {
   // After two minutes of driving it would be too late to find out.
   if (const auto files = check_outputs({{"--out", options.file}}, {}); !files)
@@ -98,16 +135,24 @@ int calibrate(const Session& session, const Options& options) {
   if (options.consent.dry_run)
     return print_result(session, "plan",
                         run_method(session, options.consent, "Calibrate", {{"options", wanted}}));
+  const RunMethod run = [&](const std::string& method, ordered_json parameters) {
+    Consent consent = options.consent;
+    consent.finishes = method == "Apply";  // a write-back that has begun ends by itself
+    return run_method(session, consent, method, std::move(parameters));
+  };
+  const auto before = before_apply(session, options, run);
+  if (!before) return report_error(before.error(), session.json);
   auto solved = drive_and_solve(session, options, wanted);
   if (!solved) return report_error(solved.error(), session.json);
   const Solved best = second_drive(session, options, std::move(solved).value());
-  if (session.json != JsonMode::off)
-    print_json(to_json(best.calibration), session.json);
-  else
-    std::cout << to_text(describe(best.calibration), session.legend);
+  if (session.json == JsonMode::off) std::cout << to_text(describe(best.calibration), session.legend);
   if (!options.file.empty())
     if (auto written = write_output(options.file, to_json(best.calibration)); !written)
       return report_lost(written.error(), best);
+  std::optional<ProvenApply> applied;
+  if (before.value()) applied = prove(session, run, best.calibration, *before.value());
+  print_calibration(session, best.calibration, applied);
+  if (applied && applied->error) return report_error(*applied->error, JsonMode::off);
   return best.calibration.verdict == Verdict::refused ? kRefused : kDone;
 }
 
@@ -185,6 +230,8 @@ void add_motions(CLI::App& app, Session& session) {
       add_action(app, session, options, "calibrate", "Straight, spin and pattern, then solve", calibrate);
   all->add_flag("--quick", options->quick, "a shorter pattern");
   all->add_flag("--one-drive", options->one_drive, "no second motion, whatever the first leaves open");
+  all->add_flag("--apply", options->apply,
+                "write it, drive straight and spin again, and take it back unless odometry is better");
   all->add_option("--out", options->file, "calibration file to write");
   add_action(app, session, options, "apply", "Write a calibration to the controller", apply)
       ->add_option("CALIBRATION", options->file)

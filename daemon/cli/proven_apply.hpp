@@ -1,0 +1,64 @@
+// calibrate --apply: odometry is compared with the lidar before the write-back and, on fresh motion, after
+// it. What is not better is taken back.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "daemon/cli/document.hpp"
+#include "proto/calibration/calibration.hpp"
+#include "proto/result.hpp"
+
+namespace odomcalib::cli {
+
+/// Runs a method of the daemon with its lease: name and parameters to "result" of the answer.
+using RunMethod = std::function<Result<nlohmann::ordered_json>(const std::string& method,
+                                                               nlohmann::ordered_json parameters)>;
+
+/// What odometry is off by against the lidar, root mean squares over the moves.
+struct DriveErrors {
+  double metre_length = 0.0;   ///< m per metre of a straight
+  double metre_heading = 0.0;  ///< rad per metre of a straight
+  double turn = 0.0;           ///< rad per full turn on the spot
+};
+
+/// Drives a straight and a spin, out and back each. Errors: those of the methods; refused where the lidar did
+/// not recognise the place after one of the moves.
+Result<DriveErrors> drive_errors(const RunMethod& run);
+
+/// Why nobody but a person may have this written: a warning is for somebody who reads it.
+std::optional<Error> needs_a_person(const Calibration& calibration);
+
+/// Why a motion cannot prove what would be written. @param parameters those of GetParameters
+std::optional<Error> unprovable(const nlohmann::ordered_json& parameters);
+
+/// What is worse than before, by more than the comparison can tell; nullopt: nothing.
+std::optional<std::string> worse(const DriveErrors& before, const DriveErrors& after);
+
+struct ProvenApply {
+  enum class End {
+    stored,      ///< new values in force, on fresh motion better
+    not_stored,  ///< nothing was written, or it failed: old values in force
+    taken_back,  ///< old values in force again
+    in_doubt     ///< new values may be in force, without proof
+  };
+  End end = End::not_stored;
+  DriveErrors before;
+  std::optional<DriveErrors> after;
+  std::optional<Error> error;  ///< why it was not stored
+};
+
+/// Writes the calibration, drives again, and takes it back unless it is proven.
+/// @param before drive_errors() with the values that are in force
+/// @param take_back runs Rollback; unlike `run` it asks nobody and is not given up
+ProvenApply apply_and_prove(const RunMethod& run, const std::function<Result<void>()>& take_back,
+                            const Calibration& calibration, const DriveErrors& before);
+
+/// {"outcome", "before", "after", "error"}; errors as {"straight_metre_length" m, "straight_metre_heading"
+/// rad, "full_turn_heading" rad}.
+nlohmann::ordered_json to_json(const ProvenApply& applied);
+Document describe(const ProvenApply& applied);
+
+}  // namespace odomcalib::cli

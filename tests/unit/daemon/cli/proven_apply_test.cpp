@@ -1,0 +1,169 @@
+// calibrate --apply: what is written, what is proven, and what is taken back.
+#include "daemon/cli/proven_apply.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "daemon/cli/exit_codes.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using End = ProvenApply::End;
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+ordered_json move(double distance, double yaw, double distance_error, double yaw_error) {
+  return {{"lidar", {distance, 0.0, yaw}}, {"error", {{"distance", distance_error}, {"yaw", yaw_error}}}};
+}
+
+/// A daemon that notes what it was asked for, and answers as it is told.
+class Daemon {
+ public:
+  ordered_json straight{{"moves", {move(0.5, 0.0, 0.0005, 0.0005), move(0.5, 0.0, -0.0005, -0.0005)}}};
+  ordered_json spin{{"moves", {move(0.0, 0.5 * kTurn, 0.0, 0.0005)}}};
+  std::map<std::string, Error> failures;
+  std::vector<std::string> asked;
+
+  RunMethod run() {
+    return [this](const std::string& method, const ordered_json& /*parameters*/) -> Result<ordered_json> {
+      asked.push_back(method);
+      if (failures.contains(method)) return failures.at(method);
+      return method == "Straight" ? straight : method == "Spin" ? spin : ordered_json::object();
+    };
+  }
+  std::function<Result<void>()> take_back() {
+    return [this]() -> Result<void> {
+      asked.emplace_back("Rollback");
+      if (failures.contains("Rollback")) return failures.at("Rollback");
+      return {};
+    };
+  }
+  ProvenApply apply(const DriveErrors& before, Verdict verdict = Verdict::accepted) {
+    Calibration calibration;
+    calibration.verdict = verdict;
+    calibration.reasons = {"50 of 187 pairs contradict"};
+    return apply_and_prove(run(), take_back(), calibration, before);
+  }
+};
+
+const DriveErrors kOff{0.02, 0.01, 0.2};
+
+TEST(ProvenApply, errors_are_those_of_a_metre_and_of_a_turn) {
+  Daemon daemon;
+  const auto errors = drive_errors(daemon.run());
+  ASSERT_TRUE(errors.ok());
+  EXPECT_NEAR(errors.value().metre_length, 0.001, 1e-12);
+  EXPECT_NEAR(errors.value().metre_heading, 0.001, 1e-12);
+  EXPECT_NEAR(errors.value().turn, 0.001, 1e-12);
+  EXPECT_THAT(daemon.asked, ElementsAre("Straight", "Spin"));
+}
+
+TEST(ProvenApply, a_move_that_the_lidar_did_not_see_is_no_comparison) {
+  Daemon daemon;
+  daemon.straight["moves"][1]["error"] = nullptr;
+  const auto errors = drive_errors(daemon.run());
+  ASSERT_FALSE(errors.ok());
+  EXPECT_EQ(exit_status(errors.error().code), kRefused);
+  EXPECT_THAT(daemon.asked, ElementsAre("Straight"));
+  daemon.straight["moves"] = ordered_json::array();
+  EXPECT_FALSE(drive_errors(daemon.run()).ok());
+}
+
+TEST(ProvenApply, what_is_better_stays) {
+  Daemon daemon;
+  const ProvenApply applied = daemon.apply(kOff);
+  EXPECT_EQ(applied.end, End::stored);
+  EXPECT_FALSE(applied.error);
+  EXPECT_THAT(daemon.asked, ElementsAre("Apply", "Straight", "Spin"));
+  EXPECT_THAT(to_text(describe(applied)), HasSubstr("20.00"));
+  EXPECT_EQ(to_json(applied)["outcome"], "stored");
+}
+
+TEST(ProvenApply, what_is_worse_in_one_thing_is_taken_back) {
+  for (const auto spoil : {&DriveErrors::metre_length, &DriveErrors::metre_heading, &DriveErrors::turn}) {
+    Daemon daemon;
+    daemon.straight["moves"] = {move(1.0, 0.0, 0.010, 0.010)};
+    daemon.spin["moves"] = {move(0.0, kTurn, 0.0, 0.010)};
+    DriveErrors before = kOff;
+    before.*spoil = 0.009;
+    const ProvenApply applied = daemon.apply(before);
+    EXPECT_EQ(applied.end, End::taken_back);
+    ASSERT_TRUE(applied.error);
+    EXPECT_EQ(exit_status(applied.error->code), kWriteFailed);
+    EXPECT_THAT(daemon.asked, ElementsAre("Apply", "Straight", "Spin", "Rollback"));
+  }
+}
+
+TEST(ProvenApply, what_no_comparison_can_tell_is_not_worse) {
+  EXPECT_FALSE(worse({0.0, 0.0, 0.0}, {0.0019, 0.0017, 0.0017}));
+  EXPECT_THAT(worse({0.0, 0.0, 0.0}, {0.0021, 0.0, 0.0}).value_or(""), HasSubstr("length"));
+  EXPECT_THAT(worse({0.0, 0.0, 0.0}, {0.0, 0.0018, 0.0}).value_or(""), HasSubstr("straight metre: heading"));
+  EXPECT_THAT(worse({0.0, 0.0, 0.0}, {0.0, 0.0, 0.0018}).value_or(""), HasSubstr("full turn"));
+}
+
+TEST(ProvenApply, a_proof_run_that_was_stopped_is_none) {
+  for (const char* method : {"Straight", "Spin"}) {
+    Daemon daemon;
+    daemon.failures[method] = {ErrorCode::protective_stop, "something is in the way", "motion", ""};
+    const ProvenApply applied = daemon.apply(kOff);
+    EXPECT_EQ(applied.end, End::taken_back);
+    ASSERT_TRUE(applied.error);
+    EXPECT_EQ(exit_status(applied.error->code), kProtectiveStop);
+    EXPECT_THAT(applied.error->what, HasSubstr("old values are in force again"));
+    EXPECT_EQ(daemon.asked.back(), "Rollback");
+  }
+}
+
+TEST(ProvenApply, what_cannot_be_taken_back_needs_an_operator) {
+  Daemon daemon;
+  daemon.spin["moves"] = {move(0.0, kTurn, 0.0, 0.5)};
+  daemon.failures["Rollback"] = {ErrorCode::write_failed, "no answer", "bus", ""};
+  const ProvenApply applied = daemon.apply(kOff);
+  EXPECT_EQ(applied.end, End::in_doubt);
+  ASSERT_TRUE(applied.error);
+  EXPECT_EQ(exit_status(applied.error->code), kWriteUnknown);
+  EXPECT_THAT(applied.error->what, HasSubstr("no answer"));
+}
+
+TEST(ProvenApply, a_write_that_failed_is_not_proven) {
+  Daemon daemon;
+  daemon.failures["Apply"] = {ErrorCode::write_failed, "abort", "bus", ""};
+  EXPECT_EQ(daemon.apply(kOff).end, End::not_stored);
+  EXPECT_THAT(daemon.asked, ElementsAre("Apply"));
+  for (const ErrorCode code : {ErrorCode::write_unknown, ErrorCode::not_running, ErrorCode::io}) {
+    daemon.failures["Apply"].code = code;
+    EXPECT_EQ(daemon.apply(kOff).end, End::in_doubt);
+  }
+}
+
+TEST(ProvenApply, a_warning_waits_for_a_person) {
+  for (const Verdict verdict : {Verdict::accepted_with_warnings, Verdict::refused}) {
+    Daemon daemon;
+    const ProvenApply applied = daemon.apply(kOff, verdict);
+    EXPECT_EQ(applied.end, End::not_stored);
+    ASSERT_TRUE(applied.error);
+    EXPECT_EQ(exit_status(applied.error->code), kRefused);
+    EXPECT_THAT(applied.error->what, HasSubstr("50 of 187 pairs contradict"));
+    EXPECT_TRUE(daemon.asked.empty());
+  }
+}
+
+TEST(ProvenApply, lengths_that_stay_on_the_host_cannot_be_proven_by_the_controller) {
+  ordered_json parameters = ordered_json::array();
+  for (const char* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
+    parameters.push_back({{"name", name}, {"unit", "m"}, {"stored_in", "controller"}});
+  EXPECT_FALSE(unprovable(parameters));
+  parameters[2]["stored_in"] = "host";
+  ASSERT_TRUE(unprovable(parameters));
+  EXPECT_THAT(unprovable(parameters)->what, HasSubstr("track_width"));
+}
+
+}  // namespace
+}  // namespace odomcalib::cli
