@@ -1,5 +1,7 @@
 #include "daemon/routines/runner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -95,6 +97,20 @@ Profile profile_of(const Move& move, const Limits& limits) {
                std::min(profile.acceleration, caps.turn_acceleration / w)};
   profile.acceleration *= std::clamp(move.haste, 0.1, 1.0);
   return profile;
+}
+
+std::vector<std::string> limited(const Plan& plan) {
+  std::vector<std::string> found;
+  for (const Move& move : plan.moves) {
+    const double wanted = std::max(move.pace, move.late_pace),
+                 fastest = profile_of(move, plan.limits).fastest;
+    if (wanted <= fastest) continue;
+    const char* const unit = move.direction.w != 0.0 || move.heading ? "rad/s" : "m/s";
+    const auto text =
+        fmt::format("{}: {:.2f} {} instead of {:.2f}, the limit", move.name, fastest, unit, wanted);
+    if (std::find(found.begin(), found.end(), text) == found.end()) found.push_back(text);
+  }
+  return found;
 }
 
 Step next_step(const Plan& plan, RunState state, const Pose& pose, double now) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "daemon/routines/motion.hpp"
 
@@ -14,6 +16,8 @@ struct Profile {
   double acceleration = 0.0;
 };
 Profile profile_of(const Move& move, const Limits& limits);
+/// Moves that are slower than they were planned, each with its limit, once a name (rule M18).
+std::vector<std::string> limited(const Plan& plan);
 
 enum class Phase { beginning, moving, settling, done };
 

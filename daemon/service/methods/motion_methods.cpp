@@ -99,8 +99,13 @@ ordered_json json_of(const std::vector<safety::Sector>& sectors) {
 
 ordered_json plan_report(const routines::Plan& plan, const routines::Preview& preview,
                          const std::vector<std::string>& unseen, const std::vector<safety::Sector>& blind) {
-  return {{"plan", plan.name},      {"moves", plan.moves.size()}, {"duration", preview.duration},
-          {"reach", preview.reach}, {"unseen_moves", unseen},     {"blind_sectors", json_of(blind)}};
+  return {{"plan", plan.name},
+          {"moves", plan.moves.size()},
+          {"duration", preview.duration},
+          {"reach", preview.reach},
+          {"unseen_moves", unseen},
+          {"blind_sectors", json_of(blind)},
+          {"limited", routines::limited(plan)}};
 }
 
 Outcome begin_motion(Bench& bench, const Caller& caller, const MotionTask::Order& order, bool dry_run) {
@@ -115,6 +120,8 @@ Outcome begin_motion(Bench& bench, const Caller& caller, const MotionTask::Order
     bench.outbox.event(messages::Severity::warning, "lidar_blind",
                        fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
                                    safety::text_of(blind.sectors()), fmt::join(unseen, "\", \"")));
+  for (const auto& text : routines::limited(plan))
+    bench.outbox.event(messages::Severity::info, "limited", text);
   auto task = MotionTask::begin(bench, caller, order);
   if (!task) return task.error();
   return std::move(task).value();

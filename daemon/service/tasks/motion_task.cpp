@@ -33,6 +33,7 @@ MotionTask::MotionTask(Bench& bench, const Caller& waits, Order order)
     : Task(waits),
       lease_(std::move(order.lease)),
       purpose_(std::move(order.purpose)),
+      limited_(routines::limited(order.plan)),
       speed_(order.plan.limits),
       stepped_at_(bench.now),
       suspended_at_(bench.clock.suspended()) {
@@ -162,6 +163,7 @@ TaskTurn MotionTask::written(const Bench& bench, const Result<std::filesystem::p
     order.recordings.push_back(path.value());
     return Then{std::make_unique<SolvingTask>(bench, caller, order)};
   }
+  report_["limited"] = limited_;
   report_["recording"] = path.value().string();
   return Done{{{"result", report_}}};
 }

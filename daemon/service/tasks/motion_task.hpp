@@ -61,6 +61,7 @@ class MotionTask final : public Task {
 
   std::string lease_;
   MotionPurpose purpose_;
+  std::vector<std::string> limited_;
   AgreementWatch agreement_;
   safety::SpeedWatch speed_;
   std::optional<MotionRun> run_;  // until it has ended

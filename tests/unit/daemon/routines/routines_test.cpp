@@ -99,6 +99,24 @@ TEST(Spin, left_and_right_cancel) {
   EXPECT_EQ(trace.starts, 2);
 }
 
+TEST(Limits, in_force_are_named_once_for_each_move) {
+  StraightOptions options;
+  options.speed = 0.5;
+  options.repeat = 3;
+  EXPECT_EQ(limited(straight_plan(options)),
+            (std::vector<std::string>{"straight forward: 0.30 m/s instead of 0.50, the limit",
+                                      "straight backward: 0.30 m/s instead of 0.50, the limit"}));
+  options.speed = 0.15;
+  EXPECT_TRUE(limited(straight_plan(options)).empty());
+  options.limits.speed = 0.1;
+  EXPECT_EQ(limited(straight_plan(options)).size(), 2U);
+  SpinOptions spin;
+  spin.rate = 0.7;
+  spin.right = false;
+  EXPECT_EQ(limited(spin_plan(spin)),
+            (std::vector<std::string>{"spin left: 0.60 rad/s instead of 0.70, the limit"}));
+}
+
 TEST(Limits, cannot_be_raised_by_configuration) {
   const Limits wanted{2.0, 5.0, 9.0, 9.0};
   EXPECT_EQ(capped(wanted).speed, kCaps.speed);
