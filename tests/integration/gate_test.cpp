@@ -38,6 +38,21 @@ TEST_F(Gate, lets_pass_what_is_as_it_should_be) {
   EXPECT_EQ(call("Straight", straight()).error, "");
 }
 
+// Rule M18: who asks for more than there is is told, before the motion and after it.
+TEST_F(Gate, names_the_limit_that_it_sets) {
+  json parameters = straight();
+  for (const bool dry_run : {true, false}) {
+    parameters["dry_run"] = dry_run;
+    parameters["speed"] = 0.5;
+    const auto limited = [&] {
+      return json::parse(call("Straight", parameters).parameters)["result"].value("limited", json());
+    };
+    EXPECT_NE(limited().dump().find("0.30 m/s instead of 0.50"), std::string::npos);
+    parameters["speed"] = 0.2;
+    EXPECT_EQ(limited(), json::array());
+  }
+}
+
 TEST_F(Gate, of_a_way_that_is_not_clear) {
   robot_->room().add_pillar({robot_->pose().x + 0.9, robot_->pose().y}, 0.08);
   run(1.0);
@@ -104,9 +119,13 @@ TEST_F(Gate, of_values_for_a_controller_in_fault) {
   expect_refused(call("SetParameters", track(0.4033)), "Device", "fault");
 }
 
-// Its axes still have torque when the motion has been answered.
+// The wheels still turn when the motion has been answered.
 TEST_F(Gate, lets_values_pass_right_after_a_motion) {
-  ASSERT_EQ(call("Straight", straight()).error, "");
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  ASSERT_EQ(call("Stop", json::object()).error, "");
+  ASSERT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
   EXPECT_NE(status()["controller"]["state"], "disabled") << "nothing to wait for: this tests nothing";
   EXPECT_EQ(call("SetParameters", track(0.4033)).error, "");
   EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
