@@ -145,8 +145,8 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
                                     const std::string& parameters,
                                     const std::function<void(const std::string&)>& progress,
                                     WhenInterrupted interrupted) {
-  const auto given_up = [interrupted] { return signalled != 0 && interrupted == WhenInterrupted::stop; };
-  if (given_up()) return Error{ErrorCode::cancelled, "interrupted", method, "start again"};
+  if (signalled != 0 && interrupted != WhenInterrupted::begin)
+    return Error{ErrorCode::cancelled, "interrupted", method, "start again"};
   auto keeper = Client::connect(socket);
   auto worker = Client::connect(socket);
   if (!keeper) return keeper.error();
@@ -159,7 +159,7 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
   if (auto sent = worker.value().send(method, with_lease(parameters, lease), true); !sent)
     return sent.error();
   auto next = Clock::now();
-  while (!given_up()) {
+  while (signalled == 0 || interrupted != WhenInterrupted::stop) {
     if (Clock::now() >= next) {
       next = Clock::now() + kRenewal;
       if (auto sent = keeper.value().send("Renew", renewal_of(lease)); !sent) return sent.error();

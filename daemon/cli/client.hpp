@@ -51,8 +51,9 @@ class SignalsCaught {
 };
 
 enum class WhenInterrupted {
-  stop,  ///< the robot is stopped and the call given up
-  finish
+  stop,    ///< the robot is stopped and the call given up
+  finish,  ///< what has begun comes to its end; what has not is not begun
+  begin    ///< even a call that has not begun is begun, and comes to its end
 };
 
 /// Runs a method that needs the lease: acquires it, renews it every 30 ms on a connection of its own, and

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "daemon/cli/client.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/result.hpp"
 
@@ -18,7 +19,7 @@ namespace odomcalib::cli {
 struct Consent {
   bool yes = false;
   bool dry_run = false;
-  bool finishes = false;  ///< Ctrl-C does not give it up
+  WhenInterrupted interrupted = WhenInterrupted::stop;
 };
 
 /// Asks for consent where it was not given, and runs the method with the lease. With dry_run nothing moves.

@@ -23,6 +23,8 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 // largest error after a calibration in simulated campaigns, and below what a wheel of 0.3 % makes.
 constexpr double kLengthNoise = 0.002;            // m
 constexpr double kHeadingNoise = 0.1 / kDegrees;  // rad
+// Lengths as text and back. Derived: a tenth of the finest step of a controller, 1 um.
+constexpr double kSameLength = 1e-7;  // m
 
 struct Judged {
   const char* name;
@@ -111,6 +113,31 @@ Error not_proven(Error why) {
   return why;
 }
 
+/// Every length of `wanted` is in `held`, and the same.
+bool same_lengths(const ordered_json& wanted, const ordered_json& held) {
+  if (!wanted.is_object() || wanted.empty() || !held.is_object()) return false;
+  for (const auto& one : wanted.items())
+    if (!(std::abs(held.value(one.key(), kUnknown) - one.value().get<double>()) <= kSameLength)) return false;
+  return true;
+}
+
+/// Takes back what this program has written, and nothing that somebody else has written since.
+/// @param written result of Apply
+Result<void> take_back(const RunMethod& always, const ordered_json& written) {
+  const auto plan = always("Rollback", {{"dry_run", true}});
+  if (!plan) return plan.error();
+  const auto member = [](const ordered_json& body, const char* name) {
+    return body.value(name, ordered_json());
+  };
+  if (!same_lengths(member(written, "after"), member(plan.value(), "before")) ||
+      !same_lengths(member(written, "before"), member(plan.value(), "after")))
+    return Error{ErrorCode::refused, "somebody else has written other values since", "rollback",
+                 "odomcalibctl history"};
+  const auto done = always("Rollback", ordered_json::object());
+  if (!done) return done.error();
+  return {};
+}
+
 Error not_taken_back(const Error& why, const Error& failed) {
   return {ErrorCode::write_unknown, why.what + "; but they could not be taken back: " + failed.text(),
           "proof run", "see odomcalibctl params get, then odomcalibctl rollback"};
@@ -161,13 +188,14 @@ std::optional<std::string> worse(const DriveErrors& before, const DriveErrors& a
   return std::nullopt;
 }
 
-ProvenApply apply_and_prove(const RunMethod& run, const std::function<Result<void>()>& take_back,
-                            const Calibration& calibration, const DriveErrors& before) {
+ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const Calibration& calibration,
+                            const DriveErrors& before) {
   ProvenApply applied;
   applied.before = before;
   if ((applied.error = needs_a_person(calibration))) return applied;
   const auto wanted = ordered_json::parse(to_json(calibration), nullptr, false);
-  if (const auto written = run("Apply", {{"calibration", wanted}}); !written) {
+  const auto written = run("Apply", {{"calibration", wanted}});
+  if (!written) {
     applied.error = written.error();
     if (!is_settled(written.error())) applied.end = ProvenApply::End::in_doubt;
     return applied;
@@ -179,7 +207,7 @@ ProvenApply apply_and_prove(const RunMethod& run, const std::function<Result<voi
   if (after && !what) return applied;
   applied.error = after ? not_better(*what) : not_proven(after.error());
   applied.end = ProvenApply::End::taken_back;
-  if (const auto back = take_back(); !back) {
+  if (const auto back = take_back(always, written.value()); !back) {
     applied.error =
         not_taken_back(after ? Error{ErrorCode::refused, *what, "", ""} : after.error(), back.error());
     applied.end = ProvenApply::End::in_doubt;

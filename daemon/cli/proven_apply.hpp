@@ -52,9 +52,10 @@ struct ProvenApply {
 
 /// Writes the calibration, drives again, and takes it back unless it is proven.
 /// @param before drive_errors() with the values that are in force
-/// @param take_back runs Rollback; unlike `run` it asks nobody and is not given up
-ProvenApply apply_and_prove(const RunMethod& run, const std::function<Result<void>()>& take_back,
-                            const Calibration& calibration, const DriveErrors& before);
+/// Values that somebody else has written since stay as they are.
+/// @param always runs what takes it back; unlike `run` it asks nobody and is not given up
+ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const Calibration& calibration,
+                            const DriveErrors& before);
 
 /// {"outcome", "before", "after", "error"}; errors as {"straight_metre_length" m, "straight_metre_heading"
 /// rad, "full_turn_heading" rad}.

@@ -111,13 +111,11 @@ Result<std::optional<DriveErrors>> before_apply(const Session& session, const Op
 ProvenApply prove(const Session& session, const RunMethod& run, const Calibration& calibration,
                   const DriveErrors& before) {
   const SignalsCaught caught;
-  const auto take_back = [&session]() -> Result<void> {
-    const Consent nobody_is_asked{.yes = true, .dry_run = false, .finishes = true};
-    const auto done = run_method(session, nobody_is_asked, "Rollback", ordered_json::object());
-    if (!done) return done.error();
-    return {};
+  const RunMethod always = [&session](const std::string& method, ordered_json parameters) {
+    const Consent nobody_is_asked{.yes = true, .interrupted = WhenInterrupted::begin};
+    return run_method(session, nobody_is_asked, method, std::move(parameters));
   };
-  return apply_and_prove(run, take_back, calibration, before);
+  return apply_and_prove(run, always, calibration, before);
 }
 
 void print_calibration(const Session& session, Calibration calibration,
@@ -137,7 +135,7 @@ int calibrate(const Session& session, const Options& options) {
                         run_method(session, options.consent, "Calibrate", {{"options", wanted}}));
   const RunMethod run = [&](const std::string& method, ordered_json parameters) {
     Consent consent = options.consent;
-    consent.finishes = method == "Apply";  // a write-back that has begun ends by itself
+    if (method == "Apply") consent.interrupted = WhenInterrupted::finish;
     return run_method(session, consent, method, std::move(parameters));
   };
   const auto before = before_apply(session, options, run);

@@ -66,12 +66,7 @@ class Campaign : public WholeLoop {
     if (!solved) return not_begun(solved.error());
     const auto calibration = calibration_from_json(solved.value()["calibration"].dump(), "campaign");
     if (!calibration) return not_begun(calibration.error());
-    const auto take_back = [&run]() -> Result<void> {
-      const auto back = run("Rollback", nlohmann::ordered_json::object());
-      if (!back) return back.error();
-      return {};
-    };
-    return cli::apply_and_prove(run, take_back, calibration.value(), before.value());
+    return cli::apply_and_prove(run, run, calibration.value(), before.value());
   }
 
   std::uint64_t seed_ = 1;

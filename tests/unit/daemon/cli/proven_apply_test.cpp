@@ -28,28 +28,26 @@ class Daemon {
  public:
   ordered_json straight{{"moves", {move(0.5, 0.0, 0.0005, 0.0005), move(0.5, 0.0, -0.0005, -0.0005)}}};
   ordered_json spin{{"moves", {move(0.0, 0.5 * kTurn, 0.0, 0.0005)}}};
+  ordered_json written{{"before", {{"track_width", 0.4}}}, {"after", {{"track_width", 0.41}}}};
+  ordered_json taken_back{{"before", {{"track_width", 0.41}}}, {"after", {{"track_width", 0.4}}}};
   std::map<std::string, Error> failures;
   std::vector<std::string> asked;
 
   RunMethod run() {
-    return [this](const std::string& method, const ordered_json& /*parameters*/) -> Result<ordered_json> {
-      asked.push_back(method);
-      if (failures.contains(method)) return failures.at(method);
-      return method == "Straight" ? straight : method == "Spin" ? spin : ordered_json::object();
-    };
-  }
-  std::function<Result<void>()> take_back() {
-    return [this]() -> Result<void> {
-      asked.emplace_back("Rollback");
-      if (failures.contains("Rollback")) return failures.at("Rollback");
-      return {};
+    return [this](const std::string& method, const ordered_json& parameters) -> Result<ordered_json> {
+      const bool dry_run = parameters.value("dry_run", false);
+      asked.push_back(dry_run ? method + " --dry-run" : method);
+      if (failures.contains(asked.back())) return failures.at(asked.back());
+      if (method == "Apply") return written;
+      if (method == "Rollback") return taken_back;
+      return method == "Straight" ? straight : spin;
     };
   }
   ProvenApply apply(const DriveErrors& before, Verdict verdict = Verdict::accepted) {
     Calibration calibration;
     calibration.verdict = verdict;
     calibration.reasons = {"50 of 187 pairs contradict"};
-    return apply_and_prove(run(), take_back(), calibration, before);
+    return apply_and_prove(run(), run(), calibration, before);
   }
 };
 
@@ -97,7 +95,7 @@ TEST(ProvenApply, what_is_worse_in_one_thing_is_taken_back) {
     EXPECT_EQ(applied.end, End::taken_back);
     ASSERT_TRUE(applied.error);
     EXPECT_EQ(exit_status(applied.error->code), kWriteFailed);
-    EXPECT_THAT(daemon.asked, ElementsAre("Apply", "Straight", "Spin", "Rollback"));
+    EXPECT_THAT(daemon.asked, ElementsAre("Apply", "Straight", "Spin", "Rollback --dry-run", "Rollback"));
   }
 }
 
@@ -130,6 +128,19 @@ TEST(ProvenApply, what_cannot_be_taken_back_needs_an_operator) {
   ASSERT_TRUE(applied.error);
   EXPECT_EQ(exit_status(applied.error->code), kWriteUnknown);
   EXPECT_THAT(applied.error->what, HasSubstr("no answer"));
+}
+
+TEST(ProvenApply, what_somebody_else_has_written_since_is_not_taken_back) {
+  for (const char* side : {"before", "after"}) {
+    Daemon daemon;
+    daemon.spin["moves"] = {move(0.0, kTurn, 0.0, 0.5)};
+    daemon.taken_back[side]["track_width"] = 0.42;
+    const ProvenApply applied = daemon.apply(kOff);
+    EXPECT_EQ(applied.end, End::in_doubt) << side;
+    ASSERT_TRUE(applied.error);
+    EXPECT_THAT(applied.error->what, HasSubstr("somebody else"));
+    EXPECT_EQ(daemon.asked.back(), "Rollback --dry-run");
+  }
 }
 
 TEST(ProvenApply, a_write_that_failed_is_not_proven) {
