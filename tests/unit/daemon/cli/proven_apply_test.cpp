@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 
 namespace odomcalib::cli {
@@ -174,6 +175,22 @@ TEST(ProvenApply, lengths_that_stay_on_the_host_cannot_be_proven_by_the_controll
   parameters[2]["stored_in"] = "host";
   ASSERT_TRUE(unprovable(parameters));
   EXPECT_THAT(unprovable(parameters)->what, HasSubstr("track_width"));
+}
+
+TEST(CallWithLease, begins_nothing_after_ctrl_c_but_what_takes_a_write_back_back) {
+  const auto end = [](WhenInterrupted interrupted) {
+    return call_with_lease(
+               "/nobody/listens", "Apply", "{}", [](const auto&) {}, interrupted)
+        .error()
+        .code;
+  };
+  const SignalsCaught caught;
+  for (const auto each : {WhenInterrupted::stop, WhenInterrupted::finish, WhenInterrupted::begin})
+    EXPECT_EQ(end(each), ErrorCode::not_running);
+  ASSERT_EQ(raise(SIGINT), 0);
+  EXPECT_EQ(end(WhenInterrupted::stop), ErrorCode::cancelled);
+  EXPECT_EQ(end(WhenInterrupted::finish), ErrorCode::cancelled);
+  EXPECT_EQ(end(WhenInterrupted::begin), ErrorCode::not_running);
 }
 
 }  // namespace
