@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "daemon/routines/runner.hpp"
+#include "daemon/safety/settings.hpp"
 
 namespace odomcalib::safety {
 namespace {
@@ -18,11 +19,6 @@ using routines::Twist;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kRemembered = 1.0;  // s; the slowest lidars turn five times meanwhile
-// A beam speaks for this much on either side: three degrees between beams leave no gap.
-constexpr double kBeside = 1.5 / kDegrees;
-constexpr std::size_t kLeastBins = 3;  // of two degrees
-constexpr double kEdgeStep = 0.05;     // m, between points on the outline of the robot
 
 // Readings below the least range of the sensor count too: its own mount is that near.
 bool ends_on_robot(const Point& eye, double direction, double range, const Footprint& footprint) {
@@ -31,7 +27,8 @@ bool ends_on_robot(const Point& eye, double direction, double range, const Footp
 }
 
 void add_edge(std::vector<Point>& out, const Point& from, const Point& to) {
-  const auto steps = static_cast<int>(std::ceil(std::hypot(to.x - from.x, to.y - from.y) / kEdgeStep));
+  const auto steps =
+      static_cast<int>(std::ceil(std::hypot(to.x - from.x, to.y - from.y) / settings::kEdgeStep_m));
   for (int i = 0; i < steps; ++i) {
     const double share = static_cast<double>(i) / steps;
     out.push_back({from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)});
@@ -132,14 +129,14 @@ void Cover::seen(const Scan& scan, const std::array<double, 3>& lidar_pose, cons
     if (ends_on_robot(eye_, direction, static_cast<double>(scan.ranges[i]), footprint))
       robot_at_.at(BlindArea::bin_of(direction)) = now;
     else
-      for (const double beside : {-kBeside, 0.0, kBeside})
+      for (const double beside : {-settings::kBeside_rad, 0.0, settings::kBeside_rad})
         free_at_.at(BlindArea::bin_of(direction + beside)) = now;
   }
 }
 
 BlindArea Cover::blind(double now) const {
   constexpr std::size_t kBins = BlindArea::kBins;
-  const auto lately = [now](double when) { return now - when <= kRemembered; };
+  const auto lately = [now](double when) { return now - when <= settings::kRemembered_s; };
   // A beam that lost its echo from the robot looks like one that met nothing: the robot counts.
   const auto dark = [&](std::size_t i) {
     return lately(robot_at_.at(i % kBins)) || !lately(free_at_.at(i % kBins));
@@ -147,8 +144,8 @@ BlindArea Cover::blind(double now) const {
   BlindArea::Bins blind{};
   for (std::size_t begin = 0; begin < kBins; ++begin) {
     std::size_t run = 0;
-    while (run < kLeastBins && dark(begin + run)) ++run;
-    for (std::size_t k = 0; run == kLeastBins && k < run; ++k) blind.at((begin + k) % kBins) = true;
+    while (run < settings::kLeastBins && dark(begin + run)) ++run;
+    for (std::size_t k = 0; run == settings::kLeastBins && k < run; ++k) blind.at((begin + k) % kBins) = true;
   }
   return {eye_, blind};
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/safety/obstacle.hpp"
+#include "daemon/safety/settings.hpp"
 
 namespace odomcalib::safety {
 
@@ -23,7 +24,7 @@ std::string text_of(const std::vector<Sector>& sectors);
 /// What is hidden from the lidar.
 class BlindArea {
  public:
-  static constexpr std::size_t kBins = 180;
+  static constexpr std::size_t kBins = settings::kBins;
   using Bins = std::array<bool, kBins>;
 
   BlindArea(const Point& eye, const Bins& blind) : eye_(eye), blind_(blind) {}

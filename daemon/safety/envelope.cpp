@@ -6,17 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "daemon/safety/settings.hpp"
+
 namespace odomcalib::safety {
 namespace {
 
-// Spins wander a little; a run that should not move at all still needs room for that.
-constexpr double kLeastReach = 0.25;     // m
-constexpr double kLeastTurn = 0.6;       // rad
-constexpr double kJudgedDistance = 0.2;  // m
-constexpr double kJudgedTurn = 0.5236;   // rad, 30 degrees
-constexpr double kTolerance = 0.15;      // share
-constexpr double kMatchDistance = 0.03;  // m, error of a scan match in motion
-constexpr double kMatchTurn = 0.035;     // rad, same
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 }  // namespace
@@ -24,8 +18,9 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 Envelope Envelope::of(const routines::Preview& preview) {
   double turn = 0.0;
   for (const auto& pose : preview.path) turn = std::max(turn, std::abs(pose.yaw));
-  return {std::max(kLeastReach, 1.3 * preview.reach), std::max(kLeastTurn, 1.25 * turn),
-          1.5 * preview.duration};
+  return {std::max(settings::kLeastReach_m, settings::kReachAllowed * preview.reach),
+          std::max(settings::kLeastTurn_rad, settings::kTurnAllowed * turn),
+          settings::kTimeAllowed * preview.duration};
 }
 
 std::optional<std::string> Envelope::violated(const routines::Pose& from_start, double turned,
@@ -43,12 +38,14 @@ std::optional<std::string> disagreement(const routines::Pose& odometry, const ro
   const double seen = std::hypot(lidar.x, lidar.y);
   const double longest = std::max(moved, seen);
   const double apart = std::hypot(odometry.x - lidar.x, odometry.y - lidar.y);
-  if (longest > kJudgedDistance && apart > kTolerance * longest + kMatchDistance)
+  if (longest > settings::kJudgedDistance_m &&
+      apart > settings::kTolerance * longest + settings::kMatchDistance_m)
     return fmt::format("odometry says {:.3f} m, the lidar {:.3f} m, {:.3f} m apart", moved, seen, apart);
   const double turned = std::abs(routines::wrapped(odometry.yaw));
   const double turn_apart = std::abs(routines::wrapped(odometry.yaw - lidar.yaw));
   const double largest = std::max(turned, std::abs(routines::wrapped(lidar.yaw)));
-  if (largest > kJudgedTurn && turn_apart > kTolerance * largest + kMatchTurn)
+  if (largest > settings::kJudgedTurn_rad &&
+      turn_apart > settings::kTolerance * largest + settings::kMatchTurn_rad)
     return fmt::format("odometry and lidar differ by {:.1f} deg after {:.0f} deg", turn_apart * kDegrees,
                        largest * kDegrees);
   return std::nullopt;

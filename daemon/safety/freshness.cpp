@@ -5,14 +5,10 @@
 #include <functional>
 #include <string_view>
 
+#include "daemon/safety/settings.hpp"
+
 namespace odomcalib::safety {
 namespace {
-
-// Below this rate a coarse encoder may rightly stand still for a while.
-constexpr double kTurning = 0.2;  // rad/s
-// Drives need this long to break away; afterwards the count of a turning wheel must change.
-constexpr double kBreakAway = 0.4;  // s
-constexpr double kFrozen = 0.3;     // s
 
 std::uint64_t fingerprint_of(const Scan& scan) {
   const auto* bytes = reinterpret_cast<const char*>(scan.ranges.data());
@@ -50,7 +46,7 @@ void EncoderFreshness::seen(const TickSample& sample, double now) {
 }
 
 void EncoderFreshness::tell(Wheel& wheel, double rate, double now) {
-  const bool turning = std::abs(rate) > kTurning;
+  const bool turning = std::abs(rate) > settings::kTurning_rad_s;
   if (!turning)
     wheel.told_since = -1.0;
   else if (wheel.told_since < 0.0)
@@ -63,8 +59,8 @@ void EncoderFreshness::commanded(double left, double right, double now) {
 }
 
 bool EncoderFreshness::frozen(const Wheel& wheel, double now) {
-  const bool told = wheel.told_since >= 0.0 && now - wheel.told_since > kBreakAway;
-  return told && now - wheel.changed > kFrozen;
+  const bool told = wheel.told_since >= 0.0 && now - wheel.told_since > settings::kBreakAway_s;
+  return told && now - wheel.changed > settings::kFrozen_s;
 }
 
 std::optional<std::string> EncoderFreshness::stale(double now) const {

@@ -6,12 +6,13 @@
 #include <optional>
 #include <string>
 
+#include "daemon/safety/settings.hpp"
 #include "proto/measurements.hpp"
 
 namespace odomcalib::safety {
 
-constexpr double kEncoderTimeout = 0.100;  ///< s
-constexpr double kScanTimeout = 0.250;     ///< s
+using settings::kEncoderTimeout;
+using settings::kScanTimeout;
 
 /// Scans arrive and differ from each other; two equal sweeps of a real lidar do not happen.
 class ScanFreshness {

@@ -11,19 +11,15 @@
 #include <optional>
 #include <string>
 
+#include "daemon/safety/settings.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib::safety {
 
-/// s without a renewal. M3 grants 250 ms until the wheels stand still; a control step, the quick stop and the
-/// lag of the motors take about 115 ms of them.
-constexpr double kLeaseTime = 0.120;
-/// s between two looks from which on the daemon counts as held up; the loop looks every 10 ms at least.
-constexpr double kLateLook = 0.040;
-/// s that a client gets after such a look: two of its renewals.
-constexpr double kSecondChance = 0.060;
-/// s without a renewal, however late the daemon was.
-constexpr double kLongestSilence = 0.300;
+using settings::kLateLook;
+using settings::kLeaseTime;
+using settings::kLongestSilence;
+using settings::kSecondChance;
 
 class Lease {
  public:

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "daemon/safety/settings.hpp"
+
 namespace odomcalib::safety {
 namespace {
 
@@ -35,12 +37,11 @@ bool inside(const Point& point, const Footprint& footprint, double grow) {
 }
 
 std::vector<Pose> path_of(const Twist& twist, double distance) {
-  constexpr int kSteps = 12;
   const double duration = distance / std::abs(twist.v);
   std::vector<Pose> path(1);
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < settings::kArcSteps; ++i) {
     Pose pose = path.back();
-    const double dt = duration / kSteps;
+    const double dt = duration / settings::kArcSteps;
     const double middle = pose.yaw + 0.5 * twist.w * dt;
     pose.x += twist.v * dt * std::cos(middle);
     pose.y += twist.v * dt * std::sin(middle);
@@ -50,7 +51,7 @@ std::vector<Pose> path_of(const Twist& twist, double distance) {
   return path;
 }
 
-bool is_spin(const Twist& twist) { return std::abs(twist.v) < 0.02; }
+bool is_spin(const Twist& twist) { return std::abs(twist.v) < settings::kSpin_m_s; }
 
 double Footprint::radius() const { return std::hypot(std::max(front, back), half_width); }
 
@@ -93,13 +94,13 @@ void ObstacleGuard::seen(const std::vector<Point>& points, const Twist& twist) {
 }
 
 std::vector<Pose> distinct_poses(const routines::Preview& preview) {
-  constexpr double kPlace = 0.02, kHeading = 0.05;  // m, rad: fine against any clearance
   const auto cell = [](double value, double size) { return std::lround(value / size); };
   std::set<std::array<long, 3>> taken;
   std::vector<Pose> out;
   for (const Pose& pose : preview.path)
     if (taken
-            .insert({cell(pose.x, kPlace), cell(pose.y, kPlace), cell(routines::wrapped(pose.yaw), kHeading)})
+            .insert({cell(pose.x, settings::kSamePlace_m), cell(pose.y, settings::kSamePlace_m),
+                     cell(routines::wrapped(pose.yaw), settings::kSameHeading_rad)})
             .second)
       out.push_back(pose);
   return out;
