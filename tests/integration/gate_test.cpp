@@ -132,6 +132,23 @@ TEST_F(Gate, lets_values_pass_right_after_a_motion) {
   EXPECT_EQ(robot_->node().store_count(), 1U);
 }
 
+// What was allowed when it was asked for is asked again when the axes have come to rest.
+TEST_F(Gate, of_values_for_a_controller_that_fails_while_they_wait) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  start_straight(mover);
+  ASSERT_EQ(call("Stop", json::object()).error, "");
+  ASSERT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
+  ASSERT_NE(status()["controller"]["state"], "disabled") << "nothing to wait for: this tests nothing";
+  TestClient writer(folder_ / "control");
+  json parameters = track(0.4033);
+  parameters["lease"] = lease_;
+  writer.call("SetParameters", parameters);
+  run(0.02);
+  robot_->emergency(0x2310);
+  expect_refused(wait_reply(writer, 3.0), "Device", "fault");
+}
+
 TEST_F(Gate, of_values_while_the_robot_moves) {
   acquire();
   TestClient mover(folder_ / "control");

@@ -36,6 +36,7 @@ TaskTurn WriteTask::begin_writing(Bench& bench) {
   if (bench.ending) return Failed{{ErrorCode::cancelled, "the daemon ends", "write-back", "start again"}};
   if (!announced_->done || bench.write_back.busy()) return Running{};
   if (!announced_->id) return Failed{announced_->id.error()};
+  if (auto forbidden = write_forbidden(bench)) return Failed{*forbidden};
   if (comes_to_rest(bench))
     return bench.now - asked_at_ < kComesToRest ? TaskTurn(Running{}) : Failed{axes_not_off(bench)};
   const auto begun = bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value());
