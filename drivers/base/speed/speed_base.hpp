@@ -73,7 +73,7 @@ class SpeedBase final : public Controller, private MotionDevice {
   WheelCounts counts_;
   double now_ = 0.0, greet_due_ = 0.0;
   std::array<double, 2> counted_at_{-1e9, -1e9};  ///< s
-  double last_other_master_ = -1e9;  ///< s
+  double last_other_master_ = -1e9;               ///< s
   std::uint64_t other_master_ = 0;
   bool present_ = false;
   bool asked_ = false;  // for torque
