@@ -32,12 +32,12 @@ bool inside(const Point& point, const Footprint& footprint, double grow);
 
 struct ObstacleOptions {
   Footprint footprint;
-  double margin = settings::kMargin_m;            ///< m, ahead of the stopping distance
-  double side_margin = settings::kSideMargin_m;   ///< m
-  double reaction = settings::kReaction_s;        ///< s: one scan period and one control step
-  double acceleration = settings::kBraking_m_s2;  ///< m/s^2, braking
-  int points = settings::kPoints;                 ///< so many readings are an obstacle
-  int release_scans = settings::kReleaseScans;    ///< so many free scans in a row release
+  double margin = settings::kMargin_m;           ///< m, ahead of the stopping distance
+  double side_margin = settings::kSideMargin_m;  ///< m
+  double reaction = settings::kReaction_s;       ///< s: one scan period and one control step
+  double acceleration = settings::kBraking;      ///< m/s^2, braking
+  int points = settings::kPoints;                ///< so many readings are an obstacle
+  int release_scans = settings::kReleaseScans;   ///< so many free scans in a row release
 };
 
 /// v t_react + v^2 / (2 a) + margin, m.

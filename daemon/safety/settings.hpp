@@ -64,7 +64,7 @@ inline constexpr double kMargin_m = 0.30, kSideMargin_m = 0.05;
 /// s until the robot brakes. Derived: one scan period and one control step.
 inline constexpr double kReaction_s = 0.13;
 /// m/s^2, braking. Chosen.
-inline constexpr double kBraking_m_s2 = 0.5;
+inline constexpr double kBraking = 0.5;
 /// Readings that are an obstacle, and free scans in a row that release it. Chosen.
 inline constexpr int kPoints = 3, kReleaseScans = 5;
 /// m/s, of a motion that is a turn on the spot. Chosen.

@@ -77,7 +77,7 @@ std::optional<std::string> said_of(double v, double w, double step, const routin
   SpeedWatch watch(limits);
   for (double t = 0.0; t < 1.0; t += step) {
     watch.seen(t, {v * t, 0.0, w * t});
-    if (const auto said = watch.too_fast()) return said;
+    if (auto said = watch.too_fast()) return said;
   }
   return std::nullopt;
 }
