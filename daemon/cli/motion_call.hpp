@@ -9,10 +9,6 @@
 #include "daemon/cli/verbs.hpp"
 #include "proto/result.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace odomcalib::cli {
 
 /// Options that every such verb has.
