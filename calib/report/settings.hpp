@@ -60,7 +60,8 @@ inline constexpr double kTooFewRuns = -5.0;
 // --- Several recordings
 // ---------------------------------------------------------------------------------------
 
-/// Level of the test of homogeneity. Chosen: one in a thousand sets of recordings of one robot is told apart.
+/// Level of the test of homogeneity. Chosen: one in a thousand sets of recordings of one robot is taken for
+/// several.
 inline constexpr double kApartLevel = 1e-3;
 /// Deviations of a single difference that is no chance. Chosen.
 inline constexpr double kPlainlyApart = 4.0;

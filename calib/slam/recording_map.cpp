@@ -41,7 +41,7 @@ Instants keyframes_of(const Instants& all, const KeyframeSpacing& spacing) {
   return chosen;
 }
 
-/// The vertices of a graph at other poses, told from the first.
+/// The vertices of a graph at other poses, relative to the first.
 PoseGraph placed_at(PoseGraph graph, const std::vector<math::Pose>& poses) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const math::Pose pose = between(poses.front(), poses[k]);

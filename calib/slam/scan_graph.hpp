@@ -1,6 +1,6 @@
 // From scans and odometry to a pose graph: consecutive keyframes are matched, places seen again are found,
 // questioned and tied together, and the graph is settled after each of them. A false loop ruins a map and a
-// missed one only leaves it as good as it was: when in doubt a loop is refused, and every refusal is
+// missed one only leaves it as good as it was: a loop that is not certain is refused, and every refusal is
 // recorded.
 #pragma once
 

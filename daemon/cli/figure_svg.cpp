@@ -150,7 +150,7 @@ class Drawing {
     if (!path.empty()) append("l", curve, path);
   }
 
-  /// A pointer that rests on a curve is told what it is.
+  /// A pointer that rests on a curve shows its name.
   void append(const char* style, const Curve& curve, const std::string& path) {
     fmt::format_to(out(), "<path class=\"{} {}\" d=\"{}\"><title>{}</title></path>\n", style,
                    class_of(curve.tone), path, escaped(curve.label));

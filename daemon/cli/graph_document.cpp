@@ -1,4 +1,4 @@
-// What is told about pose graphs, as text and as JSON.
+// Reports about pose graphs, as text and as JSON.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// A map made of a recording, as it is told.
+// A map made of a recording, as it is printed.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,4 @@
-// One run of the pose graph optimiser as the command line does it, and what is told about it.
+// One run of the pose graph optimiser as the command line does it, and its report.
 #pragma once
 
 #include <cstdint>

@@ -22,7 +22,7 @@ void print_document(const std::string& name, const nlohmann::ordered_json& body,
 /// @return the exit status that belongs to the error
 int report_error(const Error& error, JsonMode mode);
 
-/// The object alone, for errors that people were told of already.
+/// The object alone, for errors whose text is printed already.
 void print_error_json(const Error& error, JsonMode mode);
 
 /// One line on standard error that is no warning.

@@ -20,7 +20,7 @@ struct RecordingOptions {
 /// --robot and --topic, alike for every verb that reads recordings.
 void add_reading_options(CLI::App& verb, RecordingOptions& options);
 
-/// What was taken where a file held several is told on standard error, a line each.
+/// Which one was taken where a file holds several stands on standard error, a line each.
 Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& paths,
                                                const RecordingOptions& options);
 

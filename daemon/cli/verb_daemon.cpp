@@ -26,7 +26,7 @@ std::string text_of(const ordered_json& value) {
 /// What is asked, and what the answer is printed as.
 struct Question {
   std::string method;
-  std::string member;    ///< of the answer that people are told; empty: all of it
+  std::string member;    ///< of the answer that is printed; empty: all of it
   std::string document;  ///< of the answer
   Printer print;
 };

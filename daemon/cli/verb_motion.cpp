@@ -164,7 +164,7 @@ int apply(const Session& session, const Options& options) {
                       run_method(session, options.consent, "Apply", {{"calibration", body}}));
 }
 
-// A wire in the wrong place is a failure, one that could not be told is none.
+// A wire in the wrong place is a failure, one that could not be determined is none.
 int check(const Session& session, const Options& options) {
   if (!options.nudge) return show_checks(session);
   const auto result = run_method(session, options.consent, "Check", {{"nudge", true}});

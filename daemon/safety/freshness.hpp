@@ -28,7 +28,7 @@ class ScanFreshness {
   bool frozen_ = false, empty_ = false;
 };
 
-/// Counts arrive, and those of a wheel that is told to turn change.
+/// Counts arrive, and those of a wheel that is commanded to turn change.
 class EncoderFreshness {
  public:
   void seen(const TickSample& sample, double now);
@@ -40,7 +40,7 @@ class EncoderFreshness {
   struct Wheel {
     std::int64_t count = 0;
     double changed = 0.0;      // when the count changed
-    double told_since = -1.0;  // when it was first told to turn; negative: it stands
+    double told_since = -1.0;  // when it was first commanded to turn; negative: it stands
   };
   static void tell(Wheel& wheel, double rate, double now);
   static bool frozen(const Wheel& wheel, double now);

@@ -41,7 +41,7 @@ struct Calibrator {
   /// Why effects of these names cannot be fitted. May be empty: any name is taken then.
   std::function<std::optional<Error>(const std::vector<std::string>&)> wrong_effects;
   std::function<Odometry(const Calibration&)> odometry;
-  /// May be empty: nothing is told then.
+  /// May be empty: no progress is reported then.
   std::function<std::vector<HostValue>(const Calibration&)> host_values;
   std::function<std::optional<NextManoeuvre>(const Calibration&)> next_manoeuvre;
   /// Motion of the base between two scans taken at rest; nullopt when the match is no good. May be empty.

@@ -1,4 +1,4 @@
-// A solve that can be told to end.
+// A solve that can be cancelled.
 #pragma once
 
 #include <atomic>
@@ -8,7 +8,7 @@
 
 namespace odomcalib {
 
-/// Set by the service, asked by the thread that solves.
+/// Set by the service, read by the thread that solves.
 using CancelFlag = std::shared_ptr<std::atomic<bool>>;
 
 /// The same functions; `solve` ends with an exception at the first progress report after the flag was set.

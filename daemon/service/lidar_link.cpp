@@ -11,7 +11,7 @@ namespace {
 // A device that is back is found within 2 s: the longest pause and one attempt to connect.
 constexpr double kFirstRetry_s = 0.2, kLastRetry_s = 0.8;
 constexpr double kConnect_s = 1.0;
-constexpr double kWatch_s = 2.0;  // without one valid packet: told as a problem
+constexpr double kWatch_s = 2.0;  // without one valid packet: reported as a problem
 
 unsigned number_of(const std::string& text) {
   unsigned number = 0;

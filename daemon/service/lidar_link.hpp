@@ -32,7 +32,7 @@ class LidarLink {
   [[nodiscard]] std::optional<Error> problem() const;
   [[nodiscard]] drivers::Counters counters() const;
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// As the device told it; empty before.
+  /// As the device states it; empty before.
   [[nodiscard]] std::string identity() const { return lidar_->identity(); }
 
  private:

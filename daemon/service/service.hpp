@@ -30,7 +30,7 @@ class Service {
   void poll_once(int timeout_ms);
 
   /// Zero command, quick stop, end of whatever runs (SIGTERM, ExecStop). From then on nothing new begins: of
-  /// what clients ask for, status is told and stops are obeyed. A write-back that runs goes on.
+  /// what clients ask for, status is reported and stops are obeyed. A write-back that runs goes on.
   void stop_all(const std::string& why);
   /// The axes have no torque, as far as the controller says: the program may end.
   [[nodiscard]] bool drive_off() const;

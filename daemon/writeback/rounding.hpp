@@ -1,5 +1,5 @@
 // What a controller can hold is rounded to its steps. The roundings are chosen together, so that the odometry
-// made from them errs least; what remains is told, and the host applies the exact values.
+// made from them errs least; what remains is reported, and the host applies the exact values.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ struct RoundedParameters {
 };
 
 /// @param wanted left_wheel_diameter, right_wheel_diameter, track_width in m; with one of them missing the
-///               controller rounds each value for itself and no error is told
+///               controller rounds each value for itself and no error is reported
 /// @param held   what the controller holds now: its values and steps are the grid
 RoundedParameters round_together(const std::map<std::string, double>& wanted,
                                  const std::vector<drivers::StoredParameter>& held);

@@ -103,8 +103,8 @@ Situation MotionTask::situation(const Bench& bench) const {
 }
 
 // While the loop is held up, nobody steers. The drive's own watchdog stops it after 200 ms without us (M1);
-// so do we, and say what it was. What is shorter is told. A machine that was suspended is no exception: what
-// it woke up to is not what it had seen (M12).
+// so do we, and say what it was. A shorter one is reported. A machine that was suspended is no exception:
+// what it woke up to is not what it had seen (M12).
 void MotionTask::watch_loop(Bench& bench) {
   const double slept = bench.clock.suspended() - std::exchange(suspended_at_, bench.clock.suspended());
   if (slept > kLongestPause)

@@ -250,7 +250,7 @@ void AxisPair::finish_job(std::optional<Error> error) {
 
 std::optional<ParameterJobResult> AxisPair::take_job_result() { return std::exchange(job_result_, {}); }
 
-/// The pair is told by the left drive and by both names; which two they are is said by devices().
+/// The left drive and both names identify the pair; which two they are is said by devices().
 std::optional<Identity> AxisPair::identity() const {
   const auto left = drives_[0].identity(), right = drives_[1].identity();
   if (!left || !right) return std::nullopt;

@@ -51,7 +51,7 @@ class DualAxis final : public Controller, private MotionDevice {
 
   /// A SYNC was sent or seen: what is mapped to it was sampled then.
   void on_sync(double t) { dates_.on_sync(t); }
-  /// Configured, or about to be told to start: process data are expected.
+  /// Configured, or about to be started: process data are expected.
   [[nodiscard]] bool wants_sync() const { return phase_ == Phase::starting || phase_ == Phase::ready; }
 
  private:

@@ -1,5 +1,5 @@
 // The motion of a controller, whatever it speaks: torque on, speed commands that grow old, stops, rest,
-// counts that stand still. The device behind it says what it sees of its axes and sends what it is told to.
+// counts that stand still. The device behind it says what it sees of its axes and sends what it is given.
 #pragma once
 
 #include <array>

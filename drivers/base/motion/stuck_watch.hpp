@@ -1,7 +1,7 @@
-// Tells a count that stands still although its wheel is told to turn: a broken encoder would let the robot
-// run away. Two cases. A wheel that has not broken away yet (friction, play in the gear, a slow ramp) may
-// rightly stand for a while. One that was turning and is told to go on has no reason to: its count must not
-// stand for longer than the command needs for some counts.
+// Tells a count that stands still although its wheel is commanded to turn: a broken encoder would let the
+// robot run away. Two cases. A wheel that has not broken away yet (friction, play in the gear, a slow ramp)
+// may rightly stand for a while. One that was turning and is commanded to go on has no reason to: its count
+// must not stand for longer than the command needs for some counts.
 #pragma once
 
 #include <cstdint>

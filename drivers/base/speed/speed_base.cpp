@@ -157,7 +157,7 @@ void SpeedBase::drive(double left_rad_s, double right_rad_s) {
 
 double SpeedBase::idle() { return kIdle_s; }
 
-/// A time-out that the device itself told goes before the one that the profile promises.
+/// A time-out that the device itself states goes before the one that the profile promises.
 bool SpeedBase::watchdog_armed() const {
   const double promised =
       profile_.watchdog.kind == ProfileWatchdog::Kind::builtin ? 1e-3 * profile_.watchdog.time_ms : 0.0;
