@@ -27,17 +27,25 @@ std::vector<double> numbered(std::size_t count) {
 }
 
 /// How many periods lie before each sample. One that comes late and is followed by others at once was held up
-/// with them: no more samples are missing than the time of all together allows.
+/// with them: no more samples are missing than the time of all together allows. Nor are more than the time
+/// from the sample before, or to the sample after, allows: a single stamp that is early or late misses none.
 std::vector<double> steps_of(const std::vector<double>& intervals, double usual) {
+  const auto periods = [usual](double time) { return std::round(time / usual); };
   std::vector<double> steps;
+  double time_before = usual, steps_before = 1.0;
   for (std::size_t k = 0; k < intervals.size();) {
     double total = intervals[k], count = 1.0;
     std::size_t next = k + 1;
     if (intervals[k] > settings::kHeldUp * usual)
       for (; next < intervals.size() && intervals[next] < settings::kFollowsAtOnce * usual; ++next, ++count)
         total += intervals[next];
-    steps.push_back(std::max(count, std::round(total / usual)) - (count - 1.0));
+    double all = std::min(periods(total), periods(time_before + total) - steps_before);
+    if (count == 1.0 && next < intervals.size())
+      all = std::min(all, periods(total + intervals[next]) - std::max(1.0, periods(intervals[next])));
+    all = std::max(all, count);
+    steps.push_back(all - (count - 1.0));
     steps.resize(next, 1.0);
+    time_before = total, steps_before = all;
     k = next;
   }
   return steps;

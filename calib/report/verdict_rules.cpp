@@ -260,8 +260,7 @@ Objections lidar_yaw(const Calibration& calibration, const Footing&) {
                   ": correct lidar_pose, or check which end of the robot counts forward")};
 }
 
-// --- Recordings
-// ----------------------------------------------------------------------------------------------
+// --- Recordings --------------------------------------------------------------------------------------------
 
 Objections recordings_disagree(const Calibration&, const Footing& footing) {
   if (!footing.recordings_apart) return {};

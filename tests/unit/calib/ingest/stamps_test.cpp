@@ -80,6 +80,40 @@ TEST(EvenStamps, count_what_was_held_up_once) {
   EXPECT_LT(spread(even->t, truth), 0.02 * spread(given, truth));
 }
 
+/// One in fifty is stamped early, or late, by six tenths of a period; jitter beside that.
+std::vector<double> now_and_then(std::vector<double> times, double share_of_period, double deviation) {
+  std::mt19937 engine(selection::kSeed);
+  std::normal_distribution<double> error(0.0, deviation);
+  for (double& t : times) {
+    t += error(engine);
+    if (engine() % 50 == 0) t += share_of_period * kPeriod;
+  }
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+TEST(EvenStamps, miss_no_sample_where_one_is_early_or_late_now_and_then) {
+  const auto truth = evenly(3000);
+  for (const double share : {-0.6, 0.6}) {
+    const auto given = now_and_then(truth, share, 0.08 * kPeriod);
+    const auto even = even_stamps(given);
+    ASSERT_TRUE(even);
+    EXPECT_LT(spread(even->t, truth), 0.03 * kPeriod) << share << ", seed " << selection::kSeed;
+  }
+}
+
+TEST(EvenStamps, count_lost_samples_beside_early_and_late_ones) {
+  std::vector<double> truth;
+  std::mt19937 engine(selection::kSeed + 1);
+  for (const double t : evenly(3000))
+    if (engine() % 50 != 0) truth.push_back(t);
+  for (const double share : {-0.6, 0.6}) {
+    const auto even = even_stamps(now_and_then(truth, share, 0.04 * kPeriod));
+    ASSERT_TRUE(even);
+    EXPECT_LT(spread(even->t, truth), 0.03 * kPeriod) << share << ", seed " << selection::kSeed;
+  }
+}
+
 TEST(EvenStamps, spread_what_arrives_in_bursts) {
   const auto truth = evenly(2000);
   std::vector<double> given;
