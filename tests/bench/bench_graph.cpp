@@ -146,7 +146,9 @@ PoseGraph town(std::size_t poses) {
 void register_graph(const std::string& name, std::shared_ptr<PoseGraph> graph) {
   if (graph->vertices.empty()) return;
   const auto add = [&name](const std::string& solver, auto body) {
-    benchmark::RegisterBenchmark((name + "/" + solver).c_str(), body)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark((name + "/" + solver).c_str(), body)
+        ->Unit(benchmark::kMillisecond)
+        ->MeasureProcessCPUTime();
   };
   add("ceres", [graph](benchmark::State& state) { with_ceres(state, *graph); });
   add("odomcalib", [graph](benchmark::State& state) {

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "calib/match.hpp"
-#include "calib/matching/nearest.hpp"
+#include "calib/matching/bearing_order.hpp"
 #include "calib/math/se2.hpp"
 #include "tests/bench/pair_matchers.hpp"
 #include "tests/unit/calib/scan_pairs.hpp"
@@ -25,6 +25,10 @@ namespace {
 constexpr double kAstray = 0.05;                          // m
 constexpr double kAstrayTurn = calib::math::kPi / 180.0;  // rad
 
+// Of the floor: it may stop where it moves by a hundredth of its error, and pairs swap to and fro beyond.
+constexpr double kSettled = 1e-5;  // m and rad
+constexpr int kFloorIterations = 20;
+
 Points points_of(const Scan& scan) {
   Points points;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i)
@@ -35,16 +39,16 @@ Points points_of(const Scan& scan) {
 }
 
 /// Gauss-Newton step to the lines through the nearest point and its nearer neighbour in the scan.
-Eigen::Vector3d line_step(const Points& reference, const calib::matching::NearestTree& tree,
+Eigen::Vector3d line_step(const Points& reference, const calib::matching::BearingOrder& order,
                           const Points& scan, const Eigen::Vector3d& pose, double reach) {
   Eigen::Matrix3d normal = 1e-9 * Eigen::Matrix3d::Identity();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   const Eigen::Rotation2Dd turn(pose(2));
   for (const Eigen::Vector2d& p : scan) {
     const Eigen::Vector2d turned = turn * p, at = turned + pose.head<2>();
-    const auto found = tree.nearest(at);
-    if (found.squared_distance > reach * reach) continue;
-    const std::size_t k = found.index, before = k == 0 ? k : k - 1,
+    const auto found = order.nearest(at, reach);
+    if (!found) continue;
+    const std::size_t k = found->index, before = k == 0 ? k : k - 1,
                       after = std::min(k + 1, reference.size() - 1);
     const bool take_before = before != k && (after == k || (reference[before] - at).squaredNorm() <
                                                                (reference[after] - at).squaredNorm());
@@ -60,13 +64,13 @@ Eigen::Vector3d line_step(const Points& reference, const calib::matching::Neares
 
 /// The floor: no noise model, no outliers but by distance, no covariance.
 Motion match_lines(const Points& reference, const Points& scan) {
-  const calib::matching::NearestTree tree(reference);
+  const calib::matching::BearingOrder order(reference);
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();
   double reach = kPeerReach;
-  for (int k = 0; k < kPeerIterations; ++k) {
-    const Eigen::Vector3d step = line_step(reference, tree, scan, pose, reach);
+  for (int k = 0; k < kFloorIterations; ++k) {
+    const Eigen::Vector3d step = line_step(reference, order, scan, pose, reach);
     pose += step;
-    if (step.norm() < 1e-6) break;
+    if (step.norm() < kSettled) break;
     reach = std::max(0.05, 0.7 * reach);
   }
   return std::array<double, 3>{pose(0), pose(1), pose(2)};
