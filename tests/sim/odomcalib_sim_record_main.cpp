@@ -20,6 +20,7 @@ struct Arguments {
   std::uint64_t seed = 1;
   std::string out, truth, path, effect, room = "furnished", drive = "guided";
   double size = -1.0, duration = 0.0;
+  int beams = LidarOptions{}.beams_per_turn;
 };
 
 std::vector<std::string> effect_names() {
@@ -42,6 +43,9 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({"furnished", "workshop", "corridor", "random"}));
   app.add_option("--drive", arguments.drive, "")->check(CLI::IsMember({"guided", "lazy", "random", "rest"}));
   app.add_option("--duration", arguments.duration, "s; default: as long as the drive takes, random: 240");
+  app.add_option("--beams", arguments.beams, "readings of the lidar in a turn")
+      ->check(CLI::Range(8, 10000))
+      ->capture_default_str();
 }
 
 Room choose_room(const Arguments& arguments) {
@@ -102,6 +106,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   SimulationConfig config = standard_config(arguments.seed);
   config.room = choose_room(arguments);
+  config.lidar.beams_per_turn = arguments.beams;
   const Drive drive = choose_drive(arguments, config);
   BlindAnswer answer = add_effect(arguments, config);
   const SimulatedRun run = simulate_recording(config, drive);
