@@ -6,6 +6,13 @@
 
 namespace odomcalib::routines::settings {
 
+// --- Limits ----------------------------------------------------------------------------------------------
+
+/// m/s, rad/s, m/s^2 and rad/s^2 that no configuration can raise (rule M7), and that hold where it says
+/// nothing. Chosen.
+inline constexpr double kCapSpeed_m_s = 0.30, kCapRate_rad_s = 0.6;
+inline constexpr double kCapAcceleration_m_s2 = 0.5, kCapTurnAcceleration_rad_s2 = 1.0;
+
 // --- Driving a move --------------------------------------------------------------------------------------
 
 /// Share of the allowed deceleration that braking is planned with. Chosen: drives follow their command with
@@ -31,6 +38,8 @@ inline constexpr double kUsualWay_m = 1.0, kUsualSpeed_m_s = 0.20;
 inline constexpr double kUsualTurns = 1.0, kUsualRate_rad_s = 0.4;
 /// s at rest after each move. Chosen.
 inline constexpr double kRest_s = 1.0;
+/// s at rest after a move that does not say it. Chosen.
+inline constexpr double kSettle_s = 0.8;
 
 // --- Pattern and manoeuvres ------------------------------------------------------------------------------
 
