@@ -80,7 +80,8 @@ Cause of_all(double ratio, bool of_poses) {
 
 Cause of_wheels(double ratio, const RobotDescription& robot) {
   const char* reason = reason_for(kOfBothWheels, ratio);
-  const bool gear = reason == nullptr && (ratio > 2.0 || ratio < 0.5);
+  const bool gear =
+      reason == nullptr && (ratio > settings::kGearFactor || ratio < 1.0 / settings::kGearFactor);
   return {"both wheel diameters come out " + number(ratio) +
               " times their nominal values, the track width does not" +
               because(gear ? "counts are those of the motor before a gear, or ticks_per_rev is" : reason),
@@ -123,7 +124,8 @@ std::optional<Cause> cause_of_ratios(const LengthRatios& ratios, const RobotDesc
     return of_track(track, robot);
   if (track_fits && left_fits != right_fits) {
     const double odd = left_fits ? right : left;
-    if (odd > 2.0 / settings::kSameLength || odd < 0.5 * settings::kSameLength)
+    if (odd > settings::kUnlikeCounts / settings::kSameLength ||
+        odd < settings::kSameLength / settings::kUnlikeCounts)
       return of_one_wheel(left_fits ? "right" : "left", odd);
   }
   return std::nullopt;

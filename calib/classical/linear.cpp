@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <string>
 
+#include "calib/classical/settings.hpp"
+
 namespace odomcalib::calib::classical {
 namespace {
 
@@ -75,7 +77,7 @@ Result<LinearResult> solve_linear(std::span<const IncrementPair> samples, Linear
   LinearResult result;
   result.condition = 1.0 / (ratio * ratio);
   const bool squares = solver == LinearSolver::ldlt || solver == LinearSolver::normal_equations;
-  result.solver = squares && result.condition > kMostConditionOfNormal ? LinearSolver::qr : solver;
+  result.solver = squares && result.condition > settings::kMostConditionOfNormal ? LinearSolver::qr : solver;
   const Eigen::Matrix3d transposed = solution(odometry, observed, result.solver);
   result.matrix = transposed.transpose();
   const Eigen::MatrixX3d residual = observed - odometry * transposed;

@@ -23,9 +23,6 @@ struct IncrementPair {
 enum class LinearSolver { qr, svd, ldlt, normal_equations };
 const char* name_of(LinearSolver solver);
 
-/// Condition of A^T A up to which LDLT and normal equations keep eight digits of an exact problem.
-inline constexpr double kMostConditionOfNormal = 1e6;
-
 struct LinearResult {
   Eigen::Matrix3d matrix;
   LinearSolver solver = LinearSolver::qr;  ///< that was used

@@ -12,6 +12,10 @@ inline constexpr double kSameLength = 1.2;
 /// Relative deviation of a ratio from a factor of the table, and of ratios that are alike. Derived: nominal
 /// values are right to 10 %, and neighbouring factors of the table are 27 % apart at least.
 inline constexpr double kSameFactor = 0.12;
+/// Ratio, or its inverse, of both diameters from which a gear is named where the table knows nothing. Chosen.
+inline constexpr double kGearFactor = 2.0;
+/// Ratio, or its inverse, by which the encoders of two wheels count unlike each other. Chosen.
+inline constexpr double kUnlikeCounts = 2.0;
 
 // --- Straight and spin -----------------------------------------------------------------------------------
 
@@ -54,5 +58,11 @@ inline constexpr double kClearOfZero = 5.0;
 /// Share of what the wheels rolled, of a reference that stood. Chosen: a turn of four times the counts is
 /// more, and has its own message.
 inline constexpr double kHardlyMoved = 0.15;
+
+// --- Linear -----------------------------------------------------------------------------------------------
+
+/// Condition of A^T A up to which LDLT and normal equations keep eight digits of an exact problem. Chosen
+/// for these eight digits, which tests/unit/calib/classical/linear_test.cpp asks for.
+inline constexpr double kMostConditionOfNormal = 1e6;
 
 }  // namespace odomcalib::calib::classical::settings

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "calib/estimation/settings.hpp"
 #include "calib/measurement/fit_data.hpp"
 #include "calib/measurement/whitening.hpp"
 #include "calib/vehicle/drive_model.hpp"
@@ -15,7 +16,7 @@ namespace odomcalib::calib::estimation {
 
 struct FitOptions {
   std::vector<bool> fixed;  ///< parameters kept at their start value; empty: none
-  int max_iterations = 60;
+  int max_iterations = settings::kMostJointIterations;
   std::vector<measurement::NoiseModel>
       noise;  ///< given (one per recording): used as it is; empty: estimated from the residuals
 };

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "calib/estimation/settings.hpp"
 #include "calib/measurement/scan_path.hpp"
 #include "calib/vehicle/drive_model.hpp"
 #include "proto/result.hpp"
@@ -16,11 +17,11 @@ namespace odomcalib::calib::estimation {
 
 /// What disturbs one recording.
 struct PathNoise {
-  double place = 1.0;          ///< true over stated deviation of a scan's place
-  double forward = 2e-4;       ///< m per square root of a metre rolled
-  double sideways = 2e-4;      ///< same
-  double yaw = 1e-3;           ///< rad per square root of a metre rolled
-  double stamp_jitter = 1e-5;  ///< s
+  double place = 1.0;                                  ///< true over stated deviation of a scan's place
+  double forward = settings::kStartPathNoise_m;        ///< m per square root of a metre rolled
+  double sideways = settings::kStartPathNoise_m;       ///< same
+  double yaw = settings::kStartPathNoise_rad;          ///< rad per square root of a metre rolled
+  double stamp_jitter = settings::kLeastPathJitter_s;  ///< s
 };
 
 /// One recording.

@@ -51,6 +51,8 @@ inline constexpr int kGainRounds = 4;
 inline constexpr double kOutlier = 5.0;
 /// Noise and weights are settled over this many outer rounds. Chosen.
 inline constexpr int kNoiseRounds = 3;
+/// Gauss-Newton steps of a fit, all outer rounds together. Chosen.
+inline constexpr int kMostJointIterations = 60;
 /// Sigma. Gauss-Newton's next step after one of this length is shorter by orders of magnitude. Chosen.
 inline constexpr double kFitSettled = 1e-2;
 /// All recordings of one call come from one robot and one lidar; with few pairs each, they share a noise
@@ -84,6 +86,8 @@ inline constexpr int kPathNoiseBits = 7;
 inline constexpr double kLeastPlaceScale = 0.3, kMostPlaceScale = 4.0;
 inline constexpr double kLeastPathNoise = 1e-5, kMostPathNoise = 0.1;
 inline constexpr double kLeastPathJitter_s = 1e-5, kMostPathJitter_s = 0.05;
+/// m and rad per root of a metre, with which that search begins. Chosen.
+inline constexpr double kStartPathNoise_m = 2e-4, kStartPathNoise_rad = 1e-3;
 
 // --- Start values ----------------------------------------------------------------------------------------
 

@@ -121,6 +121,8 @@ inline constexpr double kJoinSquares = 12.0;
 inline constexpr double kJoinCosine = 0.9;
 /// m, about one beam to the next. Chosen.
 inline constexpr double kEndMargin_m = 0.03;
+/// Deviations of a range, if that is more. Chosen.
+inline constexpr double kEndMarginSigmas = 3.0;
 /// m, unevenness of surfaces and angular error of beams. Chosen.
 inline constexpr double kSurfaceFloor_m = 1e-3;
 /// Cosine; a flatter beam meets an uneven wall far from where it ends. Chosen.

@@ -163,7 +163,9 @@ std::vector<JoinedPieces> group(const std::vector<PieceOfWall>& pieces, const Su
 
 /// Near a corner a reading of one wall lies within the noise of the other, always on the same side of it. The
 /// two scans would not be misled alike, so neither uses the ends of a wall.
-double end_margin(double range_noise) { return std::max(3.0 * range_noise, settings::kEndMargin_m); }
+double end_margin(double range_noise) {
+  return std::max(settings::kEndMarginSigmas * range_noise, settings::kEndMargin_m);
+}
 
 /// Indices of the points of all pieces, with their place along the line.
 std::vector<std::pair<std::size_t, double>> places_along(const JoinedPieces& pieces, const Surface& surface) {

@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "calib/math/settings.hpp"
+
 namespace odomcalib::calib::math {
 
 struct BootstrapInterval {
@@ -15,23 +17,22 @@ struct BootstrapInterval {
   double upper = 0.0;  ///< 97.5 %
 };
 
-/// Of a figure of sums over blocks, 1000 draws with replacement.
+/// Of a figure of sums over blocks, settings::kBootstrapDraws draws with replacement.
 /// @param blocks not empty; their sums add by +=, and one made by `{}` is zero
 /// @param figure double of a sum
 template <typename Sum, typename Figure>
 BootstrapInterval bootstrap(const std::vector<Sum>& blocks, unsigned seed, const Figure& figure) {
-  constexpr int kDraws = 1000;
   std::mt19937 engine(seed);
   std::vector<double> figures;
-  figures.reserve(kDraws);
-  for (int draw = 0; draw < kDraws; ++draw) {
+  figures.reserve(settings::kBootstrapDraws);
+  for (int draw = 0; draw < settings::kBootstrapDraws; ++draw) {
     Sum sample{};
     for (std::size_t b = 0; b < blocks.size(); ++b) sample += blocks[engine() % blocks.size()];
     figures.push_back(figure(sample));
   }
   std::sort(figures.begin(), figures.end());
-  return {figures[static_cast<std::size_t>(0.025 * kDraws)],
-          figures[static_cast<std::size_t>(0.975 * kDraws)]};
+  return {figures[static_cast<std::size_t>(0.025 * settings::kBootstrapDraws)],
+          figures[static_cast<std::size_t>(0.975 * settings::kBootstrapDraws)]};
 }
 
 /// Two sums whose ratio's root is the figure.

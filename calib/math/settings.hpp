@@ -1,5 +1,5 @@
-// Numbers that decide which errors are taken for independent, each once, with its unit and its origin (see
-// calib/matching/settings.hpp).
+// Numbers that decide which errors are taken for independent and how intervals are drawn, each once, with its
+// unit and its origin (see calib/matching/settings.hpp).
 #pragma once
 
 namespace odomcalib::calib::math::settings {
@@ -12,5 +12,10 @@ inline constexpr double kBlock_s = 5.0;
 inline constexpr double kFewestScattered = 12.0;
 /// Probability that longer blocks are believed where errors do not drift. Chosen.
 inline constexpr double kLongerByChance = 1e-3;
+
+// --- Bootstrap --------------------------------------------------------------------------------------------
+
+/// Draws with replacement. Chosen.
+inline constexpr int kBootstrapDraws = 1000;
 
 }  // namespace odomcalib::calib::math::settings

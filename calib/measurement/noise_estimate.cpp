@@ -84,8 +84,8 @@ void improve(const Observation& o, const Range& range, NoiseModel& noise) {
   if (!range.may_vanish) return;
   const double found = noise.*range.member;
   noise.*range.member = 0.0;
-  // One more parameter must earn its place: half of the usual 3.84 for a quantity at its border.
-  if (misfit(o, noise) > best + 2.71) noise.*range.member = found;
+  // One more parameter must earn its place.
+  if (misfit(o, noise) > best + settings::kNoisePresent) noise.*range.member = found;
 }
 
 std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseModel& noise) {

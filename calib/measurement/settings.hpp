@@ -74,6 +74,9 @@ inline constexpr double kSameStrikes = 1e-3;
 
 /// Sweeps over the parameters of the noise. Chosen.
 inline constexpr int kNoiseSweeps = 2;
+/// Fall of -2 log L that one more parameter of the noise must bring. Derived: at the border of what is
+/// possible half of the usual test's level, 5 % with 2.71 in place of 3.84.
+inline constexpr double kNoisePresent = 2.71;
 /// Standard deviations at which a residual is cut in the noise's likelihood. Chosen.
 inline constexpr double kWinsor = 2.5;
 /// Degrees of freedom of the Student t distribution that stands for noise with outliers (failed matches,

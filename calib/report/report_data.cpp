@@ -83,7 +83,7 @@ double runs_test(const std::vector<double>& values) {
   }
   const double n = static_cast<double>(values.size());
   const double product = 2.0 * positive * (n - positive);
-  if (n < 10.0 || product <= n) return 0.0;
+  if (n < settings::kFewestForRuns || product <= n) return 0.0;
   const double variance = product * (product - n) / (n * n * (n - 1.0));
   return (runs - (product / n + 1.0)) / std::sqrt(variance);
 }

@@ -56,6 +56,8 @@ inline constexpr double kEstimatorsApart = 6.0, kEstimatorsApartShare = 0.005;
 /// Runs test, standard normal, of residuals that come in long rows of one sign. Measured: -2.8 to 4 in sound
 /// recordings.
 inline constexpr double kTooFewRuns = -5.0;
+/// Residuals that the runs test needs. Chosen.
+inline constexpr double kFewestForRuns = 10.0;
 
 // --- Several recordings
 // ---------------------------------------------------------------------------------------

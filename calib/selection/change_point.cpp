@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/selection/hyperparameters.hpp"
+#include "calib/selection/settings.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
 #include "calib/terms/smooth_term_on_drives.hpp"
 
@@ -18,11 +19,10 @@ terms::SmoothTerm at_change_point(const FitTask& task, terms::SmoothTerm event, 
 /// Sought ever closer, from half a step between candidates on.
 /// @param now whose model ends with the event
 Reshaped at_best_change_point(const FitTask& task, Reshaped now) {
-  constexpr int kEachWay = 2, kRounds = 4;
   double step = 0.5 * now.smooth.high / terms::kChangePoints;
-  for (int round = 0; round < kRounds; ++round, step /= kEachWay) {
+  for (int round = 0; round < settings::kMomentRounds; ++round, step /= settings::kMomentsEachWay) {
     std::vector<terms::SmoothTerm> others;
-    for (int k = -kEachWay; k <= kEachWay; ++k) {
+    for (int k = -settings::kMomentsEachWay; k <= settings::kMomentsEachWay; ++k) {
       const double moment = std::get<terms::ChangePoint>(now.smooth.basis).moment + k * step;
       if (k != 0 && moment > 0.0 && moment < now.smooth.high)
         others.push_back(at_change_point(task, now.smooth, moment));

@@ -7,6 +7,7 @@
 #include "calib/selection/candidate.hpp"
 #include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
+#include "calib/vehicle/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -24,8 +25,8 @@ Detectable detectable(const vehicle::Effect& effect, const std::vector<double>& 
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const vehicle::EffectParameter& parameter = parameters[k];
     if (!parameter.is_size()) continue;
-    const double smallest =
-        std::max(settings::kDetectableQuantiles * deviations[k], vehicle::kNegligibleShare * parameter.scale);
+    const double smallest = std::max(settings::kDetectableQuantiles * deviations[k],
+                                     vehicle::settings::kNegligibleShare * parameter.scale);
     const bool is_first = best.parameter.empty();
     if (!is_first && !(smallest / parameter.scale < least)) continue;
     least = smallest / parameter.scale;

@@ -47,7 +47,7 @@ std::optional<estimation::FitResult> FitTask::fit(const vehicle::EffectList& eff
                                                   const std::vector<measurement::NoiseModel>& noise) const {
   estimation::FitOptions options;
   options.fixed = fixed(effects);
-  options.max_iterations = 24;
+  options.max_iterations = settings::kMostSearchIterations;
   options.noise = noise;
   auto fit = fit_joint(data, effects, start, options);
   return fit ? std::optional(std::move(fit).value()) : std::nullopt;

@@ -63,7 +63,7 @@ bool take_best_shape(const FitTask& task, const std::vector<Reshaped>& shapes, S
   bool is_new = false;
   for (const Reshaped& other : shapes) {
     if ((bends_too_often(other) && task.rules.has(Rule::few_bends)) ||
-        !is_better(task, result.model, other.model, kAkaike))
+        !is_better(task, result.model, other.model, settings::kAkaike))
       continue;
     take_shape(other, result);
     is_new = true;
@@ -93,7 +93,7 @@ void select_hyperparameters_of_newest(const FitTask& task, SearchResult& result)
   fit_anew_on_own_noise(task, result.model);
   const std::vector<Reshaped> shapes = select_hyperparameters(task, result);
   if (takes_an_event(result.smooths.back().smooth) && task.rules.has(Rule::middle_event))
-    take_shape(most_sensible_event(shapes, result.model.fit.cost + kAkaike), result);
+    take_shape(most_sensible_event(shapes, result.model.fit.cost + settings::kAkaike), result);
   for (const Reshaped& other : shapes)
     if (other.model.fit.cost < result.model.fit.cost + schwarz(result.model.fit))
       result.model_uncertainties.emplace_back(other.model.base() - result.model.base());

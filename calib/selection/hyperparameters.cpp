@@ -171,7 +171,8 @@ std::optional<Reshaped> in_best_shape(const FitTask& task, const FittedModel& mo
 bool explains_nearly_all(const FitTask& task, const FittedModel& named, std::size_t index,
                          const FittedModel& free) {
   const auto without = without_effect(task, named, index, named.fit.noise);
-  return without && without->fit.cost - named.fit.cost > kNearlyAll * (without->fit.cost - free.fit.cost);
+  return without &&
+         without->fit.cost - named.fit.cost > settings::kNearlyAll * (without->fit.cost - free.fit.cost);
 }
 
 double effective_parameters(const estimation::FitResult& fit) {

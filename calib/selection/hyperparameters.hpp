@@ -25,18 +25,13 @@ std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now,
 /// @param shapes of one smooth term; one that takes an event is below
 const Reshaped& most_sensible_event(const std::vector<Reshaped>& shapes, double enough);
 
-/// What a parameter has to take off -2 log L when what it belongs to has passed cross-validation (Akaike,
-/// IEEE Trans. Autom. Control 19, 1974).
-inline constexpr double kAkaike = 2.0;
-/// The same when that is the question (Schwarz, Ann. Statist. 6, 1978).
+/// What a parameter has to take off -2 log L when it is the question whether what it belongs to is there
+/// (Schwarz, Ann. Statist. 6, 1978); settings::kAkaike when that has passed cross-validation.
 double schwarz(const estimation::FitResult& fit);
 
 /// Number of parameters that the data decide rather than the priors: the trace of what maps the data to what
 /// is fitted to them (Hastie, Tibshirani and Friedman, The Elements of Statistical Learning, 2009, eq. 7.32).
 double effective_parameters(const estimation::FitResult& fit);
-
-/// Share of what a freer term explains with which a name is certain.
-inline constexpr double kNearlyAll = 0.9;
 
 /// The smooth term on top of `model` in that of its shapes that describes the data best; nullopt if the drive
 /// can separate none from the wheels.

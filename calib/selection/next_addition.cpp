@@ -38,7 +38,7 @@ bool is_rest_of_a_named_term(std::size_t name, const SearchRound& round, const S
         return found.owner_of(dependence) != nullptr;
       }))
     return false;
-  return round.score(name).statistic < kNearlyAll * explained_by_smooths(dependences, round, found);
+  return round.score(name).statistic < settings::kNearlyAll * explained_by_smooths(dependences, round, found);
 }
 
 /// Joint refits of the most promising names on the noise model of the current fit.
@@ -49,7 +49,7 @@ std::optional<Trial> best_name(SearchRound& round, const SearchResult& found) {
            !(is_rest_of_a_named_term(k, round, found) && round.rules().has(Rule::rest_of_a_name));
   };
   for (const std::size_t k : round.by_score(is_open))
-    if (tried.size() < SearchRound::kRefits && tried.insert(round.candidate(k).key).second) round.try_out(k);
+    if (tried.size() < settings::kRefits && tried.insert(round.candidate(k).key).second) round.try_out(k);
   const auto best = round.best_trial([](std::size_t) { return true; });
   return best ? round.best_shape(round.candidate(best->candidate).key) : best;
 }

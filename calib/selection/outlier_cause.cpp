@@ -18,11 +18,10 @@ class PlainMean {
     count_ += 1.0;
   }
   [[nodiscard]] double value() const {
-    constexpr double kFewest = 5.0, kClear = 4.0;  // deviations of the mean
-    if (count_ < kFewest) return 0.0;
+    if (count_ < settings::kFewestOfCause) return 0.0;
     const double mean = sum_ / count_;
     const double variance = (squares_ / count_ - mean * mean) / (count_ - 1.0);
-    return mean * mean > kClear * kClear * variance ? mean : 0.0;
+    return mean * mean > settings::kClearCause * settings::kClearCause * variance ? mean : 0.0;
   }
 
  private:

@@ -17,8 +17,7 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr std::size_t kSlices = 4;  ///< of each coordinate of a place
-constexpr std::size_t kBins = kSlices * kSlices;
+constexpr std::size_t kBins = settings::kPlaceSlices * settings::kPlaceSlices;
 constexpr unsigned kSeed = 5;
 
 /// Events and pairs by bin of one covariate.
@@ -70,10 +69,11 @@ std::vector<double> values_of(vehicle::Covariate covariate, std::span<const meas
 
 Binned binned(vehicle::Covariate covariate, std::span<const measurement::FitData> data) {
   Binned out{covariate, {}, values_of(covariate, data)};
-  out.bin = sliced(out.value, covariate == vehicle::Covariate::position ? kSlices : kBins);
+  out.bin = sliced(out.value, covariate == vehicle::Covariate::position ? settings::kPlaceSlices : kBins);
   if (covariate != vehicle::Covariate::position) return out;
-  const auto across = sliced(values_of(covariate, data, true), kSlices);
-  for (std::size_t k = 0; k < across.size(); ++k) out.bin[k] = kSlices * out.bin[k] + across[k];
+  const auto across = sliced(values_of(covariate, data, true), settings::kPlaceSlices);
+  for (std::size_t k = 0; k < across.size(); ++k)
+    out.bin[k] = settings::kPlaceSlices * out.bin[k] + across[k];
   return out;
 }
 
@@ -172,14 +172,15 @@ class Tracer {
     return (1.0 + as_good) / (1.0 + settings::kOutlierDraws);
   }
 
-  /// Of the bins with more than twice the usual share of events.
+  /// Of the bins with unusually many events.
   void set_range(std::size_t v, OutlierTrace& trace) const {
     const Counts events = counted(covariates_[v], events_);
     const double usual = static_cast<double>(events_.size()) / static_cast<double>(order_.size());
     std::vector<double> values;
     for (const std::size_t k : events_) {
       const std::size_t bin = covariates_[v].bin[k];
-      if (events.at(bin) > 2.0 * usual * pairs_[v].at(bin)) values.push_back(covariates_[v].value[k]);
+      if (events.at(bin) > settings::kUnusualShare * usual * pairs_[v].at(bin))
+        values.push_back(covariates_[v].value[k]);
     }
     if (values.empty()) return;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());

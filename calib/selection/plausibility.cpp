@@ -9,6 +9,7 @@
 #include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/terms/smooth_term.hpp"
+#include "calib/vehicle/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -68,7 +69,7 @@ bool is_negligible(const vehicle::Effect& effect, std::size_t first, const estim
     if (parameters[k].is_size())
       largest = std::max(
           largest, std::abs(fit.parameters(static_cast<Eigen::Index>(first + k))) / parameters[k].scale);
-  return largest < vehicle::kNegligibleShare;
+  return largest < vehicle::settings::kNegligibleShare;
 }
 
 bool is_hidden_by_ticks(const terms::SmoothTerm& smooth, const estimation::FitResult& fit,
@@ -95,8 +96,8 @@ bool is_hidden_by_ticks(const terms::SmoothTerm& smooth, const estimation::FitRe
 
 bool spoils_base(const vehicle::Effect& effect, const estimation::FitResult& before,
                  const estimation::FitResult& after) {
-  const double most =
-      effect.storage() == vehicle::Storage::nowhere ? 10.0 : 3.0;  // times a standard deviation
+  const double most = effect.storage() == vehicle::Storage::nowhere ? settings::kWidenedByNowhere
+                                                                    : settings::kWidenedByCorrection;
   for (const auto k : {vehicle::kLeftRadius, vehicle::kRightRadius, vehicle::kTrackWidth}) {
     const double deviation = std::sqrt(after.covariance(k, k));
     if (deviation > settings::kHarmless * after.parameters(k) &&

@@ -11,9 +11,6 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr std::size_t kBins = 16;
-constexpr std::size_t kMostPoints = 300;
-
 /// A covariate that a defect may depend on: its mean or sum over a measured motion, or its value at the
 /// middle. Simple ones first: they are preferred.
 struct Covariate {
@@ -24,12 +21,11 @@ struct Covariate {
 };
 
 /// 1 when the wheel just turned to forward, -1 to backward, otherwise 0.
-constexpr std::size_t kUsualPlay = 9;  ///< of kPlays: as much of a reversal as goes by until it is taken up
 double left_reversal(const vehicle::StepContext& c) {
-  return c.left_lost[kUsualPlay] / vehicle::kPlays[kUsualPlay];
+  return c.left_lost[settings::kUsualPlay] / vehicle::kPlays[settings::kUsualPlay];
 }
 double right_reversal(const vehicle::StepContext& c) {
-  return c.right_lost[kUsualPlay] / vehicle::kPlays[kUsualPlay];
+  return c.right_lost[settings::kUsualPlay] / vehicle::kPlays[settings::kUsualPlay];
 }
 
 constexpr std::array kCovariates = {
@@ -108,8 +104,8 @@ struct Divisor {
 };
 constexpr std::array kDivisors = {
     Divisor{"m", "rad", 0.0, [](const math::Pose&) { return 1.0; }},
-    Divisor{"m/m", "rad/m", 0.03, [](const math::Pose& m) { return m.x; }},
-    Divisor{"m/rad", "rad/rad", 0.05, [](const math::Pose& m) { return m.yaw; }},
+    Divisor{"m/m", "rad/m", settings::kLeastDividingWay_m, [](const math::Pose& m) { return m.x; }},
+    Divisor{"m/rad", "rad/rad", settings::kLeastDividingTurn_rad, [](const math::Pose& m) { return m.yaw; }},
 };
 
 constexpr std::array kAxes = {"forward", "sideways", "heading"};
@@ -175,7 +171,7 @@ struct View {
   double explained = 0.0;
 };
 
-std::size_t bin_begin(std::size_t bin, std::size_t count) { return bin * count / kBins; }
+std::size_t bin_begin(std::size_t bin, std::size_t count) { return bin * count / settings::kTraceBins; }
 
 /// Share of the pattern's variation that a function of the covariate describes (correlation ratio).
 double correlation_ratio(const Samples& samples, const View& view) {
@@ -188,7 +184,7 @@ double correlation_ratio(const Samples& samples, const View& view) {
   mean /= static_cast<double>(view.order.size());
   double total = 0.0;
   double within = 0.0;
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
+  for (std::size_t bin = 0; bin < settings::kTraceBins; ++bin) {
     const std::size_t first = bin_begin(bin, view.order.size());
     const std::size_t last = bin_begin(bin + 1, view.order.size());
     double sum = 0.0;
@@ -212,7 +208,7 @@ View make_view(const Samples& samples, std::size_t variable, std::size_t divisor
   std::stable_sort(view.order.begin(), view.order.end(), [&](std::size_t a, std::size_t b) {
     return samples.covariates[a].at(variable) < samples.covariates[b].at(variable);
   });
-  if (view.order.size() >= 2 * kBins) view.explained = correlation_ratio(samples, view);
+  if (view.order.size() >= 2 * settings::kTraceBins) view.explained = correlation_ratio(samples, view);
   return view;
 }
 
@@ -265,14 +261,14 @@ ResidualTrace::Bin bin_of(const std::vector<ResidualTrace::Point>& points) {
 /// filled ones.
 std::vector<std::pair<std::size_t, std::size_t>> bins_of(const std::vector<ResidualTrace::Point>& points) {
   std::vector<std::pair<std::size_t, std::size_t>> bins;
-  for (std::size_t k = 0; k < points.size() && bins.size() <= kBins; ++k) {
+  for (std::size_t k = 0; k < points.size() && bins.size() <= settings::kTraceBins; ++k) {
     const bool same = k > 0 && points[k].variable == points[k - 1].variable;
     if (!same) bins.emplace_back(k, k);
     bins.back().second = k + 1;
   }
-  if (bins.size() <= kBins) return bins;
+  if (bins.size() <= settings::kTraceBins) return bins;
   bins.clear();
-  for (std::size_t bin = 0; bin < kBins && points.size() >= 2 * kBins; ++bin)
+  for (std::size_t bin = 0; bin < settings::kTraceBins && points.size() >= 2 * settings::kTraceBins; ++bin)
     bins.emplace_back(bin_begin(bin, points.size()), bin_begin(bin + 1, points.size()));
   return bins;
 }
@@ -295,7 +291,8 @@ ResidualTrace drawn(const Samples& samples, const View& view) {
   for (const auto& [first, last] : bins_of(points))
     trace.bins.push_back(bin_of({points.begin() + static_cast<std::ptrdiff_t>(first),
                                  points.begin() + static_cast<std::ptrdiff_t>(last)}));
-  const std::size_t step = std::max<std::size_t>(1, (points.size() + kMostPoints - 1) / kMostPoints);
+  const std::size_t step =
+      std::max<std::size_t>(1, (points.size() + settings::kMostTracePoints - 1) / settings::kMostTracePoints);
   for (std::size_t k = step / 2; k < points.size(); k += step) trace.points.push_back(points[k]);
   return trace;
 }

@@ -109,8 +109,9 @@ std::optional<double> outstanding(double metre, const Periodogram& periodogram, 
     return best;
   };
   const double coarse = best_of(lowest, highest, step)[0];
-  const auto [frequency, statistic] = best_of(coarse - step, coarse + step, 0.1 * step);
-  const double tried = 3.0 * (highest - lowest) / step;
+  const auto [frequency, statistic] =
+      best_of(coarse - step, coarse + step, settings::kFineRollingStep * step);
+  const double tried = settings::kTriedPerRollingStep * (highest - lowest) / step;
   return chi_squared_tail(statistic, 2) * tried < settings::kDecisivePeak ? std::optional(frequency)
                                                                           : std::nullopt;
 }

@@ -34,7 +34,7 @@ std::optional<Trial> SearchRound::refit(std::size_t candidate,
   if (!model) return std::nullopt;
   const double gain =
       basis_.fit.cost - model->fit.cost - penalty(count_sizes(*effect)) -
-      (has_textbook_shape(effect) || !task_.rules.has(Rule::shape_has_a_price) ? 0.0 : kAkaike);
+      (has_textbook_shape(effect) || !task_.rules.has(Rule::shape_has_a_price) ? 0.0 : settings::kAkaike);
   return Trial{candidate, std::move(*model), gain};
 }
 
@@ -57,7 +57,7 @@ std::optional<Trial> SearchRound::best_shape(const std::string& key) {
   const auto is_shape = [&](std::size_t k) { return candidates_[k].key == key; };
   std::size_t shapes = 0;
   for (const std::size_t k : by_score(is_shape))
-    if (shapes++ < kRefits) try_out(k);
+    if (shapes++ < settings::kRefits) try_out(k);
   return best_trial(is_shape);
 }
 
@@ -79,7 +79,7 @@ bool SearchRound::smooth_beats(std::size_t smooth, std::size_t name) const {
   const double of_best_shape = score(by_score(has_key_of_name).front()).statistic;
   const double of_smooth = score(smooth).statistic;
   return !(same_ground && (score(name).statistic > settings::kSameDependence * of_smooth ||
-                           of_best_shape > kNearlyAll * of_smooth));
+                           of_best_shape > settings::kNearlyAll * of_smooth));
 }
 
 std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {

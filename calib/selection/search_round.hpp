@@ -60,9 +60,6 @@ class SearchRound {
   std::vector<Eigen::VectorXd> model_uncertainties_of(const std::vector<std::size_t>& rivals,
                                                       const Trial& best);
 
-  /// Candidates refitted jointly per step.
-  static constexpr std::size_t kRefits = 4;
-
  private:
   [[nodiscard]] bool is_open(std::size_t candidate) const { return !candidates_[candidate].excluded; }
   [[nodiscard]] double penalty(std::size_t degrees) const;

@@ -55,6 +55,9 @@ inline constexpr double kUseful = 0.97;
 inline constexpr double kTolerated = 1.05;
 /// Evaluation windows; fewer say nothing. Chosen.
 inline constexpr std::size_t kFewestWindows = 10;
+/// Deviations by which the logarithm of a ratio of errors must lie below zero where the interval does not
+/// tell. Derived: 90 % quantile of the normal distribution, one side. The level is chosen.
+inline constexpr double kPlainGain = 1.282;
 /// Share of the squared open-loop error beyond noise that smooth terms without a name must explain together.
 /// Derived: what explains less leaves more unexplained than it explains.
 inline constexpr double kLeastExplained = 0.5;
@@ -149,6 +152,15 @@ inline constexpr double kPlainBend = 0.25;
 inline constexpr int kMostBends = 3;
 /// Rounds in which hyperparameters and noise settle each other. Chosen.
 inline constexpr int kShapeRounds = 3;
+/// What a parameter has to take off -2 log L when what it belongs to has passed cross-validation. Published:
+/// Akaike, IEEE Trans. Autom. Control 19, 1974.
+inline constexpr double kAkaike = 2.0;
+
+// --- Change point -----------------------------------------------------------------------------------------
+
+/// Moments tried to either side of the best in a round, and rounds, each with steps as many times smaller.
+/// Chosen.
+inline constexpr int kMomentsEachWay = 2, kMomentRounds = 4;
 
 // --- Hyperparameters -------------------------------------------------------------------------------------
 
@@ -183,6 +195,8 @@ inline constexpr double kNormal95 = 1.960;
 inline constexpr double kNearPlaces = 0.25;
 /// m and rad, of a pair at rest. Chosen.
 inline constexpr double kAtRest = 0.01;
+/// Outliers whose mean is reported as a cause, and deviations of that mean from zero. Chosen.
+inline constexpr double kFewestOfCause = 5.0, kClearCause = 4.0;
 
 // --- Outlier trace ---------------------------------------------------------------------------------------
 
@@ -194,6 +208,10 @@ inline constexpr double kFewestOutliers = 0.015;
 inline constexpr double kOutlierLevel = 0.001;
 /// Share of the best gain from which a covariate may as well be the one. Chosen.
 inline constexpr double kAsGood = 0.8;
+/// Slices of each coordinate of a place; their square is the number of bins of any other covariate. Chosen.
+inline constexpr std::size_t kPlaceSlices = 4;
+/// Times the usual share of events, above which a bin belongs to the range that is reported. Chosen.
+inline constexpr double kUnusualShare = 2.0;
 /// Covariates named of outliers. Chosen.
 inline constexpr std::size_t kMostNamed = 3;
 /// Random permutations; the finest p-value is 1 / (1 + draws). Chosen.
@@ -211,6 +229,9 @@ inline constexpr double kHarmless = 1e-3;
 inline constexpr double kFarOff = 0.25;
 /// Level of the Wald test of a term that is still needed. Chosen: the usual 5 %.
 inline constexpr double kNeededLevel = 0.05;
+/// Times a length's deviation without the term, above which the term spoils the length: a term that
+/// nothing can correct, and any other. Chosen.
+inline constexpr double kWidenedByNowhere = 10.0, kWidenedByCorrection = 3.0;
 
 // --- Range scale -----------------------------------------------------------------------------------------
 
@@ -238,6 +259,13 @@ inline constexpr double kWorthDividing = 0.1;
 inline constexpr double kWorthChanging = 0.02;
 /// rad; a reversal farther back is forgotten. Chosen.
 inline constexpr double kFarBack = 20.0;
+/// Index in vehicle::kPlays of the play by which a wheel's reversal is drawn: so much of it goes by until it
+/// is taken up. Chosen.
+inline constexpr std::size_t kUsualPlay = 9;
+/// Bins over a covariate, and points of the picture. Chosen.
+inline constexpr std::size_t kTraceBins = 16, kMostTracePoints = 300;
+/// m and rad, of a motion that a residual is divided by; smaller ones are left out of the picture. Chosen.
+inline constexpr double kLeastDividingWay_m = 0.03, kLeastDividingTurn_rad = 0.05;
 
 // --- Rolling waves ---------------------------------------------------------------------------------------
 
@@ -250,6 +278,10 @@ inline constexpr double kLongestRolling_m = 1.5;
 inline constexpr double kRollingStep = 0.5;
 /// Waves tried; the shortest are left out where there would be more. Chosen: time.
 inline constexpr double kMostRolling = 3000;
+/// Steps of kRollingStep, between waves that are tried about the best. Chosen.
+inline constexpr double kFineRollingStep = 0.1;
+/// Waves that count as tried for each step of kRollingStep. Chosen.
+inline constexpr double kTriedPerRollingStep = 3.0;
 /// Probability of a peak as high anywhere, in noise. Chosen.
 inline constexpr double kDecisivePeak = 1e-4;
 
@@ -263,6 +295,8 @@ inline constexpr std::size_t kMostFindings = 3;
 inline constexpr std::size_t kMostSmooths = 4;
 /// Additions and candidates that failed cross-validation, together. Chosen: time.
 inline constexpr int kMostSteps = 12;
+/// Gauss-Newton steps of a fit. Chosen.
+inline constexpr int kMostSearchIterations = 24;
 /// Share of what a name explains from which a small delay explains it as well. Chosen.
 inline constexpr double kMuchOfName = 0.9;
 /// Family-wise p-value above which a wave is not scored again. Chosen: time.
@@ -275,6 +309,10 @@ inline constexpr double kHopelessWave = 0.05;
 inline constexpr double kAmbiguity = 6.0;
 /// Share of a smooth term's statistic that a name with that dependence must reach. Chosen.
 inline constexpr double kSameDependence = 0.5;
+/// Candidates refitted jointly per step. Chosen.
+inline constexpr std::size_t kRefits = 4;
+/// Share of what a freer term explains with which a name is certain. Chosen.
+inline constexpr double kNearlyAll = 0.9;
 
 // --- Window errors ---------------------------------------------------------------------------------------
 

@@ -81,9 +81,8 @@ WindowErrors where_selected(const WindowErrors& before, const WindowErrors& afte
 
 bool Improvement::is_plain() const {
   if (upper < 1.0) return true;
-  constexpr double kBothSides = 2.0 * 1.960, kOneSide = 1.282;  // normal quantiles, 95 % and 90 %
-  const double deviation = std::log(upper / lower) / kBothSides;
-  return std::log(ratio) + kOneSide * deviation < 0.0;
+  const double deviation = std::log(upper / lower) / (2.0 * settings::kNormal95);
+  return std::log(ratio) + settings::kPlainGain * deviation < 0.0;
 }
 
 Improvement compare(const WindowErrors& before, const WindowErrors& after) {

@@ -91,20 +91,20 @@ void add_change_points(double duration, std::vector<SmoothTerm>& smooths) {
 
 /// A lidar's metre as it warms up, which is a matter of minutes.
 void add_fading(double duration, std::vector<SmoothTerm>& smooths) {
-  for (const double time_constant : {30.0, 100.0})
+  for (const double time_constant : settings::kFadingTimes_s)
     smooths.push_back(
         on_basis({{vehicle::Covariate::time, vehicle::Channel::scale}, 0.0, duration}, Decay{time_constant}));
 }
 
 void add_time_constants_about(const SmoothTerm& smooth, const Decay& decay, std::vector<SmoothTerm>& shapes) {
-  for (const double factor : {0.5, 0.71, 1.41, 2.0})
+  for (const double factor : settings::kFadingFactors)
     shapes.push_back(on_basis(smooth, Decay{decay.time_constant * factor}));
 }
 
 /// Close to where it was found.
 void add_change_points_about(const SmoothTerm& smooth, const ChangePoint& event,
                              std::vector<SmoothTerm>& shapes) {
-  for (int k = 3; k <= 5; ++k)
+  for (int k = settings::kFirstHalving; k <= settings::kLastHalving; ++k)
     for (const double way : {-1.0, 1.0})
       shapes.push_back(
           on_basis(smooth, ChangePoint{event.moment + std::ldexp(way * smooth.high / kChangePoints, -k)}));

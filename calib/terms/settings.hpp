@@ -2,6 +2,7 @@
 // (see calib/matching/settings.hpp).
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace odomcalib::calib::terms::settings {
@@ -20,6 +21,12 @@ inline constexpr double kFewestCycles = 1.5;
 inline constexpr double kCycleStep = 0.7;
 /// Parts of the drive before and after a change point. Chosen.
 inline constexpr int kLeastPart = 2;
+/// Halvings of the step between change points, of the moments tried about the one that was found. Chosen.
+inline constexpr int kFirstHalving = 3, kLastHalving = 5;
+/// s, of a lidar's metre that fades. Chosen: warming up is a matter of minutes.
+inline constexpr std::array kFadingTimes_s = {30.0, 100.0};
+/// Factors on the time constant that was found, which are tried. Chosen.
+inline constexpr std::array kFadingFactors = {0.5, 0.71, 1.41, 2.0};
 
 // --- Lidar smooth term -----------------------------------------------------------------------------------
 

@@ -34,10 +34,6 @@ struct EffectParameter {
   [[nodiscard]] bool is_size() const { return start == 0.0 && !fixed; }
 };
 
-/// Share of an effect's typical size below which it does not matter to odometry and is not claimed: what a
-/// scan matcher's own bias in one room amounts to.
-inline constexpr double kNegligibleShare = 0.15;
-
 /// Where a correction can live.
 enum class Storage { controller, host, driver, nowhere };
 

@@ -58,4 +58,10 @@ inline constexpr double kSharp_s = 0.12, kSharpLatest_s = 0.1;
 /// s, to either side, over which a velocity is taken. Chosen.
 inline constexpr double kVelocityReach_s = 0.02;
 
+// --- Effect -----------------------------------------------------------------------------------------------
+
+/// Share of an effect's typical size below which it does not matter to odometry and is not claimed. Chosen:
+/// what a scan matcher's own bias in one room amounts to.
+inline constexpr double kNegligibleShare = 0.15;
+
 }  // namespace odomcalib::calib::vehicle::settings

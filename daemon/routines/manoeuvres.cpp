@@ -1,4 +1,5 @@
 #include "daemon/routines/manoeuvres.hpp"
+#include "daemon/routines/settings.hpp"
 
 #include <algorithm>
 #include <array>
@@ -69,7 +70,7 @@ void reversals(Builder& build) {
 
 Builder builder_for(const PatternOptions& options) {
   const double side = std::min(options.area_length, options.area_width);
-  const double half = std::clamp(0.5 * side, 0.3, 1.25);
+  const double half = std::clamp(0.5 * side, settings::kLeastHalf_m, settings::kMostHalf_m);
   return {.moves = {}, .half = half, .scale = std::min(1.0, half)};
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "daemon/routines/runner.hpp"
+#include "daemon/routines/settings.hpp"
 
 namespace odomcalib::routines {
 namespace {
@@ -65,8 +66,11 @@ Move arc(double radius, double angle, double rate, bool forward, double settle) 
 }
 
 Move turn_to(double heading, double rate) {
-  return {
-      .name = "turn to heading", .direction = {0.0, 1.0}, .pace = rate, .settle = 0.5, .heading = heading};
+  return {.name = "turn to heading",
+          .direction = {0.0, 1.0},
+          .pace = rate,
+          .settle = settings::kShortRest_s,
+          .heading = heading};
 }
 
 double expected_duration(const Move& move, const Limits& limits) {
@@ -80,16 +84,14 @@ double expected_duration(const Move& move, const Limits& limits) {
 }
 
 Preview preview(const Plan& plan) {
-  constexpr double kStep = 0.02;
   Preview seen;
   Runner runner(plan);
   Pose pose;
-  const double budget = 3600.0;
-  while (!runner.done() && seen.duration < budget) {
+  while (!runner.done() && seen.duration < settings::kLongestPreview_s) {
     seen.path.push_back(pose);
     seen.reach = std::max(seen.reach, std::hypot(pose.x, pose.y));
-    pose = advanced(pose, runner.step(seen.duration, pose), kStep);
-    seen.duration += kStep;
+    pose = advanced(pose, runner.step(seen.duration, pose), settings::kPreviewStep_s);
+    seen.duration += settings::kPreviewStep_s;
   }
   for (const Move& move : plan.moves) {
     if (move.direction.w == 0.0) seen.distance = std::max(seen.distance, move.amount);

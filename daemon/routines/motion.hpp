@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/routines/settings.hpp"
+
 namespace odomcalib::routines {
 
 /// Pose of the base: m, m, rad.
@@ -29,10 +31,10 @@ struct WheelGeometry {
 };
 
 struct Limits {
-  double speed = 0.30;             ///< m/s
-  double turn_rate = 0.6;          ///< rad/s
-  double acceleration = 0.5;       ///< m/s^2
-  double turn_acceleration = 1.0;  ///< rad/s^2
+  double speed = settings::kCapSpeed_m_s;                            ///< m/s
+  double turn_rate = settings::kCapRate_rad_s;                       ///< rad/s
+  double acceleration = settings::kCapAcceleration_m_s2;             ///< m/s^2
+  double turn_acceleration = settings::kCapTurnAcceleration_rad_s2;  ///< rad/s^2
 };
 
 /// What no configuration can raise (rule M7).
@@ -54,8 +56,8 @@ struct Move {
   double amount = 0.0;     ///< m along the line, or rad of turn when direction.w is not zero
   double pace = 0.0;       ///< m/s or rad/s
   double late_pace = 0.0;  ///< pace of the second half, 0: the same
-  double settle = 0.8;     ///< s at rest afterwards
-  double haste = 1.0;      ///< share of the acceleration that the limits allow, a tenth at least
+  double settle = settings::kSettle_s;  ///< s at rest afterwards
+  double haste = 1.0;                   ///< share of the acceleration that the limits allow, a tenth at least
   /// The amount is that of the commands, whatever the odometry says: for wheels whose counts may be wrong.
   bool open_loop = false;
   /// Turn on the spot to this heading, relative to that at the start of the plan, on the shorter way;
@@ -63,11 +65,11 @@ struct Move {
   std::optional<double> heading = std::nullopt;
 };
 
-Move straight(double distance, double speed, double settle = 0.8);
-Move spin(double angle, double rate, double settle = 0.8);
+Move straight(double distance, double speed, double settle = settings::kSettle_s);
+Move spin(double angle, double rate, double settle = settings::kSettle_s);
 /// @param radius m, from the middle of the axle to the centre of the circle, positive
 /// @param angle rad of turn, signed; @param forward driving direction
-Move arc(double radius, double angle, double rate, bool forward, double settle = 0.8);
+Move arc(double radius, double angle, double rate, bool forward, double settle = settings::kSettle_s);
 Move turn_to(double heading, double rate);
 
 struct Plan {

@@ -5,6 +5,7 @@
 
 #include "daemon/routines/builder.hpp"
 #include "daemon/routines/manoeuvres.hpp"
+#include "daemon/routines/settings.hpp"
 
 namespace odomcalib::routines {
 namespace {
@@ -41,15 +42,15 @@ void single_wheel_turns(Builder& build, double track_width) {
 /// A law of speed is known where the robot drove: every speed of either wheel is passed, slowly (the
 /// quasi-static test of system identification), forward and backward.
 void slow_ramps(Builder& build) {
-  constexpr double kStraightHaste = 0.2, kSpinHaste = 0.1;
   const double way = 1.4 * build.half;
-  build.moves.push_back(straight(-0.5 * way, 0.2, Builder::kRest));
+  build.moves.push_back(straight(-0.5 * way, 0.2, settings::kShortRest_s));
   const std::size_t first = build.moves.size();
   build.out_and_back(way, 0.3);
   build.both_spins(1.5 * kPi, 0.6);
   for (std::size_t k = first; k < build.moves.size(); ++k)
-    build.moves[k].haste = build.moves[k].direction.w == 0.0 ? kStraightHaste : kSpinHaste;
-  build.moves.push_back(straight(0.5 * way, 0.2, Builder::kRest));
+    build.moves[k].haste =
+        build.moves[k].direction.w == 0.0 ? settings::kStraightHaste : settings::kSpinHaste;
+  build.moves.push_back(straight(0.5 * way, 0.2, settings::kShortRest_s));
 }
 
 void full_pattern(Builder& build, double track_width) {

@@ -6,16 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "daemon/routines/settings.hpp"
+
 namespace odomcalib::routines {
 namespace {
-
-// Braking is planned with a part of the allowed deceleration: drives follow their command with a lag.
-constexpr double kBrakingShare = 0.7;
-// Slowest pace, as a share of what one second of acceleration gives: the last millimetre must not take for
-// ever.
-constexpr double kCreepShare = 0.04;
-constexpr double kShortestStep = 1e-6;
-constexpr double kLongestStep = 0.1;
 
 bool usable(const Pose& pose, double now) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw) && std::isfinite(now);
@@ -46,8 +40,9 @@ double wanted_pace(const Move& move, const Profile& profile, double done, double
   const double remaining = amount - done;
   const bool late = move.late_pace > 0.0 && done > 0.5 * amount;
   const double cruise = std::min(late ? move.late_pace : move.pace, profile.fastest);
-  const double braking = std::sqrt(2.0 * kBrakingShare * profile.acceleration * std::max(0.0, remaining));
-  return std::min(cruise, std::max(braking, kCreepShare * profile.acceleration));
+  const double braking =
+      std::sqrt(2.0 * settings::kBrakingShare * profile.acceleration * std::max(0.0, remaining));
+  return std::min(cruise, std::max(braking, settings::kCreepShare * profile.acceleration));
 }
 
 void settle(RunState& state, double now) {
@@ -60,12 +55,12 @@ Twist drive(const Plan& plan, RunState& state, const Pose& pose, double now) {
   const Move& move = plan.moves[state.move];
   state.turned += wrapped(pose.yaw - state.last_yaw);
   state.last_yaw = pose.yaw;
-  const double dt = std::clamp(now - state.last_time, 0.0, kLongestStep);
+  const double dt = std::clamp(now - state.last_time, 0.0, settings::kLongestStep_s);
   state.last_time = now;
   state.commanded += state.pace * dt;
   const double done = move.open_loop ? state.commanded : progress(state, pose);
   // The command issued now acts for about one step: stop where that step would pass the goal by half of it.
-  if (state.amount - done <= 0.5 * state.pace * std::max(dt, kShortestStep)) {
+  if (state.amount - done <= 0.5 * state.pace * std::max(dt, settings::kShortestStep_s)) {
     settle(state, now);
     return {};
   }
@@ -95,7 +90,7 @@ Profile profile_of(const Move& move, const Limits& limits) {
   if (w > 0.0)
     profile = {std::min(profile.fastest, caps.turn_rate / w),
                std::min(profile.acceleration, caps.turn_acceleration / w)};
-  profile.acceleration *= std::clamp(move.haste, 0.1, 1.0);
+  profile.acceleration *= std::clamp(move.haste, settings::kLeastHaste, 1.0);
   return profile;
 }
 

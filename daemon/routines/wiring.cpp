@@ -5,17 +5,11 @@
 #include <limits>
 #include <numbers>
 
+#include "daemon/routines/settings.hpp"
+
 namespace odomcalib::routines {
 namespace {
 
-constexpr double kAhead = 0.05;       // m
-constexpr double kAheadSpeed = 0.08;  // m/s
-constexpr double kLeft = 0.26;        // rad, 15 degrees
-constexpr double kLeftRate = 0.4;     // rad/s
-constexpr double kRest = 0.8;         // s: a whole scan at rest
-
-constexpr double kMoved = 0.4;   // of what was commanded: it moved
-constexpr double kStood = 0.15;  // less: it did not
 constexpr double kPi = std::numbers::pi;
 
 /// Where a wire is wrong: at the motor, at the counter, or at both alike, as when the sides were mixed up in
@@ -54,8 +48,8 @@ Signs counted(const Hypothesis& h, Signs real) {
 
 /// -1, 0, 1; nullopt when it is neither a motion nor rest.
 std::optional<double> sign_of(double share) {
-  if (std::abs(share) < kStood) return 0.0;
-  if (std::abs(share) < kMoved) return std::nullopt;
+  if (std::abs(share) < settings::kStood) return 0.0;
+  if (std::abs(share) < settings::kMoved) return std::nullopt;
   return share < 0.0 ? -1.0 : 1.0;
 }
 
@@ -191,8 +185,10 @@ std::optional<std::string> unreadable(const Nudge& nudge) {
 
 Plan nudge_plan(const Limits& limits) {
   Plan plan{.name = "check", .moves = {}, .limits = limits};
-  plan.moves = {straight(kAhead, kAheadSpeed, kRest), straight(-kAhead, kAheadSpeed, kRest),
-                spin(kLeft, kLeftRate, kRest), spin(-kLeft, kLeftRate, kRest)};
+  plan.moves = {straight(settings::kNudge_m, settings::kNudgeSpeed_m_s, settings::kNudgeRest_s),
+                straight(-settings::kNudge_m, settings::kNudgeSpeed_m_s, settings::kNudgeRest_s),
+                spin(settings::kNudge_rad, settings::kNudgeRate_rad_s, settings::kNudgeRest_s),
+                spin(-settings::kNudge_rad, settings::kNudgeRate_rad_s, settings::kNudgeRest_s)};
   for (Move& move : plan.moves) move.open_loop = true;
   return plan;
 }

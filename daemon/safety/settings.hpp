@@ -74,4 +74,13 @@ inline constexpr int kArcSteps = 12;
 /// m and rad, of poses of a preview that are one. Chosen: fine against any clearance.
 inline constexpr double kSamePlace_m = 0.02, kSameHeading_rad = 0.05;
 
+// --- Speed watch ------------------------------------------------------------------------------------------
+
+/// s over which a speed is measured. Chosen: two readings of the slowest controllers.
+inline constexpr double kSpeedWindow_s = 0.2;
+/// Share of the limit that a speed controller may go beyond it. Chosen.
+inline constexpr double kOvershoot = 0.2;
+/// m/s and rad/s beside it. Chosen: one count of the coarsest encoders more or less in the window.
+inline constexpr double kCoarse_m_s = 0.02, kCoarse_rad_s = 0.05;
+
 }  // namespace odomcalib::safety::settings

@@ -4,33 +4,31 @@
 
 #include <cmath>
 
+#include "daemon/safety/settings.hpp"
+
 namespace odomcalib::safety {
 namespace {
 
-constexpr double kWindow = 0.2;       // s: two readings of the slowest controllers
-constexpr double kOvershoot = 0.2;    // share of the limit that a speed controller may go beyond it
-constexpr double kCoarse = 0.02;      // m/s, one count of the coarsest encoders more or less in the window
-constexpr double kCoarseTurn = 0.05;  // rad/s, same
-
-double allowed(double limit, double coarse) { return (1.0 + kOvershoot) * limit + coarse; }
+double allowed(double limit, double coarse) { return (1.0 + settings::kOvershoot) * limit + coarse; }
 
 }  // namespace
 
 void SpeedWatch::seen(double t, const routines::Pose& odometry) {
   if (!samples_.empty() && t <= samples_.back().t) return;
   samples_.push_back({t, odometry});
-  while (samples_.size() > 2 && t - samples_[1].t >= kWindow) samples_.pop_front();
+  while (samples_.size() > 2 && t - samples_[1].t >= settings::kSpeedWindow_s) samples_.pop_front();
 }
 
 std::optional<std::string> SpeedWatch::too_fast() const {
-  if (samples_.size() < 2 || samples_.back().t - samples_.front().t < kWindow) return std::nullopt;
+  if (samples_.size() < 2 || samples_.back().t - samples_.front().t < settings::kSpeedWindow_s)
+    return std::nullopt;
   const auto& [begin, from] = samples_.front();
   const auto& [end, to] = samples_.back();
   const double speed = std::hypot(to.x - from.x, to.y - from.y) / (end - begin);
   const double rate = std::abs(to.yaw - from.yaw) / (end - begin);
-  if (!(speed <= allowed(limits_.speed, kCoarse)))
+  if (!(speed <= allowed(limits_.speed, settings::kCoarse_m_s)))
     return fmt::format("the wheels make {:.2f} m/s, {:.2f} m/s is the limit", speed, limits_.speed);
-  if (!(rate <= allowed(limits_.turn_rate, kCoarseTurn)))
+  if (!(rate <= allowed(limits_.turn_rate, settings::kCoarse_rad_s)))
     return fmt::format("the wheels make {:.2f} rad/s, {:.2f} rad/s is the limit", rate, limits_.turn_rate);
   return std::nullopt;
 }

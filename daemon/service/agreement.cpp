@@ -4,6 +4,7 @@
 
 #include "daemon/safety/envelope.hpp"
 #include "daemon/service/dead_reckoning.hpp"
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 
@@ -11,7 +12,8 @@ void AgreementWatch::seen(const Scan& scan, const routines::Pose& odometry, cons
                           const std::array<double, 3>& lidar_pose) {
   if (!calibrator.match) return;
   const auto moved = reference_ ? relative(reference_pose_, odometry) : routines::Pose{};
-  const bool judge = std::hypot(moved.x, moved.y) > 0.25 || std::abs(moved.yaw) > 0.6;
+  const bool judge = std::hypot(moved.x, moved.y) > service::settings::kComparedWay_m ||
+                     std::abs(moved.yaw) > service::settings::kComparedTurn_rad;
   if (reference_ && !judge) return;
   if (reference_) {
     auto seen = calibrator.match(*reference_, scan, moved, lidar_pose);
@@ -20,7 +22,7 @@ void AgreementWatch::seen(const Scan& scan, const routines::Pose& odometry, cons
     const auto why = seen ? safety::disagreement(moved, *seen) : std::nullopt;
     // One bad match must not stop the robot; two in a row are a fact. The second judge is the next scan.
     disagreements_ = why ? disagreements_ + 1 : 0;
-    if (disagreements_ >= 2) disagreement_ = why;
+    if (disagreements_ >= service::settings::kDisagreements) disagreement_ = why;
     if (why) return;
   }
   reference_ = scan;

@@ -1,10 +1,7 @@
 #include "daemon/service/base_link.hpp"
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
-namespace {
-constexpr double kRetry = 0.5;  // s: a device is back in use within 2 s without spinning while it is away
-}
-
 BaseLink::BaseLink(std::string device, std::unique_ptr<drivers::Controller> controller)
     : device_(std::move(device)), controller_(std::move(controller)) {}
 
@@ -29,7 +26,7 @@ void BaseLink::lose(const Error& error, double now) {
   problem_ = error;
   transport_.reset();
   port_.reset();
-  next_try_ = now + kRetry;
+  next_try_ = now + service::settings::kBaseRetry_s;
 }
 
 void BaseLink::open_when_due(double now) {

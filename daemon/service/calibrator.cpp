@@ -10,6 +10,7 @@
 #include "calib/report/next_test.hpp"
 #include "calib/solve.hpp"
 #include "calib/terms/effect_names.hpp"
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 namespace {
@@ -32,14 +33,15 @@ Pose inverse(const Pose& pose) {
 // headings, and the one with the most inliers counts.
 std::optional<Pose> match(const Scan& from, const Scan& to, const Pose& guess,
                           const std::array<double, 3>& mount) {
-  constexpr std::array kOffsets{0.0, 0.09, -0.09, 0.18, -0.18};
-  constexpr double kSmallTurn = 1.0;  // rad
   const Pose lidar{mount[0], mount[1], mount[2]};
   const Pose start = composed(composed(inverse(lidar), guess), lidar);
-  const std::size_t tries = std::abs(guess.yaw) < kSmallTurn ? 1 : kOffsets.size();
+  const std::size_t tries = std::abs(guess.yaw) < service::settings::kSmallTurn_rad
+                                ? 1
+                                : service::settings::kTriedHeadings_rad.size();
   calib::ScanMatch best;
   for (std::size_t i = 0; i < tries; ++i) {
-    const auto found = calib::match_scans(from, to, {start.x, start.y, start.yaw + kOffsets.at(i)});
+    const auto found = calib::match_scans(
+        from, to, {start.x, start.y, start.yaw + service::settings::kTriedHeadings_rad.at(i)});
     if (found.ok() && (!best.ok() || found.inliers > best.inliers)) best = found;
   }
   if (!best.ok()) return std::nullopt;

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/service/settings.hpp"
 #include "proto/control/control.hpp"
 #include "proto/result.hpp"
 
@@ -29,17 +30,16 @@ struct IncomingCall {
 
 class ControlServer {
  public:
-  static constexpr std::size_t kMostClients = 8;
+  static constexpr std::size_t kMostClients = service::settings::kMostClients;
   /// Beyond those, for whoever wants to stop the robot (M15): only Stop is taken from them, and the newest
   /// takes the place of the oldest.
-  static constexpr std::size_t kSpareClients = 2;
-  static constexpr std::size_t kMostOutput = std::size_t{8} << 20;  ///< bytes waiting for one slow client
+  static constexpr std::size_t kSpareClients = service::settings::kSpareClients;
+  static constexpr std::size_t kMostOutput =
+      service::settings::kMostOutput_bytes;  ///< bytes waiting for one slow client
   /// Bytes of calls that one client has sent without waiting for answers. Chosen: the largest frame, 16 times
   /// what a client sends at once (64 KiB). More ends the connection, and with it what the client does.
   static constexpr std::size_t kMostWaiting = control::kLargestFrame;
-  /// Calls of one client a turn. Chosen: a client waits for answers and has one call at a time; 16 let one
-  /// that does not get on, and leave eight others their place in the same turn.
-  static constexpr std::size_t kCallsPerTurn = 16;
+  static constexpr std::size_t kCallsPerTurn = service::settings::kCallsPerTurn;
 
   struct Counters {
     std::uint64_t accepted = 0, too_many = 0 /* beyond kMostClients */, not_permitted = 0, malformed = 0,

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <charconv>
 
+#include "daemon/service/settings.hpp"
 #include "drivers/tcp/tcp_stream.hpp"
 
 namespace odomcalib {
 namespace {
-
-// A device that is back is found within 2 s: the longest pause and one attempt to connect.
-constexpr double kFirstRetry_s = 0.2, kLastRetry_s = 0.8;
-constexpr double kConnect_s = 1.0;
-constexpr double kWatch_s = 2.0;  // without one valid packet: reported as a problem
 
 unsigned number_of(const std::string& text) {
   unsigned number = 0;
@@ -71,8 +67,9 @@ void LidarLink::lose(const Error& error, double now) {
   stream_.reset();
   connected_ = false;
   lidar_->reset();
-  next_try_ =
-      now + std::min(kFirstRetry_s * static_cast<double>(1U << std::min(failures_, 4U)), kLastRetry_s);
+  next_try_ = now + std::min(service::settings::kLidarFirstRetry_s *
+                                 static_cast<double>(1U << std::min(failures_, 4U)),
+                             service::settings::kLidarLastRetry_s);
   ++failures_;
 }
 
@@ -89,7 +86,7 @@ bool LidarLink::finish_connecting(double now) {
   if (connected_) return true;
   const auto done = stream_->connected();
   if (!done) return lose(done.error(), now), false;
-  if (!done.value() && now - opened_at_ > kConnect_s)
+  if (!done.value() && now - opened_at_ > service::settings::kLidarConnect_s)
     return lose({ErrorCode::timeout, "the device does not accept a connection", device_,
                  "check power, cable and address: ping the device"},
                 now),
@@ -114,7 +111,7 @@ Error LidarLink::nothing_valid(bool silent) const {
 /// Names what is wrong when a while has brought no valid packet. A silent network connection may be dead
 /// without knowing it, so it is made anew.
 void LidarLink::watch(double now) {
-  if (now - watch_.since < kWatch_s) return;
+  if (now - watch_.since < service::settings::kLidarWatch_s) return;
   const auto counters = lidar_->counters();
   const Watch before = std::exchange(watch_, {now, counters.at("bytes_in"), counters.at("good")});
   const bool silent = watch_.bytes == before.bytes;

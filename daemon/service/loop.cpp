@@ -5,20 +5,11 @@
 #include <utility>
 
 #include "daemon/service/methods/methods.hpp"
+#include "daemon/service/settings.hpp"
 #include "daemon/service/status_report.hpp"
 #include "daemon/service/write_outcome.hpp"
 
 namespace odomcalib {
-namespace {
-
-constexpr int kMovingTimeout = 5;    // ms: control steps every 10 ms need a loop that turns faster
-constexpr double kIdleStep = 0.020;  // s, between looks at a device or client that says nothing
-// s for calls of clients in one turn: what is left of the 20 ms between two motion commands (M2) beside the
-// longest single call, a dry run of a calibration (12 ms on two cores of 2.5 GHz)
-constexpr double kCallTime = 0.004;
-
-}  // namespace
-
 Loop::Loop(const Config& configuration, Clock& clock, Calibrator functions, BaseLink base, LidarLink lidar,
            ControlServer server, Journal journal, std::unique_ptr<Background> disk)
     : bench_(configuration, clock, std::move(functions), std::move(base), std::move(lidar), std::move(server),
@@ -35,7 +26,8 @@ void Loop::wait(int timeout_ms) {
              {bench_.disk->fd(), POLLIN, 0}};  // one that is absent is -1: poll passes it over
   const auto clients = static_cast<std::ptrdiff_t>(polled_.size());
   bench_.outbox.server.watch(polled_);
-  const int most = task_ && task_->moves() ? std::min(timeout_ms, kMovingTimeout) : timeout_ms;
+  const int most =
+      task_ && task_->moves() ? std::min(timeout_ms, service::settings::kMovingTurn_ms) : timeout_ms;
   const int limit = bench_.outbox.server.calls_wait() ? 0 : most;
   bench_.loop.begin(bench_.clock.now(), 1e-3 * limit);
   const bool any = poll(polled_.data(), polled_.size(), limit) > 0;
@@ -47,7 +39,7 @@ void Loop::wait(int timeout_ms) {
 // A counter that reports every millisecond must not make everything else turn as often.
 bool Loop::due(bool woke, double& next) const {
   if (!woke && bench_.now < next) return false;
-  next = bench_.now + kIdleStep;
+  next = bench_.now + service::settings::kIdleStep_s;
   return true;
 }
 
@@ -108,7 +100,8 @@ void Loop::serve_clients() {
   server.step(begin);
   for (const ClientId gone : server.take_gone()) forget(gone);
   if (server.take_stop()) stop_robot({bench_, task_.get()});
-  while (const auto call = bench_.clock.now() - begin < kCallTime ? server.next_call() : std::nullopt)
+  while (const auto call =
+             bench_.clock.now() - begin < service::settings::kCallTime_s ? server.next_call() : std::nullopt)
     if (auto begun = handle_call({bench_, task_.get()}, *call)) task_ = std::move(begun);
   bench_.lease.looked(bench_.now);
 }

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "daemon/service/settings.hpp"
+
 namespace odomcalib {
 namespace {
-
-constexpr double kLongestPlan = 1800.0;  // s; a preview of it takes some 10 ms of the loop
 
 Error forbidden(ErrorCode code, const std::string& what, const std::string& remedy) {
   return {code, what, "motion", remedy};
@@ -29,7 +29,7 @@ std::optional<Error> controller_forbids(const drivers::Controller& controller) {
 std::optional<Error> too_long(const routines::Plan& plan) {
   double duration = 0.0;
   for (const auto& move : plan.moves) duration += routines::expected_duration(move, plan.limits);
-  if (duration <= kLongestPlan) return std::nullopt;
+  if (duration <= service::settings::kLongestPlan_s) return std::nullopt;
   return forbidden(ErrorCode::usage,
                    fmt::format("this would take {:.0f} minutes, 30 are allowed", duration / 60.0),
                    "less distance, fewer turns or repetitions, or faster");

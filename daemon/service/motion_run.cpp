@@ -4,14 +4,10 @@
 #include <array>
 
 #include "daemon/service/dead_reckoning.hpp"
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 namespace {
-
-constexpr double kEnableTimeout = 3.0;  // s
-constexpr double kStanding = 0.6;       // s at rest before and after: several scans without motion
-constexpr double kComeToRest = 0.35;  // s from the last command until a whole scan is one of a robot at rest
-constexpr std::size_t kMostAtRest = 5;  // scans whose mean is taken; more of them hardly add to it
 
 Error protective(const std::string& what) {
   return {ErrorCode::protective_stop, what, "motion", "remove the cause, then start again by hand"};
@@ -42,8 +38,8 @@ MotionRun::MotionRun(Options options, drivers::Controller& controller)
 
 void MotionRun::seen(const Scan& scan) {
   scan_ = scan;
-  if (now_ - moved_at_ < kComeToRest) return;
-  if (at_rest_.size() == kMostAtRest) at_rest_.erase(at_rest_.begin());
+  if (now_ - moved_at_ < service::settings::kComeToRest_s) return;
+  if (at_rest_.size() == service::settings::kMostAtRest) at_rest_.erase(at_rest_.begin());
   at_rest_.push_back(scan);
 }
 
@@ -139,13 +135,13 @@ void MotionRun::advance(const Situation& situation) {
     case Phase::enabling:
       if (controller_.state() == drivers::ControllerState::enabled)
         return enter(Phase::standing, situation.now);
-      if (elapsed > kEnableTimeout)
+      if (elapsed > service::settings::kEnableTimeout_s)
         stop({ErrorCode::device, "the axes were not enabled within 3 s", "controller",
               "see odomcalibctl status"});
       return;
     case Phase::standing:
       command({}, situation.now);
-      if (elapsed < kStanding || ended()) return;
+      if (elapsed < service::settings::kStanding_s || ended()) return;
       start_ = situation.odometry;
       drive_began_ = situation.now;
       return enter(Phase::driving, situation.now);
@@ -153,7 +149,7 @@ void MotionRun::advance(const Situation& situation) {
       return drive(situation);
     case Phase::resting:
       command({}, situation.now);
-      if (elapsed >= kStanding && !ended()) finish(Phase::done);
+      if (elapsed >= service::settings::kStanding_s && !ended()) finish(Phase::done);
       return;
     case Phase::done:
     case Phase::stopped:

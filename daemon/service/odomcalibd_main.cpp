@@ -15,6 +15,7 @@
 #include "daemon/service/lidar_link.hpp"
 #include "daemon/service/quick_stop.hpp"
 #include "daemon/service/service.hpp"
+#include "daemon/service/settings.hpp"
 #include "daemon/service/solver_process.hpp"
 #include "odomcalib_paths.hpp"
 #include "odomcalib_version.hpp"
@@ -22,6 +23,7 @@
 namespace {
 
 using odomcalib::Service;
+namespace settings = odomcalib::service::settings;
 
 volatile sig_atomic_t stop_requested = 0;
 
@@ -40,7 +42,7 @@ class Watchdog {
   Watchdog() { enabled_ = sd_watchdog_enabled(0, &interval_us_) > 0; }
   void turned(double now, const Service& service) {
     if (now < next_) return;
-    next_ = now + (enabled_ ? 0.5e-6 * static_cast<double>(interval_us_) : 1.0);
+    next_ = now + (enabled_ ? 0.5e-6 * static_cast<double>(interval_us_) : settings::kStatusLine_s);
     const std::string text = (enabled_ ? "WATCHDOG=1\nSTATUS=" : "STATUS=") + service.status_line();
     sd_notify(0, text.c_str());
   }
@@ -51,29 +53,25 @@ class Watchdog {
   double next_ = 0.0;
 };
 
-constexpr double kShortestEnd = 0.25;  // s; at rest the axes are off after 0.1
-constexpr double kLongestEnd = 1.5;    // s, until the wheels stand
-constexpr double kLongestWrite = 8.0;  // s, until a write-back has ended; below the unit's TimeoutStopSec
-
 // The controller sends the stop again and takes the torque off before the bus is closed, from motion after
 // the ramp; and it gets all values of a write-back, or its old ones back.
 bool may_end(const Service& service, double elapsed) {
-  if (elapsed < kShortestEnd) return false;
-  if (elapsed < kLongestEnd && !service.drive_off()) return false;
-  return elapsed >= kLongestWrite || !service.writing();
+  if (elapsed < settings::kShortestEnd_s) return false;
+  if (elapsed < settings::kLongestEnd_s && !service.drive_off()) return false;
+  return elapsed >= settings::kLongestWrite_s || !service.writing();
 }
 
 void run(Service& service, const odomcalib::Clock& clock) {
   Watchdog watchdog;
   sd_notify(0, "READY=1");
   while (stop_requested == 0) {
-    service.poll_once(20);
+    service.poll_once(settings::kTurn_ms);
     watchdog.turned(clock.now(), service);
   }
   service.stop_all("the daemon ends");
   sd_notify(0, "STOPPING=1");
   for (const double begin = clock.now(); !may_end(service, clock.now() - begin);) {
-    service.poll_once(5);
+    service.poll_once(settings::kEndingTurn_ms);
     watchdog.turned(clock.now(), service);
   }
 }

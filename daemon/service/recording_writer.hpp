@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "daemon/service/settings.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {
@@ -36,8 +37,8 @@ class RecordingSink {
 
 class RecordingWriter {
  public:
-  static constexpr std::size_t kMostItems = 32768;                  ///< 8 s of a bus at its limit
-  static constexpr std::size_t kMostBytes = std::size_t{32} << 20;  ///< waiting; minutes of a usual robot
+  static constexpr std::size_t kMostItems = service::settings::kMostItems;
+  static constexpr std::size_t kMostBytes = service::settings::kMostWaitingForDisk_bytes;
 
   explicit RecordingWriter(std::unique_ptr<RecordingSink> sink);
   ~RecordingWriter();  ///< waits until everything is written

@@ -21,14 +21,13 @@
 #include <string_view>
 #include <utility>
 
+#include "daemon/service/settings.hpp"
 #include "proto/control/control.hpp"
 
 namespace odomcalib {
 namespace {
 
-constexpr int kAnswers = 3;       // descriptor of the solver: replies as on the control socket
-constexpr int kAskedAgain = 100;  // ms
-constexpr int kLessUrgent = 10;   // niceness: the control loop has the processor first
+constexpr int kAnswers = 3;  // descriptor of the solver: replies as on the control socket
 constexpr rlim_t kMiB = 1U << 20U;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -121,7 +120,7 @@ class Answers {
   /// Whatever came within 0.1 s; false: there is no more.
   bool listen() {
     pollfd one{.fd = fd_, .events = POLLIN, .revents = 0};
-    if (poll(&one, 1, kAskedAgain) <= 0) return true;
+    if (poll(&one, 1, service::settings::kAskedAgain_ms) <= 0) return true;
     std::array<char, 65536> bytes;
     const ssize_t count = read(fd_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) return true;
@@ -166,7 +165,7 @@ std::vector<std::string> arguments_of(const SolverProcess& process,
 
 void limit_own_means(std::uint32_t memory) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  (void)setpriority(PRIO_PROCESS, 0, kLessUrgent);
+  (void)setpriority(PRIO_PROCESS, 0, service::settings::kLessUrgent);
   std::ofstream("/proc/self/oom_score_adj") << 1000;  // where memory is short for all, this one goes first
   const rlim_t bytes = memory * kMiB;
   const rlimit limit{.rlim_cur = bytes, .rlim_max = bytes};

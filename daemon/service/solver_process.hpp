@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "daemon/service/calibrator.hpp"
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 
 struct SolverProcess {
   /// The service's own program, whichever file it was started from.
   std::filesystem::path program = "/proc/self/exe";
-  /// Of its data, MiB. A recording of 157 MB takes 266 MB; the unit's limit leaves the service the rest.
-  std::uint32_t memory = 768;
+  std::uint32_t memory = service::settings::kSolverMemory_MiB;
 };
 
 /// A solver that starts `odomcalibd --solve` and tells what that tells. Each of its progress reports comes at

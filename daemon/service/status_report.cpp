@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "daemon/service/settings.hpp"
 #include "odomcalib_version.hpp"
 
 namespace odomcalib {
@@ -23,13 +24,14 @@ ordered_json view_check(const std::vector<safety::Sector>& blind) {
 }
 
 ordered_json check_disk(const std::filesystem::path& folder) {
-  constexpr std::uintmax_t kMegabyte = 1'000'000, kLeast = 64;
+  constexpr std::uintmax_t kMegabyte = 1'000'000;
   std::error_code error;
   const auto space = std::filesystem::space(folder, error);
   if (error) return check("disk", false, error.message(), "see that " + folder.string() + " is there");
   const std::uintmax_t left = space.available / kMegabyte;
-  return check("disk", left > kLeast,
-               left > kLeast ? "enough space" : "only " + std::to_string(left) + " MB left",
+  return check("disk", left > service::settings::kEnoughSpace_MB,
+               left > service::settings::kEnoughSpace_MB ? "enough space"
+                                                         : "only " + std::to_string(left) + " MB left",
                "remove old recordings");
 }
 

@@ -6,14 +6,11 @@
 #include <algorithm>
 #include <cctype>
 
+#include "daemon/service/settings.hpp"
 #include "drivers/can/candump.hpp"
 
 namespace odomcalib {
 namespace {
-
-constexpr std::uint64_t kLargestRecording = std::uint64_t{512} << 20;
-constexpr std::uint64_t kMostFrameBytes = kLargestRecording / 2;  // of frames: measurements come first
-constexpr std::uintmax_t kLeastSpace = std::uintmax_t{64} << 20;
 
 class LcmOutlet final : public Outlet {
  public:
@@ -39,7 +36,7 @@ std::optional<Error> too_little_space(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, error);
   const auto space = std::filesystem::space(folder, error);
   if (error) return Error{ErrorCode::io, error.message(), folder.string(), "check the state directory"};
-  if (space.available >= kLeastSpace) return std::nullopt;
+  if (space.available >= service::settings::kLeastSpace_bytes) return std::nullopt;
   return Error{ErrorCode::io, "less than 64 MiB free", folder.string(), "remove old recordings"};
 }
 
@@ -57,9 +54,9 @@ Publisher::Publisher(std::string url, std::string prefix, Open open)
 
 void Publisher::serve(double now) {
   if (url_.empty() || outlet_) return;
-  if (!next_try_) next_try_ = now + kRetry;
+  if (!next_try_) next_try_ = now + service::settings::kPublisherRetry_s;
   if (now < *next_try_) return;
-  next_try_ = now + kRetry;
+  next_try_ = now + service::settings::kPublisherRetry_s;
   outlet_ = open_(url_);
 }
 
@@ -103,7 +100,7 @@ void Recorder::push(RecordedItem item) {
   };
   if (current_->problem) return;
   current_->bytes += item.bytes.size();
-  if (current_->bytes > kLargestRecording)
+  if (current_->bytes > service::settings::kLargestRecording_bytes)
     return refuse("recording has reached 512 MiB", "record less at once");
   if (!current_->writer->push(std::move(item)))
     refuse("the disk does not keep up with the recording", "check the disk; record to a faster one");
@@ -114,7 +111,7 @@ void Recorder::write(std::int64_t utime, const std::string& channel, const std::
 }
 
 void Recorder::write_frame(std::int64_t utime, const drivers::CanFrame& frame) {
-  if (!current_ || current_->frame_bytes > kMostFrameBytes) return;
+  if (!current_ || current_->frame_bytes > service::settings::kMostFrames_bytes) return;
   drivers::CanFrame stamped = frame;
   stamped.t = 1e-6 * static_cast<double>(utime);
   std::string line = drivers::candump_line(stamped, "can0") + "\n";

@@ -11,6 +11,7 @@
 
 #include "daemon/service/recording_file.hpp"
 #include "daemon/service/recording_writer.hpp"
+#include "daemon/service/settings.hpp"
 #include "drivers/can/transport.hpp"
 #include "proto/wire/messages.hpp"
 
@@ -35,7 +36,6 @@ std::unique_ptr<Outlet> open_lcm(const std::string& url);
 class Publisher {
  public:
   using Open = std::function<std::unique_ptr<Outlet>(const std::string& url)>;
-  static constexpr double kRetry = 5.0;  ///< s
   /// @param url empty: publish nothing
   Publisher(std::string url, std::string prefix, Open open = open_lcm);
   /// Opens what could not be opened before: at start the network may not be there yet.
@@ -61,7 +61,7 @@ class Recorder {
   using Done = std::function<void(const Result<std::filesystem::path>&)>;
   using MakeSink = std::function<std::unique_ptr<RecordingSink>(const std::filesystem::path&,
                                                                 const std::string& channel_prefix)>;
-  static constexpr std::size_t kMostUnfinished = 4;
+  static constexpr std::size_t kMostUnfinished = service::settings::kMostUnfinished;
 
   Recorder(std::filesystem::path folder, std::string prefix, MakeSink make_sink = recording_file);
   /// Starts a file <name>.lcmlog in the folder; the name gets a number when it exists. Errors: io (too little

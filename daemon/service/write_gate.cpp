@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "daemon/service/settings.hpp"
+
 namespace odomcalib {
 
 Error axes_not_off(const Bench& bench) {
@@ -32,7 +34,8 @@ std::optional<Error> implausible(const ParameterMap& values, const ParameterMap&
     const auto known = present.find(name);
     if (known == present.end())
       return Error{ErrorCode::usage, "unknown parameter \"" + name + "\"", "", "odomcalibctl params get"};
-    const bool plausible = std::isfinite(value) && std::abs(value / known->second - 1.0) <= kPlausible;
+    const bool plausible =
+        std::isfinite(value) && std::abs(value / known->second - 1.0) <= service::settings::kPlausibleLength;
     if (!plausible)
       return Error{ErrorCode::refused,
                    fmt::format("{} = {} m is more than 15 % from {} m", name, value, known->second),

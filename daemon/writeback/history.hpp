@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/writeback/settings.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {
@@ -27,7 +28,7 @@ std::string to_json(const HistoryEntry& entry, bool with_calibration);
 
 class History {
  public:
-  static constexpr std::size_t kKept = 50;
+  static constexpr std::size_t kKept = writeback::settings::kKeptEntries;
 
   /// Reads what is there; entries that cannot be read are left out.
   /// @param folder of the state directory; made on the first entry

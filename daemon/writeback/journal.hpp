@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/writeback/settings.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {
@@ -51,7 +52,7 @@ std::optional<JournalRecord> unfinished_of(const std::optional<JournalRecord>& l
 
 class Journal {
  public:
-  static constexpr std::uintmax_t kRotateAt = std::uintmax_t{1} << 20;
+  static constexpr std::uintmax_t kRotateAt = writeback::settings::kRotateAt_bytes;
 
   /// Reads what is there; a torn last line is dropped. Errors: io.
   static Result<Journal> open(const std::filesystem::path& path);

@@ -5,14 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/writeback/settings.hpp"
+
 namespace odomcalib {
 namespace {
-
-// s: after a reset of the node its rest is known only when counts have come for a while
-constexpr double kWaitForRest = 2.0;
-// s for a controller that is configured anew, on the way back to the old values: boot and configuration take
-// one
-constexpr double kWaitForController = 5.0;
 
 const drivers::StoredParameter* find(const std::vector<drivers::StoredParameter>& stored,
                                      const std::string& name) {
@@ -240,9 +236,9 @@ bool Transaction::controller_there(const drivers::Controller& controller) const 
 }
 
 void Transaction::start_when_at_rest(drivers::Controller& controller, double now) {
-  if (!controller_there(controller) && now - entered_ < kWaitForController) return;
+  if (!controller_there(controller) && now - entered_ < writeback::settings::kWaitForController_s) return;
   const bool needs_rest = kind() != Job::Kind::read;
-  if (needs_rest && !controller.at_rest() && now - entered_ < kWaitForRest) return;
+  if (needs_rest && !controller.at_rest() && now - entered_ < writeback::settings::kWaitForRest_s) return;
   started_ = true;
   if (auto begun = start_job(controller, now); !begun) {
     Job job;

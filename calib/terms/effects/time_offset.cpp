@@ -1,5 +1,6 @@
 #include "calib/terms/effects/factories.hpp"
 #include "calib/terms/effects/step_effect.hpp"
+#include "calib/vehicle/settings.hpp"
 
 namespace odomcalib::calib::terms {
 namespace {
@@ -28,7 +29,7 @@ class TimeOffset final : public StepEffect<TimeOffset> {
   [[nodiscard]] vehicle::ClockPart clock_part() const override { return vehicle::ClockPart::offset; }
   /// A delay next to nothing with a smoothing below zero is what noise of coarse counts makes of the wheels.
   [[nodiscard]] std::string contradiction(std::span<const double> p) const override {
-    const bool is_late = std::abs(p[0]) >= vehicle::kNegligibleShare * parameters().front().scale;
+    const bool is_late = std::abs(p[0]) >= vehicle::settings::kNegligibleShare * parameters().front().scale;
     return !is_late && p[1] < 0.0 ? "a filter does not sharpen" : "";
   }
   [[nodiscard]] double delay(double /*time*/, std::span<const double> parameters) const override {

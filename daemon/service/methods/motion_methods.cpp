@@ -12,6 +12,7 @@
 #include "daemon/service/call_parameters.hpp"
 #include "daemon/service/methods/methods.hpp"
 #include "daemon/service/motion_gate.hpp"
+#include "daemon/service/settings.hpp"
 #include "daemon/service/tasks/motion_task.hpp"
 #include "daemon/service/tasks/recording_task.hpp"
 
@@ -25,42 +26,44 @@ Error out_of_range(const std::string& what) {
 bool within(double value, double least, double most) { return value >= least && value <= most; }
 
 std::optional<Error> wrong_speed(double speed) {
-  if (within(speed, 0.02, 10.0)) return std::nullopt;
+  if (within(speed, service::settings::kLeastSpeed_m_s, service::settings::kMostSpeed_m_s))
+    return std::nullopt;
   return out_of_range("speed is not between 0.02 and 10 m/s");
 }
 
 std::optional<Error> wrong_repeat(int repeat) {
-  if (repeat >= 1 && repeat <= 20) return std::nullopt;
+  if (repeat >= 1 && repeat <= service::settings::kMostRepeats) return std::nullopt;
   return out_of_range("repeat is not between 1 and 20");
 }
 
 std::optional<Error> wrong_straight(const routines::StraightOptions& options) {
-  if (!within(std::abs(options.distance), 0.05, 5.0))
+  if (!within(std::abs(options.distance), service::settings::kLeastDistance_m,
+              service::settings::kMostDistance_m))
     return out_of_range("distance is not between 0.05 and 5 m");
   if (auto wrong = wrong_speed(options.speed)) return wrong;
   return wrong_repeat(options.repeat);
 }
 
 std::optional<Error> wrong_square(const routines::SquareOptions& options) {
-  if (!within(options.side, 0.3, 5.0))
+  if (!within(options.side, service::settings::kLeastSide_m, service::settings::kMostSide_m))
     return out_of_range("the side of the square is not between 0.3 and 5 m");
   if (auto wrong = wrong_speed(options.speed)) return wrong;
   return wrong_repeat(options.repeat);
 }
 
 std::optional<Error> wrong_spin(const routines::SpinOptions& options) {
-  if (!within(options.turns, 0.05, 10.0)) return out_of_range("turns is not between 0.05 and 10");
-  if (!within(options.rate, 0.05, 10.0)) return out_of_range("rate is not between 0.05 and 10 rad/s");
+  if (!within(options.turns, service::settings::kLeastTurns, service::settings::kMostTurns))
+    return out_of_range("turns is not between 0.05 and 10");
+  if (!within(options.rate, service::settings::kLeastRate_rad_s, service::settings::kMostRate_rad_s))
+    return out_of_range("rate is not between 0.05 and 10 rad/s");
   return wrong_repeat(options.repeat);
 }
-
-constexpr std::size_t kMostRecordings = 8;
 
 // "with": file names of this daemon's own recordings; nothing outside its folder is read for a client.
 Result<std::vector<std::filesystem::path>> earlier_recordings(const ordered_json& given,
                                                               const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> paths;
-  if (!given.is_null() && (!given.is_array() || given.size() > kMostRecordings))
+  if (!given.is_null() && (!given.is_array() || given.size() > service::settings::kMostEarlier))
     return out_of_range("\"with\" is no list of recordings");
   for (const auto& name : given) {
     const auto file = std::filesystem::path(name.is_string() ? name.get<std::string>() : "").filename();
@@ -153,7 +156,9 @@ Result<routines::Plan> calibration_plan(const Bench& bench, CallParameters& opti
     return std::move(*plan);
   }
   routines::StraightOptions straight;
-  straight.distance = options.number("distance", std::min(1.0, 0.45 * config.area_length));
+  straight.distance =
+      options.number("distance", std::min(service::settings::kUsualStraight_m,
+                                          service::settings::kStraightShareOfArea * config.area_length));
   straight.speed = options.number("speed", straight.speed);
   straight.repeat = options.whole("repeat", 1);
   routines::SpinOptions spin;
@@ -242,7 +247,8 @@ Reading record(Context& context, const Call& call) {
   const double duration = given.number("duration", 0.0);
   const std::string name = given.text("name", "record");
   if (given.wrong()) return WrongParameter{*given.wrong()};
-  if (!within(duration, 0.0, 3600.0)) return out_of_range("duration is not 0 to 3600 s");
+  if (!within(duration, 0.0, service::settings::kLongestRecord_s))
+    return out_of_range("duration is not 0 to 3600 s");
   auto task = RecordingTask::begin(context.bench, call.caller, name, duration);
   if (!task) return task.error();
   return std::move(task).value();

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+
 #include <tuple>
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 namespace {
@@ -82,7 +84,7 @@ std::optional<Error> Drive::geometry_forbidden() const {
        {"right_wheel_diameter", all.right_wheel_diameter, expected.right_wheel_diameter},
        {"track_width", all.track_width, expected.track_width}}};
   for (const auto& [name, value, wanted] : values)
-    if (wanted > 0.0 && std::abs(value / wanted - 1.0) > kPlausible)
+    if (wanted > 0.0 && std::abs(value / wanted - 1.0) > service::settings::kPlausibleLength)
       return forbidden(ErrorCode::refused,
                        fmt::format("the controller holds {} = {:.4f} m, the configuration says {:.4f} m",
                                    name, value, wanted),

@@ -12,9 +12,6 @@
 
 namespace odomcalib {
 
-/// Share of a length; one that is further from what is known of it is another robot's.
-inline constexpr double kPlausible = 0.15;
-
 std::string name_of(drivers::ControllerState state);
 
 class Drive {

@@ -3,13 +3,10 @@
 #include <cmath>
 
 #include "daemon/service/json_text.hpp"
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 namespace {
-
-constexpr double kRobotPeriod = 10.0;    // s
-constexpr double kStatusPeriod = 1.0;    // s
-constexpr double kProgressPeriod = 0.2;  // s
 
 PoseSample pose_sample(double t, const routines::Pose& pose) {
   return {t, pose.x, pose.y, routines::wrapped(pose.yaw)};
@@ -50,7 +47,7 @@ void Outbox::event(messages::Severity severity, const std::string& code, const s
 void Outbox::progress(const Caller& caller, const std::string& phase, double fraction,
                       std::optional<double> eta) {
   if (now_ < next_progress_) return;
-  next_progress_ = now_ + kProgressPeriod;
+  next_progress_ = now_ + service::settings::kProgressPeriod_s;
   ordered_json body = {{"phase", phase}, {"fraction", fraction}, {"eta", nullptr}, {"hint", nullptr}};
   if (eta) body["eta"] = *eta;
   telemetry.publisher.send("PROGRESS",
@@ -59,13 +56,13 @@ void Outbox::progress(const Caller& caller, const std::string& phase, double fra
 }
 
 void Outbox::send_robot(const RobotDescription& robot) {
-  next_robot_ = now_ + kRobotPeriod;
+  next_robot_ = now_ + service::settings::kRobotPeriod_s;
   const std::int64_t utime = clock_.wall_us();
   telemetry.emit(utime, "ROBOT", messages::encode(utime, robot));
 }
 
 void Outbox::send_status(const ordered_json& status) {
-  next_status_ = now_ + kStatusPeriod;
+  next_status_ = now_ + service::settings::kStatusPeriod_s;
   telemetry.publisher.serve(now_);
   telemetry.publisher.send("STATUS",
                            messages::encode_json(clock_.wall_us(), "odomcalib-status/1", json_text(status)));

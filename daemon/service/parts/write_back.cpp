@@ -1,15 +1,12 @@
 #include "daemon/service/parts/write_back.hpp"
 
 #include <algorithm>
+
 #include <limits>
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 namespace {
-
-constexpr double kReadAgain = 2.0;  // s, after a reading that may have failed
-// s until a recovery may follow on one that failed, each time twice as long. A recovery may store; permanent
-// memory is good for 100 000 stores, at one each ten minutes for two years.
-constexpr double kRecoverAgain = 2.0, kLongestRecoverAgain = 600.0;
 
 bool away(drivers::ControllerState state) {
   return state == drivers::ControllerState::absent || state == drivers::ControllerState::configuring;
@@ -27,7 +24,7 @@ WriteBack::WriteBack(Journal write_journal, const std::filesystem::path& state_d
       transaction(journal_, disk),
       history(state_dir / "history"),
       operator_needed(unfinished()),
-      recovery_pause_(kRecoverAgain) {}
+      recovery_pause_(service::settings::kRecoverAgain_s) {}
 
 std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, bool& values_known,
                                             bool may_begin, double now, std::int64_t wall_us) {
@@ -49,10 +46,10 @@ std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, boo
 void WriteBack::begin_reading(const drivers::Controller& controller, bool values_known, double now) {
   const bool recover = operator_needed && !recovery_tried_ && now >= next_recovery_;
   if (recover ? !controller.at_rest() : values_known) return;
-  next_read_ = now + kReadAgain;
+  next_read_ = now + service::settings::kReadAgain_s;
   if (recover) {
     next_recovery_ = now + recovery_pause_;
-    recovery_pause_ = std::min(2.0 * recovery_pause_, kLongestRecoverAgain);
+    recovery_pause_ = std::min(2.0 * recovery_pause_, service::settings::kLongestRecoverAgain_s);
   }
   (void)(recover ? transaction.recover() : transaction.read());
 }
@@ -69,7 +66,7 @@ void WriteBack::learn(const WriteReport& report) {
   recovery_tried_ = recovery_tried_ || unknown;
   if (report.outcome == WriteOutcome::committed || report.outcome == WriteOutcome::rolled_back) {
     next_recovery_ = 0.0;
-    recovery_pause_ = kRecoverAgain;
+    recovery_pause_ = service::settings::kRecoverAgain_s;
   }
   operator_needed = unknown || (report.outcome == WriteOutcome::read && unfinished());
   if (operator_needed && report.error) problem = report.error->text();

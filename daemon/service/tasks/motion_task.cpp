@@ -4,17 +4,10 @@
 
 #include "daemon/service/leg_report.hpp"
 #include "daemon/service/nudge_report.hpp"
+#include "daemon/service/settings.hpp"
 #include "daemon/service/tasks/solving_task.hpp"
 
 namespace odomcalib {
-namespace {
-
-constexpr double kControlStep = 0.010;   // s
-constexpr double kNoticedPause = 0.050;  // s between control steps that are due every 10 ms
-constexpr double kLongestPause = 0.200;  // s; M1
-
-}  // namespace
-
 Result<std::unique_ptr<Task>> MotionTask::begin(Bench& bench, const Caller& caller, Order order) {
   Outbox& outbox = bench.outbox;
   const auto path = outbox.telemetry.recorder.start(
@@ -78,7 +71,7 @@ TaskTurn MotionTask::daemon_ends(Bench& bench, const Error& why) {
 TaskTurn MotionTask::turn(Bench& bench) {
   if (!run_) return written_.result() ? written(bench, *written_.result()) : TaskTurn(Running{});
   if (bench.now < next_step_) return Running{};
-  next_step_ = bench.now + kControlStep;
+  next_step_ = bench.now + service::settings::kControlStep_s;
   watch_loop(bench);
   if (const auto problem = bench.outbox.telemetry.recorder.problem()) run_->stop(*problem);
   speed_.seen(bench.drive.newest_ticks.t, bench.odometry.pose());
@@ -107,17 +100,18 @@ Situation MotionTask::situation(const Bench& bench) const {
 // what it woke up to is not what it had seen (M12).
 void MotionTask::watch_loop(Bench& bench) {
   const double slept = bench.clock.suspended() - std::exchange(suspended_at_, bench.clock.suspended());
-  if (slept > kLongestPause)
+  if (slept > service::settings::kLongestPause_s)
     return run_->stop({ErrorCode::protective_stop,
                        fmt::format("the machine was suspended for {:.1f} s", slept), "daemon",
                        "look where the robot is, then start again by hand"});
   const double pause = bench.now - std::exchange(stepped_at_, bench.now);
-  if (pause < kNoticedPause) return;
+  if (pause < service::settings::kNoticedPause_s) return;
   const auto& longest = bench.loop.in_motion();
   const std::string text =
       fmt::format("the daemon was held up for {:.0f} ms (in \"{}\")", 1e3 * pause, longest.part);
   ++bench.late_steps;
-  if (pause < kLongestPause) return bench.outbox.event(messages::Severity::warning, "loop_late", text);
+  if (pause < service::settings::kLongestPause_s)
+    return bench.outbox.event(messages::Severity::warning, "loop_late", text);
   run_->stop({ErrorCode::protective_stop, text, "daemon",
               "see \"loop\" in odomcalibctl status --json; relieve the processor"});
 }

@@ -1,15 +1,10 @@
 #include "daemon/service/tasks/write_task.hpp"
 
+#include "daemon/service/settings.hpp"
 #include "daemon/service/status_report.hpp"
 #include "daemon/service/write_gate.hpp"
 
 namespace odomcalib {
-namespace {
-
-constexpr double kComesToRest = 2.0;  // s from the end of a motion until the drive has no torque; takes one
-
-}  // namespace
-
 ordered_json to_json(const RoundingError& error) {
   return {{"length", error.length}, {"heading", error.heading}, {"turn", error.turn}};
 }
@@ -38,7 +33,8 @@ TaskTurn WriteTask::begin_writing(Bench& bench) {
   if (!announced_->id) return Failed{announced_->id.error()};
   if (auto forbidden = write_forbidden(bench)) return Failed{*forbidden};
   if (comes_to_rest(bench))
-    return bench.now - asked_at_ < kComesToRest ? TaskTurn(Running{}) : Failed{axes_not_off(bench)};
+    return bench.now - asked_at_ < service::settings::kComesToRest_s ? TaskTurn(Running{})
+                                                                     : Failed{axes_not_off(bench)};
   const auto begun = bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value());
   if (!begun) return Failed{begun.error()};
   begun_ = true;

@@ -17,7 +17,7 @@ Ld06::Ld06(const LidarOptions& options, double points_per_s)
       finder_(points_per_s),
       clock_(ld06::kClockModulus_ms, 1e-3, options.device_time),
       period_(nominal_period_),
-      sweep_(points_per_s > 5000.0 ? kLongLimits : kLimits) {}
+      sweep_(points_per_s > kLongFrom_hz ? kLongLimits : kLimits) {}
 
 void Ld06::reset() {
   finder_.reset();

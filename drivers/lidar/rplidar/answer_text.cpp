@@ -4,6 +4,7 @@
 
 #include "drivers/lidar/common/hex_text.hpp"
 #include "drivers/lidar/rplidar/commands.hpp"
+#include "drivers/lidar/rplidar/settings.hpp"
 
 namespace odomcalib::drivers::rplidar {
 namespace {
@@ -78,7 +79,7 @@ std::optional<double> told_sample_time(std::uint8_t type, Bytes payload) {
                     static_cast<Setting>(reader.u32()) == Setting::sample_time;
   if (!fits) return std::nullopt;
   const double sample = reader.u32() / 256.0 * 1e-6;
-  return sample > 1e-6 && sample < 1e-2 ? std::optional(sample) : std::nullopt;
+  return sample > kLeastSample_s && sample < kMostSample_s ? std::optional(sample) : std::nullopt;
 }
 
 }  // namespace odomcalib::drivers::rplidar

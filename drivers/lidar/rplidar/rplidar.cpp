@@ -93,7 +93,7 @@ bool Rplidar::believable(double span, unsigned& packets) {
     packets = static_cast<unsigned>(std::lround(span / usual_span_));
     stream_.frames().reject("lost_packets", packets - 1);
   }
-  const bool too_fast = span > fastest || span >= 180.0;
+  const bool too_fast = span > fastest || span >= kMostSpan_deg;
   if (too_fast && !lost) stream_.frames().reject("bad_span");
   if (!too_fast) usual_span_ += (usual_span_ > 0.0 ? kSpanGain : 1.0) * (span - usual_span_);
   return !lost && !too_fast;

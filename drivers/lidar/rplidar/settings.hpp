@@ -27,6 +27,10 @@ inline constexpr std::size_t kMostAnswerBytes = 1024;
 inline constexpr Sweep::Limits kLimits{0.05, 40.0, true};
 /// Hz. Chosen: no model turns so fast.
 inline constexpr double kFastest_hz = 100.0;
+/// Degrees that a capsule may span. Chosen.
+inline constexpr double kMostSpan_deg = 180.0;
+/// s, of a time between samples that is told. Chosen.
+inline constexpr double kLeastSample_s = 1e-6, kMostSample_s = 1e-2;
 /// Times the usual span: a capsule is missing. Derived: half-way between one and two.
 inline constexpr double kLostFactor = 1.5;
 /// Gain of the filter for the usual span. Chosen: the motor's speed drifts over some ten capsules.

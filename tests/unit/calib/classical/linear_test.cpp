@@ -8,6 +8,7 @@
 #include <random>
 
 #include "calib/classical/closed_form.hpp"
+#include "calib/classical/settings.hpp"
 #include "proto/recording/recording.hpp"
 #include "tests/unit/calib/shared_data.hpp"
 
@@ -93,7 +94,7 @@ TEST(Linear, S0_06_S0_16_four_solvers_agree_where_the_condition_allows_and_say_w
   for (const LinearSolver solver : kSolvers) {
     const auto result = solve_linear(poor, solver);
     ASSERT_TRUE(result.ok());
-    ASSERT_GT(result.value().condition, kMostConditionOfNormal);
+    ASSERT_GT(result.value().condition, settings::kMostConditionOfNormal);
     const bool exact = solver == LinearSolver::svd;
     EXPECT_EQ(result.value().solver, exact ? LinearSolver::svd : LinearSolver::qr) << name_of(solver);
   }
