@@ -31,10 +31,10 @@ struct WheelGeometry {
 };
 
 struct Limits {
-  double speed = settings::kCapSpeed_m_s;                            ///< m/s
-  double turn_rate = settings::kCapRate_rad_s;                       ///< rad/s
-  double acceleration = settings::kCapAcceleration_m_s2;             ///< m/s^2
-  double turn_acceleration = settings::kCapTurnAcceleration_rad_s2;  ///< rad/s^2
+  double speed = settings::kCapSpeed_m_s;                     ///< m/s
+  double turn_rate = settings::kCapRate_rad_s;                ///< rad/s
+  double acceleration = settings::kCapAcceleration;           ///< m/s^2
+  double turn_acceleration = settings::kCapTurnAcceleration;  ///< rad/s^2
 };
 
 /// What no configuration can raise (rule M7).

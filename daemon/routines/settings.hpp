@@ -11,7 +11,7 @@ namespace odomcalib::routines::settings {
 /// m/s, rad/s, m/s^2 and rad/s^2 that no configuration can raise (rule M7), and that hold where it says
 /// nothing. Chosen.
 inline constexpr double kCapSpeed_m_s = 0.30, kCapRate_rad_s = 0.6;
-inline constexpr double kCapAcceleration_m_s2 = 0.5, kCapTurnAcceleration_rad_s2 = 1.0;
+inline constexpr double kCapAcceleration = 0.5, kCapTurnAcceleration = 1.0;
 
 // --- Driving a move --------------------------------------------------------------------------------------
 

@@ -143,7 +143,7 @@ PoseGraph town(std::size_t poses) {
   return graph;
 }
 
-void register_graph(const std::string& name, std::shared_ptr<PoseGraph> graph) {
+void register_graph(const std::string& name, const std::shared_ptr<PoseGraph>& graph) {
   if (graph->vertices.empty()) return;
   const auto add = [&name](const std::string& solver, auto body) {
     benchmark::RegisterBenchmark((name + "/" + solver).c_str(), body)
