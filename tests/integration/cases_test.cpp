@@ -137,12 +137,16 @@ TEST_F(Cases, stamps_that_lost_their_last_digits_are_told) {
   EXPECT_THAT(outcome.text, HasSubstr("lost their last digits"));
 }
 
-// Figures of the report that speak against the answer are reasons of the verdict, and the first is that
-// nothing was gained.
-TEST_F(Cases, a_real_drive_after_which_odometry_is_no_better_says_so_first) {
+// Figures of the report that speak against the answer are reasons of the verdict. Of this drive scans come
+// early now and then; taken for lost ones, they made the metre worse than with the nominal values.
+TEST_F(Cases, a_real_drive_after_which_a_metre_is_better_but_off_says_so) {
   const Outcome outcome = solved("../data/mines-rover/exp1.jsonl.gz");
   EXPECT_EQ(outcome.calibration.verdict, Verdict::accepted_with_warnings);
-  EXPECT_THAT(outcome.calibration.reasons.at(0), HasSubstr("straight metre is no better than before"));
+  EXPECT_THAT(outcome.text, HasSubstr("length of a straight metre is still off by 4"));
+  for (const DriveError& error : report_data_of(outcome.calibration).drive_errors) {
+    if (error.name != "straight_metre_length") continue;
+    EXPECT_LT(error.after->value, error.before->value);
+  }
 }
 
 TEST_F(Cases, a_real_drive_after_which_a_full_turn_is_off_says_so) {

@@ -80,6 +80,27 @@ TEST(Gate, warns_of_a_way_that_adds_up_to_more_than_noise) {
       << gate.reasons.front();
 }
 
+TEST(Gate, says_first_that_nothing_was_gained) {
+  Footing footing = kFirm;
+  const auto driven = [&](double before, double after) {
+    footing.drive_errors = {{"straight_metre_length",
+                             "m",
+                             20,
+                             Bounded{before, 0.001, 0.2},
+                             {},
+                             Bounded{after, 0.001, 0.2},
+                             0.030}};
+    return judge(with_track(0.4, 0.0021), footing);
+  };
+  const GateResult gate = driven(0.0468, 0.0472);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 2U);
+  EXPECT_NE(gate.reasons.front().find("straight metre is no better than before"), std::string::npos)
+      << gate.reasons.front();
+  EXPECT_EQ(driven(0.0468, 0.0460).reasons.size(), 1U) << "better";
+  EXPECT_EQ(driven(0.0310, 0.0320).reasons.size(), 1U) << "there was nothing to gain";
+}
+
 TEST(Gate, refuses_what_cannot_be_the_robot) {
   EXPECT_EQ(judge(with_track(0.43, 1e-4), kFirm).verdict, Verdict::accepted);
   EXPECT_EQ(judge(with_track(0.45, 1e-4), kFirm).verdict, Verdict::accepted_with_warnings);
