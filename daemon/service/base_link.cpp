@@ -1,7 +1,9 @@
 #include "daemon/service/base_link.hpp"
+
 #include "daemon/service/settings.hpp"
 
 namespace odomcalib {
+
 BaseLink::BaseLink(std::string device, std::unique_ptr<drivers::Controller> controller)
     : device_(std::move(device)), controller_(std::move(controller)) {}
 

@@ -104,7 +104,7 @@ inline constexpr std::size_t kMostWaitingForDisk_bytes = std::size_t{32} << 20;
 inline constexpr double kLongestPlan_s = 1800.0;
 /// s between control steps. Chosen (rule M2 asks for a command every 20 ms).
 inline constexpr double kControlStep_s = 0.010;
-/// s between control steps that is told as late, and that stops the robot (rule M1). Chosen.
+/// s between control steps that is reported as late, and that stops the robot (rule M1). Chosen.
 inline constexpr double kNoticedPause_s = 0.050, kLongestPause_s = 0.200;
 /// s until the drive has torque. Chosen.
 inline constexpr double kEnableTimeout_s = 3.0;

@@ -7,6 +7,7 @@
 
 #include "drivers/base/canopen/words.hpp"
 #include "drivers/base/cia402/settings.hpp"
+#include "drivers/base/motion/settings.hpp"
 #include "drivers/bytes.hpp"
 
 namespace odomcalib::drivers {
@@ -117,7 +118,7 @@ void DualAxis::on_other_master(const CanFrame& frame) {
   ++other_master_;
   const bool is_client = frame.id == 0x600u + profile_.node, is_nmt = frame.id == 0x000;
   double& last = is_client || is_nmt ? last_other_master_ : last_foreign_data_;
-  const bool first = now_ - last > kOtherMasterAgain_s;
+  const bool first = now_ - last > motion::kOtherMasterAgain_s;
   last = now_;
   const bool stops = motion_.active() && commands_node(frame);
   if (!first && !stops) return;

@@ -11,8 +11,6 @@ inline constexpr double kOwnHeartbeat_s = 0.02;
 inline constexpr int kMissedHeartbeats = 3;
 /// s without process data. Derived: rule M4, counts are at most 100 ms old.
 inline constexpr double kPositionsLive_s = 0.1;
-/// s after which another master is announced again. Chosen: once for a person who reads along.
-inline constexpr double kOtherMasterAgain_s = 10.0;
 
 // Set-up.
 /// s of listening for other masters before the first word. Chosen: two periods of the slowest usual

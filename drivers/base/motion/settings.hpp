@@ -22,6 +22,10 @@ inline constexpr double kEnding_s = 3.0;
 /// Events, ticks or pairs kept when nobody takes them. Chosen: 40 s of ticks at 100 Hz; a bound, not a need.
 inline constexpr std::size_t kMostQueued = 4096;
 
+// Other masters.
+/// s after which another master is announced again. Chosen: once for a person who reads along.
+inline constexpr double kOtherMasterAgain_s = 10.0;
+
 // StuckWatch: counts that stand still although their wheel is commanded.
 /// rad, s, counts commanded before a wheel that has not broken away yet is stuck. Chosen: more than the play
 /// of a gear, and no shorter than a slow drive's ramp.

@@ -11,7 +11,5 @@ inline constexpr double kGreet_s = 0.3;
 inline constexpr double kRest_s = 0.15;
 /// s between two looks at a motion that is not wanted. Derived: the command cycle.
 inline constexpr double kIdle_s = 0.02;
-/// s after which another master is announced again. Chosen: once for a person who reads along.
-inline constexpr double kOtherMasterAgain_s = 10.0;
 
 }  // namespace odomcalib::drivers::speed

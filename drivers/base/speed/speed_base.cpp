@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/base/motion/settings.hpp"
 #include "drivers/base/speed/settings.hpp"
 
 namespace odomcalib::drivers {
@@ -59,7 +60,7 @@ void SpeedBase::take_news() {
 /// Our own frames do not come back (M19).
 void SpeedBase::on_other_master() {
   ++other_master_;
-  const bool first = now_ - last_other_master_ > kOtherMasterAgain_s;
+  const bool first = now_ - last_other_master_ > motion::kOtherMasterAgain_s;
   last_other_master_ = now_;
   if (first || motion_.active())
     event("other_master", "another program commands this controller", motion_.active());
