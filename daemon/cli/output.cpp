@@ -31,15 +31,16 @@ int report_error(const Error& error, JsonMode mode) {
   return exit_status(error.code);
 }
 
+nlohmann::ordered_json to_json(const Error& error) {
+  return {{"code", code_name(error.code)},
+          {"what", error.what},
+          {"where", error.where},
+          {"remedy", error.remedy}};
+}
+
 void print_error_json(const Error& error, JsonMode mode) {
   if (mode == JsonMode::off) return;
-  print_document("error",
-                 {{"error",
-                   {{"code", code_name(error.code)},
-                    {"what", error.what},
-                    {"where", error.where},
-                    {"remedy", error.remedy}}}},
-                 mode);
+  print_document("error", {{"error", to_json(error)}}, mode);
 }
 
 void tell(const std::string& text) { std::cerr << text << '\n'; }

@@ -22,6 +22,9 @@ void print_document(const std::string& name, const nlohmann::ordered_json& body,
 /// @return the exit status that belongs to the error
 int report_error(const Error& error, JsonMode mode);
 
+/// Code, what, where and remedy, as the document "error" and reports have them.
+nlohmann::ordered_json to_json(const Error& error);
+
 /// The object alone, for errors whose text is printed already.
 void print_error_json(const Error& error, JsonMode mode);
 

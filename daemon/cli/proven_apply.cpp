@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/output.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -218,12 +218,7 @@ ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const
 ordered_json to_json(const ProvenApply& applied) {
   ordered_json body = {{"outcome", name_of(applied.end)}, {"before", json_of(applied.before)}};
   body["after"] = applied.after ? json_of(*applied.after) : ordered_json();
-  body["error"] = nullptr;
-  if (const auto& error = applied.error)
-    body["error"] = {{"code", code_name(error->code)},
-                     {"what", error->what},
-                     {"where", error->where},
-                     {"remedy", error->remedy}};
+  body["error"] = applied.error ? to_json(*applied.error) : ordered_json();
   return body;
 }
 
