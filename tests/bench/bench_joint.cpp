@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <random>
 #include <string>
 
 #include "calib/estimation/joint.hpp"
 #include "calib/vehicle/step_context.hpp"
+#include "tests/bench/cpu_time.hpp"
 #include "tests/unit/calib/estimation/driven_wheels.hpp"
 
 namespace {
@@ -38,8 +38,7 @@ wheels::WheelTrack track_of(std::size_t increments) {
     track.t.push_back(t);
     track.left.push_back(9.0 * std::sin(0.29 * t) + 4.0 * std::sin(0.11 * t));
     track.right.push_back(9.0 * std::sin(0.37 * t) + 4.0 * std::sin(0.13 * t + 1.0));
-    // Wheels turn at constant speed within an increment, as Ceres' residual has it.
-    track.segment.push_back(static_cast<int>(k));
+    track.segment.push_back(0);
   }
   return track;
 }
@@ -64,7 +63,6 @@ Drive drive_of(std::size_t increments) {
     drive.pairs.push_back(
         {{track.t[k], track.t[k + 1]}, motion, kNoise * kNoise * Eigen::Matrix3d::Identity()});
   }
-  for (int& segment : drive.track.segment) segment = 0;
   return drive;
 }
 
@@ -100,9 +98,9 @@ Eigen::VectorXd with_ceres(const Drive& drive) {
 
 template <typename Work>
 double milliseconds(const Work& work) {
-  const std::clock_t begin = std::clock();
+  const double begin = odomcalib::bench::cpu_ms();
   work();
-  return 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  return odomcalib::bench::cpu_ms() - begin;
 }
 
 std::string list(const std::vector<double>& values) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <limits>
 #include <string>
@@ -15,6 +14,7 @@
 #include "calib/match.hpp"
 #include "calib/matching/bearing_order.hpp"
 #include "calib/math/se2.hpp"
+#include "tests/bench/cpu_time.hpp"
 #include "tests/bench/pair_matchers.hpp"
 #include "tests/unit/calib/scan_pairs.hpp"
 
@@ -89,8 +89,6 @@ Matcher of_points(Motion (*match)(const Points&, const Points&)) {
     return match(points_of(pair.reference), points_of(pair.scan));
   };
 }
-
-double cpu_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 void measure(const char* name, const char* version, const std::vector<testing::ScanPair>& pairs,
              const Matcher& match) {
