@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "calib/selection/candidate_columns.hpp"
 #include "calib/selection/score.hpp"
@@ -60,6 +62,38 @@ Eigen::Vector2d mean_wave(double begin, double end) {
   return {damping * std::cos(middle), damping * std::sin(middle)};
 }
 
+/// Sums over the measured motions from which the statistic of a wave follows.
+struct WaveSums {
+  Eigen::Vector2d score = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d gram = 1e-12 * Eigen::Matrix2d::Identity();
+
+  /// Chi-squared with two degrees of freedom in noise.
+  [[nodiscard]] double statistic(double variance) const {
+    return score.dot(gram.ldlt().solve(score)) / variance;
+  }
+};
+
+/// Some measured motions, as many as stay in the fastest memory.
+using Few = Eigen::Array<double, 64, 1>;
+
+/// A unit vector for each of some motions, which turns by the same angle from one frequency to the next.
+class Turning {
+ public:
+  Turning(const Few& angle, const Few& step)
+      : cos_(angle.cos()), sin_(angle.sin()), step_cos_(step.cos()), step_sin_(step.sin()) {}
+
+  [[nodiscard]] const Few& cos() const { return cos_; }
+  [[nodiscard]] const Few& sin() const { return sin_; }
+  void turn() {
+    const Few before = cos_;
+    cos_ = before * step_cos_ - sin_ * step_sin_;
+    sin_ = before * step_sin_ + sin_ * step_cos_;
+  }
+
+ private:
+  Few cos_, sin_, step_cos_, step_sin_;
+};
+
 /// What a wave of each frequency would explain.
 class Periodogram {
  public:
@@ -76,22 +110,69 @@ class Periodogram {
   /// Chi-squared with two degrees of freedom in noise.
   /// @param frequency cycles per unit of the covariate
   [[nodiscard]] double statistic(double frequency) const {
-    Eigen::Vector2d score = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d gram = 1e-12 * Eigen::Matrix2d::Identity();
+    WaveSums sums;
     for (std::size_t k = 0; k < score_.size(); ++k) {
       const Eigen::Vector2d wave =
           mean_wave(2.0 * math::kPi * frequency * way_.begin[k], 2.0 * math::kPi * frequency * way_.end[k]);
-      score += score_[k] * wave;
-      gram += weight_[k] * wave * wave.transpose();
+      sums.score += score_[k] * wave;
+      sums.gram += weight_[k] * wave * wave.transpose();
     }
-    return score.dot(gram.ldlt().solve(score)) / variance_;
+    return sums.statistic(variance_);
+  }
+
+  /// The same at evenly spaced frequencies, by turning each motion's wave from one to the next: sines of
+  /// every motion at every frequency would be most of the time of an hour's calibration.
+  [[nodiscard]] std::vector<double> statistics(std::span<const double> frequencies) const {
+    std::vector<WaveSums> sums(frequencies.size());
+    const auto some = static_cast<std::size_t>(Few::RowsAtCompileTime);
+    for (std::size_t first = 0; first < score_.size(); first += some) add(first, frequencies, sums);
+    std::vector<double> out;
+    for (const WaveSums& of_one : sums) out.push_back(of_one.statistic(variance_));
+    return out;
   }
 
  private:
+  void add(std::size_t first, std::span<const double> frequencies, std::span<WaveSums> sums) const {
+    Few begin = Few::Zero(), end = Few::Zero(), weight = Few::Zero(), score = Few::Zero();
+    for (Eigen::Index k = 0; k < Few::RowsAtCompileTime && first < score_.size(); ++k, ++first) {
+      begin(k) = way_.begin[first], end(k) = way_.end[first];
+      weight(k) = weight_[first], score(k) = score_[first];
+    }
+    const double cycle = 2.0 * math::kPi, by = frequencies.size() > 1 ? frequencies[1] - frequencies[0] : 0.0;
+    const Few middle = 0.5 * cycle * (begin + end), half = 0.5 * cycle * (end - begin);
+    Turning at_middle(frequencies[0] * middle, by * middle), at_half(frequencies[0] * half, by * half);
+    for (std::size_t i = 0; i < frequencies.size(); ++i, at_middle.turn(), at_half.turn()) {
+      const Few angle = frequencies[i] * half;
+      const Few damping = (angle.abs() < 1e-6).select(1.0, at_half.sin() / angle);
+      const Few in_phase = damping * at_middle.cos(), in_quadrature = damping * at_middle.sin();
+      const double mixed = (weight * in_phase * in_quadrature).sum();
+      sums[i].score += Eigen::Vector2d((score * in_phase).sum(), (score * in_quadrature).sum());
+      sums[i].gram += Eigen::Matrix2d{{(weight * in_phase.square()).sum(), mixed},
+                                      {mixed, (weight * in_quadrature.square()).sum()}};
+    }
+  }
+
   Rolled way_;
   double variance_;
   std::vector<double> weight_, score_;
 };
+
+std::vector<double> frequencies_between(double low, double high, double by) {
+  std::vector<double> frequencies;
+  for (double f = low; f <= high; f += by) frequencies.push_back(f);
+  return frequencies;
+}
+
+struct Peak {
+  double frequency, statistic;
+};
+
+Peak highest_of(std::span<const double> frequencies, std::span<const double> statistics) {
+  Peak highest{frequencies.front(), 0.0};
+  for (std::size_t k = 0; k < frequencies.size(); ++k)
+    if (statistics[k] > highest.statistic) highest = {frequencies[k], statistics[k]};
+  return highest;
+}
 
 /// Frequency of the wave that stands out of all that a roller may make, between which settings::kRollingStep
 /// cycles lie; its place in between a tenth as far.
@@ -102,18 +183,16 @@ std::optional<double> outstanding(double metre, const Periodogram& periodogram, 
   if (!(step < lowest)) return std::nullopt;
   const double highest =
       std::min(1.0 / (settings::kShortestRolling_m * metre), lowest + settings::kMostRolling * step);
-  const auto best_of = [&](double low, double high, double by) {
-    std::array<double, 2> best{low, 0.0};
-    for (double f = low; f <= high; f += by)
-      if (const double s = periodogram.statistic(f); s > best[1]) best = {f, s};
-    return best;
-  };
-  const double coarse = best_of(lowest, highest, step)[0];
-  const auto [frequency, statistic] =
-      best_of(coarse - step, coarse + step, settings::kFineRollingStep * step);
+  const std::vector<double> all = frequencies_between(lowest, highest, step);
+  const double coarse = highest_of(all, periodogram.statistics(all)).frequency;
+  const std::vector<double> close =
+      frequencies_between(coarse - step, coarse + step, settings::kFineRollingStep * step);
+  std::vector<double> statistics;
+  for (const double frequency : close) statistics.push_back(periodogram.statistic(frequency));
+  const Peak peak = highest_of(close, statistics);
   const double tried = settings::kTriedPerRollingStep * (highest - lowest) / step;
-  return chi_squared_tail(statistic, 2) * tried < settings::kDecisivePeak ? std::optional(frequency)
-                                                                          : std::nullopt;
+  return chi_squared_tail(peak.statistic, 2) * tried < settings::kDecisivePeak ? std::optional(peak.frequency)
+                                                                               : std::nullopt;
 }
 
 /// Once round with each turn of a wheel has a name; it competes with the wave.
