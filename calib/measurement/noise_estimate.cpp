@@ -15,27 +15,69 @@ struct Observation {
   std::span<const SensorPair> pairs;
   std::span<const PairState> states;
   std::vector<Eigen::Vector3d> residuals;  ///< in room axes
-  std::vector<Eigen::Matrix3d> matcher;    ///< covariance the matcher states, in room axes
-  std::vector<Eigen::Matrix3d> jitter;     ///< what a stamp error of 1 s would add
 };
+
+/// Symmetric matrices, one a row: xx, xy, yy, x yaw, y yaw, yaw yaw.
+using Matrices = Eigen::Array<double, Eigen::Dynamic, 6>;
+
+/// The same by columns, so that many pairs are judged at a time.
+struct Columns {
+  Eigen::Array<double, Eigen::Dynamic, 3> residuals;
+  Matrices matcher;  ///< covariance the matcher states, in room axes
+  Matrices jitter;   ///< what a stamp error of 1 s would add
+};
+
+void set_row(Matrices& matrices, Eigen::Index row, const Eigen::Matrix3d& m) {
+  matrices.row(row) << m(0, 0), m(1, 0), m(1, 1), m(2, 0), m(2, 1), m(2, 2);
+}
+
+Columns columns_of(const Observation& o) {
+  const auto count = static_cast<Eigen::Index>(o.pairs.size());
+  Columns columns{decltype(Columns::residuals)(count, 3), Matrices(count, 6), Matrices(count, 6)};
+  const NoiseModel matcher_only;
+  NoiseModel one_second;
+  one_second.matcher_scale = 0.0;
+  one_second.stamp_jitter = 1.0;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto pair = static_cast<std::size_t>(k);
+    columns.residuals.row(k) = o.residuals[pair].transpose();
+    set_row(columns.matcher, k, base_covariance(o.pairs[pair], o.states[pair], matcher_only));
+    set_row(columns.jitter, k, full_covariance(o.pairs[pair], o.states[pair], one_second));
+  }
+  return columns;
+}
+
+/// Some pairs, as many as stay in the fastest memory.
+constexpr Eigen::Index kFew = 64;
+using Few = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kFew, 1>;
 
 /// -2 log likelihood of independent t-distributed pairs; neighbours' correlation does not matter for the
 /// scale.
-double misfit(const Observation& o, const NoiseModel& noise) {
+/// By the pivots of each pair's covariance (Golub and Van Loan, Matrix Computations, 4.1: L D L^T).
+double misfit(const Columns& o, const NoiseModel& noise) {
   const double matcher = noise.matcher_scale * noise.matcher_scale;
   const double jitter = noise.stamp_jitter * noise.stamp_jitter;
   const double translation = noise.process_translation * noise.process_translation;
-  const Eigen::Vector3d process(translation, translation, noise.process_rotation * noise.process_rotation);
+  const double rotation = noise.process_rotation * noise.process_rotation;
   double sum = 0.0;
-  for (std::size_t k = 0; k < o.pairs.size(); ++k) {
-    Eigen::Matrix3d covariance = matcher * o.matcher[k] + jitter * o.jitter[k];
-    covariance.diagonal() += process;
-    const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
-    const Eigen::Vector3d z = llt.matrixL().solve(o.residuals[k]);
-    double log_determinant = 0.0;
-    for (Eigen::Index i = 0; i < 3; ++i) log_determinant += 2.0 * std::log(llt.matrixLLT()(i, i));
-    sum += log_determinant +
-           (kStudentDof + 3.0) * std::log1p(kStudentConsistency * z.squaredNorm() / kStudentDof);
+  for (Eigen::Index first = 0; first < o.residuals.rows(); first += kFew) {
+    const Eigen::Index count = std::min(kFew, o.residuals.rows() - first);
+    const auto covariance = [&](Eigen::Index entry) {
+      return matcher * o.matcher.col(entry).segment(first, count) +
+             jitter * o.jitter.col(entry).segment(first, count);
+    };
+    const auto residual = [&](Eigen::Index axis) { return o.residuals.col(axis).segment(first, count); };
+    const Few pivot_x = covariance(0) + translation;
+    const Few y_on_x = covariance(1) / pivot_x, yaw_on_x = covariance(3) / pivot_x;
+    const Few pivot_y = covariance(2) + translation - y_on_x.square() * pivot_x;
+    const Few yaw_on_y = (covariance(4) - yaw_on_x * y_on_x * pivot_x) / pivot_y;
+    const Few pivot_yaw =
+        covariance(5) + rotation - yaw_on_x.square() * pivot_x - yaw_on_y.square() * pivot_y;
+    const Few y = residual(1) - y_on_x * residual(0);
+    const Few yaw = residual(2) - yaw_on_x * residual(0) - yaw_on_y * y;
+    const Few squared = residual(0).square() / pivot_x + y.square() / pivot_y + yaw.square() / pivot_yaw;
+    sum += (pivot_x * pivot_y * pivot_yaw).log().sum() +
+           (kStudentDof + 3.0) * (1.0 + kStudentConsistency / kStudentDof * squared).log().sum();
   }
   return sum;
 }
@@ -53,7 +95,7 @@ constexpr std::array<Range, 4> kRanges = {
      {&NoiseModel::matcher_scale, settings::kLeastMatcherScale, settings::kMostMatcherScale, false}}};
 
 /// Golden-section search on the logarithm, and zero where that is as good.
-void improve(const Observation& o, const Range& range, NoiseModel& noise) {
+void improve(const Columns& o, const Range& range, NoiseModel& noise) {
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
   double a = std::log(range.low);
   double b = std::log(range.high);
@@ -144,16 +186,8 @@ void begin_at_spread(const Observation& o, NoiseModel& noise) {
 
 Observation observe(std::span<const SensorPair> pairs, std::span<const PairState> states,
                     std::span<const Eigen::Vector3d> residuals) {
-  Observation o{pairs, states, {}, {}, {}};
-  NoiseModel matcher_only;
-  NoiseModel one_second;
-  one_second.matcher_scale = 0.0;
-  one_second.stamp_jitter = 1.0;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    o.residuals.push_back(to_room(residuals[k], states[k]));
-    o.matcher.push_back(base_covariance(pairs[k], states[k], matcher_only));
-    o.jitter.push_back(full_covariance(pairs[k], states[k], one_second));
-  }
+  Observation o{pairs, states, {}};
+  for (std::size_t k = 0; k < pairs.size(); ++k) o.residuals.push_back(to_room(residuals[k], states[k]));
   return o;
 }
 
@@ -165,8 +199,9 @@ NoiseModel estimate_noise(std::span<const SensorPair> pairs, std::span<const Pai
   NoiseModel noise = start;
   if (pairs.empty()) return noise;
   begin_at_spread(o, noise);
+  const Columns columns = columns_of(o);
   for (int sweep = 0; sweep < settings::kNoiseSweeps; ++sweep)
-    for (const Range& range : kRanges) improve(o, range, noise);
+    for (const Range& range : kRanges) improve(columns, range, noise);
   noise.correlation = neighbour_correlation(o, noise);
   return noise;
 }
