@@ -46,8 +46,8 @@ bool belongs_to_one_recording(const vehicle::Effect& effect) {
 }
 
 void add_smooths(std::span<const vehicle::DriveModel* const> models, std::vector<Candidate>& candidates) {
-  for (const terms::SmoothTerm& smooth : terms::candidate_smooths(models))
-    candidates.push_back(candidate_of(as_of_the_drive(smooth, models)));
+  for (const terms::SmoothTerm& smooth : as_of_the_drive(terms::candidate_smooths(models), models))
+    candidates.push_back(candidate_of(smooth));
 }
 
 std::vector<vehicle::Dependence> dependences_of(const Candidate& candidate) {

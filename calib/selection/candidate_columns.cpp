@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "calib/estimation/stack.hpp"
@@ -47,7 +48,8 @@ class Tried {
     responses_ = sensitivity_.by_steps({std::make_shared<Defects>()}, std::vector<double>(kChannels, 0.0));
   }
 
-  [[nodiscard]] Eigen::MatrixXd by_smooth(const terms::SmoothTerm& smooth) const {
+  /// Functions stay for the next smooth term, which often differs in its channel only.
+  [[nodiscard]] Eigen::MatrixXd by_smooth(const terms::SmoothTerm& smooth) {
     const std::span<const vehicle::Channel> channels = acts_on(smooth);
     Eigen::MatrixXd sum = by_part(smooth, channels.front(), 0);
     for (std::size_t part = 1; part < channels.size(); ++part) sum += by_part(smooth, channels[part], part);
@@ -60,16 +62,27 @@ class Tried {
 
  private:
   [[nodiscard]] Eigen::MatrixXd by_part(const terms::SmoothTerm& smooth, vehicle::Channel channel,
-                                        std::size_t part) const {
+                                        std::size_t part) {
+    if (part > 0 || !seen_ || !differ_in_channel_only(*seen_, smooth)) take_functions(smooth, part);
+    // What the sensor's yaw does grows by differences, which no mean changes.
+    Eigen::RowVectorXd mean;
+    if (!is_sway(smooth))
+      mean = Eigen::Map<const Eigen::RowVectorXd>(smooth.mean.data(),
+                                                  static_cast<Eigen::Index>(smooth.mean.size()));
+    return responses_[static_cast<std::size_t>(channel)].by_coefficients(functions_, mean);
+  }
+
+  void take_functions(const terms::SmoothTerm& smooth, std::size_t part) {
+    seen_ = smooth;
+    seen_->mean.clear();
     const auto steps = static_cast<Eigen::Index>(model_.context().size());
-    Eigen::MatrixXd functions(steps, static_cast<Eigen::Index>(function_count(smooth)));
+    functions_.resize(steps, static_cast<Eigen::Index>(function_count(smooth)));
     for (Eigen::Index k = 0; k < steps; ++k) {
       const terms::BasisValues values =
-          functions_in(smooth, model_.context()[static_cast<std::size_t>(k)], part);
-      for (Eigen::Index j = 0; j < functions.cols(); ++j)
-        functions(k, j) = values[static_cast<std::size_t>(j)];
+          functions_in(*seen_, model_.context()[static_cast<std::size_t>(k)], part);
+      for (Eigen::Index j = 0; j < functions_.cols(); ++j)
+        functions_(k, j) = values[static_cast<std::size_t>(j)];
     }
-    return responses_[static_cast<std::size_t>(channel)].by_coefficients(functions);
   }
 
   [[nodiscard]] Eigen::MatrixXd whitened(Eigen::MatrixXd rows) const {
@@ -82,6 +95,8 @@ class Tried {
   vehicle::Sensitivity sensitivity_;
   std::vector<vehicle::StepResponse> responses_;  ///< one per channel
   measurement::Whitener whitener_;
+  std::optional<terms::SmoothTerm> seen_;  ///< whose functions these are, without a mean
+  Eigen::MatrixXd functions_;              ///< tick intervals x functions
 };
 
 using AllTried = std::vector<std::unique_ptr<Tried>>;
@@ -97,8 +112,7 @@ AllTried try_along(std::span<const measurement::FitData> data, const vehicle::Ef
 }
 
 /// Rows of all recordings below each other.
-Eigen::MatrixXd stacked(const AllTried& recordings,
-                        const std::function<Eigen::MatrixXd(const Tried&)>& make) {
+Eigen::MatrixXd stacked(const AllTried& recordings, const std::function<Eigen::MatrixXd(Tried&)>& make) {
   std::vector<Eigen::MatrixXd> parts;
   Eigen::Index rows = 0;
   for (const auto& recording : recordings) {
@@ -134,7 +148,7 @@ void visit_names(const AllTried& recordings, const std::vector<Candidate>& candi
        sweep = sweep_from(candidates, sweep.back() + 1)) {
     vehicle::EffectList effects;
     for (const std::size_t k : sweep) effects.push_back(candidates[k].effect);
-    const Eigen::MatrixXd all = stacked(recordings, [&](const Tried& t) { return t.by_effects(effects); });
+    const Eigen::MatrixXd all = stacked(recordings, [&](Tried& t) { return t.by_effects(effects); });
     Eigen::Index first = 0;
     for (const std::size_t k : sweep) {
       const auto size = static_cast<Eigen::Index>(candidates[k].effect->parameters().size());
@@ -155,7 +169,7 @@ void for_each_candidate(std::span<const measurement::FitData> data, const vehicl
   for (const auto& recording : recordings) recording->prepare_smooth_terms();
   for (std::size_t k = 0; k < candidates.size(); ++k)
     if (const auto& smooth = candidates[k].smooth)
-      visit(k, stacked(recordings, [&](const Tried& t) { return t.by_smooth(*smooth); }));
+      visit(k, stacked(recordings, [&](Tried& t) { return t.by_smooth(*smooth); }));
 }
 
 std::vector<Eigen::MatrixXd> candidate_columns(std::span<const measurement::FitData> data,

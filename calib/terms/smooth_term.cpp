@@ -41,6 +41,11 @@ BasisValues growth(const SmoothTerm& smooth, const vehicle::StepContext& c) {
   return after;
 }
 
+bool looks_at_channel(const SmoothTerm& smooth) {
+  return basis_as<SpeedHats>(smooth) || basis_as<ChangePoint>(smooth) || basis_as<TurnPath>(smooth) ||
+         is_sway(smooth) || acts_on(smooth).size() > 1;
+}
+
 }  // namespace
 
 SmoothTerm on_basis(SmoothTerm smooth, Basis basis) {
@@ -84,6 +89,15 @@ BasisValues functions_in(const SmoothTerm& smooth, const vehicle::StepContext& c
 
 std::size_t function_count(const SmoothTerm& smooth) {
   return functions_of(smooth, vehicle::StepContext{}).size();
+}
+
+bool differ_in_channel_only(const SmoothTerm& a, const SmoothTerm& b) {
+  if (looks_at_channel(a) || looks_at_channel(b)) return false;
+  SmoothTerm other = b;
+  other.dependence.channel = a.dependence.channel;
+  other.mean = a.mean;
+  other.strong = a.strong;
+  return a == other;
 }
 
 bool is_sway(const SmoothTerm& smooth) { return basis_as<Sway>(smooth) != nullptr; }

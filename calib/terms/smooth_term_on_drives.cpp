@@ -49,6 +49,80 @@ void for_each_value(const SmoothTerm& smooth, std::span<const double> coefficien
   });
 }
 
+/// Of what belongs to the place or the day.
+bool has_mean(const SmoothTerm& smooth) {
+  const bool ends_as_it_is = is_bump(smooth) || basis_as<Decay>(smooth);
+  const auto* waves = basis_as<Harmonics>(smooth);
+  const bool has_constant = waves && waves->constant;
+  return belongs_to_the_place(smooth.dependence.covariate) && !has_constant && !ends_as_it_is;
+}
+
+/// Means of a smooth term's functions over the motion of its channels.
+class Means {
+ public:
+  explicit Means(std::size_t functions) : sum_(functions, 0.0), total_(functions, 1e-12) {}
+
+  void add(const SmoothTerm& smooth, const BasisValues& functions, std::size_t part, double weight) {
+    for (std::size_t k = 0; k < sum_.size(); ++k) {
+      sum_[k] += weight * functions[k];
+      if (belongs_to(smooth, k, part)) total_[k] += weight;
+    }
+  }
+  [[nodiscard]] std::vector<double> values() const {
+    std::vector<double> means = sum_;
+    for (std::size_t k = 0; k < means.size(); ++k) means[k] /= total_[k];
+    return means;
+  }
+
+ private:
+  std::vector<double> sum_, total_;
+};
+
+/// How many from the first on have the same functions.
+std::size_t count_alike(std::span<const SmoothTerm> smooths) {
+  std::size_t count = 1;
+  while (count < smooths.size() && differ_in_channel_only(smooths.front(), smooths[count])) ++count;
+  return count;
+}
+
+/// @param alike smooth terms with the same functions
+void add_interval(std::span<const SmoothTerm> alike, const vehicle::StepContext& c, std::span<Means> means) {
+  for (std::size_t part = 0; part < acts_on(alike.front()).size(); ++part) {
+    const BasisValues functions = functions_of(alike.front(), c, part);
+    for (std::size_t k = 0; k < alike.size(); ++k)
+      means[k].add(alike[k], functions, part, amount(acts_on(alike[k])[part], c));
+  }
+}
+
+/// Smooth terms about their means, some intervals of all of them at a time: an hour's intervals are more than
+/// fast memory holds, and its smooth terms are hundreds.
+std::vector<SmoothTerm> all_centred(std::vector<SmoothTerm> smooths,
+                                    std::span<const vehicle::DriveModel* const> models) {
+  constexpr std::size_t kIntervals = 16;
+  std::vector<Means> means;
+  std::vector<std::size_t> alike;
+  for (SmoothTerm& smooth : smooths) {
+    smooth.mean.clear();
+    means.emplace_back(function_count(smooth));
+  }
+  for (std::size_t k = 0; k < smooths.size(); k += alike.back())
+    alike.push_back(count_alike(std::span<const SmoothTerm>(smooths).subspan(k)));
+  for (const vehicle::DriveModel* model : models) {
+    const std::span<const vehicle::StepContext> context = model->context();
+    for (std::size_t begin = 0; begin < context.size(); begin += kIntervals) {
+      std::size_t first = 0;
+      for (const std::size_t count : alike) {
+        for (const auto& c : context.subspan(begin, std::min(kIntervals, context.size() - begin)))
+          add_interval(std::span<const SmoothTerm>(smooths).subspan(first, count), c,
+                       std::span<Means>(means).subspan(first, count));
+        first += count;
+      }
+    }
+  }
+  for (std::size_t k = 0; k < smooths.size(); ++k) smooths[k].mean = means[k].values();
+  return smooths;
+}
+
 }  // namespace
 
 std::pair<double, double> range_of(vehicle::Covariate covariate,
@@ -84,28 +158,24 @@ bool may_be_centred(const SmoothTerm& smooth) {
   return !is_bump(smooth) && signed_counterpart(smooth.dependence.channel) == smooth.dependence.channel;
 }
 
-SmoothTerm as_of_the_drive(SmoothTerm smooth, std::span<const vehicle::DriveModel* const> models) {
-  const bool ends_as_it_is = is_bump(smooth) || basis_as<Decay>(smooth);
-  const auto* waves = basis_as<Harmonics>(smooth);
-  const bool has_constant = waves && waves->constant;
-  const bool has_mean = belongs_to_the_place(smooth.dependence.covariate) && !has_constant && !ends_as_it_is;
-  return has_mean ? centred(std::move(smooth), models) : smooth;
+SmoothTerm centred(SmoothTerm smooth, std::span<const vehicle::DriveModel* const> models) {
+  return all_centred({std::move(smooth)}, models).front();
 }
 
-SmoothTerm centred(SmoothTerm smooth, std::span<const vehicle::DriveModel* const> models) {
-  std::vector<double> sum(function_count(smooth), 0.0), total(sum.size(), 1e-12);
-  smooth.mean.clear();
-  for (const vehicle::DriveModel* model : models)
-    for (const vehicle::StepContext& c : model->context())
-      for_each_part(smooth, c, [&](std::size_t part, const BasisValues& functions, double weight) {
-        for (std::size_t k = 0; k < sum.size(); ++k) {
-          sum[k] += weight * functions[k];
-          if (belongs_to(smooth, k, part)) total[k] += weight;
-        }
-      });
-  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] /= total[k];
-  smooth.mean = std::move(sum);
-  return smooth;
+SmoothTerm as_of_the_drive(SmoothTerm smooth, std::span<const vehicle::DriveModel* const> models) {
+  return has_mean(smooth) ? centred(std::move(smooth), models) : smooth;
+}
+
+std::vector<SmoothTerm> as_of_the_drive(std::vector<SmoothTerm> smooths,
+                                        std::span<const vehicle::DriveModel* const> models) {
+  std::vector<SmoothTerm> with_mean;
+  for (const SmoothTerm& smooth : smooths)
+    if (has_mean(smooth)) with_mean.push_back(smooth);
+  with_mean = all_centred(std::move(with_mean), models);
+  auto next = with_mean.begin();
+  for (SmoothTerm& smooth : smooths)
+    if (has_mean(smooth)) smooth = std::move(*next++);
+  return smooths;
 }
 
 double spread_of(const SmoothTerm& smooth, std::span<const double> coefficients,

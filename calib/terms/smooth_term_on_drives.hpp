@@ -3,6 +3,7 @@
 
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "calib/terms/smooth_term.hpp"
 #include "calib/vehicle/drive_model.hpp"
@@ -26,6 +27,9 @@ SmoothTerm centred(SmoothTerm smooth, std::span<const vehicle::DriveModel* const
 /// Odometry does without what belongs to the place or the day: then the base must be that of the whole drive.
 /// A sensor that was moved is where it is, a lidar that warmed up is warm.
 SmoothTerm as_of_the_drive(SmoothTerm smooth, std::span<const vehicle::DriveModel* const> models);
+/// Many of them in one pass over the drives.
+std::vector<SmoothTerm> as_of_the_drive(std::vector<SmoothTerm> smooths,
+                                        std::span<const vehicle::DriveModel* const> models);
 
 /// Root mean square of the smooth term over the motion of its channel in these drives.
 double spread_of(const SmoothTerm& smooth, std::span<const double> coefficients,

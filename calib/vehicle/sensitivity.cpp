@@ -194,11 +194,14 @@ std::vector<StepResponse> Sensitivity::by_steps(const EffectList& effects,
   return responses;
 }
 
-Eigen::MatrixXd StepResponse::by_coefficients(const Eigen::MatrixXd& functions) const {
-  Eigen::MatrixXd all(static_cast<Eigen::Index>(3 * rows_.size()), functions.cols());
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-    all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() =
-        rows_[i].lazyProduct(functions.middleRows(static_cast<Eigen::Index>(first_[i]), rows_[i].cols()));
+Eigen::MatrixXd StepResponse::by_coefficients(const Eigen::MatrixXd& functions,
+                                              const Eigen::RowVectorXd& mean) const {
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(3 * rows_.size()), functions.cols()), of_motion;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    of_motion = functions.middleRows(static_cast<Eigen::Index>(first_[i]), rows_[i].cols());
+    if (mean.size() > 0) of_motion.rowwise() -= mean;
+    all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() = rows_[i].lazyProduct(of_motion);
+  }
   return all;
 }
 

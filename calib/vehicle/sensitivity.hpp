@@ -20,8 +20,10 @@ class StepResponse {
 
   /// Derivatives of the motions by coefficients of functions that the parameter is the sum of.
   /// @param functions tick intervals x coefficients
+  /// @param mean of each function, which is subtracted; empty: zero
   /// @return 3 n x coefficients
-  [[nodiscard]] Eigen::MatrixXd by_coefficients(const Eigen::MatrixXd& functions) const;
+  [[nodiscard]] Eigen::MatrixXd by_coefficients(const Eigen::MatrixXd& functions,
+                                                const Eigen::RowVectorXd& mean = {}) const;
 
  private:
   std::vector<std::size_t> first_;
