@@ -77,9 +77,11 @@ class Tried {
     seen_->mean.clear();
     const auto steps = static_cast<Eigen::Index>(model_.context().size());
     functions_.resize(steps, static_cast<Eigen::Index>(function_count(smooth)));
+    const auto& context = model_.context();
     for (Eigen::Index k = 0; k < steps; ++k) {
-      const terms::BasisValues values =
-          functions_in(*seen_, model_.context()[static_cast<std::size_t>(k)], part);
+      constexpr Eigen::Index kAhead = 16;
+      __builtin_prefetch(&context[static_cast<std::size_t>(std::min(k + kAhead, steps - 1))]);
+      const terms::BasisValues values = functions_in(*seen_, context[static_cast<std::size_t>(k)], part);
       for (Eigen::Index j = 0; j < functions_.cols(); ++j)
         functions_(k, j) = values[static_cast<std::size_t>(j)];
     }

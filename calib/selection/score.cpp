@@ -67,26 +67,57 @@ Eigen::MatrixXd block_scores(const Eigen::MatrixXd& basis, const Eigen::VectorXd
   return scores;
 }
 
+/// One draw of signs a column.
+Eigen::MatrixXd draws_of_signs(Eigen::Index blocks) {
+  std::mt19937 engine(kSeed);
+  Eigen::MatrixXd signs(blocks, settings::kSignDraws);
+  for (Eigen::Index draw = 0; draw < signs.cols(); ++draw)
+    for (Eigen::Index b = 0; b < blocks; ++b) signs(b, draw) = (engine() & 1U) != 0U ? 1.0 : -1.0;
+  return signs;
+}
+
+/// Scores of candidates of equal degrees below each other, and the largest statistic of each draw among those
+/// before them. Many at a time, since a product with a matrix costs a fraction of one with each vector.
+class EqualDegrees {
+ public:
+  explicit EqualDegrees(Eigen::Index degrees) : degrees_(degrees) {}
+
+  void add(const Eigen::MatrixXd& scores, const Eigen::MatrixXd& signs) {
+    if (scores_.rows() == 0) scores_.resize(kTogether * degrees_, signs.rows());
+    scores_.middleRows(degrees_ * waiting_, degrees_) = scores;
+    if (++waiting_ == kTogether) judge(signs);
+  }
+  void judge(const Eigen::MatrixXd& signs) {
+    if (best_.size() == 0) best_ = Eigen::RowVectorXd::Zero(signs.cols());
+    const Eigen::MatrixXd sums = scores_.topRows(degrees_ * waiting_) * signs;
+    for (Eigen::Index k = 0; k < waiting_; ++k)
+      best_ = best_.cwiseMax(sums.middleRows(degrees_ * k, degrees_).colwise().squaredNorm());
+    waiting_ = 0;
+  }
+  /// Squared sum of scores of each draw.
+  [[nodiscard]] const Eigen::RowVectorXd& best() const { return best_; }
+
+ private:
+  static constexpr Eigen::Index kTogether = 64;
+  Eigen::Index degrees_, waiting_ = 0;
+  Eigen::MatrixXd scores_;
+  Eigen::RowVectorXd best_;
+};
+
 /// The largest significance over all candidates of each draw of signs. Candidates of equal degrees are
 /// compared by their statistic, which spares most of the tail probabilities.
 std::vector<double> largest_of_draws(const std::vector<Eigen::MatrixXd>& scores, double variance) {
-  std::mt19937 engine(kSeed);
-  std::vector<double> largest;
-  largest.reserve(settings::kSignDraws);
-  const Eigen::Index blocks = scores.empty() ? 0 : scores.front().cols();
-  Eigen::VectorXd signs(blocks);
-  for (int draw = 0; draw < settings::kSignDraws; ++draw) {
-    for (Eigen::Index b = 0; b < blocks; ++b) signs(b) = (engine() & 1U) != 0U ? 1.0 : -1.0;
-    std::map<Eigen::Index, double> best_of_degrees;
-    for (const Eigen::MatrixXd& s : scores) {
-      double& best = best_of_degrees[s.rows()];
-      best = std::max(best, (s * signs).squaredNorm() / variance);
-    }
-    double best = 0.0;
-    for (const auto& [degrees, statistic] : best_of_degrees)
-      if (degrees > 0) best = std::max(best, significance(statistic, degrees));
-    largest.push_back(best);
-  }
+  const Eigen::MatrixXd signs = draws_of_signs(scores.empty() ? 0 : scores.front().cols());
+  std::map<Eigen::Index, EqualDegrees> by_degrees;
+  for (const Eigen::MatrixXd& s : scores)
+    if (s.rows() > 0) by_degrees.try_emplace(s.rows(), s.rows()).first->second.add(s, signs);
+  for (auto& [degrees, candidates] : by_degrees) candidates.judge(signs);
+  std::vector<double> largest(settings::kSignDraws, 0.0);
+  for (std::size_t draw = 0; draw < largest.size(); ++draw)
+    for (const auto& [degrees, candidates] : by_degrees)
+      largest[draw] =
+          std::max(largest[draw],
+                   significance(candidates.best()(static_cast<Eigen::Index>(draw)) / variance, degrees));
   std::sort(largest.begin(), largest.end());
   return largest;
 }

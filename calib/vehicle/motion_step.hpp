@@ -83,9 +83,14 @@ inline constexpr std::size_t kWindings = 2;
 
 /// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
 /// are smoothed, since differences of raw ticks are mostly quantisation noise.
-struct StepContext {
-  double t = 0.0;   ///< middle of the interval, s after the recording's first sample
-  double dt = 0.0;  ///< s
+/// What waves of the place and the day depend on comes first, in one line of memory: thousands are tried.
+struct alignas(64) StepContext {
+  double t = 0.0;        ///< middle of the interval, s after the recording's first sample
+  double dt = 0.0;       ///< s
+  double heading = 0.0;  ///< rad, from the plain model
+  double heading_cosine = 1.0, heading_sine = 0.0;           ///< more than a thousand waves need them
+  double x = 0.0, y = 0.0;                                   ///< m, from the plain model
+  double distance = 0.0;                                     ///< way so far, forward and backward alike, m
   double left_angle = 0.0, right_angle = 0.0;                ///< cumulative wheel angle, rad
   double left_delta = 0.0, right_delta = 0.0;                ///< wheel rotation in the interval, rad
   double left_speed = 0.0, right_speed = 0.0;                ///< wheel rim speed, m/s
@@ -103,10 +108,6 @@ struct StepContext {
   std::array<double, kRelaxations.size()> relaxed_turn_rate{}, relaxed_lateral_acceleration{};
   double way =
       0.0;  ///< of the base in its direction, m; not smoothed, so that in a spin ticks give either sign
-  double distance = 0.0;                            ///< way so far, forward and backward alike, m
-  double heading = 0.0;                             ///< rad, from the plain model
-  double heading_cosine = 1.0, heading_sine = 0.0;  ///< more than a thousand waves need them
-  double x = 0.0, y = 0.0;                          ///< m, from the plain model
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;

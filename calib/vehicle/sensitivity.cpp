@@ -194,15 +194,30 @@ std::vector<StepResponse> Sensitivity::by_steps(const EffectList& effects,
   return responses;
 }
 
+/// Some motions at a time, whose functions stay in the fastest memory.
 Eigen::MatrixXd StepResponse::by_coefficients(const Eigen::MatrixXd& functions,
                                               const Eigen::RowVectorXd& mean) const {
-  Eigen::MatrixXd all(static_cast<Eigen::Index>(3 * rows_.size()), functions.cols()), of_motion;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    of_motion = functions.middleRows(static_cast<Eigen::Index>(first_[i]), rows_[i].cols());
-    if (mean.size() > 0) of_motion.rowwise() -= mean;
-    all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() = rows_[i].lazyProduct(of_motion);
+  constexpr std::size_t kMotions = 64;
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(3 * rows_.size()), functions.cols()), near;
+  for (std::size_t begin = 0; begin < rows_.size(); begin += kMotions) {
+    const std::size_t end = std::min(begin + kMotions, rows_.size());
+    const auto [low, high] = steps_of(begin, end);
+    near = functions.middleRows(low, high - low);
+    if (mean.size() > 0) near.rowwise() -= mean;
+    for (std::size_t i = begin; i < end; ++i)
+      all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() =
+          rows_[i].lazyProduct(near.middleRows(static_cast<Eigen::Index>(first_[i]) - low, rows_[i].cols()));
   }
   return all;
+}
+
+std::pair<Eigen::Index, Eigen::Index> StepResponse::steps_of(std::size_t begin, std::size_t end) const {
+  auto low = static_cast<Eigen::Index>(first_[begin]), high = low;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto first = static_cast<Eigen::Index>(first_[i]);
+    low = std::min(low, first), high = std::max(high, first + rows_[i].cols());
+  }
+  return {low, high};
 }
 
 Eigen::MatrixXd Sensitivity::by(std::span<const double> parameters, const PlacedEffects& effects,
