@@ -12,30 +12,50 @@
 #include "calib/selection/candidate_columns.hpp"
 #include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
+#include "calib/terms/candidate_smooths.hpp"
+#include "calib/terms/settings.hpp"
+#include "calib/terms/smooth_term_on_drives.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
-/// Something that rolls.
-struct Roller {
+/// Something that repeats itself.
+struct Repeating {
   vehicle::Dependence dependence;  ///< what its defect does
-  double metre;                    ///< of its covariate, for a metre of way
+  double lowest, highest;          ///< frequencies that are sought, cycles per unit of the covariate
 };
 
-std::array<Roller, 3> rollers(const estimation::FitResult& fit) {
-  return {{{{vehicle::Covariate::distance, vehicle::Channel::yaw_path}, 1.0},
-           {{vehicle::Covariate::left_phase, vehicle::Channel::left_travel},
-            1.0 / fit.parameters(vehicle::kLeftRadius)},
-           {{vehicle::Covariate::right_phase, vehicle::Channel::right_travel},
-            1.0 / fit.parameters(vehicle::kRightRadius)}}};
+/// @param metre of the covariate, for a metre of way
+Repeating rolling(const vehicle::Dependence& dependence, double metre) {
+  return {dependence, 1.0 / (settings::kLongestRolling_m * metre),
+          1.0 / (settings::kShortestRolling_m * metre)};
 }
 
-/// Whitened derivative of the residual by a defect that is the same everywhere: a wave without an end.
-Eigen::VectorXd steady_column(const vehicle::Dependence& dependence,
-                              std::span<const measurement::FitData> data, const FittedModel& model) {
+std::vector<Repeating> all_repeating(const vehicle::DriveModel& model, const estimation::FitResult& fit) {
+  std::vector<Repeating> all{rolling({vehicle::Covariate::distance, vehicle::Channel::yaw_path}, 1.0),
+                             rolling({vehicle::Covariate::left_phase, vehicle::Channel::left_travel},
+                                     1.0 / fit.parameters(vehicle::kLeftRadius)),
+                             rolling({vehicle::Covariate::right_phase, vehicle::Channel::right_travel},
+                                     1.0 / fit.parameters(vehicle::kRightRadius))};
+  const vehicle::DriveModel* const models[] = {&model};
+  const auto [begin, end] = terms::range_of(vehicle::Covariate::time, models);
+  const double tried = terms::settings::kMostCycles / (end - begin),
+               shortest = 1.0 / terms::settings::kShortestCycle_s;
+  if (tried < shortest)
+    for (const vehicle::Channel channel : terms::kPeriodicChannels)
+      all.push_back({{vehicle::Covariate::time, channel}, tried, shortest});
+  return all;
+}
+
+/// Whitened derivatives of the residual by defects that are the same everywhere: waves without an end.
+std::vector<Eigen::MatrixXd> steady_columns(std::span<const Repeating> all,
+                                            std::span<const measurement::FitData> data,
+                                            const FittedModel& model) {
   constexpr double kEndless = 1e12;
-  const std::vector<Candidate> steady{candidate_of(on_basis({dependence, 0.0, 1.0}, terms::Cycle{kEndless}))};
-  return candidate_columns(data, model.effects, model.fit, steady).front().col(0);
+  std::vector<Candidate> steady;
+  for (const Repeating& repeating : all)
+    steady.push_back(candidate_of(on_basis({repeating.dependence, 0.0, 1.0}, terms::Cycle{kEndless})));
+  return candidate_columns(data, model.effects, model.fit, steady);
 }
 
 /// How far something has rolled when each measured motion begins and ends.
@@ -97,11 +117,11 @@ class Turning {
 /// What a wave of each frequency would explain.
 class Periodogram {
  public:
-  /// @param steady column of the derivative by a defect that is the same everywhere
-  Periodogram(const Eigen::VectorXd& steady, Rolled way, const Eigen::VectorXd& residual)
+  /// @param steady derivative by a defect that is the same everywhere, in its first column
+  Periodogram(const Eigen::MatrixXd& steady, Rolled way, const Eigen::VectorXd& residual)
       : way_(std::move(way)), variance_(residual.squaredNorm() / static_cast<double>(residual.size())) {
     for (Eigen::Index k = 0; k < residual.size() / 3; ++k) {
-      const auto column = steady.segment<3>(3 * k);
+      const auto column = steady.block<3, 1>(3 * k, 0);
       weight_.push_back(column.squaredNorm());
       score_.push_back(column.dot(residual.segment<3>(3 * k)));
     }
@@ -174,15 +194,13 @@ Peak highest_of(std::span<const double> frequencies, std::span<const double> sta
   return highest;
 }
 
-/// Frequency of the wave that stands out of all that a roller may make, between which settings::kRollingStep
-/// cycles lie; its place in between a tenth as far.
-/// @param metre of the covariate, for a metre of way
-std::optional<double> outstanding(double metre, const Periodogram& periodogram, double whole_way) {
-  const double lowest = 1.0 / (settings::kLongestRolling_m * metre),
-               step = settings::kRollingStep / whole_way;
+/// Frequency of the wave that stands out of all that are sought, between which settings::kRollingStep cycles
+/// lie; its place in between a tenth as far.
+std::optional<double> outstanding(const Repeating& repeating, const Periodogram& periodogram,
+                                  double whole_way) {
+  const double lowest = repeating.lowest, step = settings::kRollingStep / whole_way;
   if (!(step < lowest)) return std::nullopt;
-  const double highest =
-      std::min(1.0 / (settings::kShortestRolling_m * metre), lowest + settings::kMostRolling * step);
+  const double highest = std::min(repeating.highest, lowest + settings::kMostRolling * step);
   const std::vector<double> all = frequencies_between(lowest, highest, step);
   const double coarse = highest_of(all, periodogram.statistics(all)).frequency;
   const std::vector<double> close =
@@ -213,13 +231,14 @@ std::vector<Candidate> rolling_waves(std::span<const measurement::FitData> data,
   std::vector<Candidate> candidates;
   if (data.size() != 1) return candidates;
   const Eigen::VectorXd residual = clipped(model.fit.whitened_residual);
-  for (const Roller& roller : rollers(model.fit)) {
-    const Rolled way = rolled(data.front(), roller.dependence.covariate);
-    const Periodogram periodogram(steady_column(roller.dependence, data, model), way, residual);
-    const auto frequency = outstanding(roller.metre, periodogram, way.all);
-    if (frequency)
-      candidates.push_back(
-          candidate_of(on_basis({roller.dependence, 0.0, way.all}, terms::Cycle{1.0 / *frequency})));
+  const vehicle::DriveModel* const models[] = {data.front().model};
+  const std::vector<Repeating> all = all_repeating(*models[0], model.fit);
+  const std::vector<Eigen::MatrixXd> steady = steady_columns(all, data, model);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Rolled way = rolled(data.front(), all[k].dependence.covariate);
+    if (const auto frequency = outstanding(all[k], Periodogram(steady[k], way, residual), way.all))
+      candidates.push_back(candidate_of(as_of_the_drive(
+          on_basis({all[k].dependence, 0.0, way.all}, terms::Cycle{1.0 / *frequency}), models)));
   }
   return with_their_names(std::move(candidates), model.effects);
 }

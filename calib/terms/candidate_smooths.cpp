@@ -71,10 +71,10 @@ bool is_unsigned(vehicle::Channel channel) {
 /// Of both wheels, as the day goes, of one, as its brake or its motor does, or of the heading, as the wind
 /// turns it. Periods closer than settings::kCycleStep cycles per recording look alike.
 void add_periods(double duration, std::vector<SmoothTerm>& smooths) {
-  for (double cycles = settings::kFewestCycles; duration / cycles > settings::kShortestCycle_s;
+  for (double cycles = settings::kFewestCycles;
+       cycles < settings::kMostCycles && duration / cycles > settings::kShortestCycle_s;
        cycles += settings::kCycleStep)
-    for (const auto channel : {vehicle::Channel::both_travel, vehicle::Channel::left_travel,
-                               vehicle::Channel::right_travel, vehicle::Channel::yaw_path})
+    for (const vehicle::Channel channel : kPeriodicChannels)
       smooths.push_back(
           on_basis({{vehicle::Covariate::time, channel}, 0.0, duration}, Cycle{duration / cycles}));
 }

@@ -1,6 +1,7 @@
 // Smooth terms that are worth asking for, and the other shapes of one that was found.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -9,9 +10,13 @@
 
 namespace odomcalib::calib::terms {
 
+/// What may repeat itself in time.
+inline constexpr std::array kPeriodicChannels = {vehicle::Channel::both_travel, vehicle::Channel::left_travel,
+                                                 vehicle::Channel::right_travel, vehicle::Channel::yaw_path};
+
 /// Smooth terms worth trying on this data: every sensible (covariate, channel) whose covariate varies, on its
 /// 0.5 to 99.5 % range, higher harmonics of the wheels, and periods of time between 8 s and two thirds of the
-/// recording.
+/// recording, as far as they are no more than settings::kMostCycles in it.
 std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* const> models);
 
 /// The same term in other shapes: splines more or less smooth, other ways to understand what happened before.

@@ -79,5 +79,29 @@ TEST(RollingWave, of_the_base_has_no_name) {
   EXPECT_TRUE(names_beside({make_smooth_term_effect(caster)}, {0.03, -0.02}, {}).empty());
 }
 
+/// Waves that are proposed for a drive of 22 minutes.
+std::vector<terms::SmoothTerm> waves_of_a_long_drive(const vehicle::EffectList& effects,
+                                                     const std::vector<double>& values) {
+  const vehicle::DriveModel model = jerky_model(1320.0);
+  const measurement::FitData data = measured(model, effects, values);
+  const auto fit = estimation::fit_joint({&data, 1}, {}, vehicle::to_vector(kBase));
+  EXPECT_TRUE(fit) << "seed " << kSeed;
+  std::vector<terms::SmoothTerm> waves;
+  for (const Candidate& candidate : rolling_waves({&data, 1}, {{}, fit.value()}))
+    if (candidate.smooth) waves.push_back(*candidate.smooth);
+  return waves;
+}
+
+TEST(RollingWave, may_be_one_of_time_that_comes_too_often_to_be_tried_one_by_one) {
+  const vehicle::Dependence left{vehicle::Covariate::time, vehicle::Channel::left_travel};
+  const terms::SmoothTerm wave = wave_of(left, 1320.0, 9.3).smooth;
+  const auto proposed = waves_of_a_long_drive({make_smooth_term_effect(wave)}, {0.004, -0.003});
+  const auto its = std::find_if(proposed.begin(), proposed.end(),
+                                [&](const terms::SmoothTerm& smooth) { return smooth.dependence == left; });
+  ASSERT_NE(its, proposed.end()) << "seed " << kSeed;
+  EXPECT_NEAR(period_of(*its), 9.3, 0.01);
+  EXPECT_TRUE(waves_of_a_long_drive({}, {}).empty()) << "nothing comes back, seed " << kSeed;
+}
+
 }  // namespace
 }  // namespace odomcalib::calib::selection

@@ -35,14 +35,14 @@ inline vehicle::DriveModel lively_model(double haste = 1.0) {
   return {std::move(track), context};
 }
 
-/// Four minutes of steady motions with short ramps between them.
-inline vehicle::DriveModel jerky_model() {
+/// Four minutes, or another duration in s, of steady motions with short ramps between them.
+inline vehicle::DriveModel jerky_model(double duration = 240.0) {
   constexpr double kStep = 0.04, kRamp = 0.4, kLeg = 2.0;  // s
   std::mt19937 engine(kSeed);
   std::uniform_real_distribution<double> speed(-5.0, 5.0);
   wheels::WheelTrack track;
   double left = 0.0, right = 0.0, from[2] = {}, to[2] = {};
-  for (int k = 0; k <= 6000; ++k) {
+  for (int k = 0; k <= std::lround(duration / kStep); ++k) {
     const double in_leg = std::fmod(kStep * k, kLeg);
     if (in_leg < kStep / 2.0)
       for (int side = 0; side < 2; ++side) from[side] = to[side], to[side] = speed(engine);
