@@ -2,6 +2,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 #include "calib/math/vector2.hpp"
 #include "calib/vehicle/part_of_step.hpp"
@@ -78,16 +80,6 @@ Eigen::Matrix3d twist_to_motion(const math::Pose& begin, const math::Pose& from,
   return carried(begin, to, end) * math::rotation_about_z(from.yaw) * part;
 }
 
-/// Twist derivatives of every step by the parameters [first, first + kJetSize).
-std::vector<Chunk> twist_derivatives(const std::vector<StepContext>& steps, const std::vector<Jet>& jets,
-                                     const PlacedEffects& effects) {
-  std::vector<Chunk> all;
-  all.reserve(steps.size());
-  for (const StepContext& context : steps)
-    all.push_back(derivatives_of<kJetSize>(twist_of<Jet>(context, jets, effects)));
-  return all;
-}
-
 /// Parameters as jets; those in [first, first + kJetSize) carry derivatives.
 std::vector<Jet> seed(std::span<const double> parameters, std::size_t first) {
   std::vector<Jet> jets;
@@ -98,6 +90,44 @@ std::vector<Jet> seed(std::span<const double> parameters, std::size_t first) {
   }
   return jets;
 }
+
+/// Motions whose steps' derivatives are held at a time; those of a whole drive would be a third of its
+/// memory.
+constexpr std::size_t kMotions = 64;
+
+/// Tick intervals from one to before another.
+struct Steps {
+  std::size_t begin = std::numeric_limits<std::size_t>::max(), end = 0;
+  void take(std::size_t first, std::size_t count) {
+    begin = std::min(begin, first);
+    end = std::max(end, first + count);
+  }
+};
+
+/// Those that matter to some motions.
+template <typename Path>
+Steps steps_of(std::span<const Path> paths) {
+  Steps steps;
+  for (const Path& path : paths) steps.take(path.first, path.by_twist.size());
+  return steps;
+}
+
+/// Derivatives of the twists of some steps by the parameters that carry them.
+class TwistDerivatives {
+ public:
+  TwistDerivatives(Steps steps, std::span<const StepContext> contexts, const std::vector<Jet>& jets,
+                   const PlacedEffects& effects)
+      : first_(steps.begin) {
+    of_step_.reserve(steps.end - steps.begin);
+    for (std::size_t k = steps.begin; k < steps.end; ++k)
+      of_step_.push_back(derivatives_of<kJetSize>(twist_of<Jet>(contexts[k], jets, effects)));
+  }
+  const Chunk& operator[](std::size_t step) const { return of_step_[step - first_]; }
+
+ private:
+  std::size_t first_;
+  std::vector<Chunk> of_step_;
+};
 
 }  // namespace
 
@@ -175,49 +205,46 @@ std::vector<StepResponse> Sensitivity::by_steps(const EffectList& effects,
                                                 std::span<const double> parameters) const {
   const More more = with(effects, parameters);
   const std::vector<Jet> jets = seed(more.parameters, along_.parameters().size());
-  const std::vector<Chunk> twists = twist_derivatives(model_.context(), jets, more.effects);
+  const auto count = parameters.size();
   std::vector<std::size_t> first;
+  std::vector<std::vector<Eigen::Matrix3Xd>> rows(count);
   for (const Path& path : paths_) first.push_back(path.first);
-  std::vector<StepResponse> responses;
-  for (Eigen::Index p = 0; p < static_cast<Eigen::Index>(parameters.size()); ++p) {
-    std::vector<Eigen::Matrix3Xd> rows;
-    rows.reserve(paths_.size());
-    for (const Path& path : paths_) {
-      Eigen::Matrix3Xd row(3, static_cast<Eigen::Index>(path.by_twist.size()));
-      for (std::size_t k = 0; k < path.by_twist.size(); ++k)
-        row.col(static_cast<Eigen::Index>(k)) =
-            path.to_sensor.leftCols<3>() * (path.by_twist[k] * twists[path.first + k].col(p));
-      rows.push_back(std::move(row));
-    }
-    responses.emplace_back(first, std::move(rows));
+  for (auto& of_parameter : rows) of_parameter.reserve(paths_.size());
+  for (std::size_t begin = 0; begin < paths_.size(); begin += kMotions) {
+    const auto some = std::span<const Path>(paths_).subspan(begin, std::min(kMotions, paths_.size() - begin));
+    const TwistDerivatives twists(steps_of(some), model_.context(), jets, more.effects);
+    for (std::size_t p = 0; p < count; ++p)
+      for (const Path& path : some) {
+        Eigen::Matrix3Xd row(3, static_cast<Eigen::Index>(path.by_twist.size()));
+        for (std::size_t k = 0; k < path.by_twist.size(); ++k)
+          row.col(static_cast<Eigen::Index>(k)) =
+              path.to_sensor.leftCols<3>() *
+              (path.by_twist[k] * twists[path.first + k].col(static_cast<Eigen::Index>(p)));
+        rows[p].push_back(std::move(row));
+      }
   }
+  std::vector<StepResponse> responses;
+  for (auto& of_parameter : rows) responses.emplace_back(first, std::move(of_parameter));
   return responses;
 }
 
 /// Some motions at a time, whose functions stay in the fastest memory.
 Eigen::MatrixXd StepResponse::by_coefficients(const Eigen::MatrixXd& functions,
                                               const Eigen::RowVectorXd& mean) const {
-  constexpr std::size_t kMotions = 64;
   Eigen::MatrixXd all(static_cast<Eigen::Index>(3 * rows_.size()), functions.cols()), near;
   for (std::size_t begin = 0; begin < rows_.size(); begin += kMotions) {
     const std::size_t end = std::min(begin + kMotions, rows_.size());
-    const auto [low, high] = steps_of(begin, end);
-    near = functions.middleRows(low, high - low);
+    Steps steps;
+    for (std::size_t i = begin; i < end; ++i)
+      steps.take(first_[i], static_cast<std::size_t>(rows_[i].cols()));
+    near = functions.middleRows(static_cast<Eigen::Index>(steps.begin),
+                                static_cast<Eigen::Index>(steps.end - steps.begin));
     if (mean.size() > 0) near.rowwise() -= mean;
     for (std::size_t i = begin; i < end; ++i)
-      all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() =
-          rows_[i].lazyProduct(near.middleRows(static_cast<Eigen::Index>(first_[i]) - low, rows_[i].cols()));
+      all.middleRows<3>(static_cast<Eigen::Index>(3 * i)).noalias() = rows_[i].lazyProduct(
+          near.middleRows(static_cast<Eigen::Index>(first_[i] - steps.begin), rows_[i].cols()));
   }
   return all;
-}
-
-std::pair<Eigen::Index, Eigen::Index> StepResponse::steps_of(std::size_t begin, std::size_t end) const {
-  auto low = static_cast<Eigen::Index>(first_[begin]), high = low;
-  for (std::size_t i = begin; i < end; ++i) {
-    const auto first = static_cast<Eigen::Index>(first_[i]);
-    low = std::min(low, first), high = std::max(high, first + rows_[i].cols());
-  }
-  return {low, high};
 }
 
 Eigen::MatrixXd Sensitivity::by(std::span<const double> parameters, const PlacedEffects& effects,
@@ -229,13 +256,17 @@ Eigen::MatrixXd Sensitivity::by(std::span<const double> parameters, const Placed
   for (std::size_t chunk = first; chunk < parameters.size(); chunk += kJetSize) {
     const auto count = static_cast<Eigen::Index>(std::min<std::size_t>(kJetSize, parameters.size() - chunk));
     const std::vector<Jet> jets = seed(parameters, chunk);
-    const std::vector<Chunk> twists = twist_derivatives(model_.context(), jets, effects);
+    std::optional<TwistDerivatives> twists;
     for (std::size_t i = 0; i < paths_.size(); ++i) {
+      if (i % kMotions == 0)
+        twists.emplace(
+            steps_of(std::span<const Path>(paths_).subspan(i, std::min(kMotions, paths_.size() - i))),
+            model_.context(), jets, effects);
       const Path& path = paths_[i];
       Chunk base = path.by_delays(effects.delay<Jet>(intervals_[i].begin - middle, jets),
                                   effects.delay<Jet>(intervals_[i].end - middle, jets));
       for (std::size_t k = 0; k < path.by_twist.size(); ++k)
-        base.noalias() += path.by_twist[k] * twists[path.first + k];
+        base.noalias() += path.by_twist[k] * (*twists)[path.first + k];
       Chunk rows = path.to_sensor.leftCols<3>() * base;
       for (Eigen::Index m = 0; m < 3; ++m) {
         const auto column = static_cast<Eigen::Index>(kMountX) + m - static_cast<Eigen::Index>(chunk);

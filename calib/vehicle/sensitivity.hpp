@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "calib/vehicle/drive_model.hpp"
@@ -27,9 +26,6 @@ class StepResponse {
                                                 const Eigen::RowVectorXd& mean = {}) const;
 
  private:
-  /// First tick interval of some motions, and the one after their last.
-  [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> steps_of(std::size_t begin, std::size_t end) const;
-
   std::vector<std::size_t> first_;
   std::vector<Eigen::Matrix3Xd> rows_;
 };
