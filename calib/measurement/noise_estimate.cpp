@@ -20,7 +20,7 @@ struct Observation {
 /// Symmetric matrices, one a row: xx, xy, yy, x yaw, y yaw, yaw yaw.
 using Matrices = Eigen::Array<double, Eigen::Dynamic, 6>;
 
-/// The same by columns, so that many pairs are judged at a time.
+/// Of pairs, by columns, so that many are judged at a time.
 struct Columns {
   Eigen::Array<double, Eigen::Dynamic, 3> residuals;
   Matrices matcher;  ///< covariance the matcher states, in room axes
@@ -31,15 +31,17 @@ void set_row(Matrices& matrices, Eigen::Index row, const Eigen::Matrix3d& m) {
   matrices.row(row) << m(0, 0), m(1, 0), m(1, 1), m(2, 0), m(2, 1), m(2, 2);
 }
 
+/// Of evenly many pairs where there are more than a scale needs.
 Columns columns_of(const Observation& o) {
-  const auto count = static_cast<Eigen::Index>(o.pairs.size());
+  const std::size_t step = 1 + (o.pairs.size() - 1) / settings::kMostNoisePairs;
+  const auto count = static_cast<Eigen::Index>(1 + (o.pairs.size() - 1) / step);
   Columns columns{decltype(Columns::residuals)(count, 3), Matrices(count, 6), Matrices(count, 6)};
   const NoiseModel matcher_only;
   NoiseModel one_second;
   one_second.matcher_scale = 0.0;
   one_second.stamp_jitter = 1.0;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const auto pair = static_cast<std::size_t>(k);
+    const std::size_t pair = step * static_cast<std::size_t>(k);
     columns.residuals.row(k) = o.residuals[pair].transpose();
     set_row(columns.matcher, k, base_covariance(o.pairs[pair], o.states[pair], matcher_only));
     set_row(columns.jitter, k, full_covariance(o.pairs[pair], o.states[pair], one_second));
