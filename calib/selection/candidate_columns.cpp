@@ -63,18 +63,17 @@ class Tried {
  private:
   [[nodiscard]] Eigen::MatrixXd by_part(const terms::SmoothTerm& smooth, vehicle::Channel channel,
                                         std::size_t part) {
-    if (part > 0 || !seen_ || !differ_in_channel_only(*seen_, smooth)) take_functions(smooth, part);
-    // What the sensor's yaw does grows by differences, which no mean changes.
+    if (!seen_ || !differ_in_channel_only(*seen_, smooth)) take_functions(smooth, part);
     Eigen::RowVectorXd mean;
-    if (!is_sway(smooth))
-      mean = Eigen::Map<const Eigen::RowVectorXd>(smooth.mean.data(),
-                                                  static_cast<Eigen::Index>(smooth.mean.size()));
+    if (has_functions_of_covariate(smooth))
+      mean = Eigen::Map<const Eigen::RowVectorXd>(smooth.mean.data(), std::ssize(smooth.mean));
     return responses_[static_cast<std::size_t>(channel)].by_coefficients(functions_, mean);
   }
 
+  /// Those of a covariate without their mean, which hangs on the channel.
   void take_functions(const terms::SmoothTerm& smooth, std::size_t part) {
     seen_ = smooth;
-    seen_->mean.clear();
+    if (has_functions_of_covariate(smooth)) seen_->mean.clear();
     const auto steps = static_cast<Eigen::Index>(model_.context().size());
     functions_.resize(steps, static_cast<Eigen::Index>(function_count(smooth)));
     const auto& context = model_.context();

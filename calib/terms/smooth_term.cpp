@@ -41,11 +41,6 @@ BasisValues growth(const SmoothTerm& smooth, const vehicle::StepContext& c) {
   return after;
 }
 
-bool looks_at_channel(const SmoothTerm& smooth) {
-  return basis_as<SpeedHats>(smooth) || basis_as<ChangePoint>(smooth) || basis_as<TurnPath>(smooth) ||
-         is_sway(smooth) || acts_on(smooth).size() > 1;
-}
-
 }  // namespace
 
 SmoothTerm on_basis(SmoothTerm smooth, Basis basis) {
@@ -91,8 +86,13 @@ std::size_t function_count(const SmoothTerm& smooth) {
   return functions_of(smooth, vehicle::StepContext{}).size();
 }
 
+bool has_functions_of_covariate(const SmoothTerm& smooth) {
+  return !basis_as<SpeedHats>(smooth) && !basis_as<ChangePoint>(smooth) && !basis_as<TurnPath>(smooth) &&
+         !is_sway(smooth) && acts_on(smooth).size() == 1;
+}
+
 bool differ_in_channel_only(const SmoothTerm& a, const SmoothTerm& b) {
-  if (looks_at_channel(a) || looks_at_channel(b)) return false;
+  if (!has_functions_of_covariate(a) || !has_functions_of_covariate(b)) return false;
   SmoothTerm other = b;
   other.dependence.channel = a.dependence.channel;
   other.mean = a.mean;

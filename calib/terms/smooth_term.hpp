@@ -50,6 +50,8 @@ BasisValues functions_of(const SmoothTerm& smooth, const vehicle::StepContext& c
 /// growth.
 BasisValues functions_in(const SmoothTerm& smooth, const vehicle::StepContext& context, std::size_t part = 0);
 std::size_t function_count(const SmoothTerm& smooth);
+/// Whether the functions are the same on whichever channel, but for their mean.
+bool has_functions_of_covariate(const SmoothTerm& smooth);
 /// Whether both have the same functions but for their means, so that they need be computed only once.
 bool differ_in_channel_only(const SmoothTerm& a, const SmoothTerm& b);
 
