@@ -58,6 +58,16 @@ TEST(Noise, tells_time_stamps_from_wheels) {
   EXPECT_LT(estimate_noise(nuisance.pairs, nuisance.states, nuisance.residuals, {}).stamp_jitter, 0.002);
 }
 
+/// More than are judged.
+TEST(Noise, of_very_many_pairs_is_that_of_fewer) {
+  const Chain chain = make_chain(3 * settings::kMostNoisePairs + 1, 1e-3, 2e-3, 0.015);
+  const NoiseModel noise = estimate_noise(chain.pairs, chain.states, chain.residuals, {});
+  EXPECT_NEAR(noise.stamp_jitter, 0.015, 0.0015) << "seed " << kSeed;
+  const double matcher = noise.matcher_scale * noise.matcher_scale * 2e-6;
+  EXPECT_NEAR(matcher + noise.process_translation * noise.process_translation, 6e-6, 6e-7)
+      << "seed " << kSeed;
+}
+
 TEST(Noise, scans_shared_by_neighbours_give_negative_correlation) {
   const Chain shared = make_chain(3000, 2e-3, 0.0, 0.0);
   for (const double c : estimate_noise(shared.pairs, shared.states, shared.residuals, {}).correlation)

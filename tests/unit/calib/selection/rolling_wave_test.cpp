@@ -83,7 +83,9 @@ TEST(RollingWave, of_the_base_has_no_name) {
 std::vector<terms::SmoothTerm> waves_of_a_long_drive(const vehicle::EffectList& effects,
                                                      const std::vector<double>& values) {
   const vehicle::DriveModel model = jerky_model(1320.0);
-  const measurement::FitData data = measured(model, effects, values);
+  std::vector<vehicle::Interval> intervals;
+  for (double t = 0.513; t < 1318.0; t += 0.5) intervals.push_back({t, t + 0.5});
+  const measurement::FitData data = measured(model, effects, values, intervals);
   const auto fit = estimation::fit_joint({&data, 1}, {}, vehicle::to_vector(kBase));
   EXPECT_TRUE(fit) << "seed " << kSeed;
   std::vector<terms::SmoothTerm> waves;
