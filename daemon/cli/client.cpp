@@ -1,4 +1,5 @@
 #include "daemon/cli/client.hpp"
+#include "daemon/cli/settings.hpp"
 
 #include <poll.h>
 #include <sched.h>
@@ -19,8 +20,6 @@ namespace {
 using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kRenewal = std::chrono::milliseconds(30);  // a quarter of the lease's 120 ms
-
 volatile sig_atomic_t signalled = 0;
 
 void on_signal(int /*number*/) { signalled = 1; }
@@ -31,7 +30,7 @@ Error not_running(const std::string& socket, const std::string& what) {
 
 // A busy machine must not delay the renewals. Without the right to this the robot may stop early, no more.
 void hurry() {
-  const sched_param priority{.sched_priority = 5};
+  const sched_param priority{.sched_priority = settings::kPriority};
   (void)sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &priority);
 }
 
@@ -161,7 +160,7 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
   auto next = Clock::now();
   while (signalled == 0 || interrupted != WhenInterrupted::stop) {
     if (Clock::now() >= next) {
-      next = Clock::now() + kRenewal;
+      next = Clock::now() + settings::kRenewal;
       if (auto sent = keeper.value().send("Renew", renewal_of(lease)); !sent) return sent.error();
     }
     (void)keeper.value().receive(0);

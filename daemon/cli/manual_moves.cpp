@@ -11,6 +11,7 @@
 #include "calib/classical/rest_to_rest.hpp"
 #include "calib/classical/settings.hpp"
 #include "daemon/cli/display.hpp"
+#include "daemon/cli/settings.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -22,9 +23,6 @@ using calib::classical::StraightMove;
 using calib::math::Repeated;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kFewRepetitions = 3;  ///< with fewer the spread is hardly known
-constexpr double kSettled =
-    1.41421356;  ///< deviation over its part that repetitions show, where both parts are equal
 constexpr std::size_t kMovesOfSquare = 8;
 
 /// `count` finite numbers of a member, or nullopt where they are not there.
@@ -98,7 +96,7 @@ calib::classical::ReferenceError error_of(bool by_tape) {
 bool is_settled(const Repeated& factor) {
   const double of_spread = calib::math::student_factor(std::max<std::size_t>(factor.count, 2) - 1) *
                            factor.spread / std::sqrt(static_cast<double>(factor.count));
-  return factor.count >= kFewRepetitions && factor.std > kSettled * of_spread;
+  return factor.count >= settings::kFewRepetitions && factor.std > settings::kWholeOverShown * of_spread;
 }
 
 Proposal begun(const char* method, bool by_tape, const DrivenMoves& driven) {
@@ -110,7 +108,7 @@ Proposal begun(const char* method, bool by_tape, const DrivenMoves& driven) {
 }
 
 void remark_few(Proposal& proposal) {
-  if (proposal.used < kFewRepetitions)
+  if (proposal.used < settings::kFewRepetitions)
     proposal.remarks.push_back(fmt::format("{} {}: the deviation {}; --repeat 3 makes it known",
                                            proposal.used, proposal.used == 1 ? "repetition" : "repetitions",
                                            proposal.used == 1 ? "is not known" : "is hardly known"));

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "daemon/cli/output.hpp"
+#include "daemon/cli/settings.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -19,12 +20,6 @@ using nlohmann::ordered_json;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-// What a comparison of scans at rest cannot tell over a metre, over a turn. Chosen: two to three times the
-// largest error after a calibration in simulated campaigns, and below what a wheel of 0.3 % makes.
-constexpr double kLengthNoise = 0.002;            // m
-constexpr double kHeadingNoise = 0.1 / kDegrees;  // rad
-// Lengths as text and back. Derived: a tenth of the finest step of a controller, 1 um.
-constexpr double kSameLength = 1e-7;  // m
 
 struct Judged {
   const char* name;
@@ -36,11 +31,12 @@ struct Judged {
 };
 
 constexpr std::array kJudgeds = {
-    Judged{"straight_metre_length", "straight metre: length", &DriveErrors::metre_length, kLengthNoise, 1e3,
-           "mm"},
-    Judged{"straight_metre_heading", "straight metre: heading", &DriveErrors::metre_heading, kHeadingNoise,
-           kDegrees, "deg"},
-    Judged{"full_turn_heading", "full turn: heading", &DriveErrors::turn, kHeadingNoise, kDegrees, "deg"}};
+    Judged{"straight_metre_length", "straight metre: length", &DriveErrors::metre_length,
+           settings::kLengthNoise_m, 1e3, "mm"},
+    Judged{"straight_metre_heading", "straight metre: heading", &DriveErrors::metre_heading,
+           settings::kHeadingNoise_rad, kDegrees, "deg"},
+    Judged{"full_turn_heading", "full turn: heading", &DriveErrors::turn, settings::kHeadingNoise_rad,
+           kDegrees, "deg"}};
 
 /// A failed write has left the old values, as far as the daemon could see to it and say so.
 bool is_settled(const Error& failed) {
@@ -117,7 +113,8 @@ Error not_proven(Error why) {
 bool same_lengths(const ordered_json& wanted, const ordered_json& held) {
   if (!wanted.is_object() || wanted.empty() || !held.is_object()) return false;
   for (const auto& one : wanted.items())
-    if (!(std::abs(held.value(one.key(), kUnknown) - one.value().get<double>()) <= kSameLength)) return false;
+    if (!(std::abs(held.value(one.key(), kUnknown) - one.value().get<double>()) <= settings::kSameLength_m))
+      return false;
   return true;
 }
 

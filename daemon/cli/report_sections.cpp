@@ -9,6 +9,7 @@
 
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/report_figures.hpp"
+#include "daemon/cli/settings.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -47,8 +48,7 @@ double systematic(const ResidualTrace& trace, double ResidualTrace::Bin::*member
 
 /// A wave of what rolls unseen has no variable that could be drawn.
 std::string dependence_of(const ResidualTrace& trace) {
-  constexpr double kMost = 0.5;
-  if (trace.explained < kMost)
+  if (trace.explained < settings::kDependsOn)
     return fmt::format("no variable alone shows its pattern; the {} residual over {}", trace.residual,
                        trace.variable);
   return fmt::format("the {} residual depends on {}", trace.residual, trace.variable);

@@ -17,6 +17,7 @@
 #include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/verbs.hpp"
+#include "daemon/routines/settings.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -25,7 +26,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr int kMostRepetitions = 20;
 
 struct Options {
   Consent consent;
@@ -243,7 +243,7 @@ int spin(const Session& session, const Options& options) {
 void add_common(CLI::App& verb, const std::shared_ptr<Options>& options) {
   add_consent(verb, options->consent);
   verb.add_option("--repeat", options->repeat, "times at most; fewer when more would not make it better")
-      ->check(CLI::Range(1, kMostRepetitions))
+      ->check(CLI::Range(1, routines::settings::kMostRepeats))
       ->capture_default_str();
   verb.add_option("--of", options->of, "nothing moves: what --json of an earlier drive printed");
   verb.add_option("--out", options->out, "calibration file of the lengths proposed, for apply");

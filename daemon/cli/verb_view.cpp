@@ -17,6 +17,7 @@
 #include "daemon/cli/live/live_state.hpp"
 #include "daemon/cli/live/page_server.hpp"
 #include "daemon/cli/numbers.hpp"
+#include "daemon/cli/settings.hpp"
 #include "daemon/cli/verbs.hpp"
 
 namespace odomcalib::cli {
@@ -24,11 +25,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
-
-constexpr auto kPeriod = std::chrono::milliseconds(200);  // of the daemon's progress
-constexpr int kTurnsPerTable = 5;                         // parameters once a second
-constexpr int kTurnsPerTry = 5;                           // of a daemon that went away
-constexpr int kAnswerWithin = 1000;                       // ms
 
 struct Options {
   int port = 8038;
@@ -53,7 +49,7 @@ class Board {
 };
 
 Result<ordered_json> ask(Client& client, const char* method, const char* member) {
-  const auto answer = client.call(method, "{}", kAnswerWithin);
+  const auto answer = client.call(method, "{}", settings::kAnswerWithin_ms);
   if (!answer) return answer.error();
   const auto body = ordered_json::parse(answer.value(), nullptr, false);
   return body.is_object() ? body.value(member, ordered_json()) : ordered_json();
@@ -105,7 +101,7 @@ class Watch {
     const auto status = ask(*client_, "GetStatus", "status");
     if (!status) return status.error();
     state_.take_status(status.value());
-    if (turn_ % kTurnsPerTable != 0) return {};
+    if (turn_ % settings::kTurnsPerTable != 0) return {};
     const auto parameters = ask(*client_, "GetParameters", "parameters");
     if (!parameters) return parameters.error();
     state_.take_parameters(parameters.value());
@@ -113,7 +109,7 @@ class Watch {
   }
 
   Result<void> try_again() {
-    if (turn_ % kTurnsPerTry != 0) return {};
+    if (turn_ % settings::kTurnsPerTry != 0) return {};
     return connect();
   }
 
@@ -141,7 +137,7 @@ int watch(Watch& daemon, Board& board, const Options& options, const Session& se
   while (!interrupted() && std::cout) {
     if (options.duration > 0.0 && std::chrono::duration<double>(next - begin).count() >= options.duration)
       break;
-    next = std::max(next + kPeriod, Clock::now());
+    next = std::max(next + settings::kLiveTurn, Clock::now());
     daemon.serve(next);
     const std::string text = text_of(daemon.document());
     if (session.json != JsonMode::off) std::cout << text << std::endl;

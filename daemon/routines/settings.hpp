@@ -26,6 +26,11 @@ inline constexpr double kShortestStep_s = 1e-6, kLongestStep_s = 0.1;
 /// Least share of the allowed acceleration. Chosen.
 inline constexpr double kLeastHaste = 0.1;
 
+// --- Repetitions -----------------------------------------------------------------------------------------
+
+/// Of a motion in one call. Chosen. The text that refuses more says it too.
+inline constexpr int kMostRepeats = 20;
+
 // --- Preview ---------------------------------------------------------------------------------------------
 
 /// s of its steps, and of the longest. Chosen.

@@ -141,7 +141,7 @@ struct ControlServer::State {
 };
 
 void ControlServer::State::accept_all() {
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < service::settings::kAcceptsPerTurn; ++i) {
     const int fd = accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (fd < 0) return;
     accept_one(fd);

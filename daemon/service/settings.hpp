@@ -62,6 +62,10 @@ inline constexpr std::size_t kMostOutput_bytes = std::size_t{8} << 20;
 /// Calls of one client a turn. Chosen: a client waits for answers and has one call at a time; 16 let one
 /// that does not get on, and leave eight others their place in the same turn.
 inline constexpr std::size_t kCallsPerTurn = 16;
+/// Clients taken in a turn. Chosen: a flood of them does not keep the loop from its turn.
+inline constexpr int kAcceptsPerTurn = 16;
+/// Letters of a recording's name. Chosen: well below what file systems take.
+inline constexpr std::size_t kLongestName = 64;
 /// Recordings that a calibration may go with. Chosen.
 inline constexpr std::size_t kMostEarlier = 8;
 /// Least and most of what a client may ask for. Chosen. The texts that refuse say them too.
@@ -70,7 +74,6 @@ inline constexpr double kLeastDistance_m = 0.05, kMostDistance_m = 5.0;
 inline constexpr double kLeastSide_m = 0.3, kMostSide_m = 5.0;
 inline constexpr double kLeastTurns = 0.05, kMostTurns = 10.0;
 inline constexpr double kLeastRate_rad_s = 0.05, kMostRate_rad_s = 10.0;
-inline constexpr int kMostRepeats = 20;
 inline constexpr double kLongestRecord_s = 3600.0;
 /// m, length of the straight of a calibration: no more than that, and than this share of the area. Chosen.
 inline constexpr double kUsualStraight_m = 1.0, kStraightShareOfArea = 0.45;

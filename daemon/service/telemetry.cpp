@@ -28,7 +28,8 @@ class LcmOutlet final : public Outlet {
 
 bool usable_name(const std::string& name) {
   const auto good = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
-  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), good);
+  return !name.empty() && name.size() <= service::settings::kLongestName &&
+         std::all_of(name.begin(), name.end(), good);
 }
 
 std::optional<Error> too_little_space(const std::filesystem::path& folder) {

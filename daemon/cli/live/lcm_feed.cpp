@@ -1,4 +1,5 @@
 #include "daemon/cli/live/lcm_feed.hpp"
+#include "daemon/cli/settings.hpp"
 
 #include <lcm/lcm.h>
 #include <poll.h>
@@ -9,8 +10,6 @@ namespace odomcalib::cli {
 namespace {
 
 constexpr std::array kChannels = {"ODOM", "ODOM_CALIBRATED", "SCAN", "PROGRESS", "RESULT"};
-constexpr int kMostAtOnce =
-    500;  // chosen: some seconds of messages; a flood does not keep the page from its turn
 
 class Subscription final : public LcmFeed {
  public:
@@ -26,7 +25,7 @@ class Subscription final : public LcmFeed {
   void serve(int timeout_ms) override {
     pollfd ready{lcm_get_fileno(lcm_), POLLIN, 0};
     if (poll(&ready, 1, timeout_ms) <= 0) return;
-    for (int taken = 0; taken < kMostAtOnce && lcm_handle_timeout(lcm_, 0) > 0; ++taken) {
+    for (int taken = 0; taken < settings::kMostMessages && lcm_handle_timeout(lcm_, 0) > 0; ++taken) {
     }
   }
 

@@ -117,9 +117,9 @@ void LiveState::take_status(const ordered_json& status) {
   if (drives_ && !drove) begin_drive();
   if (text_in(status, "state") == "idle") progress_ = nullptr;
   if (!text_in(object_in(status, "lidar"), "stale").empty()) scan_.clear();
-  if (answers_without_message_ < kPatience) ++answers_without_message_;
+  if (answers_without_message_ < settings::kPatience) ++answers_without_message_;
   // The one path that is known without LCM.
-  const bool alone = !lcm_opened_ || answers_without_message_ >= kPatience;
+  const bool alone = !lcm_opened_ || answers_without_message_ >= settings::kPatience;
   if (const auto pose = pose_of(status.value("odometry", ordered_json())); alone && pose)
     take_odometry(*pose);
 }
@@ -208,7 +208,7 @@ std::string LiveState::why_no_telemetry() const {
     return "LCM is off in the daemon's configuration ([lcm] enabled): no scan, no progress, odometry alone";
   if (!lcm_opened_)
     return "LCM cannot be opened here (" + lcm_url_ + "): no scan, no progress, odometry alone";
-  if (answers_without_message_ >= kPatience)
+  if (answers_without_message_ >= settings::kPatience)
     return "no LCM message arrives (" + lcm_url_ +
            "): no scan, no progress, odometry alone; see that multicast has a route";
   return "";

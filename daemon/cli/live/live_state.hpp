@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/cli/live/trace.hpp"
+#include "daemon/cli/settings.hpp"
 #include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::cli {
@@ -17,9 +18,7 @@ namespace odomcalib::cli {
 /// and scans share.
 class LiveState {
  public:
-  static constexpr std::size_t kMostBeams = 720;  ///< chosen: half a degree of a full turn
-  /// Answers without a message before it is said that none arrive; two seconds at five a second.
-  static constexpr int kPatience = 10;
+  static constexpr std::size_t kMostBeams = settings::kMostBeams;
 
   /// @param description answer of Describe. @param lcm_opened whether its LCM URL could be opened
   void connect(const nlohmann::ordered_json& description, bool lcm_opened);

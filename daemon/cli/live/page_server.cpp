@@ -1,4 +1,5 @@
 #include "daemon/cli/live/page_server.hpp"
+#include "daemon/cli/settings.hpp"
 
 #include <fmt/format.h>
 #include <httplib.h>
@@ -13,9 +14,6 @@ namespace odomcalib::cli {
 namespace {
 
 constexpr const char* kLoopback = "127.0.0.1";
-constexpr std::ptrdiff_t kMostConnections = 16;  // chosen: a few browsers, with room for those that hang
-constexpr std::size_t kThreads = 8;              // chosen: one that hangs delays nobody
-constexpr time_t kPatience = 2;                  // s for a request or an answer to go through, on loopback
 
 /// The library's pool takes any number of connections. Here those beyond the bound stay with the kernel,
 /// which holds a handful and lets the rest wait; each that was taken ends within its time.
@@ -31,8 +29,8 @@ class BoundedPool final : public httplib::TaskQueue {
   void shutdown() override { pool_.shutdown(); }
 
  private:
-  std::counting_semaphore<kMostConnections> free_{kMostConnections};
-  httplib::ThreadPool pool_{kThreads};
+  std::counting_semaphore<settings::kMostConnections> free_{settings::kMostConnections};
+  httplib::ThreadPool pool_{settings::kThreads};
 };
 
 std::string text_between(const std::string& text, const std::string& begin, const std::string& end) {
@@ -93,8 +91,8 @@ class LoopbackServer final : public PageServer {
     server_.new_task_queue = [] { return new BoundedPool; };  // NOLINT: the library deletes it
     server_.set_socket_options(reuse_after_end);
     server_.set_keep_alive_max_count(1);  // a body that nobody read is not the next request
-    server_.set_read_timeout(kPatience);
-    server_.set_write_timeout(kPatience);
+    server_.set_read_timeout(settings::kConnectionPatience_s);
+    server_.set_write_timeout(settings::kConnectionPatience_s);
     server_.set_payload_max_length(0);
     server_.set_default_headers({{"Content-Security-Policy", policy_of(page)},
                                  {"X-Content-Type-Options", "nosniff"},

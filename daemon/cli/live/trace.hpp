@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/math/se2.hpp"
+#include "daemon/cli/settings.hpp"
 
 namespace odomcalib::cli {
 
@@ -14,8 +15,9 @@ using calib::math::Pose;
 /// the path ends, in the direction that it has there.
 class Trace {
  public:
-  static constexpr std::size_t kMostPoints = 800;  ///< chosen: about the width of the picture in px
-  static constexpr double kSpacing = 0.01;         ///< m between points, doubled whenever there are too many
+  static constexpr std::size_t kMostPoints = settings::kMostPoints;
+  static constexpr double kSpacing =
+      settings::kSpacing_m;  ///< between points, doubled when there are too many
 
   /// @param points m, rad; what is shown from now on. Empty: nothing, until poses arrive at the origin.
   void restart(const std::vector<Pose>& points);

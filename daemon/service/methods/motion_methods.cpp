@@ -8,6 +8,7 @@
 #include "daemon/routines/manoeuvres.hpp"
 #include "daemon/routines/pattern.hpp"
 #include "daemon/routines/plans.hpp"
+#include "daemon/routines/settings.hpp"
 #include "daemon/routines/wiring.hpp"
 #include "daemon/service/call_parameters.hpp"
 #include "daemon/service/methods/methods.hpp"
@@ -32,7 +33,7 @@ std::optional<Error> wrong_speed(double speed) {
 }
 
 std::optional<Error> wrong_repeat(int repeat) {
-  if (repeat >= 1 && repeat <= service::settings::kMostRepeats) return std::nullopt;
+  if (repeat >= 1 && repeat <= routines::settings::kMostRepeats) return std::nullopt;
   return out_of_range("repeat is not between 1 and 20");
 }
 

@@ -1,0 +1,65 @@
+// Numbers that decide how the command line waits, what it calls proven and how much it shows, each once, with
+// its unit and its origin: derived (from what), or chosen (for what reason; where none is given, no comparison
+// with other values is known).
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <ctime>
+#include <numbers>
+
+namespace odomcalib::cli::settings {
+
+// --- Proof of a calibration by a fresh motion ------------------------------------------------------------
+
+/// What a comparison of scans at rest cannot tell: m over a metre, rad over a turn. Chosen: two to three times
+/// the largest error after a calibration in simulated campaigns, and below what a wheel of 0.3 % makes.
+inline constexpr double kLengthNoise_m = 0.002, kHeadingNoise_rad = 0.1 * std::numbers::pi / 180.0;
+/// m, lengths as text and back. Derived: a tenth of the finest step of a controller, 1 um.
+inline constexpr double kSameLength_m = 1e-7;
+
+// --- Measuring by hand -----------------------------------------------------------------------------------
+
+/// Repetitions that show a spread: with fewer it is hardly known. Chosen.
+inline constexpr std::size_t kFewRepetitions = 3;
+/// Deviation over its part that repetitions show. Derived: the root of two, where both parts are equal.
+inline constexpr double kWholeOverShown = std::numbers::sqrt2;
+
+// --- Words of the report ---------------------------------------------------------------------------------
+
+/// Share of a pattern in the residual from which on the variable is said to be what it depends on. Chosen.
+inline constexpr double kDependsOn = 0.5;
+
+// --- A motion's lease ------------------------------------------------------------------------------------
+
+/// Between renewals. Derived: a quarter of the lease's 120 ms.
+inline constexpr std::chrono::milliseconds kRenewal{30};
+/// Priority among real-time processes while a motion runs. Chosen.
+inline constexpr int kPriority = 5;
+
+// --- Live view -------------------------------------------------------------------------------------------
+
+/// Between two looks at the daemon. Derived: the period of its progress.
+inline constexpr std::chrono::milliseconds kLiveTurn{200};
+/// Turns between tables of parameters, and between tries to reach a daemon that went away. Chosen: a second.
+inline constexpr int kTurnsPerTable = 5, kTurnsPerTry = 5;
+/// ms in which the daemon answers. Chosen.
+inline constexpr int kAnswerWithin_ms = 1000;
+/// Answers without a message before it is said that none arrive. Chosen: two seconds.
+inline constexpr int kPatience = 10;
+/// Messages taken in a turn. Chosen: some seconds of them; a flood does not keep the page from its turn.
+inline constexpr int kMostMessages = 500;
+/// Points of a path. Chosen: about the width of the picture in px.
+inline constexpr std::size_t kMostPoints = 800;
+/// m between them, doubled whenever there are too many. Chosen.
+inline constexpr double kSpacing_m = 0.01;
+/// Beams of a scan. Chosen: half a degree of a full turn.
+inline constexpr std::size_t kMostBeams = 720;
+/// Connections to the page, and threads that serve them. Chosen: a few browsers, with room for those that
+/// hang; one that hangs delays nobody.
+inline constexpr std::ptrdiff_t kMostConnections = 16;
+inline constexpr std::size_t kThreads = 8;
+/// s for a request or an answer to go through, on loopback. Chosen.
+inline constexpr std::time_t kConnectionPatience_s = 2;
+
+}  // namespace odomcalib::cli::settings
