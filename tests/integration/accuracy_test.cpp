@@ -205,6 +205,23 @@ sim::BlindOptions without_newest_kinds() {
   return options;
 }
 
+// Walls that bend look slanted to whoever takes them for straight: a term of the incidence that no lidar has.
+TEST(RoundRoom, is_no_effect) {
+  for (const std::uint64_t seed : {31U, 32U, 33U}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    sim::SimulationConfig config = sim::standard_config(seed);
+    config.room = sim::round_room();
+    config.duration = 240.0;
+    const sim::SimulatedRun run =
+        sim::simulate_recording(config, sim::follow(config.nominal, sim::guided_pattern()));
+    const Calibration result = calib::solve({&run.recording, 1}, {});
+    EXPECT_TRUE(result.effects.empty()) << testing::told(result);
+    EXPECT_FALSE(result.unexplained) << testing::told(result);
+    for (const double error : testing::length_errors_in_sigmas(result, config.truth))
+      EXPECT_LT(std::abs(error), 3.0);
+  }
+}
+
 // Nine starts in five minutes are few enough to be taken for failed matches, and were: flagged, not
 // corrected.
 TEST(Seldom, a_wheel_that_sticks_after_few_stops_is_corrected) {

@@ -69,6 +69,13 @@ Room workshop() {
   return room;
 }
 
+Room round_room() {
+  Room room;
+  room.add_pillar({0.3, 0.2}, 3.4, 360).add_pillar({2.6, 1.4}, 0.35, 60);
+  room.add_pillar({-1.9, 1.9}, 0.3, 60).add_pillar({-0.4, -2.5}, 0.4, 60);
+  return room;
+}
+
 Room corridor() { return box_room(40.0, 1.8, 20.0, 0.9); }
 
 Room random_room(std::uint64_t seed, double free_radius) {

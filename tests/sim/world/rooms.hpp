@@ -13,6 +13,8 @@ Room box_room(double length, double width, double x_behind, double y_right);
 Room furnished_room();
 /// 11 m x 9 m, L-shaped, benches along the walls.
 Room workshop();
+/// A drum of 3.4 m radius with three columns: no wall is straight.
+Room round_room();
 /// 1.8 m wide and 40 m long without any structure: position along it cannot be seen by a 12 m lidar.
 Room corridor();
 /// 6 to 12 m on a side, cut or slanted corners, furniture and pillars; at least `free_radius` clear about the

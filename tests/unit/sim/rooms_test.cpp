@@ -21,7 +21,7 @@ TEST(Rooms, every_random_room_is_closed_and_leaves_the_start_free) {
 }
 
 TEST(Rooms, ready_made_rooms_are_closed_about_the_start) {
-  for (const Room& room : {furnished_room(), workshop()}) {
+  for (const Room& room : {furnished_room(), workshop(), round_room()}) {
     EXPECT_GE(room.clearance({0, 0}), 1.9);
     for (int i = 0; i < 628; ++i) EXPECT_TRUE(room.cast({0, 0}, 0.01 * i).has_value());
   }
