@@ -349,6 +349,38 @@ TEST_P(Mistakes, are_told_with_what_where_and_what_next) {
 INSTANTIATE_TEST_SUITE_P(ByHand, Mistakes, ::testing::ValuesIn(mistakes()),
                          [](const auto& mistake) { return mistake.param.name; });
 
+/// A straight metre and back towards the upper right of the map, seen by poses.
+Recording straight_metre() {
+  constexpr double kHeading = 0.5, kSpeed = 0.2;  // rad, m/s
+  Recording recording;
+  recording.robot = plain_run().recording.robot;
+  std::mt19937 engine(3);
+  std::normal_distribution<double> noise(0.0, 5e-4);
+  for (int k = 0; k <= 600; ++k) {
+    const double t = 0.02 * k, way = kSpeed * (t < 6.0 ? t : 12.0 - t);
+    const auto count =
+        std::llround(way / (kPi * recording.robot.left_wheel_diameter) * recording.robot.ticks_per_rev);
+    recording.ticks.push_back({t, count, count});
+    recording.poses.push_back({t, way * std::cos(kHeading) + noise(engine),
+                               way * std::sin(kHeading) + noise(engine), kHeading + noise(engine)});
+  }
+  return recording;
+}
+
+// Nothing turns, so that the frame shows in the direction of the way alone.
+TEST(StraightMetre, with_yaw_negated_is_told_the_sign_and_not_to_record_again) {
+  Recording recording = straight_metre();
+  const auto reasons = [&] {
+    std::string text;
+    for (const std::string& reason : calib::solve({&recording, 1}, {}).reasons) text += reason + "\n";
+    return text;
+  };
+  EXPECT_THAT(reasons(), HasSubstr("turns on the spot")) << "sound, but there is no turn in it";
+  for (PoseSample& pose : recording.poses) pose.yaw = -pose.yaw;
+  EXPECT_THAT(reasons(), HasSubstr("negate yaw"));
+  EXPECT_THAT(reasons(), ::testing::Not(HasSubstr("turns on the spot")));
+}
+
 // What was changed for the table, without a mistake.
 TEST(MistakesNone, of_a_sound_recording_are_told) {
   for (const bool of_poses : {false, true}) {

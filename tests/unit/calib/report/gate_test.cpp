@@ -101,6 +101,17 @@ TEST(Gate, says_first_that_nothing_was_gained) {
   EXPECT_EQ(driven(0.0310, 0.0320).reasons.size(), 1U) << "there was nothing to gain";
 }
 
+TEST(Gate, says_that_something_has_no_name) {
+  Calibration calibration = sound();
+  calibration.unexplained = Unexplained{};
+  calibration.unexplained->depends_on = {"incidence", "range"};
+  const GateResult gate = judge(calibration, kFirm);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons.front().find("depends on incidence, range and has no name"), std::string::npos)
+      << gate.reasons.front();
+}
+
 TEST(Gate, refuses_what_cannot_be_the_robot) {
   EXPECT_EQ(judge(with_track(0.43, 1e-4), kFirm).verdict, Verdict::accepted);
   EXPECT_EQ(judge(with_track(0.45, 1e-4), kFirm).verdict, Verdict::accepted_with_warnings);
