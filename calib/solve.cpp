@@ -14,7 +14,7 @@
 #include "calib/selection/clocks.hpp"
 #include "calib/selection/lidar_correction.hpp"
 #include "calib/selection/placed_fit.hpp"
-#include "calib/selection/reference_seat.hpp"
+#include "calib/selection/reference_mounting.hpp"
 #include "calib/selection/scan_times.hpp"
 #include "calib/selection/search.hpp"
 
@@ -53,7 +53,7 @@ Solution calibrate(measurement::Dataset opened, const terms::Request& request, c
   // A stage that does not apply, that is rejected, or that follows a failed fit hands on the fit as it is.
   const estimation::Settling how = selection::settling(request.is_automatic, progress);
   estimation::Fit fit = settle(std::move(rough), start.value(), how);
-  fit = selection::seat_reference(std::move(fit), how);
+  fit = selection::mount_reference(std::move(fit), how);
   fit = selection::even_out_scans(std::move(fit), how);
   fit = selection::let_scans_sweep(std::move(fit), request, how);
   auto [corrected, lidar, placement] = selection::correct_lidar(std::move(fit), request, how);

@@ -38,12 +38,14 @@ bool is_idle(const Estimate& estimate, double negligible) {
   return std::abs(estimate.value) <= std::max(settings::kSignificance * deviation, negligible);
 }
 
-bool sits_elsewhere(const Seat& seat) {
+bool is_mounted_elsewhere(const MountingOffset& mounting) {
   const auto is_known = [](const Estimate& of, double known) { return std::sqrt(of.variance) < known; };
-  return is_known(seat.x, settings::kKnownSeat_m) && is_known(seat.y, settings::kKnownSeat_m) &&
-         is_known(seat.yaw, settings::kKnownSeat_rad) &&
-         (is_plain(seat.x, settings::kNegligibleSeat_m) || is_plain(seat.y, settings::kNegligibleSeat_m) ||
-          is_plain(seat.yaw, settings::kNegligibleSeat_rad));
+  return is_known(mounting.x, settings::kKnownMounting_m) &&
+         is_known(mounting.y, settings::kKnownMounting_m) &&
+         is_known(mounting.yaw, settings::kKnownMounting_rad) &&
+         (is_plain(mounting.x, settings::kNegligibleMounting_m) ||
+          is_plain(mounting.y, settings::kNegligibleMounting_m) ||
+          is_plain(mounting.yaw, settings::kNegligibleMounting_rad));
 }
 
 bool is_sliding(double drift) { return drift >= settings::kSliding; }

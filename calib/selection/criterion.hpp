@@ -34,13 +34,13 @@ bool is_plain(const Estimate& estimate, double negligible = 0.0);
 /// The estimate is not significantly different from zero, or negligible.
 bool is_idle(const Estimate& estimate, double negligible);
 
-/// Where a reference sits on the base.
-struct Seat {
+/// Where on the base a reference is mounted.
+struct MountingOffset {
   Estimate x, y, yaw;  ///< m, m, rad
 };
 
 /// The motion determines all of the place, and any component of it is plain.
-bool sits_elsewhere(const Seat& seat);
+bool is_mounted_elsewhere(const MountingOffset& mounting);
 
 /// The chain of matches drifts from the places in the map by more than independent errors do.
 /// @param drift of the chain, standard deviations (measurement::drift_of_matches)

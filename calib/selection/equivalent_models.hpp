@@ -21,9 +21,9 @@ std::vector<std::size_t> too_close(const ScoreTable& table, std::size_t candidat
 std::vector<vehicle::Covariate> covariates_like(const std::vector<Candidate>& candidates,
                                                 const ScoreTable& table, std::size_t index);
 
-/// Names that may be meant instead of a candidate's: those of its rivals, and those that no motion separates
-/// from it.
+/// Names that may be meant instead of a candidate's: those of its competitors, and those that no motion
+/// separates from it.
 std::vector<std::string> aliases_among(const std::vector<Candidate>& candidates, std::size_t candidate,
-                                       const std::vector<std::size_t>& rivals);
+                                       const std::vector<std::size_t>& competitors);
 
 }  // namespace odomcalib::calib::selection

@@ -34,7 +34,7 @@ constexpr std::array kTable = {
     RuleRow{Rule::smooth_term_for_name, "smooth_term_for_name", "wrong names that were taken early"},
     RuleRow{Rule::exclusions, "exclusions", "a second term for what a name covers"},
     RuleRow{Rule::backward_elimination, "backward_elimination", "terms that a later term made superfluous"},
-    RuleRow{Rule::close_rivals, "close_rivals", "one name where the data cannot separate two"},
+    RuleRow{Rule::close_competitors, "close_competitors", "one name where the data cannot separate two"},
     RuleRow{Rule::wider_noise, "wider_noise", "robust weights that take an effect for failed matches"},
     RuleRow{Rule::larger_prior, "larger_prior", "shrinking large effects"},
     RuleRow{Rule::centred_term, "centred_term",

@@ -36,7 +36,7 @@ enum class Rule : std::size_t {
   smooth_term_for_name,
   exclusions,
   backward_elimination,
-  close_rivals,
+  close_competitors,
   // How a candidate is fitted.
   wider_noise,
   larger_prior,

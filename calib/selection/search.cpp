@@ -330,13 +330,13 @@ class Search {
   bool accept_name(const Trial& best) {
     if (const auto smooth = better_smooth(best)) return accept_smooth(*smooth);
     const Candidate candidate = candidates_[best.candidate];
-    const std::vector<std::size_t> rivals = round_->rivals_of(best);
-    const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, rivals);
+    const std::vector<std::size_t> competitors = round_->competitors_of(best);
+    const std::vector<std::string> aliases = aliases_among(candidates_, best.candidate, competitors);
     const auto validation = accept(best);
     if (!validation) return true;
     result_.findings.push_back({candidate.effect, aliases, *validation});
     exclude_what_is_covered_by(*candidate.effect);
-    add_model_uncertainties(round_->model_uncertainties_of(rivals, best));
+    add_model_uncertainties(round_->model_uncertainties_of(competitors, best));
     drop_superfluous();
     return true;
   }

@@ -82,31 +82,32 @@ bool SearchRound::smooth_beats(std::size_t smooth, std::size_t name) const {
                            of_best_shape > settings::kNearlyAll * of_smooth));
 }
 
-std::vector<std::size_t> SearchRound::rivals_of(const Trial& best) const {
-  std::vector<std::size_t> rivals;
+std::vector<std::size_t> SearchRound::competitors_of(const Trial& best) const {
+  std::vector<std::size_t> competitors;
   for (const Trial& trial : trials_)
     if (is_open(trial.candidate) && best.gain - trial.gain < settings::kAmbiguity &&
-        task_.rules.has(Rule::close_rivals))
-      rivals.push_back(trial.candidate);
+        task_.rules.has(Rule::close_competitors))
+      competitors.push_back(trial.candidate);
   std::vector<std::size_t> names;
   for (std::size_t k = 0; k < candidates_.size(); ++k)
     if (is_open(k) && !candidates_[k].smooth && score(k).family_p_value <= settings::kNamedLevel)
       names.push_back(k);
   const std::vector<std::size_t> close = too_close(table_, best.candidate, names);
-  if (!close.empty() && task_.rules.has(Rule::close_rivals))
-    rivals.insert(rivals.end(), close.begin(), close.end());
-  return rivals;
+  if (!close.empty() && task_.rules.has(Rule::close_competitors))
+    competitors.insert(competitors.end(), close.begin(), close.end());
+  return competitors;
 }
 
-std::vector<Eigen::VectorXd> SearchRound::model_uncertainties_of(const std::vector<std::size_t>& rivals,
+std::vector<Eigen::VectorXd> SearchRound::model_uncertainties_of(const std::vector<std::size_t>& competitors,
                                                                  const Trial& best) {
   const std::string name = candidates_[best.candidate].effect->name();
-  for (const std::size_t rival : rivals) try_out(rival);
+  for (const std::size_t competitor : competitors) try_out(competitor);
   std::vector<Eigen::VectorXd> model_uncertainties;
   for (const Trial& trial : trials_) {
     const vehicle::Effect& effect = *candidates_[trial.candidate].effect;
-    const bool is_rival = std::find(rivals.begin(), rivals.end(), trial.candidate) != rivals.end();
-    if (is_rival && effect.name() != name && impossibility(effect, trial.model.fit).empty())
+    const bool is_competitor =
+        std::find(competitors.begin(), competitors.end(), trial.candidate) != competitors.end();
+    if (is_competitor && effect.name() != name && impossibility(effect, trial.model.fit).empty())
       model_uncertainties.emplace_back(trial.model.base() - best.model.base());
   }
   return model_uncertainties;

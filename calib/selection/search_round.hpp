@@ -55,9 +55,9 @@ class SearchRound {
   [[nodiscard]] bool smooth_beats(std::size_t smooth, std::size_t name) const;
 
   /// Names within a few units of BIC of the best.
-  [[nodiscard]] std::vector<std::size_t> rivals_of(const Trial& best) const;
+  [[nodiscard]] std::vector<std::size_t> competitors_of(const Trial& best) const;
   /// What each name that may be the right one instead would make of the base parameters.
-  std::vector<Eigen::VectorXd> model_uncertainties_of(const std::vector<std::size_t>& rivals,
+  std::vector<Eigen::VectorXd> model_uncertainties_of(const std::vector<std::size_t>& competitors,
                                                       const Trial& best);
 
  private:

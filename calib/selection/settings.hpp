@@ -80,10 +80,10 @@ inline constexpr double kSliding = 2.0;
 /// s, of a time offset that is negligible. Chosen: what a careful driver leaves.
 inline constexpr double kNegligibleOffset_s = 3e-3;
 /// m and rad, of the place of a reference's marker. Chosen: more than anybody measures with a tape.
-inline constexpr double kNegligibleSeat_m = 5e-4, kNegligibleSeat_rad = 2e-3;
+inline constexpr double kNegligibleMounting_m = 5e-4, kNegligibleMounting_rad = 2e-3;
 /// m and rad, largest standard deviations of a place that the motion determines. Chosen: ten times what is
 /// negligible.
-inline constexpr double kKnownSeat_m = 5e-3, kKnownSeat_rad = 2e-2;
+inline constexpr double kKnownMounting_m = 5e-3, kKnownMounting_rad = 2e-2;
 
 // --- Detectable ------------------------------------------------------------------------------------------
 

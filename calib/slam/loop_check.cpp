@@ -17,15 +17,15 @@ std::size_t bin_of(double angle) {
 }
 
 /// The four windows that lie about the summit, clear of it, as far as the search went.
-bool has_rival(matching::LikelihoodField& field, const std::vector<Eigen::Vector2d>& points,
-               const matching::SearchResult& best, const LoopCheckOptions& options) {
+bool has_competitor(matching::LikelihoodField& field, const std::vector<Eigen::Vector2d>& points,
+                    const matching::SearchResult& best, const LoopCheckOptions& options) {
   const double half = 0.5 * (options.half_width - settings::kSummit_m);
   if (!(half > field.cell())) return false;
   const double away = settings::kSummit_m + half;
   for (const auto& [dx, dy] : {std::pair{away, 0.0}, {-away, 0.0}, {0.0, away}, {0.0, -away}}) {
     const matching::SearchWindow window{
         {best.pose.x + dx, best.pose.y + dy, best.pose.yaw}, half, options.half_angle};
-    if (search_branch_and_bound(field, points, window).score > options.rival * best.score) return true;
+    if (search_branch_and_bound(field, points, window).score > options.competitor * best.score) return true;
   }
   return false;
 }
@@ -84,7 +84,7 @@ LoopMatch match_loop(const matching::MatchReference& first, const matching::Surf
   if (intrusion(FreeSpace(first.surface()), points, found.motion) > options.max_intrusion ||
       intrusion(FreeSpace(second), reference_points, inverse(found.motion)) > options.max_intrusion)
     return refused("walls where the other scan saw free space");
-  if (has_rival(field, few, best, options)) return refused("ambiguous");
+  if (has_competitor(field, few, best, options)) return refused("ambiguous");
   return {true, "", found.motion, found.covariance, found.overlap};
 }
 

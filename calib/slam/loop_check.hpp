@@ -39,7 +39,7 @@ struct LoopCheckOptions {
   /// Share of points of one scan in what the other saw as free.
   double max_intrusion = settings::kMostIntrusion;
   /// A far pose that fits this well compared with the best one makes the match ambiguous.
-  double rival = settings::kRivalScore;
+  double competitor = settings::kCompetitorScore;
 };
 
 /// Searches for the motion about `guess`, refines it and questions the result.

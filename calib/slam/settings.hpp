@@ -22,7 +22,7 @@ inline constexpr double kLoopOverlap = 0.55;
 /// Share of the points of one scan that may lie in what the other saw as free. Chosen.
 inline constexpr double kMostIntrusion = 0.08;
 /// Ratio of scores from which a far pose makes the best one ambiguous. Chosen.
-inline constexpr double kRivalScore = 0.97;
+inline constexpr double kCompetitorScore = 0.97;
 /// Directions of a turn in which free space is known. Chosen: half a degree each.
 inline constexpr std::size_t kFreeSpaceBins = 720;
 /// m in front of a surface, of what lies in free space. Chosen: beyond noise and errors of the motion.

@@ -74,21 +74,21 @@ TEST(Criterion, idle_is_within_four_deviations_or_negligible) {
   EXPECT_FALSE(is_idle({3.1e-3, 1e-10}, 3e-3));
 }
 
-TEST(Criterion, a_marker_sits_elsewhere_where_any_component_is_plain) {
+TEST(Criterion, a_marker_is_mounted_elsewhere_where_any_component_is_plain) {
   const Estimate zero{0.0, 1e-10};
-  EXPECT_FALSE(sits_elsewhere({zero, zero, zero}));
-  EXPECT_TRUE(sits_elsewhere({{6e-4, 1e-10}, zero, zero}));
-  EXPECT_TRUE(sits_elsewhere({zero, {-6e-4, 1e-10}, zero}));
-  EXPECT_TRUE(sits_elsewhere({zero, zero, {2.1e-3, 1e-10}}));
-  EXPECT_FALSE(sits_elsewhere({{4e-4, 1e-10}, {4e-4, 1e-10}, {1.9e-3, 1e-10}}));
-  EXPECT_FALSE(sits_elsewhere({{3.9e-3, 1e-6}, zero, zero}));
+  EXPECT_FALSE(is_mounted_elsewhere({zero, zero, zero}));
+  EXPECT_TRUE(is_mounted_elsewhere({{6e-4, 1e-10}, zero, zero}));
+  EXPECT_TRUE(is_mounted_elsewhere({zero, {-6e-4, 1e-10}, zero}));
+  EXPECT_TRUE(is_mounted_elsewhere({zero, zero, {2.1e-3, 1e-10}}));
+  EXPECT_FALSE(is_mounted_elsewhere({{4e-4, 1e-10}, {4e-4, 1e-10}, {1.9e-3, 1e-10}}));
+  EXPECT_FALSE(is_mounted_elsewhere({{3.9e-3, 1e-6}, zero, zero}));
 }
 
 TEST(Criterion, a_marker_sits_where_it_should_unless_the_motion_knows_all_of_its_place) {
   const Estimate far{0.1, 1e-10};
-  EXPECT_TRUE(sits_elsewhere({far, {0.0, 4.9e-3 * 4.9e-3}, {0.0, 1.9e-2 * 1.9e-2}}));
-  EXPECT_FALSE(sits_elsewhere({far, {0.0, 5.1e-3 * 5.1e-3}, {0.0, 1e-10}}));
-  EXPECT_FALSE(sits_elsewhere({far, {0.0, 1e-10}, {0.0, 2.1e-2 * 2.1e-2}}));
+  EXPECT_TRUE(is_mounted_elsewhere({far, {0.0, 4.9e-3 * 4.9e-3}, {0.0, 1.9e-2 * 1.9e-2}}));
+  EXPECT_FALSE(is_mounted_elsewhere({far, {0.0, 5.1e-3 * 5.1e-3}, {0.0, 1e-10}}));
+  EXPECT_FALSE(is_mounted_elsewhere({far, {0.0, 1e-10}, {0.0, 2.1e-2 * 2.1e-2}}));
 }
 
 TEST(Criterion, matches_slide_from_two_deviations_on) {

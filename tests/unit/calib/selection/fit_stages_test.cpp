@@ -1,5 +1,5 @@
 // Stages that may hand on another fit, or the one they were given.
-#include "calib/selection/reference_seat.hpp"
+#include "calib/selection/reference_mounting.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,18 +18,18 @@ using odomcalib::testing::settled_fit;
 using odomcalib::testing::silent_settling;
 using vehicle::ClockPart;
 
-TEST(SeatReference, a_marker_beside_the_axle_gets_its_place) {
+TEST(MountReference, a_marker_beside_the_axle_gets_its_place) {
   const Recording recording = driven_recording({0.12, 0.04, 0.0});
-  const estimation::Fit fit = seat_reference(settled_fit({&recording, 1}), silent_settling());
+  const estimation::Fit fit = mount_reference(settled_fit({&recording, 1}), silent_settling());
   ASSERT_FALSE(fit.failure) << fit.failure->text();
   EXPECT_TRUE(fit.dataset.reference_sits_anywhere);
   EXPECT_NEAR(fit.model.parameters(vehicle::kMountX), 0.12, 3e-3);
   EXPECT_NEAR(fit.model.parameters(vehicle::kMountY), 0.04, 3e-3);
 }
 
-TEST(SeatReference, a_marker_over_the_axle_is_the_base) {
+TEST(MountReference, a_marker_over_the_axle_is_the_base) {
   const Recording recording = driven_recording({});
-  const estimation::Fit fit = seat_reference(settled_fit({&recording, 1}), silent_settling());
+  const estimation::Fit fit = mount_reference(settled_fit({&recording, 1}), silent_settling());
   ASSERT_FALSE(fit.failure) << fit.failure->text();
   EXPECT_FALSE(fit.dataset.reference_sits_anywhere);
   EXPECT_EQ(fit.model.parameters(vehicle::kMountX), 0.0);
@@ -81,7 +81,7 @@ TEST(FitStages, hand_on_a_fit_that_failed) {
   const estimation::Fit failed = settle(rough, start, silent_settling());
   ASSERT_TRUE(failed.failure) << "straight ahead nothing tells the track width";
   const terms::Request request;
-  EXPECT_TRUE(seat_reference(failed, silent_settling()).failure);
+  EXPECT_TRUE(mount_reference(failed, silent_settling()).failure);
   EXPECT_TRUE(even_out_scans(failed, silent_settling()).failure);
   EXPECT_TRUE(let_scans_sweep(failed, request, silent_settling()).failure);
   EXPECT_TRUE(correct_lidar(failed, request, silent_settling()).fit.failure);
