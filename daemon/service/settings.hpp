@@ -91,9 +91,9 @@ inline constexpr double kPublisherRetry_s = 5.0;
 inline constexpr std::uint64_t kLargestRecording_bytes = std::uint64_t{512} << 20;
 /// Bytes of frames in it. Chosen: measurements come first.
 inline constexpr std::uint64_t kMostFrames_bytes = kLargestRecording_bytes / 2;
-/// Bytes of space on the disk without which none begins, and MB from which `check` finds enough. Chosen.
-inline constexpr std::uintmax_t kLeastSpace_bytes = std::uintmax_t{64} << 20;
-inline constexpr std::uintmax_t kEnoughSpace_MB = 64;
+/// MB of space on the disk without which none begins, and `check` finds too little. Chosen. The text that
+/// refuses says it too.
+inline constexpr std::uintmax_t kLeastSpace_MB = 64;
 /// Recordings that the disk has not finished. Chosen.
 inline constexpr std::size_t kMostUnfinished = 4;
 /// Items waiting for the disk. Derived: 8 s of a bus at its limit.

@@ -29,9 +29,8 @@ ordered_json check_disk(const std::filesystem::path& folder) {
   const auto space = std::filesystem::space(folder, error);
   if (error) return check("disk", false, error.message(), "see that " + folder.string() + " is there");
   const std::uintmax_t left = space.available / kMegabyte;
-  return check("disk", left > service::settings::kEnoughSpace_MB,
-               left > service::settings::kEnoughSpace_MB ? "enough space"
-                                                         : "only " + std::to_string(left) + " MB left",
+  const bool enough = left >= service::settings::kLeastSpace_MB;
+  return check("disk", enough, enough ? "enough space" : "only " + std::to_string(left) + " MB left",
                "remove old recordings");
 }
 

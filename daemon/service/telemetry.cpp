@@ -33,12 +33,13 @@ bool usable_name(const std::string& name) {
 }
 
 std::optional<Error> too_little_space(const std::filesystem::path& folder) {
+  constexpr std::uintmax_t kMegabyte = 1'000'000;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   const auto space = std::filesystem::space(folder, error);
   if (error) return Error{ErrorCode::io, error.message(), folder.string(), "check the state directory"};
-  if (space.available >= service::settings::kLeastSpace_bytes) return std::nullopt;
-  return Error{ErrorCode::io, "less than 64 MiB free", folder.string(), "remove old recordings"};
+  if (space.available / kMegabyte >= service::settings::kLeastSpace_MB) return std::nullopt;
+  return Error{ErrorCode::io, "less than 64 MB free", folder.string(), "remove old recordings"};
 }
 
 }  // namespace

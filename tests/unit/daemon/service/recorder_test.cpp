@@ -147,12 +147,12 @@ TEST_F(RecordingOnDisk, begins_anew_while_the_one_before_is_still_being_written)
   EXPECT_EQ(recorder_->start("same").error().code, ErrorCode::io) << "bounded";
 }
 
-TEST_F(RecordingOnDisk, does_not_begin_with_less_than_64_MiB_of_free_space) {
+TEST_F(RecordingOnDisk, does_not_begin_with_less_than_64_MB_of_free_space) {
   on_slow_disk();
-  bytes_free = (std::uint64_t{64} << 20U) - 1;
+  bytes_free = 64'000'000 - 1;
   const auto refused = recorder_->start("full");
   ASSERT_FALSE(refused.ok());
-  EXPECT_NE(refused.error().text().find("64 MiB"), std::string::npos) << refused.error().text();
+  EXPECT_NE(refused.error().text().find("64 MB"), std::string::npos) << refused.error().text();
   bytes_free += 1;
   EXPECT_TRUE(recorder_->start("just_enough").ok());
   bytes_free = kPlenty;
