@@ -147,6 +147,7 @@ class Periodogram {
     const auto some = static_cast<std::size_t>(Few::RowsAtCompileTime);
     for (std::size_t first = 0; first < score_.size(); first += some) add(first, frequencies, sums);
     std::vector<double> out;
+    out.reserve(sums.size());
     for (const WaveSums& of_one : sums) out.push_back(of_one.statistic(variance_));
     return out;
   }
@@ -206,6 +207,7 @@ std::optional<double> outstanding(const Repeating& repeating, const Periodogram&
   const std::vector<double> close =
       frequencies_between(coarse - step, coarse + step, settings::kFineRollingStep * step);
   std::vector<double> statistics;
+  statistics.reserve(close.size());
   for (const double frequency : close) statistics.push_back(periodogram.statistic(frequency));
   const Peak peak = highest_of(close, statistics);
   const double tried = settings::kTriedPerRollingStep * (highest - lowest) / step;

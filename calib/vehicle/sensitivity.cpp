@@ -224,6 +224,7 @@ std::vector<StepResponse> Sensitivity::by_steps(const EffectList& effects,
       }
   }
   std::vector<StepResponse> responses;
+  responses.reserve(count);
   for (auto& of_parameter : rows) responses.emplace_back(first, std::move(of_parameter));
   return responses;
 }
