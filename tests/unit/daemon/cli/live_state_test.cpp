@@ -120,7 +120,7 @@ TEST(LiveState, without_lcm_it_says_so_and_follows_the_odometry_of_the_status) {
 TEST(LiveState, messages_that_never_come_are_named_and_those_that_do_are_not) {
   LiveState state;
   state.connect(description(), true);
-  for (int k = 0; k < LiveState::kPatience; ++k) state.take_status(status("idle"));
+  for (int k = 0; k < settings::kPatience; ++k) state.take_status(status("idle"));
   EXPECT_THAT(state.document()["telemetry"], HasSubstr("no LCM message arrives"));
   state.take_message("ODOM", pose(0.0, 0.0, 0.0));
   EXPECT_EQ(state.document()["telemetry"], "");
