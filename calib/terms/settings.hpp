@@ -19,8 +19,9 @@ inline constexpr double kShortestCycle_s = 8.0;
 inline constexpr double kFewestCycles = 1.5;
 /// Cycles between two that are tried. Chosen.
 inline constexpr double kCycleStep = 0.7;
-/// Cycles within the drive. What repeats itself more often is proposed by a periodogram instead of being tried
-/// one by one, which would grow with the square of the duration. Chosen: sixteen minutes' of the shortest.
+/// Cycles within the drive. What repeats itself more often is proposed by a periodogram instead of being
+/// tried one by one, which would grow with the square of the duration. Chosen: sixteen minutes' of the
+/// shortest.
 inline constexpr double kMostCycles = 120.0;
 /// Parts of the drive before and after a change point. Chosen.
 inline constexpr int kLeastPart = 2;

@@ -1,6 +1,6 @@
 // Numbers that decide how the command line waits, what it calls proven and how much it shows, each once, with
-// its unit and its origin: derived (from what), or chosen (for what reason; where none is given, no comparison
-// with other values is known).
+// its unit and its origin: derived (from what), or chosen (for what reason; where none is given, no
+// comparison with other values is known).
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,8 @@ namespace odomcalib::cli::settings {
 
 // --- Proof of a calibration by a fresh motion ------------------------------------------------------------
 
-/// What a comparison of scans at rest cannot tell: m over a metre, rad over a turn. Chosen: two to three times
-/// the largest error after a calibration in simulated campaigns, and below what a wheel of 0.3 % makes.
+/// What a comparison of scans at rest cannot tell: m over a metre, rad over a turn. Chosen: two to three
+/// times the largest error after a calibration in simulated campaigns, and below what a wheel of 0.3 % makes.
 inline constexpr double kLengthNoise_m = 0.002, kHeadingNoise_rad = 0.1 * std::numbers::pi / 180.0;
 /// m, lengths as text and back. Derived: a tenth of the finest step of a controller, 1 um.
 inline constexpr double kSameLength_m = 1e-7;
