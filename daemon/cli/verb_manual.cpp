@@ -71,7 +71,7 @@ Result<std::vector<double>> measured_values(const Options& options, double unit)
 /// What a person reads; an answer that is no number is asked for again.
 Result<double> asked(const std::string& question, double unit) {
   for (std::string line; std::cerr << question << std::flush, std::getline(std::cin, line);) {
-    const auto value = number_of(line, unit);
+    auto value = number_of(line, unit);
     if (value) return value;
     std::cerr << value.error().what << '\n';
   }
