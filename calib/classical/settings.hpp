@@ -43,6 +43,13 @@ inline constexpr double kFarEnd = 0.5;
 /// Of the common scale of diameters that a straight metre gave, by either reference: relative. Chosen.
 inline constexpr double kDiametersOfStraight = 3e-4;
 
+// --- Missing motion --------------------------------------------------------------------------------------
+
+/// Share of what the wheels rolled together, of rolling against each other, or the reverse, or of either that is
+/// not in a fixed proportion to the other: below it a motion is missing. Chosen: a circle whose radius is five
+/// track widths has it.
+inline constexpr double kHardlyAny = 0.1;
+
 // --- Closed form -----------------------------------------------------------------------------------------
 
 /// Condition of the rotation's equations above which they cannot separate the two wheels. Published: the

@@ -6,6 +6,7 @@
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 
+#include "calib/classical/missing_motion.hpp"
 #include "calib/estimation/settings.hpp"
 #include "calib/ingest/gaps.hpp"
 #include "calib/ingest/settings.hpp"
@@ -301,9 +302,14 @@ class Fitter {
            system.scale.asDiagonal();
   }
 
-  static Error undetermined() {
+  [[nodiscard]] Error undetermined() const {
+    std::vector<wheels::WheelMotion> motions;
+    for (const PathData& data : data_)
+      for (std::size_t k = 0; k + 1 < data.scans.size(); ++k)
+        motions.push_back(wheels::motion_between(data.model->track(), data.scans[k].time, data.scans[k + 1].time, {}));
     return {ErrorCode::refused, "the motion does not determine all parameters", "path estimate",
-            "record straight lines, arcs and turns on the spot, both ways"};
+            "record " + classical::missing_motion(motions).value_or(
+                            "more of each motion: straight lines, arcs and turns on the spot")};
   }
 
   std::optional<Error> step() {

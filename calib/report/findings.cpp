@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "calib/classical/missing_motion.hpp"
 #include "calib/report/found_effects.hpp"
 #include "calib/report/gate.hpp"
 #include "calib/report/gyro_report.hpp"
@@ -171,6 +172,7 @@ Footing footing(const Findings& found, const BaseEstimate& base, const ReportDat
   footing.of_poses = found.fit.dataset.reference_is_base();
   footing.converged = fit.converged;
   footing.measured = base.measured;
+  footing.missing_motion = classical::missing_motion(measurement::wheel_motions(found.fit.dataset.data, 0.0));
   if (!found.fit.dataset.reference_is_scans() || found.every_scan_placed) return footing;
   for (const measurement::PairSet& set : found.fit.dataset.pair_sets) {
     footing.matched += set.pairs.size();

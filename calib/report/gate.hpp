@@ -36,6 +36,8 @@ struct Footing {
   std::size_t outliers = 0, pairs = 0;  ///< pairs that contradict all others, of all
   std::optional<Apart> recordings_apart = std::nullopt;
   bool of_poses = false;  ///< the reference is poses of the base
+  /// What was hardly driven: classical::missing_motion.
+  std::optional<std::string> missing_motion = std::nullopt;
 };
 
 /// Odometry over ten seconds errs by plainly more than the reference and the wheels' noise make of it.

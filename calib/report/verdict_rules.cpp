@@ -149,19 +149,19 @@ std::vector<Length> lengths_of(const Calibration& calibration, const Footing& fo
   return lengths;
 }
 
-std::string motion_for(const std::string& name) {
-  if (name == "track_width") return "turn on the spot, both ways";
-  return "drive straight lines, forward and backward, and turn on the spot";
+std::string motion_for(const std::string& name, const Footing& footing) {
+  if (footing.missing_motion) return *footing.missing_motion;
+  return name == "track_width" ? "more turns on the spot, both ways" : "longer straight lines, forward and backward";
 }
 
 /// Of a length that the motion does not determine its value says nothing.
-Objections undetermined_lengths(const std::vector<Length>& lengths) {
+Objections undetermined_lengths(const std::vector<Length>& lengths, const Footing& footing) {
   Objections found;
   for (const Length& length : lengths) {
     if (length.is_determined()) continue;
     const std::string how = length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
                                                   : "is not determined";
-    found.push_back(refusal(length.name + " " + how + "; to fix that, " + motion_for(length.name)));
+    found.push_back(refusal(length.name + " " + how + "; to fix that, record " + motion_for(length.name, footing)));
   }
   return found;
 }
@@ -237,7 +237,7 @@ std::optional<Objection> objection_to_change(const Length& length) {
 /// In the order of the parameters: what a length is not, how well it is known, how far it is from nominal.
 Objections lengths(const Calibration& calibration, const Footing& footing) {
   const std::vector<Length> all = lengths_of(calibration, footing);
-  if (Objections found = undetermined_lengths(all); !found.empty()) return found;
+  if (Objections found = undetermined_lengths(all, footing); !found.empty()) return found;
   if (Objections found = negative_lengths(all); !found.empty()) return found;
   const auto factor = common_factor(calibration, footing, all);
   Objections found;

@@ -130,6 +130,7 @@ TEST(Joint, straight_motion_alone_is_refused_and_names_what_is_missing) {
   ASSERT_FALSE(fit.ok());
   EXPECT_EQ(fit.error().code, ErrorCode::refused);
   EXPECT_NE(fit.error().what.find("does not determine"), std::string::npos);
+  EXPECT_EQ(fit.error().remedy, "record turns on the spot, both ways");
 }
 
 TEST(Joint, parameters_that_are_too_few_are_refused) {

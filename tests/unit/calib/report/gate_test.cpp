@@ -39,7 +39,16 @@ TEST(Gate, refuses_a_badly_determined_length_and_names_the_motion_for_it) {
   const GateResult gate = judge(with_track(0.4, 0.0121), kFirm);
   EXPECT_EQ(gate.verdict, Verdict::refused);
   ASSERT_EQ(gate.reasons.size(), 1U);
-  EXPECT_NE(gate.reasons[0].find("turn on the spot"), std::string::npos) << gate.reasons[0];
+  EXPECT_NE(gate.reasons[0].find("turns on the spot"), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, asks_for_the_motion_that_is_missing_not_for_what_was_driven) {
+  Footing footing = kFirm;
+  footing.missing_motion = "straight lines, forward and backward";
+  const GateResult gate = judge(with_track(0.4, 0.0121), footing);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("record straight lines"), std::string::npos) << gate.reasons[0];
+  EXPECT_EQ(gate.reasons[0].find("turns on the spot"), std::string::npos) << gate.reasons[0];
 }
 
 TEST(Gate, of_a_length_that_is_not_determined_the_value_says_nothing) {

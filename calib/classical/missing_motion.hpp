@@ -1,0 +1,16 @@
+// Which motion a drive lacks, for advice that does not ask for what was driven.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "calib/wheels/wheel_motion.hpp"
+
+namespace odomcalib::calib::classical {
+
+/// @return what to record: the lines or the turns that are hardly there, or both where the wheels always turned
+///         in the same proportion; nothing where no motion is missing
+std::optional<std::string> missing_motion(std::span<const wheels::WheelMotion> motions);
+
+}  // namespace odomcalib::calib::classical
