@@ -10,6 +10,7 @@
 #include "calib/estimation/settings.hpp"
 #include "calib/estimation/stack.hpp"
 #include "calib/math/cluster_robust.hpp"
+#include "calib/measurement/dataset.hpp"
 #include "calib/measurement/noise_estimate.hpp"
 
 namespace odomcalib::calib::estimation {

@@ -47,6 +47,10 @@ void read_service(TomlReader& toml, Config& config) {
   config.lcm_url = toml.text("lcm.url", config.lcm_url);
   config.channel_prefix = toml.text("lcm.channel_prefix", config.channel_prefix);
   config.state_dir = toml.text("daemon.state_dir", config.state_dir.string());
+  constexpr double kMegabyte = 1e6;
+  config.keep_recordings = static_cast<std::uintmax_t>(
+      kMegabyte * toml.number("daemon.keep_recordings", static_cast<double>(config.keep_recordings) / kMegabyte,
+                              1.0, 1e6));
   config.socket = toml.text("daemon.socket", config.socket.string());
   config.group = toml.text("daemon.group", config.group);
 }
@@ -65,7 +69,13 @@ Result<Config> config_from(Result<TomlReader> document) {
 }  // namespace
 
 Result<Config> read_config(const std::filesystem::path& path) {
-  return config_from(TomlReader::read(path, kManual));
+  std::error_code ignored;  // shows in the reading
+  const auto written = std::filesystem::last_write_time(path, ignored);
+  auto config = config_from(TomlReader::read(path, kManual));
+  if (!config) return config;
+  config.value().file = path;
+  config.value().written = written;
+  return config;
 }
 
 Result<Config> parse_config(const std::string& text, const std::string& where) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -13,6 +14,9 @@
 namespace odomcalib {
 
 struct Config {
+  /// Where it was read from and when that was written; empty: from elsewhere.
+  std::filesystem::path file;
+  std::filesystem::file_time_type written{};
   // [controller]
   std::string controller_device;   ///< "slcan:/dev/ttyACM0?bitrate=500000", "socketcan:can0"
   std::string controller_profile;  ///< profile file
@@ -34,6 +38,7 @@ struct Config {
   std::string channel_prefix = "ODOMCALIB_";
   // [daemon]
   std::filesystem::path state_dir = "/var/lib/odomcalib";
+  std::uintmax_t keep_recordings = 4'000'000'000;  ///< bytes; beyond them the oldest are removed
   std::filesystem::path socket = "/run/odomcalib/control";
   std::string group = "odomcalib";
 };

@@ -1,6 +1,7 @@
 #include "daemon/service/control_server.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <grp.h>
 #include <pwd.h>
 #include <sys/socket.h>
@@ -33,6 +34,7 @@ struct Client {
   std::size_t waiting_bytes = 0;
   std::size_t served = 0;  // calls in this turn
   std::string output;
+  std::string name;  // for people
   bool spare = false;  // came when all places were taken
   bool gone = false;
 };
@@ -167,6 +169,7 @@ void ControlServer::State::accept_one(int fd) {
   if (spare) ++counters.too_many;
   Client& client = clients[next];
   client.fd = fd;
+  client.name = fmt::format("user {}, process {}", peer.uid, peer.pid);
   client.spare = spare;
   // What it came with counts at once: it may be a stop.
   read_from(client);
@@ -332,6 +335,7 @@ std::optional<IncomingCall> ControlServer::next_call() {
     client.waiting.pop_front();
     client.waiting_bytes -= taken.frame.size();
     ++client.served;
+    ++state_->counters.served;
     state_->served_last = id;
     if (auto call = state_->decode(client, taken.frame))
       return IncomingCall{id, std::move(*call), taken.arrived, taken.stopped_since};
@@ -346,6 +350,11 @@ void ControlServer::reply(ClientId client, const std::string& frame) {
   if (found == state_->clients.end()) return;
   found->second.output += frame;
   state_->write_to(found->second);
+}
+
+std::string ControlServer::name_of(ClientId client) const {
+  const auto found = state_->clients.find(client);
+  return found == state_->clients.end() ? "" : found->second.name;
 }
 
 bool ControlServer::connected(ClientId client) const { return state_->clients.contains(client); }

@@ -43,7 +43,7 @@ class ControlServer {
 
   struct Counters {
     std::uint64_t accepted = 0, too_many = 0 /* beyond kMostClients */, not_permitted = 0, malformed = 0,
-                  too_slow = 0, flooded = 0 /* beyond kMostWaiting */;
+                  too_slow = 0, flooded = 0 /* beyond kMostWaiting */, served = 0 /* calls taken, whatever became of them */;
   };
 
   /// Binds the socket (mode 0660, of the group where it exists). An orphaned socket is replaced; a live one
@@ -71,6 +71,8 @@ class ControlServer {
   /// Queues a frame for a client; nothing happens when it has gone.
   void reply(ClientId client, const std::string& frame);
   [[nodiscard]] bool connected(ClientId client) const;
+  /// Its user and process, for people; empty when it has gone.
+  [[nodiscard]] std::string name_of(ClientId client) const;
   [[nodiscard]] std::size_t clients() const;
   [[nodiscard]] const Counters& counters() const;
 

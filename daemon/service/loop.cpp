@@ -1,7 +1,10 @@
 #include "daemon/service/loop.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <utility>
 
 #include "daemon/service/methods/methods.hpp"
@@ -10,10 +13,9 @@
 #include "daemon/service/write_outcome.hpp"
 
 namespace odomcalib {
-Loop::Loop(const Config& configuration, Clock& clock, Calibrator functions, BaseLink base, LidarLink lidar,
-           ControlServer server, Journal journal, std::unique_ptr<Background> disk)
-    : bench_(configuration, clock, std::move(functions), std::move(base), std::move(lidar), std::move(server),
-             std::move(journal), std::move(disk)) {
+Loop::Loop(const Config& configuration, Clock& clock, Calibrator functions, Opened opened,
+           std::unique_ptr<Background> disk, EventLog log)
+    : bench_(configuration, clock, std::move(functions), std::move(opened), std::move(disk), std::move(log)) {
   // The end of a write-back may have been written down and nothing after it.
   const auto& last = bench_.write_back.transaction.journal().last();
   const bool committed = last && last->state == JournalState::commit;
@@ -28,9 +30,11 @@ void Loop::wait(int timeout_ms) {
   bench_.outbox.server.watch(polled_);
   const int most =
       task_ && task_->moves() ? std::min(timeout_ms, service::settings::kMovingTurn_ms) : timeout_ms;
-  const int limit = bench_.outbox.server.calls_wait() ? 0 : most;
+  at_once_ = bench_.outbox.server.calls_wait();
+  const int limit = at_once_ ? 0 : most;
   bench_.loop.begin(bench_.clock.now(), 1e-3 * limit);
   const bool any = poll(polled_.data(), polled_.size(), limit) > 0;
+  if (any) guard_.polled(polled_);
   lidar_woke_ = any && polled_[1].revents != 0;
   clients_woke_ = any && std::any_of(polled_.begin() + clients, polled_.end(),
                                      [](const pollfd& file) { return file.revents != 0; });
@@ -62,13 +66,29 @@ void Loop::turn() {
     bench_.loop.passed(name != nullptr ? name : of_task, clock.now());
   }
   bench_.drive.link.flush();
+  see_that_it_gets_on();
   const double end = clock.now();
   bench_.loop.passed("sending", end);
   bench_.loop.end(end);
 }
 
+void Loop::report(const char* line, const std::optional<LinkWatch::News>& news) {
+  if (!news) return;
+  bench_.outbox.event(news->good ? messages::Severity::info : messages::Severity::warning, line, news->text);
+}
+
+void Loop::see_that_it_gets_on() {
+  const std::uint64_t served = bench_.outbox.server.counters().served;
+  guard_.turned(at_once_, served != std::exchange(served_, served));
+  if (guard_.hangs_at().empty()) return;
+  stop_drive(bench_);
+  spdlog::critical("the loop hangs at {}", guard_.hangs_at());
+  std::abort();
+}
+
 void Loop::serve_drive() {
   const auto news = bench_.drive.serve(bench_.clock, bench_.now);
+  report("bus", news.line);
   const RobotDescription robot = news.ticks.empty() ? RobotDescription{} : bench_.drive.robot();
   for (const TickSample& sample : news.ticks) {
     bench_.odometry.add(sample, robot);
@@ -90,6 +110,7 @@ void Loop::serve_lidar() {
     bench_.outbox.scan(scan);
     if (task_) task_->scanned(bench_, scan);
   }
+  report("lidar", bench_.surroundings.take_news());
 }
 
 void Loop::serve_clients() {
@@ -152,6 +173,7 @@ void Loop::stop_all(const std::string& why) {
   bench_.outbox.begin_turn(bench_.now);
   bench_.ending = true;
   bench_.write_back.end();
+  bench_.last_run.daemon_ends();
   const bool moves = task_ && task_->moves();
   if (!moves) return stop_drive(bench_);
   settle(task_->daemon_ends(bench_, {ErrorCode::cancelled, why, "odomcalibd", "start again"}));

@@ -3,10 +3,12 @@
 
 #include <poll.h>
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "daemon/service/loop_guard.hpp"
 #include "daemon/service/parts/bench.hpp"
 #include "daemon/service/tasks/task.hpp"
 
@@ -14,8 +16,8 @@ namespace odomcalib {
 
 class Loop {
  public:
-  Loop(const Config& configuration, Clock& clock, Calibrator functions, BaseLink base, LidarLink lidar,
-       ControlServer server, Journal journal, std::unique_ptr<Background> disk);
+  Loop(const Config& configuration, Clock& clock, Calibrator functions, Opened opened,
+       std::unique_ptr<Background> disk, EventLog log);
 
   /// Waits at most so long for input.
   void wait(int timeout_ms);
@@ -36,12 +38,19 @@ class Loop {
   void serve_write_back();
   void serve_task();
   void serve_telemetry();
+  void report(const char* line, const std::optional<LinkWatch::News>& news);
   void forget(ClientId gone);
   void settle(TaskTurn turn);
+  /// Ends the process when the loop hangs; the service manager starts it again.
+  void see_that_it_gets_on();
 
   Bench bench_;
   std::unique_ptr<Task> task_;  // after the bench: its end may stop the drive
   std::vector<pollfd> polled_;  // what the last wait was for: drive, lidar, disk, then the control socket
+  static constexpr std::array kPolled = {"base", "lidar", "disk", "control socket", "client"};
+  LoopGuard guard_{kPolled};
+  std::uint64_t served_ = 0;  // calls, up to the last turn
+  bool at_once_ = false;    // the last wait was none: calls were waiting
   bool lidar_woke_ = false, clients_woke_ = false;
   double next_lidar_ = 0.0, next_clients_ = 0.0;
 };

@@ -1,7 +1,9 @@
 // odomcalibd: reads the configuration, runs the loop, talks to systemd.
 #include <signal.h>
 #include <spdlog/spdlog.h>
+#include <syslog.h>
 #include <systemd/sd-daemon.h>
+#include <systemd/sd-journal.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "daemon/service/base_link.hpp"
+#include "daemon/service/disk_worker.hpp"
 #include "daemon/service/lidar_link.hpp"
 #include "daemon/service/quick_stop.hpp"
 #include "daemon/service/service.hpp"
@@ -35,6 +38,33 @@ void catch_signals() {
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) sigaction(number, &action, nullptr);
   signal(SIGPIPE, SIG_IGN);
 }
+
+// With the kind of event as a field of its own where this program's messages go to systemd's journal.
+void write_event(odomcalib::messages::Severity severity, const std::string& code, const std::string& text) {
+  using Severity = odomcalib::messages::Severity;
+  const bool in_journal = std::getenv("JOURNAL_STREAM") != nullptr;
+  const bool info = severity == Severity::info, fault = severity == Severity::fault;
+  const auto level = info ? spdlog::level::info : fault ? spdlog::level::err : spdlog::level::warn;
+  if (!in_journal) return spdlog::log(level, "{}: {}", code, text);
+  (void)sd_journal_send("MESSAGE=%s: %s", code.c_str(), text.c_str(), "PRIORITY=%i",
+                        info    ? LOG_INFO
+                        : fault ? LOG_ERR
+                                : LOG_WARNING,
+                        "ODOMCALIB_EVENT=%s", code.c_str(), nullptr);
+}
+
+// Beside the loop: a journal whose disk is slow must not hold it up.
+class Log {
+ public:
+  void write(odomcalib::messages::Severity severity, const std::string& code, const std::string& text) {
+    worker_.post([severity, code, text] { write_event(severity, code, text); }, [] {});
+  }
+  void serve() { worker_.serve(); }
+  void finish() { worker_.finish(); }
+
+ private:
+  odomcalib::DiskWorker worker_;
+};
 
 // Fed from the loop itself: a loop that hangs starves it.
 class Watchdog {
@@ -61,17 +91,19 @@ bool may_end(const Service& service, double elapsed) {
   return elapsed >= settings::kLongestWrite_s || !service.writing();
 }
 
-void run(Service& service, const odomcalib::Clock& clock) {
+void run(Service& service, const odomcalib::Clock& clock, Log& log) {
   Watchdog watchdog;
   sd_notify(0, "READY=1");
   while (stop_requested == 0) {
     service.poll_once(settings::kTurn_ms);
+    log.serve();
     watchdog.turned(clock.now(), service);
   }
   service.stop_all("the daemon ends");
   sd_notify(0, "STOPPING=1");
   for (const double begin = clock.now(); !may_end(service, clock.now() - begin);) {
     service.poll_once(settings::kEndingTurn_ms);
+    log.serve();
     watchdog.turned(clock.now(), service);
   }
 }
@@ -107,14 +139,18 @@ int serve(const std::string& path) {
   odomcalib::SystemClock clock;
   auto calibrator = odomcalib::make_calibrator();
   calibrator.solve = odomcalib::solve_in_process({});
-  auto service = Service::create(config.value(), clock, calibrator);
+  Log log;
+  auto service = Service::create(
+      config.value(), clock, calibrator, nullptr,
+      [&log](auto severity, const auto& code, const auto& text) { log.write(severity, code, text); });
   if (!service) {
     spdlog::error("{}", service.error().text());
     return kFailure;
   }
   spdlog::info("odomcalibd {} serves {}", odomcalib::kVersion, config.value().socket.string());
-  run(*service.value(), clock);
+  run(*service.value(), clock, log);
   service.value().reset();
+  log.finish();
   spdlog::info("ended");
   return 0;
 }

@@ -1,8 +1,12 @@
 #include "daemon/service/recording_file.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <fstream>
+#include <limits>
 #include <optional>
 
+#include "daemon/service/retention.hpp"
 #include "proto/recording/recording_log.hpp"
 
 namespace odomcalib {
@@ -10,10 +14,13 @@ namespace {
 
 class RecordingFile final : public RecordingSink {
  public:
-  RecordingFile(std::filesystem::path path, std::string prefix)
-      : path_(std::move(path)), prefix_(std::move(prefix)) {}
+  RecordingFile(std::filesystem::path path, std::string prefix, std::uintmax_t most_bytes)
+      : path_(std::move(path)), prefix_(std::move(prefix)), most_bytes_(most_bytes) {}
 
   Result<void> open() override {
+    const Retention retention{most_bytes_, std::numeric_limits<std::size_t>::max()};
+    for (const std::string& name : keep_newest(path_.parent_path(), retention))
+      spdlog::info("recordings: {} was removed, daemon.keep_recordings is reached", name);
     auto log = RecordingLog::create(path_, prefix_);
     if (!log) return log.error();
     log_.emplace(std::move(log).value());
@@ -49,6 +56,7 @@ class RecordingFile final : public RecordingSink {
 
   std::filesystem::path path_;
   std::string prefix_;
+  std::uintmax_t most_bytes_;
   std::optional<RecordingLog> log_;
   std::ofstream frames_;
 };
@@ -56,8 +64,9 @@ class RecordingFile final : public RecordingSink {
 }  // namespace
 
 std::unique_ptr<RecordingSink> recording_file(const std::filesystem::path& path,
-                                              const std::string& channel_prefix) {
-  return std::make_unique<RecordingFile>(path, channel_prefix);
+                                              const std::string& channel_prefix,
+                                              std::uintmax_t most_bytes) {
+  return std::make_unique<RecordingFile>(path, channel_prefix, most_bytes);
 }
 
 }  // namespace odomcalib

@@ -11,19 +11,23 @@ Service::Service(std::unique_ptr<Loop> loop) : loop_(std::move(loop)) {}
 Service::~Service() { stop_all("the daemon ends"); }
 
 Result<std::unique_ptr<Service>> Service::create(const Config& config, Clock& clock, Calibrator calibrator,
-                                                 std::unique_ptr<Background> disk) {
+                                                 std::unique_ptr<Background> disk, EventLog log) {
   auto base = BaseLink::create(config.controller_device, config.controller_profile);
   if (!base) return base.error();
   auto lidar = LidarLink::create(config.lidar_device, config.lidar_type);
   if (!lidar) return lidar.error();
-  auto journal = Journal::open(config.state_dir / "journal");
+  auto folder = StateFolder::open(config.state_dir);
+  if (!folder) return folder.error();
+  const auto open_journal = folder.value().read_only() ? Journal::open_read_only : Journal::open;
+  auto journal = open_journal(config.state_dir / "journal");
   if (!journal) return journal.error();
   auto server = ControlServer::create(config.socket, config.group);
   if (!server) return server.error();
   if (!disk) disk = std::make_unique<DiskWorker>();
-  auto loop = std::make_unique<Loop>(config, clock, std::move(calibrator), std::move(base).value(),
-                                     std::move(lidar).value(), std::move(server).value(),
-                                     std::move(journal).value(), std::move(disk));
+  Opened opened{std::move(base).value(), std::move(lidar).value(), std::move(server).value(),
+                std::move(folder).value(), std::move(journal).value()};
+  auto loop = std::make_unique<Loop>(config, clock, std::move(calibrator), std::move(opened), std::move(disk),
+                                     std::move(log));
   return std::unique_ptr<Service>(new Service(std::move(loop)));
 }
 
@@ -35,7 +39,7 @@ void Service::poll_once(int timeout_ms) {
 void Service::stop_all(const std::string& why) { loop_->stop_all(why); }
 bool Service::drive_off() const { return loop_->bench().drive.off(); }
 bool Service::writing() const { return loop_->bench().write_back.busy(); }
-std::string Service::status_line() const { return activity(loop_->bench(), loop_->task()); }
+std::string Service::status_line() const { return one_line(loop_->bench(), loop_->task()); }
 std::string Service::status_json() const { return json_text(status_report(loop_->bench(), loop_->task())); }
 
 }  // namespace odomcalib

@@ -7,6 +7,7 @@
 #include "daemon/config/config.hpp"
 #include "daemon/service/calibrator.hpp"
 #include "daemon/service/clock.hpp"
+#include "daemon/service/event_log.hpp"
 #include "daemon/writeback/background.hpp"
 #include "proto/result.hpp"
 
@@ -19,8 +20,10 @@ class Service {
   /// Opens the control socket and the journal; devices may be absent and are opened by the loop.
   /// Errors: io, usage, format (configuration, profile).
   /// @param disk null: a thread of its own
+  /// @param log empty: events are not logged
   static Result<std::unique_ptr<Service>> create(const Config& config, Clock& clock, Calibrator calibrator,
-                                                 std::unique_ptr<Background> disk = nullptr);
+                                                 std::unique_ptr<Background> disk = nullptr,
+                                                 EventLog log = {});
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;

@@ -19,6 +19,8 @@ inline constexpr double kIdleStep_s = 0.020;
 /// s for calls of clients in one turn. Derived: what is left of the 20 ms between two motion commands (M2)
 /// beside the longest single call, a dry run of a calibration (12 ms on two cores of 2.5 GHz).
 inline constexpr double kCallTime_s = 0.004;
+/// Turns in a row that do not wait because calls wait, and serve none. Chosen: half a second of them at least.
+inline constexpr std::size_t kMostIdleTurns = 1000;
 /// ms that a turn waits otherwise, and while the daemon ends. Chosen.
 inline constexpr int kTurn_ms = 20, kEndingTurn_ms = 5;
 /// s between status lines for the service manager where there is no watchdog. Chosen.
@@ -77,6 +79,12 @@ inline constexpr double kLeastRate_rad_s = 0.05, kMostRate_rad_s = 10.0;
 inline constexpr double kLongestRecord_s = 3600.0;
 /// m, length of the straight of a calibration: no more than that, and than this share of the area. Chosen.
 inline constexpr double kUsualStraight_m = 1.0, kStraightShareOfArea = 0.45;
+
+// --- Events ----------------------------------------------------------------------------------------------
+
+/// Events of one kind at once, and s for one more. Chosen: whoever drives one short motion after the other
+/// stays below it; a device that comes and goes all day leaves some 17,000 lines.
+inline constexpr double kEventsAtOnce = 20.0, kEventPause_s = 5.0;
 
 // --- Telemetry -------------------------------------------------------------------------------------------
 
@@ -137,6 +145,11 @@ inline constexpr double kReadAgain_s = 2.0;
 /// s until a recovery may follow on one that failed, each time twice as long. Derived: a recovery may store;
 /// permanent memory is good for 100 000 stores, at one each ten minutes for two years.
 inline constexpr double kRecoverAgain_s = 2.0, kLongestRecoverAgain_s = 600.0;
+
+// --- Calibrations ----------------------------------------------------------------------------------------
+
+/// Calibrations whose files are kept. Chosen: those of months; each has some 100 kB.
+inline constexpr std::size_t kMostCalibrations = 200;
 
 // --- Solver ----------------------------------------------------------------------------------------------
 

@@ -1,8 +1,12 @@
 #include "daemon/service/solver_job.hpp"
 
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <thread>
+
+#include "daemon/service/retention.hpp"
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 
@@ -43,6 +47,7 @@ std::optional<Error> keep_copy(const Calibration& calibration, const std::filesy
   std::error_code ignored;  // shows in the writing
   std::filesystem::create_directories(file.parent_path(), ignored);
   const auto written = write_calibration(calibration, file);
+  (void)keep_newest(file.parent_path(), {std::numeric_limits<std::uintmax_t>::max(), service::settings::kMostCalibrations});
   return written ? std::nullopt : std::optional(written.error());
 }
 

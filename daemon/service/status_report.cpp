@@ -23,7 +23,33 @@ ordered_json view_check(const std::vector<safety::Sector>& blind) {
           {"remedy", "moves that go there need consent: see that this area is free"}};
 }
 
-ordered_json check_disk(const std::filesystem::path& folder) {
+/// What was edited since counts from the next start on: a robot that moves is not configured anew.
+std::optional<ordered_json> config_check(const Config& config) {
+  if (config.file.empty()) return std::nullopt;
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(config.file, error);
+  if (!error && written == config.written) return check("configuration", true, "as the daemon has read it", "");
+  return ordered_json{{"name", "configuration"},
+                      {"outcome", "warn"},
+                      {"found", config.file.string() + (error ? ": " + error.message() : " was edited since the start")},
+                      {"remedy", "systemctl restart odomcalib"}};
+}
+
+/// What the controller refused is said here too, not in the journal alone.
+ordered_json controller_check(const Drive& drive) {
+  using drivers::ControllerState;
+  const auto state = drive.controller().state();
+  const bool good = state == ControllerState::disabled || state == ControllerState::enabled;
+  const char* const remedy = drive.trouble.empty()
+                                 ? "switch the controller on; check the profile's node id and the bit rate"
+                                 : "correct the profile, or the controller";
+  return check("controller", good, name_of(state) + (good || drive.trouble.empty() ? "" : ": " + drive.trouble),
+               remedy);
+}
+
+ordered_json check_disk(const Bench& bench) {
+  const std::filesystem::path& folder = bench.config.state_dir;
+  if (const auto& why = bench.folder.read_only()) return check("disk", false, why->what, why->remedy);
   constexpr std::uintmax_t kMegabyte = 1'000'000;
   std::error_code error;
   const auto space = std::filesystem::space(folder, error);
@@ -131,6 +157,22 @@ std::string activity(const Bench& bench, const Task* task) {
   return bench.write_back.busy() ? "reading or writing parameters" : "idle";
 }
 
+std::string one_line(const Bench& bench, const Task* task) {
+  std::string line = activity(bench, task);
+  const auto missing = [&line](const char* what, const std::string& why) {
+    line += std::string("; no ") + what + (why.empty() ? "" : ": " + why);
+  };
+  const auto state = bench.drive.controller().state();
+  const BaseLink& base = bench.drive.link;
+  if (!base.connected())
+    missing("bus", text_of(base.problem()));
+  else if (state == drivers::ControllerState::absent)
+    missing("controller", bench.drive.trouble);
+  const LidarLink& lidar = bench.surroundings.link;
+  if (!lidar.connected() || bench.surroundings.scans.stale(bench.now)) missing("scans", text_of(lidar.problem()));
+  return line;
+}
+
 ordered_json status_report(const Bench& bench, const Task* task) {
   const Telemetry& telemetry = bench.outbox.telemetry;
   const auto& pose = bench.odometry.pose();
@@ -144,7 +186,7 @@ ordered_json status_report(const Bench& bench, const Task* task) {
   body["odometry"] = {pose.x, pose.y, routines::wrapped(pose.yaw)};
   body["calibrated"] = bench.applied.get().has_value();
   body["operator_needed"] = bench.write_back.operator_needed;
-  body["last_stop"] = bench.last_stop;
+  body["last_stop"] = bench.last_run.last_stop();
   body["lcm"] = {{"sent", telemetry.publisher.sent()}, {"failed", telemetry.publisher.failed()}};
   body["clients"] = client_report(bench.outbox.server);
   body["loop"] = loop_report(bench);
@@ -170,18 +212,14 @@ ordered_json description(const Config& config) {
 }
 
 ordered_json check_report(const Bench& bench) {
-  using drivers::ControllerState;
   const Drive& drive = bench.drive;
   const Surroundings& around = bench.surroundings;
   const WriteBack& write_back = bench.write_back;
-  const auto state = drive.controller().state();
   const RobotDescription all = drive.robot();
   ordered_json list = ordered_json::array();
   list.push_back(check("bus", drive.link.connected(), found_at(drive.link.connected(), drive.link.problem()),
                        "connect the adapter; check controller.device"));
-  list.push_back(check("controller", state == ControllerState::disabled || state == ControllerState::enabled,
-                       name_of(state),
-                       "switch the controller on; check the profile's node id and the bit rate"));
+  list.push_back(controller_check(drive));
   const bool armed = drive.controller().watchdog_armed();
   list.push_back(check("watchdog", armed,
                        armed ? "controller stops by itself" : "controller would not stop by itself",
@@ -206,7 +244,8 @@ ordered_json check_report(const Bench& bench) {
       check("write-back", !write_back.operator_needed,
             write_back.operator_needed ? write_back.problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
-  list.push_back(check_disk(bench.config.state_dir));
+  list.push_back(check_disk(bench));
+  if (auto configuration = config_check(bench.config)) list.push_back(*configuration);
   return list;
 }
 

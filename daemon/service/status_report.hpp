@@ -7,6 +7,8 @@ namespace odomcalib {
 
 /// @param task that runs, or null
 std::string activity(const Bench& bench, const Task* task);
+/// That, and which devices are missing: for systemd's STATUS.
+std::string one_line(const Bench& bench, const Task* task);
 ordered_json status_report(const Bench& bench, const Task* task);
 /// The configuration in force.
 ordered_json description(const Config& config);

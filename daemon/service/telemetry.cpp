@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 #include <lcm/lcm.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 
 #include "daemon/service/settings.hpp"
 #include "drivers/can/candump.hpp"
@@ -38,6 +41,8 @@ std::optional<Error> too_little_space(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, error);
   const auto space = std::filesystem::space(folder, error);
   if (error) return Error{ErrorCode::io, error.message(), folder.string(), "check the state directory"};
+  if (access(folder.c_str(), W_OK) != 0)
+    return Error{ErrorCode::io, std::strerror(errno), folder.string(), "check the state directory"};
   if (space.available / kMegabyte >= service::settings::kLeastSpace_MB) return std::nullopt;
   return Error{ErrorCode::io, "less than 64 MB free", folder.string(), "remove old recordings"};
 }

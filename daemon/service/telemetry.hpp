@@ -63,7 +63,7 @@ class Recorder {
                                                                 const std::string& channel_prefix)>;
   static constexpr std::size_t kMostUnfinished = service::settings::kMostUnfinished;
 
-  Recorder(std::filesystem::path folder, std::string prefix, MakeSink make_sink = recording_file);
+  Recorder(std::filesystem::path folder, std::string prefix, MakeSink make_sink);
   /// Starts a file <name>.lcmlog in the folder; the name gets a number when it exists. Errors: io (too little
   /// space, or older recordings are still being written), usage (name). That the file cannot be made shows in
   /// problem().
@@ -106,8 +106,13 @@ class Recorder {
 /// Both at once.
 class Telemetry {
  public:
-  Telemetry(const std::string& lcm_url, const std::string& prefix, std::filesystem::path recordings)
-      : publisher(lcm_url, prefix), recorder(std::move(recordings), prefix) {}
+  /// @param most_bytes of recordings that are kept
+  Telemetry(const std::string& lcm_url, const std::string& prefix, std::filesystem::path recordings,
+            std::uintmax_t most_bytes)
+      : publisher(lcm_url, prefix),
+        recorder(std::move(recordings), prefix, [most_bytes](const auto& path, const auto& channel_prefix) {
+          return recording_file(path, channel_prefix, most_bytes);
+        }) {}
   void emit(std::int64_t utime, const std::string& channel, const std::string& message) {
     publisher.send(channel, message);
     recorder.write(utime, channel, message);

@@ -130,6 +130,16 @@ Result<Journal> Journal::open(const std::filesystem::path& path) {
   return journal;
 }
 
+Result<Journal> Journal::open_read_only(const std::filesystem::path& path) {
+  Journal journal(path, -1);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return journal;
+  const auto bytes = read_file_bytes(path);
+  if (!bytes) return bytes.error();
+  journal.last_ = last_good(bytes.value()).first;
+  return journal;
+}
+
 // A new file whose folder is not on the disk would be lost with the write-back that it announces.
 Result<void> Journal::rotate() {
   const std::filesystem::path full = path_.string() + ".1";
@@ -148,6 +158,9 @@ bool Journal::write_whole(const std::string& line) const {
 }
 
 Result<void> Journal::append(JournalRecord record) {
+  if (fd_ < 0)
+    return Error{ErrorCode::io, "nothing can be written to the journal", path_.string(),
+                 "check the state directory, then restart the daemon"};
   // Only between write-backs: the records of one stay together, and one that is unfinished is not put away.
   const bool may_rotate = record.state == JournalState::begin && !unfinished();
   if (may_rotate && size_ >= kRotateAt)

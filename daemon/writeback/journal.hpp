@@ -56,6 +56,8 @@ class Journal {
 
   /// Reads what is there; a torn last line is dropped. Errors: io.
   static Result<Journal> open(const std::filesystem::path& path);
+  /// Reads what is there; append() is an error. Errors: io, it is there and cannot be read.
+  static Result<Journal> open_read_only(const std::filesystem::path& path);
   ~Journal();
   Journal(Journal&& other) noexcept;
   Journal& operator=(Journal&&) = delete;

@@ -70,6 +70,7 @@ TEST_F(Processes, a_killed_daemon_leaves_the_wheels_at_rest_through_the_watchdog
   EXPECT_NE(*status, 0);
   both_.start_daemon();
   expect_no_restart();
+  EXPECT_NE(last_stop().find("without being stopped, during \"straight\""), std::string::npos) << last_stop();
 }
 
 TEST_F(Processes, a_cut_bus_leaves_the_wheels_at_rest_and_is_reported_by_name) {

@@ -22,11 +22,12 @@ class VirtualClock : public Clock {
  public:
   mutable double time = 100.0;
   double slept = 0.0;
+  double wall_step = 0.0;  ///< s by which somebody has set the wall clock
   double each_look = 0.0;  ///< s that pass from one look at the clock to the next
   [[nodiscard]] double suspended() const override { return slept; }
   [[nodiscard]] double now() const override { return time += each_look; }
   [[nodiscard]] std::int64_t wall_us() const override {
-    return static_cast<std::int64_t>(1.7e15 + time * 1e6);
+    return static_cast<std::int64_t>(1.7e15 + (time + wall_step) * 1e6);
   }
 };
 
@@ -95,10 +96,12 @@ class ServiceLoop : public testing::Test {
   virtual Calibrator calibrator() { return {}; }
   /// One that takes no time, virtual time or other.
   virtual std::unique_ptr<Background> disk() { return std::make_unique<Foreground>(); }
+  /// Where the events of the service go.
+  virtual EventLog log() { return {}; }
   virtual void adjust(sim::SimRobotOptions& /*options*/) {}
   virtual void adjust(Config& /*config*/) {}
 
-  void start_service() {
+  Config configuration() {
     Config config;
     config.controller_device = robot_->can_device();
     config.controller_profile = "drivers/base/profiles/simulated.toml";
@@ -114,7 +117,10 @@ class ServiceLoop : public testing::Test {
     config.state_dir = folder_ / "state";
     config.socket = folder_ / "control";
     adjust(config);
-    auto service = Service::create(config, clock_, calibrator(), disk());
+    return config;
+  }
+  void start_service() {
+    auto service = Service::create(configuration(), clock_, calibrator(), disk(), log());
     ASSERT_TRUE(service.ok()) << service.error().text();
     service_ = std::move(service).value();
   }

@@ -2,20 +2,23 @@
 
 namespace odomcalib {
 
-Bench::Bench(const Config& configuration, Clock& time, Calibrator functions, BaseLink base_link,
-             LidarLink lidar_link, ControlServer control_server, Journal write_journal,
-             std::unique_ptr<Background> disk_worker)
+Bench::Bench(const Config& configuration, Clock& time, Calibrator functions, Opened opened,
+             std::unique_ptr<Background> disk_worker, EventLog log)
     : config(configuration),
       clock(time),
       calibrator(std::move(functions)),
       now(time.now()),
+      folder(std::move(opened.folder)),
       disk(std::move(disk_worker)),
-      outbox(std::move(control_server), config, clock),
-      drive(std::move(base_link), config),
-      surroundings(std::move(lidar_link), config),
+      outbox(std::move(opened.server), config, clock, std::move(log)),
+      drive(std::move(opened.base), config),
+      surroundings(std::move(opened.lidar), config),
       applied(config.state_dir, calibrator),
-      write_back(std::move(write_journal), config.state_dir, *disk) {
+      write_back(std::move(opened.journal), config.state_dir, *disk),
+      last_run(config.state_dir / "last_run.json", *disk) {
   outbox.begin_turn(now);
+  if (const auto& why = folder.read_only()) outbox.event(messages::Severity::warning, "read_only", why->text());
+  if (last_run.after_crash()) outbox.event(messages::Severity::warning, "restarted", last_run.last_stop());
   drive.link.watch_frames([this](const drivers::CanFrame& frame) { outbox.frame(frame); });
 }
 

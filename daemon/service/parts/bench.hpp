@@ -10,16 +10,26 @@
 #include "daemon/service/motion_count.hpp"
 #include "daemon/service/parts/applied_calibration.hpp"
 #include "daemon/service/parts/drive.hpp"
+#include "daemon/service/parts/last_run.hpp"
 #include "daemon/service/parts/outbox.hpp"
 #include "daemon/service/parts/surroundings.hpp"
 #include "daemon/service/parts/write_back.hpp"
+#include "daemon/service/state_folder.hpp"
 
 namespace odomcalib {
 
+/// What was opened when the daemon began.
+struct Opened {
+  BaseLink base;
+  LidarLink lidar;
+  ControlServer server;
+  StateFolder folder;
+  Journal journal;
+};
+
 struct Bench {
-  Bench(const Config& configuration, Clock& time, Calibrator functions, BaseLink base_link,
-        LidarLink lidar_link, ControlServer control_server, Journal write_journal,
-        std::unique_ptr<Background> disk_worker);
+  Bench(const Config& configuration, Clock& time, Calibrator functions, Opened opened,
+        std::unique_ptr<Background> disk_worker, EventLog log);
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
   ~Bench() { disk->finish(); }  // while everything is there that its work may use
@@ -29,6 +39,7 @@ struct Bench {
   Calibrator calibrator;
   double now = 0.0;  ///< s, begin of this turn
   LoopWatch loop;
+  StateFolder folder;
   std::unique_ptr<Background> disk;  ///< waits for the disk
 
   Outbox outbox;
@@ -40,7 +51,7 @@ struct Bench {
   WriteBack write_back;
   safety::Lease lease;
 
-  std::string last_stop;         ///< why the robot was stopped last
+  LastRun last_run;
   std::uint64_t late_steps = 0;  ///< control steps that came noticeably late
   bool ending = false;           ///< the daemon ends
 };

@@ -25,14 +25,24 @@ std::string name_of(drivers::ControllerState state) {
 
 Drive::News Drive::serve(const Clock& clock, double now) {
   link.step(clock);
-  News news{controller().take_ticks(), controller().take_events(), std::nullopt};
+  News news{controller().take_ticks(), controller().take_events(), std::nullopt,
+            watch_.look(link.device(), link.connected(), link.problem())};
   for (const TickSample& sample : news.ticks) encoders.seen(sample, now);
   if (!news.ticks.empty()) newest_ticks = news.ticks.back();
   tick_count += news.ticks.size();
   const auto state = controller().state();
   if (state != state_) news.state = state;
   state_ = state;
+  note_trouble(news);
   return news;
+}
+
+void Drive::note_trouble(const News& news) {
+  const bool configured =
+      state_ != drivers::ControllerState::absent && state_ != drivers::ControllerState::configuring;
+  if (configured) return trouble.clear();
+  for (const drivers::ControllerEvent& event : news.events)
+    if (event.stop) trouble = event.text;
 }
 
 bool Drive::off() const {

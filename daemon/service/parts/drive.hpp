@@ -9,6 +9,7 @@
 #include "daemon/config/config.hpp"
 #include "daemon/safety/freshness.hpp"
 #include "daemon/service/base_link.hpp"
+#include "daemon/service/parts/link_watch.hpp"
 
 namespace odomcalib {
 
@@ -21,6 +22,7 @@ class Drive {
     std::vector<TickSample> ticks;
     std::vector<drivers::ControllerEvent> events;
     std::optional<drivers::ControllerState> state;  ///< when it has changed
+    std::optional<LinkWatch::News> line;
   };
 
   /// @param config outlives this
@@ -45,9 +47,13 @@ class Drive {
   std::uint64_t tick_count = 0;
   std::vector<drivers::StoredParameter> in_force;  ///< newest reading
   bool values_known = false;                       ///< `in_force` was read since the controller came
+  std::string trouble;  ///< why the controller is not configured, in its driver's words; empty: it is
 
  private:
+  void note_trouble(const News& news);
+
   const Config& config_;
+  LinkWatch watch_;
   drivers::ControllerState state_ = drivers::ControllerState::absent;
 };
 

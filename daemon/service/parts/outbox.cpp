@@ -1,6 +1,9 @@
 #include "daemon/service/parts/outbox.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <utility>
 
 #include "daemon/service/json_text.hpp"
 #include "daemon/service/settings.hpp"
@@ -17,11 +20,12 @@ std::string lcm_name_of(const PathTrace& path) { return path.name == "reference"
 
 }  // namespace
 
-Outbox::Outbox(ControlServer control_server, const Config& config, const Clock& time)
+Outbox::Outbox(ControlServer control_server, const Config& config, const Clock& time, EventLog log)
     : server(std::move(control_server)),
       telemetry(config.lcm_enabled ? config.lcm_url : "", config.channel_prefix,
-                config.state_dir / "recordings"),
-      clock_(time) {}
+                config.state_dir / "recordings", config.keep_recordings),
+      clock_(time),
+      log_(std::move(log)) {}
 
 void Outbox::answer(ClientId client, const ordered_json& parameters) {
   server.reply(client, control::encode_reply(json_text(parameters)));
@@ -35,7 +39,12 @@ void Outbox::refuse_parameter(ClientId client, const std::string& name) {
   server.reply(client, control::encode_invalid_parameter(name));
 }
 
-void Outbox::event(messages::Severity severity, const std::string& code, const std::string& text) {
+void Outbox::event(messages::Severity severity, const std::string& code, const std::string& happened) {
+  const auto left_out = rate_.admit(code, now_);
+  if (!left_out) return;
+  const std::string text =
+      *left_out > 0 ? fmt::format("{} (after {} more that are left out)", happened, *left_out) : happened;
+  if (log_) log_(severity, code, text);
   const std::int64_t time = clock_.wall_us();
   telemetry.emit(time, "EVENT", messages::encode_event(stamp(now_), severity, code, text));
   const ordered_json body = {

@@ -10,6 +10,8 @@
 #include "daemon/config/config.hpp"
 #include "daemon/service/clock.hpp"
 #include "daemon/service/control_server.hpp"
+#include "daemon/service/event_log.hpp"
+#include "daemon/service/event_rate.hpp"
 #include "daemon/service/telemetry.hpp"
 #include "proto/calibration/report_data.hpp"
 
@@ -26,7 +28,7 @@ struct Caller {
 class Outbox {
  public:
   /// @param time outlives this
-  Outbox(ControlServer control_server, const Config& config, const Clock& time);
+  Outbox(ControlServer control_server, const Config& config, const Clock& time, EventLog log);
   /// What is sent until the next turn carries this time.
   void begin_turn(double now) { now_ = now; }
 
@@ -35,7 +37,7 @@ class Outbox {
   /// A member of the call is missing or of a wrong type.
   void refuse_parameter(ClientId client, const std::string& name);
 
-  /// To the recording, over LCM and to every client that monitors.
+  /// To the journal, the recording, over LCM and to every client that monitors; see EventRate.
   void event(messages::Severity severity, const std::string& code, const std::string& text);
   void monitor(ClientId client) { monitors_.insert(client); }
   void forget(ClientId client) { monitors_.erase(client); }
@@ -63,6 +65,8 @@ class Outbox {
   [[nodiscard]] messages::Stamp stamp(double t) const;
 
   const Clock& clock_;
+  EventLog log_;
+  EventRate rate_;
   double now_ = 0.0;
   std::set<ClientId> monitors_;
   double next_robot_ = 0.0, next_status_ = 0.0, next_progress_ = 0.0;

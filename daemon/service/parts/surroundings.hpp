@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "daemon/config/config.hpp"
@@ -9,6 +10,7 @@
 #include "daemon/safety/freshness.hpp"
 #include "daemon/safety/obstacle.hpp"
 #include "daemon/service/lidar_link.hpp"
+#include "daemon/service/parts/link_watch.hpp"
 
 namespace odomcalib {
 
@@ -19,6 +21,10 @@ class Surroundings {
 
   /// Whole turns that have come.
   std::vector<Scan> serve(const Clock& clock);
+  /// What is new about the line to the lidar, since the last call.
+  std::optional<LinkWatch::News> take_news() {
+    return watch_.look(link.device(), link.connected(), link.problem());
+  }
   /// Judges one of them. @param twist of the robot now: where it goes is looked at for obstacles
   void judge(const Scan& scan, const routines::Twist& twist, double now);
 
@@ -30,6 +36,7 @@ class Surroundings {
   std::uint64_t scan_count = 0;
 
  private:
+  LinkWatch watch_;
   const Config& config_;
 };
 

@@ -16,9 +16,10 @@ Result<std::unique_ptr<Task>> MotionTask::begin(Bench& bench, const Caller& call
   bench.recorded = {};
   outbox.send_robot(bench.drive.robot());
   bench.loop.motion_begins();
+  bench.last_run.begins(order.plan.name);
   const std::string name = order.plan.name;
   std::unique_ptr<Task> task(new MotionTask(bench, caller, std::move(order)));
-  outbox.event(messages::Severity::info, "motion", name + " begins");
+  outbox.event(messages::Severity::info, "motion", name + " begins, for " + outbox.server.name_of(caller.client));
   return task;
 }
 
@@ -133,10 +134,11 @@ TaskTurn MotionTask::ended(Bench& bench) {
   bench.drive.encoders.commanded(0.0, 0.0, bench.now);
   if (error) {
     bench.outbox.telemetry.recorder.finish({});
-    bench.last_stop = error->text();
+    bench.last_run.stopped(error->text());
     bench.outbox.event(messages::Severity::stop, "stopped", error->text());
     return Failed{*error};
   }
+  bench.last_run.ends();
   // The disk takes its time; whoever asked gets the answer when the recording is whole.
   written_.finish(bench.outbox.telemetry.recorder);
   bench.outbox.event(messages::Severity::info, "motion", "motion finished");

@@ -1,5 +1,7 @@
 #include "daemon/service/tasks/solving_task.hpp"
 
+#include <fmt/format.h>
+
 namespace odomcalib {
 namespace {
 
@@ -14,6 +16,15 @@ ordered_json report_of(const Calibrator& calibrator, const Calibration& calibrat
   if (const auto next = calibrator.next_manoeuvre(calibration))
     report["next"] = {{"manoeuvre", next->name}, {"why", next->why}};
   return report;
+}
+
+/// For the journal.
+std::string in_a_line(const Calibration& calibration, const std::filesystem::path& recording) {
+  std::string line = recording.filename().string() + ": " + name_of(calibration.verdict);
+  for (const auto& [name, quantity] : calibration.parameters)
+    line += fmt::format(", {} {:.6g} ± {:.2g} {}", name, quantity.value, quantity.std, quantity.unit);
+  for (const std::string& reason : calibration.reasons) line += "; " + reason;
+  return line;
 }
 
 }  // namespace
@@ -37,6 +48,7 @@ TaskTurn SolvingTask::turn(Bench& bench) {
                    "the recording is kept: odomcalibctl solve " + recording_.string()}};
   if (!*result) return Failed{result->error()};
   const std::string text = to_json(result->value());
+  bench.outbox.event(messages::Severity::info, "calibration", in_a_line(result->value(), recording_));
   bench.outbox.send_result(text);
   bench.outbox.send_paths(report_data_of(result->value()).paths);
   return Done{{{"result", report_of(bench.calibrator, result->value(), text, recording_)}}};

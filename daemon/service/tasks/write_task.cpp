@@ -37,6 +37,8 @@ TaskTurn WriteTask::begin_writing(Bench& bench) {
                                                                      : Failed{axes_not_off(bench)};
   const auto begun = bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value());
   if (!begun) return Failed{begun.error()};
+  bench.outbox.event(messages::Severity::info, "write_back",
+                     order_.label + " begins, for " + bench.outbox.server.name_of(caller.client));
   begun_ = true;
   return Running{};
 }

@@ -192,8 +192,32 @@ TEST_P(FailingDisk, is_told_while_recording_and_at_the_end) {
 
 INSTANTIATE_TEST_SUITE_P(RecordingOnDisk, FailingDisk, ::testing::Values(0, 1, 5));
 
+TEST_F(RecordingOnDisk, of_files_makes_room_for_itself_among_those_before_it) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "older.lcmlog") << std::string(3000, 'x');
+  std::ofstream(folder_ / "older.candump") << std::string(3000, 'x');
+  std::filesystem::last_write_time(folder_ / "older.lcmlog",
+                                   std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+  std::filesystem::last_write_time(folder_ / "older.candump",
+                                   std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+  std::ofstream(folder_ / "newer.lcmlog") << std::string(3000, 'x');
+  recorder_ = std::make_unique<Recorder>(folder_, "ODOMCALIB_", [](const Path& path, const std::string& prefix) {
+    return recording_file(path, prefix, 5000);
+  });
+  ASSERT_TRUE(recorder_->start("next").ok());
+  recorder_->finish(note());
+  ASSERT_TRUE(ends());
+  ASSERT_TRUE(ended_->ok()) << ended_->error().text();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "older.lcmlog"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "older.candump"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "newer.lcmlog"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "next.lcmlog"));
+}
+
 TEST_F(RecordingOnDisk, of_files_is_whole_when_its_end_is_told) {
-  recorder_ = std::make_unique<Recorder>(folder_, "ODOMCALIB_");
+  recorder_ = std::make_unique<Recorder>(folder_, "ODOMCALIB_", [](const Path& path, const std::string& prefix) {
+    return recording_file(path, prefix, std::uintmax_t{1} << 30);
+  });
   ASSERT_TRUE(recorder_->start("real").ok());
   RobotDescription robot;
   robot.left_wheel_diameter = robot.right_wheel_diameter = 0.15;

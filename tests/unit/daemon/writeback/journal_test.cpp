@@ -39,6 +39,27 @@ TEST(Journal, keeps_records_and_drops_a_torn_end) {
   }
 }
 
+TEST(Journal, that_is_read_only_is_read_and_never_written) {
+  const Folder folder;
+  const auto path = folder.path / "journal";
+  {
+    auto journal = Journal::open(path);
+    ASSERT_TRUE(journal.ok());
+    JournalRecord record;
+    record.state = JournalState::store_begin;
+    ASSERT_TRUE(journal.value().append(record).ok());
+  }
+  const auto size = std::filesystem::file_size(path);
+  auto journal = Journal::open_read_only(path);
+  ASSERT_TRUE(journal.ok());
+  ASSERT_TRUE(journal.value().unfinished()) << "motion stays forbidden";
+  EXPECT_EQ(journal.value().append({}).error().code, ErrorCode::io);
+  EXPECT_EQ(std::filesystem::file_size(path), size);
+  EXPECT_TRUE(Journal::open_read_only(folder.path / "absent").ok());
+  EXPECT_FALSE(std::filesystem::exists(folder.path / "absent"));
+  EXPECT_FALSE(Journal::open_read_only(folder.path).ok()) << "a folder";
+}
+
 TEST(Journal, rejects_every_flipped_bit) {
   JournalRecord record;
   record.after = {{"track_width", 0.4}};

@@ -1,0 +1,76 @@
+#include "daemon/service/state_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <fstream>
+
+#include "daemon/service/parts/last_run.hpp"
+
+namespace odomcalib {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StateFolderTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = "/tmp/odomcalib-state-XXXXXX";
+    path_ = mkdtemp(name.data());
+  }
+  void TearDown() override { fs::remove_all(path_); }
+  fs::path path_;
+};
+
+TEST_F(StateFolderTest, is_for_one_daemon_at_a_time) {
+  {
+    const auto first = StateFolder::open(path_ / "state");
+    ASSERT_TRUE(first.ok()) << first.error().text();
+    EXPECT_FALSE(first.value().read_only());
+    const auto second = StateFolder::open(path_ / "state");
+    ASSERT_FALSE(second.ok());
+    EXPECT_NE(second.error().what.find("another daemon"), std::string::npos) << second.error().text();
+  }
+  EXPECT_TRUE(StateFolder::open(path_ / "state").ok()) << "the first has ended";
+}
+
+TEST_F(StateFolderTest, that_cannot_be_written_to_says_so_and_is_no_error) {
+  std::ofstream(path_ / "file") << "in the way";
+  const auto folder = StateFolder::open(path_ / "file" / "state");
+  ASSERT_TRUE(folder.ok()) << folder.error().text();
+  ASSERT_TRUE(folder.value().read_only());
+  EXPECT_FALSE(folder.value().read_only()->remedy.empty());
+}
+
+TEST_F(StateFolderTest, LastRun_says_why_the_robot_was_stopped_before_the_restart) {
+  {
+    LastRun run(path_ / "last_run.json", foreground());
+    EXPECT_EQ(run.last_stop(), "");
+    EXPECT_FALSE(run.after_crash());
+    run.begins("straight");
+    run.stopped("something is in the way");
+    run.daemon_ends();
+  }
+  const LastRun next(path_ / "last_run.json", foreground());
+  EXPECT_EQ(next.last_stop(), "something is in the way");
+  EXPECT_FALSE(next.after_crash());
+}
+
+TEST_F(StateFolderTest, LastRun_knows_a_daemon_that_ended_in_a_motion_without_being_stopped) {
+  { LastRun(path_ / "last_run.json", foreground()).begins("straight"); }
+  const LastRun next(path_ / "last_run.json", foreground());
+  EXPECT_TRUE(next.after_crash());
+  EXPECT_NE(next.last_stop().find("straight"), std::string::npos) << next.last_stop();
+}
+
+TEST_F(StateFolderTest, LastRun_takes_a_damaged_file_for_none) {
+  for (const char* text : {"", "{", "[1]", R"({"ended": 3, "doing": 4, "last_stop": null})"}) {
+    std::ofstream(path_ / "last_run.json") << text;
+    const LastRun run(path_ / "last_run.json", foreground());
+    EXPECT_EQ(run.last_stop(), "") << text;
+    EXPECT_FALSE(run.after_crash()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace odomcalib
