@@ -9,7 +9,8 @@
 
 namespace odomcalib::calib::classical {
 
-/// @return what to record: the lines or the turns that are hardly there, or both where the wheels always turned
+/// @return what to record: the lines or the turns that are hardly there, or both where the wheels always
+/// turned
 ///         in the same proportion; nothing where no motion is missing
 std::optional<std::string> missing_motion(std::span<const wheels::WheelMotion> motions);
 

@@ -45,9 +45,9 @@ inline constexpr double kDiametersOfStraight = 3e-4;
 
 // --- Missing motion --------------------------------------------------------------------------------------
 
-/// Share of what the wheels rolled together, of rolling against each other, or the reverse, or of either that is
-/// not in a fixed proportion to the other: below it a motion is missing. Chosen: a circle whose radius is five
-/// track widths has it.
+/// Share of what the wheels rolled together, of rolling against each other, or the reverse, or of either that
+/// is not in a fixed proportion to the other: below it a motion is missing. Chosen: a circle whose radius is
+/// five track widths has it.
 inline constexpr double kHardlyAny = 0.1;
 
 // --- Closed form -----------------------------------------------------------------------------------------

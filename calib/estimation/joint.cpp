@@ -118,8 +118,7 @@ Eigen::MatrixXd with_prior(const NormalSystem& system, const Eigen::MatrixXd& in
 /// @param normal with the prior
 /// @param data tells which motion is missing
 std::optional<Error> check_rank(const NormalSystem& system, const Eigen::MatrixXd& normal,
-                                const std::vector<bool>& fixed,
-                                std::span<const measurement::FitData> data) {
+                                const std::vector<bool>& fixed, std::span<const measurement::FitData> data) {
   std::vector<Eigen::Index> free;
   // The shape of an effect of size zero changes nothing yet; it joins in as soon as the size does.
   for (Eigen::Index k = 0; k < system.scale.size(); ++k)
@@ -132,8 +131,9 @@ std::optional<Error> check_rank(const NormalSystem& system, const Eigen::MatrixX
   for (std::size_t i = 0; i < free.size(); ++i)
     direction(free[i]) = eigen.eigenvectors()(static_cast<Eigen::Index>(i), 0);
   return Error{ErrorCode::refused, "the motion does not determine: " + parameter_names(direction),
-               "joint estimate", "record " + classical::missing_motion(measurement::wheel_motions(data, 0.0))
-                            .value_or("more of each motion: straight lines, arcs and turns on the spot")};
+               "joint estimate",
+               "record " + classical::missing_motion(measurement::wheel_motions(data, 0.0))
+                               .value_or("more of each motion: straight lines, arcs and turns on the spot")};
 }
 
 double prior_cost(const Eigen::MatrixXd& information, const Eigen::VectorXd& p) {

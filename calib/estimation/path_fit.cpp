@@ -306,7 +306,8 @@ class Fitter {
     std::vector<wheels::WheelMotion> motions;
     for (const PathData& data : data_)
       for (std::size_t k = 0; k + 1 < data.scans.size(); ++k)
-        motions.push_back(wheels::motion_between(data.model->track(), data.scans[k].time, data.scans[k + 1].time, {}));
+        motions.push_back(
+            wheels::motion_between(data.model->track(), data.scans[k].time, data.scans[k + 1].time, {}));
     return {ErrorCode::refused, "the motion does not determine all parameters", "path estimate",
             "record " + classical::missing_motion(motions).value_or(
                             "more of each motion: straight lines, arcs and turns on the spot")};

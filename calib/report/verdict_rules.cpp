@@ -151,7 +151,8 @@ std::vector<Length> lengths_of(const Calibration& calibration, const Footing& fo
 
 std::string motion_for(const std::string& name, const Footing& footing) {
   if (footing.missing_motion) return *footing.missing_motion;
-  return name == "track_width" ? "more turns on the spot, both ways" : "longer straight lines, forward and backward";
+  return name == "track_width" ? "more turns on the spot, both ways"
+                               : "longer straight lines, forward and backward";
 }
 
 /// Of a length that the motion does not determine its value says nothing.
@@ -161,7 +162,8 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Footin
     if (length.is_determined()) continue;
     const std::string how = length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
                                                   : "is not determined";
-    found.push_back(refusal(length.name + " " + how + "; to fix that, record " + motion_for(length.name, footing)));
+    found.push_back(
+        refusal(length.name + " " + how + "; to fix that, record " + motion_for(length.name, footing)));
   }
   return found;
 }

@@ -49,8 +49,8 @@ void read_service(TomlReader& toml, Config& config) {
   config.state_dir = toml.text("daemon.state_dir", config.state_dir.string());
   constexpr double kMegabyte = 1e6;
   config.keep_recordings = static_cast<std::uintmax_t>(
-      kMegabyte * toml.number("daemon.keep_recordings", static_cast<double>(config.keep_recordings) / kMegabyte,
-                              1.0, 1e6));
+      kMegabyte * toml.number("daemon.keep_recordings",
+                              static_cast<double>(config.keep_recordings) / kMegabyte, 1.0, 1e6));
   config.socket = toml.text("daemon.socket", config.socket.string());
   config.group = toml.text("daemon.group", config.group);
 }

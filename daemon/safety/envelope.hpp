@@ -21,7 +21,7 @@ struct Envelope {
                                                     double elapsed) const;
 };
 
-/// Base motion since a common start, by odometry and by the lidar. Judged after 0.2 m or 30 degrees:
+/// Base motion since a common start, by odometry and by the lidar. Judged after 0.1 m or 30 degrees:
 /// more than 15 % apart means slipping wheels, a blocked wheel, swapped sides or a wrong encoder.
 std::optional<std::string> disagreement(const routines::Pose& odometry, const routines::Pose& lidar);
 

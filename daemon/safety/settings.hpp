@@ -39,8 +39,8 @@ inline constexpr double kFrozen_s = 0.3;
 inline constexpr double kLeastReach_m = 0.25, kLeastTurn_rad = 0.6;
 /// Times the farthest point, the largest turn and the duration of the preview. Chosen.
 inline constexpr double kReachAllowed = 1.3, kTurnAllowed = 1.25, kTimeAllowed = 1.5;
-/// m and rad (30 degrees), after which odometry and the lidar are compared. Chosen.
-inline constexpr double kJudgedDistance_m = 0.2, kJudgedTurn_rad = 0.5236;
+/// m and rad from which on odometry and the lidar are compared. Rule M9: 0.1 m or 30 degrees.
+inline constexpr double kJudgedDistance_m = 0.1, kJudgedTurn_rad = 0.5236;
 /// Share by which they may differ. Chosen.
 inline constexpr double kTolerance = 0.15;
 /// m and rad beyond it: the error of a scan match in motion. Chosen.
@@ -82,5 +82,11 @@ inline constexpr double kSpeedWindow_s = 0.2;
 inline constexpr double kOvershoot = 0.2;
 /// m/s and rad/s beside it. Chosen: one count of the coarsest encoders more or less in the window.
 inline constexpr double kCoarse_m_s = 0.02, kCoarse_rad_s = 0.05;
+/// s by which a drive may follow its command late. Chosen: 85 ms were seen of motors with a ramp of their
+/// own.
+inline constexpr double kDriveLag_s = 0.3;
+/// m/s and rad/s beyond the command and the share above, of a speed that nobody commanded. Chosen: a fifth
+/// and a third of the caps; sticking wheels that break loose stay below.
+inline constexpr double kOffCommand_m_s = 0.06, kOffCommand_rad_s = 0.2;
 
 }  // namespace odomcalib::safety::settings

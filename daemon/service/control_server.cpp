@@ -34,7 +34,7 @@ struct Client {
   std::size_t waiting_bytes = 0;
   std::size_t served = 0;  // calls in this turn
   std::string output;
-  std::string name;  // for people
+  std::string name;    // for people
   bool spare = false;  // came when all places were taken
   bool gone = false;
 };

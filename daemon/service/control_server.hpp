@@ -43,7 +43,8 @@ class ControlServer {
 
   struct Counters {
     std::uint64_t accepted = 0, too_many = 0 /* beyond kMostClients */, not_permitted = 0, malformed = 0,
-                  too_slow = 0, flooded = 0 /* beyond kMostWaiting */, served = 0 /* calls taken, whatever became of them */;
+                  too_slow = 0, flooded = 0 /* beyond kMostWaiting */,
+                  served = 0 /* calls taken, whatever became of them */;
   };
 
   /// Binds the socket (mode 0660, of the group where it exists). An orphaned socket is replaced; a live one

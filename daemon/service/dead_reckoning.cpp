@@ -1,7 +1,11 @@
 #include "daemon/service/dead_reckoning.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+
+#include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 
@@ -23,6 +27,24 @@ void DeadReckoning::add(const TickSample& sample, const RobotDescription& robot)
     pose_.yaw += step->turn;
   }
   last_ = sample;
+  past_.push_back({sample.t, pose_});
+  while (past_.size() > 2 && sample.t - past_[1].t > service::settings::kPoseMemory_s) past_.pop_front();
+}
+
+routines::Pose DeadReckoning::at(double t) const {
+  const auto after = std::find_if(past_.begin(), past_.end(), [t](const Past& one) { return one.t >= t; });
+  if (after == past_.end()) return pose_;
+  if (after == past_.begin()) return after->pose;
+  const auto& [t0, from] = *std::prev(after);
+  const auto& [t1, to] = *after;
+  const double share = (t - t0) / (t1 - t0);
+  return {std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share), std::lerp(from.yaw, to.yaw, share)};
+}
+
+double middle_of(const Scan& scan) {
+  if (!scan.times.empty()) return scan.t + 0.5 * static_cast<double>(scan.times.back());
+  const auto beams = static_cast<double>(scan.ranges.size());
+  return scan.t + 0.5 * std::max(0.0, beams - 1.0) * scan.time_increment.value_or(0.0);
 }
 
 routines::Pose relative(const routines::Pose& start, const routines::Pose& pose) {

@@ -1,6 +1,7 @@
 // Odometry with the parameters in force: what a routine is controlled by. The corrected odometry is calib's.
 #pragma once
 
+#include <deque>
 #include <optional>
 
 #include "daemon/routines/motion.hpp"
@@ -23,11 +24,23 @@ class DeadReckoning {
   void add(const TickSample& sample, const RobotDescription& robot);
   /// yaw is continuous over full turns.
   [[nodiscard]] const routines::Pose& pose() const { return pose_; }
+  /// Where it was at this time, between two samples of the last second; before and after them, where they
+  /// end.
+  /// @param t s, by the clock of the samples
+  [[nodiscard]] routines::Pose at(double t) const;
 
  private:
+  struct Past {
+    double t;
+    routines::Pose pose;
+  };
   std::optional<TickSample> last_;
   routines::Pose pose_;
+  std::deque<Past> past_;  // oldest first
 };
+
+/// Half way between the first and the last beam, s; the first, where the scan does not say how long it took.
+double middle_of(const Scan& scan);
 
 /// `pose` in the frame of `start`; yaw difference continuous.
 routines::Pose relative(const routines::Pose& start, const routines::Pose& pose);

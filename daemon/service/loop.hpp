@@ -50,7 +50,7 @@ class Loop {
   static constexpr std::array kPolled = {"base", "lidar", "disk", "control socket", "client"};
   LoopGuard guard_{kPolled};
   std::uint64_t served_ = 0;  // calls, up to the last turn
-  bool at_once_ = false;    // the last wait was none: calls were waiting
+  bool at_once_ = false;      // the last wait was none: calls were waiting
   bool lidar_woke_ = false, clients_woke_ = false;
   double next_lidar_ = 0.0, next_clients_ = 0.0;
 };

@@ -1,4 +1,5 @@
-// Finds a loop that turns without end and gets nowhere: its process is better started anew (specification B7).
+// Finds a loop that turns without end and gets nowhere: its process is better started anew (specification
+// B7).
 #pragma once
 
 #include <poll.h>
@@ -15,7 +16,8 @@ class LoopGuard {
 
   /// What was polled for: a descriptor that is not open makes each wait end at once.
   void polled(std::span<const pollfd> files);
-  /// One turn. @param at_once calls were waiting, so that there was no wait @param served one of them was taken
+  /// One turn. @param at_once calls were waiting, so that there was no wait @param served one of them was
+  /// taken
   void turned(bool at_once, bool served);
   /// What it hangs at; empty: nothing.
   [[nodiscard]] const std::string& hangs_at() const { return hangs_at_; }

@@ -76,9 +76,10 @@ void MotionRun::check(const Situation& situation) {
   if (phase_ != Phase::driving) return;
   if (situation.blocked) return stop(protective("something is in the way"));
   if (situation.disagreement) return stop(protective(*situation.disagreement));
-  const auto from_start = relative(start_, situation.odometry);
-  if (const auto why = envelope_.violated(from_start, from_start.yaw, situation.now - drive_began_))
-    stop(protective(*why));
+  const double elapsed = situation.now - drive_began_;
+  for (const auto& from_start : {relative(start_, situation.odometry), situation.by_lidar})
+    if (const auto why = envelope_.violated(from_start, from_start.yaw, elapsed))
+      return stop(protective(*why));
 }
 
 void MotionRun::command(const routines::Twist& twist, double now) {

@@ -32,6 +32,7 @@ struct Situation {
   std::optional<std::string> lapsed = "there is no lease";  ///< why the client does not count as present
   std::optional<std::string> stale;                         ///< why sensors block motion
   std::optional<std::string> disagreement;                  ///< between odometry and lidar
+  routines::Pose by_lidar;                                  ///< motion since the drive began, yaw continuous
   std::optional<std::string> too_fast;                      ///< what was measured, not what was commanded
   bool blocked = false;                                     ///< obstacle in the way
 };

@@ -64,8 +64,7 @@ class RecordingFile final : public RecordingSink {
 }  // namespace
 
 std::unique_ptr<RecordingSink> recording_file(const std::filesystem::path& path,
-                                              const std::string& channel_prefix,
-                                              std::uintmax_t most_bytes) {
+                                              const std::string& channel_prefix, std::uintmax_t most_bytes) {
   return std::make_unique<RecordingFile>(path, channel_prefix, most_bytes);
 }
 

@@ -14,8 +14,8 @@ struct Retention {
   std::size_t most = 0;  ///< files; those whose names differ in the extension only count as one
 };
 
-/// Removes the oldest files of a folder until the others are no more than that; the newest stays however large
-/// it is. What cannot be removed is passed over. @return names without extension of what was removed
+/// Removes the oldest files of a folder until the others are no more than that; the newest stays however
+/// large it is. What cannot be removed is passed over. @return names without extension of what was removed
 std::vector<std::string> keep_newest(const std::filesystem::path& folder, const Retention& retention);
 
 }  // namespace odomcalib

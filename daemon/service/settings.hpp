@@ -19,7 +19,8 @@ inline constexpr double kIdleStep_s = 0.020;
 /// s for calls of clients in one turn. Derived: what is left of the 20 ms between two motion commands (M2)
 /// beside the longest single call, a dry run of a calibration (12 ms on two cores of 2.5 GHz).
 inline constexpr double kCallTime_s = 0.004;
-/// Turns in a row that do not wait because calls wait, and serve none. Chosen: half a second of them at least.
+/// Turns in a row that do not wait because calls wait, and serve none. Chosen: half a second of them at
+/// least.
 inline constexpr std::size_t kMostIdleTurns = 1000;
 /// ms that a turn waits otherwise, and while the daemon ends. Chosen.
 inline constexpr int kTurn_ms = 20, kEndingTurn_ms = 5;
@@ -126,10 +127,18 @@ inline constexpr double kComeToRest_s = 0.35;
 /// Scans at rest whose mean is taken. Chosen: more of them hardly add to it.
 inline constexpr std::size_t kMostAtRest = 5;
 
+/// s of odometry that is remembered. Derived: a scan of the slowest lidar (5 Hz) and what it takes to arrive.
+inline constexpr double kPoseMemory_s = 1.0;
+
 // --- Agreement of odometry and lidar ---------------------------------------------------------------------
 
-/// m or rad, of motion since the last scan that was compared. Chosen.
+/// m or rad, of motion from one comparison to the next. Rule M9: 0.1 m or 30 degrees.
+inline constexpr double kJudgedWay_m = 0.1, kJudgedTurn_rad = 0.5236;
+/// m or rad, of motion since the earlier scan, after which the newest one takes its place. Chosen: over a
+/// longer way a smaller share of it stands out from the error of a match.
 inline constexpr double kComparedWay_m = 0.25, kComparedTurn_rad = 0.6;
+/// m or rad that the robot may go without a comparison. Rule M9: 0.3 m or 60 degrees.
+inline constexpr double kUnjudgedWay_m = 0.3, kUnjudgedTurn_rad = 1.0472;
 /// Disagreements in a row that are a fact. Chosen: one bad match must not stop the robot.
 inline constexpr int kDisagreements = 2;
 /// rad, of headings that a match is tried from, and rad turned below which only the first is. Chosen.

@@ -47,7 +47,8 @@ std::optional<Error> keep_copy(const Calibration& calibration, const std::filesy
   std::error_code ignored;  // shows in the writing
   std::filesystem::create_directories(file.parent_path(), ignored);
   const auto written = write_calibration(calibration, file);
-  (void)keep_newest(file.parent_path(), {std::numeric_limits<std::uintmax_t>::max(), service::settings::kMostCalibrations});
+  (void)keep_newest(file.parent_path(),
+                    {std::numeric_limits<std::uintmax_t>::max(), service::settings::kMostCalibrations});
   return written ? std::nullopt : std::optional(written.error());
 }
 

@@ -16,8 +16,9 @@ Result<StateFolder> StateFolder::open(const std::filesystem::path& path) {
   std::filesystem::create_directories(path, ignored);
   folder.lock_ = ::open((path / "lock").c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0640);
   if (folder.lock_ < 0) {
-    folder.read_only_ = Error{ErrorCode::io, std::string("nothing can be written: ") + std::strerror(errno),
-                              path.string(), "give it to the daemon's user, on a file system that is not read-only"};
+    folder.read_only_ =
+        Error{ErrorCode::io, std::string("nothing can be written: ") + std::strerror(errno), path.string(),
+              "give it to the daemon's user, on a file system that is not read-only"};
     return folder;
   }
   if (flock(folder.lock_, LOCK_EX | LOCK_NB) == 0) return folder;

@@ -28,11 +28,13 @@ std::optional<ordered_json> config_check(const Config& config) {
   if (config.file.empty()) return std::nullopt;
   std::error_code error;
   const auto written = std::filesystem::last_write_time(config.file, error);
-  if (!error && written == config.written) return check("configuration", true, "as the daemon has read it", "");
-  return ordered_json{{"name", "configuration"},
-                      {"outcome", "warn"},
-                      {"found", config.file.string() + (error ? ": " + error.message() : " was edited since the start")},
-                      {"remedy", "systemctl restart odomcalib"}};
+  if (!error && written == config.written)
+    return check("configuration", true, "as the daemon has read it", "");
+  return ordered_json{
+      {"name", "configuration"},
+      {"outcome", "warn"},
+      {"found", config.file.string() + (error ? ": " + error.message() : " was edited since the start")},
+      {"remedy", "systemctl restart odomcalib"}};
 }
 
 /// What the controller refused is said here too, not in the journal alone.
@@ -43,8 +45,8 @@ ordered_json controller_check(const Drive& drive) {
   const char* const remedy = drive.trouble.empty()
                                  ? "switch the controller on; check the profile's node id and the bit rate"
                                  : "correct the profile, or the controller";
-  return check("controller", good, name_of(state) + (good || drive.trouble.empty() ? "" : ": " + drive.trouble),
-               remedy);
+  return check("controller", good,
+               name_of(state) + (good || drive.trouble.empty() ? "" : ": " + drive.trouble), remedy);
 }
 
 ordered_json check_disk(const Bench& bench) {
@@ -169,7 +171,8 @@ std::string one_line(const Bench& bench, const Task* task) {
   else if (state == drivers::ControllerState::absent)
     missing("controller", bench.drive.trouble);
   const LidarLink& lidar = bench.surroundings.link;
-  if (!lidar.connected() || bench.surroundings.scans.stale(bench.now)) missing("scans", text_of(lidar.problem()));
+  if (!lidar.connected() || bench.surroundings.scans.stale(bench.now))
+    missing("scans", text_of(lidar.problem()));
   return line;
 }
 

@@ -16,7 +16,9 @@ class Contract : public ServiceLoop {
  protected:
   using ServiceLoop::adjust;
   EventLog log() override {
-    return [this](auto severity, const auto& code, const auto& text) { lines_.push_back({severity, code, text}); };
+    return [this](auto severity, const auto& code, const auto& text) {
+      lines_.push_back({severity, code, text});
+    };
   }
   /// The first line of that kind that contains the text; nullptr: none.
   const Line* logged(const std::string& code, const std::string& text) const {
@@ -84,7 +86,8 @@ TEST_F(Contract, journal_is_not_filled_by_a_device_that_comes_and_goes) {
     ASSERT_TRUE(robot_->plug_lidar().ok());
     run(0.9);
   }
-  const auto about_lidar = std::count_if(lines_.begin(), lines_.end(), [](const Line& l) { return l.code == "lidar"; });
+  const auto about_lidar =
+      std::count_if(lines_.begin(), lines_.end(), [](const Line& l) { return l.code == "lidar"; });
   EXPECT_GT(about_lidar, 10);
   EXPECT_LT(about_lidar, 45) << all_lines();
   EXPECT_TRUE(logged("lidar", "more that are left out")) << all_lines();

@@ -37,14 +37,15 @@ class Endurance : public ServiceLoop {
   void adjust(Config& config) override { config.keep_recordings = 3'000'000; }
 
   Held held() const {
-    return {mallinfo2().uordblks, members("/proc/self/fd"), members("/proc/self/task"), entries(folder_ / "state")};
+    return {mallinfo2().uordblks, members("/proc/self/fd"), members("/proc/self/task"),
+            entries(folder_ / "state")};
   }
   /// Half of the run has filled what is bounded; the other half must add nothing.
   void expect_no_growth(const Held& half, const Held& whole) const {
     constexpr std::size_t kNoise = 256 << 10;  // bytes: buffers of the C library, of one recording
-    std::printf("heap %zu -> %zu bytes, descriptors %td -> %td, threads %td -> %td, files %td -> %td\n", half.heap,
-                whole.heap, half.descriptors, whole.descriptors, half.threads, whole.threads, half.files,
-                whole.files);
+    std::printf("heap %zu -> %zu bytes, descriptors %td -> %td, threads %td -> %td, files %td -> %td\n",
+                half.heap, whole.heap, half.descriptors, whole.descriptors, half.threads, whole.threads,
+                half.files, whole.files);
     EXPECT_LE(whole.heap, half.heap + kNoise);
     EXPECT_EQ(whole.descriptors, half.descriptors);
     EXPECT_LE(whole.threads, half.threads + 1) << "one may still be ending";
@@ -82,7 +83,8 @@ class Cycles : public Endurance {
       mover.call("Straight", {{"lease", lease_}, {"distance", left ? 0.5 : -0.5}}, true);
     std::optional<control::Reply> ended;
     const bool moved =
-        run_until([&] { return robot_->fastest_rim() > 0.02 || (ended = mover.reply()).has_value(); }, 8.0) && !ended;
+        run_until([&] { return robot_->fastest_rim() > 0.02 || (ended = mover.reply()).has_value(); }, 8.0) &&
+        !ended;
     if (moved) run(moving);
     mover.call("Stop", json::object());
     EXPECT_TRUE(run_until([this] { return robot_->fastest_rim() < 1e-3; }, 2.0)) << "it still turns";
@@ -120,16 +122,17 @@ TEST_F(Cycles, of_start_and_stop_leave_nothing_behind) {
 
 TEST_F(Endurance, of_motion_after_motion_adds_nothing) {
   const double seconds = from_environment("ODOMCALIB_SOAK", 240);
-  acquire();
   Held half;
   const double begin = clock_.time;
   unsigned motions = 0;
   while (clock_.time - begin < seconds && !HasFailure()) {
+    acquire();
     move(motions++ % 2 == 0);
-    run(0.5);
+    settle();
     if (half.heap == 0 && clock_.time - begin > seconds / 2) half = held();
   }
   std::printf("%u motions in %.0f s\n", motions, clock_.time - begin);
+  settle();
   expect_no_growth(half, held());
 }
 

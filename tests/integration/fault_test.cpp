@@ -202,10 +202,16 @@ class InCorridor : public BearableFault {
   }
 };
 
-TEST_F(InCorridor, F31_no_distance_is_claimed_that_the_lidar_cannot_see) {
-  const json result = drive([] {});
-  ASSERT_EQ(result["moves"].size(), 2U) << result;
-  for (const auto& move : result["moves"]) EXPECT_TRUE(move["lidar"].is_null()) << move;
+TEST_F(InCorridor, F31_a_motion_that_the_lidar_cannot_judge_ends_after_a_third_of_a_metre) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Straight", {{"lease", lease_}, {"distance", 1.0}}, true);
+  const json end = end_of(mover, 30.0);
+  EXPECT_EQ(end["error"], "org.odomcalib.Calibration.ProtectiveStop") << end;
+  EXPECT_NE(end["parameters"]["what"].get<std::string>().find("cannot judge"), std::string::npos) << end;
+  run(0.5);
+  EXPECT_GT(robot_->pose().x, 0.25);
+  EXPECT_LT(robot_->pose().x, 0.45);
 }
 
 class ShortSighted : public BearableFault {
@@ -221,8 +227,15 @@ class ShortSighted : public BearableFault {
 // claimed.
 TEST_F(ShortSighted, F30_few_near_readings_claim_nothing_wrong) {
   run(2.0);  // what so few readings give depends on the moment (docs/evidence/faults.md)
-  const json result = drive([] {});
-  for (const auto& move : result["moves"]) {
+  acquire();
+  TestClient mover(folder_ / "control");
+  mover.call("Straight", {{"lease", lease_}, {"distance", 0.6}}, true);
+  const json end = end_of(mover, 60.0);
+  if (end["error"] != "") {
+    EXPECT_NE(end["parameters"]["what"].get<std::string>().find("cannot judge"), std::string::npos) << end;
+    return;
+  }
+  for (const auto& move : end["parameters"]["result"]["moves"]) {
     if (move["lidar"].is_null()) continue;
     EXPECT_LT(std::abs(move["error"]["distance"].get<double>()), 0.03) << move;
   }

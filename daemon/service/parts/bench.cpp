@@ -17,7 +17,8 @@ Bench::Bench(const Config& configuration, Clock& time, Calibrator functions, Ope
       write_back(std::move(opened.journal), config.state_dir, *disk),
       last_run(config.state_dir / "last_run.json", *disk) {
   outbox.begin_turn(now);
-  if (const auto& why = folder.read_only()) outbox.event(messages::Severity::warning, "read_only", why->text());
+  if (const auto& why = folder.read_only())
+    outbox.event(messages::Severity::warning, "read_only", why->text());
   if (last_run.after_crash()) outbox.event(messages::Severity::warning, "restarted", last_run.last_stop());
   drive.link.watch_frames([this](const drivers::CanFrame& frame) { outbox.frame(frame); });
 }

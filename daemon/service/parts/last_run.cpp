@@ -56,7 +56,8 @@ void LastRun::daemon_ends() {
 
 void LastRun::write() {
   const json body = {{"ended", ended_}, {"doing", doing_}, {"last_stop", last_stop_}};
-  disk_.post([file = file_, text = body.dump(2, ' ', false, json::error_handler_t::replace)] { replace(file, text); },
+  disk_.post([file = file_,
+              text = body.dump(2, ' ', false, json::error_handler_t::replace)] { replace(file, text); },
              [] {});
 }
 

@@ -19,7 +19,8 @@ Result<std::unique_ptr<Task>> MotionTask::begin(Bench& bench, const Caller& call
   bench.last_run.begins(order.plan.name);
   const std::string name = order.plan.name;
   std::unique_ptr<Task> task(new MotionTask(bench, caller, std::move(order)));
-  outbox.event(messages::Severity::info, "motion", name + " begins, for " + outbox.server.name_of(caller.client));
+  outbox.event(messages::Severity::info, "motion",
+               name + " begins, for " + outbox.server.name_of(caller.client));
   return task;
 }
 
@@ -60,7 +61,7 @@ void MotionTask::scanned(const Bench& bench, const Scan& scan) {
   if (!run_) return;
   run_->seen(scan);
   if (run_->driving())
-    agreement_.seen(scan, bench.odometry.pose(), bench.calibrator, bench.config.lidar_pose);
+    agreement_.seen(scan, bench.odometry.at(middle_of(scan)), bench.calibrator, bench.config.lidar_pose);
 }
 
 TaskTurn MotionTask::daemon_ends(Bench& bench, const Error& why) {
@@ -75,7 +76,7 @@ TaskTurn MotionTask::turn(Bench& bench) {
   next_step_ = bench.now + service::settings::kControlStep_s;
   watch_loop(bench);
   if (const auto problem = bench.outbox.telemetry.recorder.problem()) run_->stop(*problem);
-  speed_.seen(bench.drive.newest_ticks.t, bench.odometry.pose());
+  speed_.seen(bench.drive.newest_ticks.t, bench.odometry.pose(), run_->twist());
   run_->step(situation(bench));
   const auto rates = routines::to_wheels(run_->twist(), bench.drive.geometry());
   bench.drive.encoders.commanded(rates.left, rates.right, bench.now);
@@ -92,6 +93,7 @@ Situation MotionTask::situation(const Bench& bench) const {
           .lapsed = lapsed(bench),
           .stale = encoders ? encoders : bench.surroundings.scans.stale(bench.now),
           .disagreement = agreement_.disagreement(),
+          .by_lidar = agreement_.motion(),
           .too_fast = speed_.too_fast(),
           .blocked = bench.surroundings.obstacles.blocked()};
 }

@@ -76,7 +76,7 @@ TEST(EncoderFreshness, a_turning_wheel_must_count_and_a_standing_one_need_not) {
 std::optional<std::string> said_of(double v, double w, double step, const routines::Limits& limits = {}) {
   SpeedWatch watch(limits);
   for (double t = 0.0; t < 1.0; t += step) {
-    watch.seen(t, {v * t, 0.0, w * t});
+    watch.seen(t, {v * t, 0.0, w * t}, {v, w});
     if (auto said = watch.too_fast()) return said;
   }
   return std::nullopt;
@@ -94,6 +94,34 @@ TEST(SpeedWatch, holds_what_is_measured_to_the_limit_and_a_fifth) {
   }
 }
 
+TEST(SpeedWatch, holds_what_is_measured_to_the_command_beyond_the_lag_of_the_drive) {
+  const auto said = [](const routines::Twist& made, const routines::Twist& commanded) {
+    SpeedWatch watch({});
+    std::optional<std::string> first;
+    for (double t = 0.0; t < 1.0 && !first; t += 0.02) {
+      watch.seen(t, {made.v * t, 0.0, made.w * t}, commanded);
+      first = watch.too_fast();
+    }
+    return first.value_or("");
+  };
+  EXPECT_EQ(said({0.17, 0.0}, {0.1, 0.0}), "");
+  EXPECT_NE(said({0.19, 0.0}, {0.1, 0.0}).find("0.10 m/s is commanded"), std::string::npos);
+  EXPECT_EQ(said({0.0, -0.3}, {0.0, -0.1}), "");
+  EXPECT_NE(said({0.0, -0.35}, {0.0, -0.1}).find("0.10 rad/s is commanded"), std::string::npos);
+  EXPECT_NE(said({0.1, 0.0}, {}), "") << "somebody pushes it";
+}
+
+TEST(SpeedWatch, lets_a_drive_follow_its_command_late) {
+  SpeedWatch watch({});
+  double x = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const double commanded = i < 50 ? 0.3 : 0.0, made = i < 50 ? 0.3 : std::max(0.0, 0.3 - 0.02 * (i - 50));
+    x += 0.02 * made;
+    watch.seen(0.02 * i, {x, 0.0, 0.0}, {commanded, 0.0});
+    EXPECT_FALSE(watch.too_fast()) << i;
+  }
+}
+
 TEST(SpeedWatch, goes_by_the_limits_of_the_motion_and_never_beyond_the_caps) {
   EXPECT_TRUE(said_of(0.15, 0.0, 0.02, {.speed = 0.1}));
   EXPECT_FALSE(said_of(0.13, 0.0, 0.02, {.speed = 0.1}));
@@ -104,7 +132,7 @@ TEST(SpeedWatch, goes_by_the_limits_of_the_motion_and_never_beyond_the_caps) {
 TEST(SpeedWatch, a_single_reading_of_a_few_counts_too_many_is_no_speed) {
   SpeedWatch watch({});
   for (int i = 0; i < 50; ++i) {
-    watch.seen(0.02 * i, {0.004 * i + (i == 30 ? 0.02 : 0.0), 0.0, 0.0});
+    watch.seen(0.02 * i, {0.004 * i + (i == 30 ? 0.02 : 0.0), 0.0, 0.0}, {0.2, 0.0});
     EXPECT_FALSE(watch.too_fast()) << i;
   }
 }
@@ -125,8 +153,9 @@ TEST(Envelope, of_one_full_turn_is_450_degrees) {
   EXPECT_NEAR(envelope.turn, 450.0 * std::numbers::pi / 180.0, 0.05);
 }
 
-TEST(Disagreement, is_judged_after_a_fifth_of_a_metre_only) {
-  EXPECT_FALSE(disagreement({0.1, 0.0, 0.0}, {0.0, 0.0, 0.0}).has_value());
+TEST(Disagreement, is_judged_after_a_tenth_of_a_metre_only) {
+  EXPECT_FALSE(disagreement({0.09, 0.0, 0.0}, {0.0, 0.0, 0.0}).has_value());
+  EXPECT_TRUE(disagreement({0.11, 0.0, 0.0}, {0.0, 0.0, 0.0}).has_value());
   EXPECT_FALSE(disagreement({1.0, 0.0, 0.0}, {0.95, 0.02, 0.0}).has_value());
   EXPECT_TRUE(disagreement({1.0, 0.0, 0.0}, {0.5, 0.0, 0.0}).has_value());
   EXPECT_TRUE(disagreement({0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}).has_value());

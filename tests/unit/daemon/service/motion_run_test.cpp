@@ -198,6 +198,16 @@ TEST_F(Motion, ends_when_it_leaves_its_envelope) {
   expect_stop(situation, ErrorCode::protective_stop, "m allowed");
 }
 
+TEST_F(Motion, ends_when_it_leaves_its_envelope_by_the_lidar_alone) {
+  drive();
+  Situation situation = good();
+  situation.by_lidar.x = 1.2;
+  run_->step(situation);
+  EXPECT_FALSE(run_->ended());
+  situation.by_lidar.x = 1.4;
+  expect_stop(situation, ErrorCode::protective_stop, "m allowed");
+}
+
 // The wheels are told to turn and the odometry stands: no distance, no turn, only the time tells.
 TEST_F(Motion, ends_when_it_takes_half_as_long_again_as_expected) {
   drive();

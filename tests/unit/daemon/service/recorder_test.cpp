@@ -201,9 +201,9 @@ TEST_F(RecordingOnDisk, of_files_makes_room_for_itself_among_those_before_it) {
   std::filesystem::last_write_time(folder_ / "older.candump",
                                    std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
   std::ofstream(folder_ / "newer.lcmlog") << std::string(3000, 'x');
-  recorder_ = std::make_unique<Recorder>(folder_, "ODOMCALIB_", [](const Path& path, const std::string& prefix) {
-    return recording_file(path, prefix, 5000);
-  });
+  recorder_ = std::make_unique<Recorder>(
+      folder_, "ODOMCALIB_",
+      [](const Path& path, const std::string& prefix) { return recording_file(path, prefix, 5000); });
   ASSERT_TRUE(recorder_->start("next").ok());
   recorder_->finish(note());
   ASSERT_TRUE(ends());
@@ -215,9 +215,10 @@ TEST_F(RecordingOnDisk, of_files_makes_room_for_itself_among_those_before_it) {
 }
 
 TEST_F(RecordingOnDisk, of_files_is_whole_when_its_end_is_told) {
-  recorder_ = std::make_unique<Recorder>(folder_, "ODOMCALIB_", [](const Path& path, const std::string& prefix) {
-    return recording_file(path, prefix, std::uintmax_t{1} << 30);
-  });
+  recorder_ =
+      std::make_unique<Recorder>(folder_, "ODOMCALIB_", [](const Path& path, const std::string& prefix) {
+        return recording_file(path, prefix, std::uintmax_t{1} << 30);
+      });
   ASSERT_TRUE(recorder_->start("real").ok());
   RobotDescription robot;
   robot.left_wheel_diameter = robot.right_wheel_diameter = 0.15;
