@@ -96,8 +96,9 @@ def arcs(x, y):
         for side in (1, -1):
             centre = (x, y - side * radius)
             # Left bends turn counter-clockwise from the lowest point of their circle.
-            body += arrow(circle_part(centre, radius, -90 * side + side * 16 * 36 / radius, -90 * side + side * sweep), colour)
-            body += arrow(circle_part(centre, radius, -90 * side - side * 16 * 36 / radius, -90 * side - side * sweep), colour)
+            low, begin = -90 * side, 16 * 36 / radius
+            for way in (side, -side):  # ahead, and backward
+                body += arrow(circle_part(centre, radius, low + way * begin, low + way * sweep), colour)
     return body
 
 
@@ -112,10 +113,11 @@ def accelerations(x, y):
 
 
 def reversals(x, y):
-    return ([robot(x - 50, y - 24)] + out_and_back(x - 50, y - 24, 50) + [robot(x + 42, y - 24)]
-            + arrow(circle_part((x + 42, y - 24), 17, 10, 100)) + arrow(circle_part((x + 42, y - 24), 22, 100, 10), GREY)
-            + [robot(x - 6, y + 34)] + arrow(circle_part((x - 6, y + 8), 26, -64, -15)) + arrow(circle_part((x - 6, y + 60), 26, 64, 15))
-            + arrow(circle_part((x - 6, y + 8), 26, -116, -165), GREY) + arrow(circle_part((x - 6, y + 60), 26, 116, 165), GREY))
+    spin, left, right = (x + 42, y - 24), (x - 6, y + 8), (x - 6, y + 60)
+    body = [robot(x - 50, y - 24)] + out_and_back(x - 50, y - 24, 50)
+    body += [robot(*spin)] + arrow(circle_part(spin, 17, 10, 100)) + arrow(circle_part(spin, 22, 100, 10), GREY)
+    body += [robot(x - 6, y + 34)] + arrow(circle_part(left, 26, -64, -15)) + arrow(circle_part(right, 26, 64, 15))
+    return body + arrow(circle_part(left, 26, -116, -165), GREY) + arrow(circle_part(right, 26, 116, 165), GREY)
 
 
 def headings(x, y):
