@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/export_configurations.hpp"
 #include "daemon/cli/export_formats.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/usable_calibration.hpp"
