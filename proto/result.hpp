@@ -25,6 +25,7 @@ enum class ErrorCode {
   write_unknown,    ///< state of the controller's parameters is unknown, operator needed
   not_running,      ///< the daemon does not answer
   not_permitted,    ///< caller lacks the right or the lease
+  busy,             ///< something else runs: it can be done after that
 };
 
 struct Error {

@@ -28,6 +28,7 @@ constexpr std::array kRows = {
     Row{ErrorCode::write_unknown, "write_unknown", kWriteUnknown},
     Row{ErrorCode::not_running, "not_running", kNotRunning},
     Row{ErrorCode::not_permitted, "not_permitted", kNotPermitted},
+    Row{ErrorCode::busy, "busy", kBusy},
 };
 
 struct Meaning {
@@ -48,6 +49,7 @@ constexpr std::array kMeanings = {
     Meaning{kNotRunning, "the daemon is not running"},
     Meaning{kTimedOut, "timed out"},
     Meaning{kNotPermitted, "not permitted"},
+    Meaning{kBusy, "busy: another motion, recording, solve or write-back runs"},
 };
 
 }  // namespace

@@ -20,6 +20,7 @@ enum ExitStatus : int {
   kNotRunning = 9,
   kTimedOut = 10,
   kNotPermitted = 11,
+  kBusy = 12,
 };
 
 ExitStatus exit_status(ErrorCode code);

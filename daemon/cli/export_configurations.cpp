@@ -1,10 +1,16 @@
 #include "daemon/cli/export_configurations.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <ctime>
 #include <iterator>
 
+#include "calib/odometry/predict.hpp"
 #include "daemon/cli/usable_calibration.hpp"
+#include "odomcalib_version.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -32,9 +38,120 @@ std::string diff_drive_yaml(const Dimensions& d) {
       d.track, 0.5 * d.mean(), d.left / d.mean(), d.right / d.mean());
 }
 
+/// The lidar on the robot, REP-103: x forward, y left, z up, m and rad. Its height is not measured.
+Result<std::string> urdf(const Calibration& calibration, const std::string& where) {
+  const auto x = calibration.parameter("lidar_x"), y = calibration.parameter("lidar_y"),
+             yaw = calibration.parameter("lidar_yaw");
+  if (!x || !y || !yaw)
+    return Error{ErrorCode::format, "the calibration has no lidar pose", where,
+                 "solve a recording with scans of the lidar"};
+  return fmt::format(
+      "<joint name=\"laser_joint\" type=\"fixed\">\n  <parent link=\"base_link\"/>\n  <child link=\"laser\"/>\n"
+      "  <!-- z is not measured -->\n  <origin xyz=\"{} {} 0\" rpy=\"0 0 {}\"/>\n</joint>\n",
+      *x, *y, *yaw);
+}
+
+/// Parameters of the node that comes with ros_arduino_bridge (its README, "Base controller parameters"): one
+/// diameter for both wheels; what a gear does is in the counts per turn of the wheel already.
+Result<std::string> ros_arduino_yaml(const Calibration& calibration, const Dimensions& d, const std::string& where) {
+  if (!(calibration.robot.ticks_per_rev > 0.0))
+    return Error{ErrorCode::format, "the calibration has no counts per turn", where,
+                 "state ticks_per_rev in the recording or the robot file, and solve again"};
+  return fmt::format(
+      "wheel_diameter: {}\nwheel_track: {}\nencoder_resolution: {:.0f}\ngear_reduction: 1.0\n", d.mean(),
+      d.track, calibration.robot.ticks_per_rev);
+}
+
+/// What the values of the controller are to be multiplied by, and what is to be added. TicksMM counts per mm
+/// of the right wheel, RevCount is proportional to the counts of half a turn, DriftFactor corrects the left
+/// wheel in parts of 8192 (MobileRobots, "Pioneer 3 Operations Manual", table of the FLASH parameters).
+Result<std::string> arcos(const Calibration& calibration, const Dimensions& d, const std::string& where) {
+  const RobotDescription& was = calibration.robot;
+  if (!(was.left_wheel_diameter > 0.0 && was.right_wheel_diameter > 0.0 && was.track_width > 0.0))
+    return Error{ErrorCode::format, "the calibration has no nominal values to go by", where,
+                 "state them in the recording or the robot file, and solve again"};
+  constexpr double kDriftParts = 8192.0;
+  const double ticks = was.right_wheel_diameter / d.right;
+  const double drift = kDriftParts * (d.left / d.right - was.left_wheel_diameter / was.right_wheel_diameter);
+  return fmt::format("TicksMM      * {:.6f}\nRevCount     * {:.6f}\nDriftFactor  {} {:.0f}\n", ticks,
+                     ticks * d.track / was.track_width, drift < 0.0 ? '-' : '+', std::abs(drift));
+}
+
+/// How a line of comment begins and ends.
+struct Comment {
+  const char *begin, *end;
+};
+
+Comment comment_of(const std::string& what) {
+  if (what == "urdf") return {"<!-- ", " -->"};
+  return what == "arcos" ? Comment{"; ", ""} : Comment{"# ", ""};
+}
+
+/// "--" ends no comment of XML too early.
+std::string commented(const std::string& what, std::string text) {
+  const Comment comment = comment_of(what);
+  for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.replace(at, 2, "- -");
+  for (char& c : text)
+    if (c == '\n' || c == '\r') c = ' ';
+  return comment.begin + text + comment.end + "\n";
+}
+
+/// Which robot, which recordings, which program, and what it said of the result.
+std::string provenance(const Calibration& calibration, const std::string& what) {
+  const std::string robot = calibration.robot.robot_id.empty() ? "" : " of " + calibration.robot.robot_id;
+  std::string text = commented(what, "calibration" + robot + " by odomcalib " + kVersion + ": " +
+                                         name_of(calibration.verdict));
+  for (const DataUse& data : calibration.data) {
+    // Stamps that count from 1970 say the day; others count from any start.
+    constexpr double kSomeYears_s = 1e9;
+    const bool dated = data.begin && *data.begin > kSomeYears_s;
+    const std::string day =
+        dated ? fmt::format(", {:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(*data.begin))) : "";
+    text += commented(what, "from " + data.name + day + (data.sha256.empty() ? "" : ", sha256 " + data.sha256));
+  }
+  if (what == "arcos")
+    text += commented(what, "apply these to the values that the controller holds, and round to whole numbers");
+  return text;
+}
+
+Result<std::string> text_of(const Calibration& calibration, const Dimensions& dimensions, const std::string& what,
+                            const std::string& where) {
+  if (what == "toml") return robot_toml(calibration, dimensions);
+  if (what == "diff_drive") return diff_drive_yaml(dimensions);
+  if (what == "urdf") return urdf(calibration, where);
+  if (what == "ros_arduino") return ros_arduino_yaml(calibration, dimensions, where);
+  if (what == "arcos") return arcos(calibration, dimensions, where);
+  return Error{ErrorCode::usage, "unknown export \"" + what + "\"", "--what",
+               "see odomcalibctl export --help"};
+}
+
 }  // namespace
 
-bool is_configuration(const std::string& what) { return what == "toml" || what == "diff_drive"; }
+const std::vector<std::string>& configurations() {
+  static const std::vector<std::string> names = {"toml", "diff_drive", "urdf", "ros_arduino", "arcos"};
+  return names;
+}
+
+bool is_configuration(const std::string& what) {
+  return std::find(configurations().begin(), configurations().end(), what) != configurations().end();
+}
+
+std::vector<std::string> not_held(const Calibration& calibration, const std::string& what) {
+  std::vector<std::string> sentences;
+  if (what == "urdf") return sentences;
+  for (const auto& placement : calib::odometry::effect_placements(calibration)) {
+    if (placement.place != calib::odometry::Place::odometry) continue;
+    const Quantity& q = placement.quantity;
+    const std::string name = placement.effect + (placement.parameter.empty() ? "" : "." + placement.parameter);
+    const std::string value = placement.parameter.empty() ? "" : fmt::format(" = {:.4g} {}", q.value, q.unit);
+    sentences.push_back("not held here: " + name + value);
+  }
+  const auto left = calibration.parameter("left_wheel_diameter"), right = calibration.parameter("right_wheel_diameter");
+  if (what == "ros_arduino" && left && right && *left != *right)
+    sentences.push_back(fmt::format("not held here: left and right wheel differ by {:.2f} %, this is their mean",
+                                    100.0 * (*left / *right - 1.0)));
+  return sentences;
+}
 
 Result<std::string> configuration(const Calibration& calibration, const std::string& what,
                                   const std::string& where) {
@@ -42,10 +159,11 @@ Result<std::string> configuration(const Calibration& calibration, const std::str
   if (calibration.verdict == Verdict::refused) return refusal_of(calibration, where);
   const auto dimensions = dimensions_of(calibration, where);
   if (!dimensions) return dimensions.error();
-  if (what == "toml") return robot_toml(calibration, dimensions.value());
-  if (what == "diff_drive") return diff_drive_yaml(dimensions.value());
-  return Error{ErrorCode::usage, "unknown export \"" + what + "\"", "--what",
-               "see odomcalibctl export --help"};
+  const auto text = text_of(calibration, dimensions.value(), what, where);
+  if (!text) return text.error();
+  std::string head = provenance(calibration, what);
+  for (const std::string& sentence : not_held(calibration, what)) head += commented(what, sentence);
+  return head + text.value();
 }
 
 }  // namespace odomcalib::cli

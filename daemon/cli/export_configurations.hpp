@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "proto/calibration/calibration.hpp"
 
@@ -10,6 +11,14 @@ namespace odomcalib::cli {
 /// Whether robots are driven by it: then a refused calibration is not exported.
 bool is_configuration(const std::string& what);
 
+/// Names that `configuration` takes.
+const std::vector<std::string>& configurations();
+
+/// What odometry would need of this calibration and the format has no room for: a sentence each. The text of
+/// the format has them as comments.
+std::vector<std::string> not_held(const Calibration& calibration, const std::string& what);
+
+/// Begins with where the values are from, as a comment.
 /// Errors: usage (unknown name), format (the file does not hold it), refused.
 /// @param where the calibration is from, for errors
 Result<std::string> configuration(const Calibration& calibration, const std::string& what,

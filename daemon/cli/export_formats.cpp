@@ -88,8 +88,11 @@ std::string traces_csv(const ReportData& data) {
 }  // namespace
 
 const std::vector<std::string>& export_formats() {
-  static const std::vector<std::string> formats = {"parameters", "effects", "errors", "residual",
-                                                   "paths",      "traces",  "toml",   "diff_drive"};
+  static const std::vector<std::string> formats = [] {
+    std::vector<std::string> all = {"parameters", "effects", "errors", "residual", "paths", "traces"};
+    all.insert(all.end(), configurations().begin(), configurations().end());
+    return all;
+  }();
   return formats;
 }
 

@@ -2,12 +2,15 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <new>
+#include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/interrupts.hpp"
 #include "daemon/cli/verbs.hpp"
+#include "daemon/config/near_miss.hpp"
 #include "odomcalib_version.hpp"
 
 namespace {
@@ -41,10 +44,32 @@ JsonMode asked_mode(int argc, char** argv) {
   return JsonMode::off;
 }
 
+/// Verbs and long options that may stand where these words were found.
+std::set<std::string> known_words(const CLI::App& app) {
+  std::set<std::string> known;
+  const auto any = [](const CLI::App*) { return true; };
+  for (const CLI::App* verb : app.get_subcommands(any)) known.insert(verb->get_name());
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) known.insert("--" + name);
+  for (const CLI::App* parsed : app.get_subcommands()) known.merge(known_words(*parsed));
+  return known;
+}
+
+/// The known word that the first unknown one is nearest to, as a question; empty: none is near.
+std::string suggestion(const CLI::App& app) {
+  for (const std::string& word : app.remaining(true))
+    if (const auto meant = odomcalib::near_miss(word.substr(0, word.find('=')), known_words(app)))
+      return "did you mean \"" + *meant + "\"?";
+  return "";
+}
+
 int refuse(const CLI::App& app, const CLI::ParseError& error, JsonMode json) {
   if (app.exit(error) == 0) return odomcalib::cli::kDone;
-  odomcalib::cli::print_error_json(
-      {odomcalib::ErrorCode::usage, error.what(), "command line", "odomcalibctl --help"}, json);
+  const std::string meant = suggestion(app);
+  if (!meant.empty()) odomcalib::cli::tell(meant);
+  odomcalib::cli::print_error_json({odomcalib::ErrorCode::usage, error.what(), "command line",
+                                    meant.empty() ? "odomcalibctl --help" : meant},
+                                   json);
   return odomcalib::cli::kUsage;
 }
 
@@ -64,6 +89,7 @@ int run(int argc, char** argv) {
   odomcalib::cli::add_export(app, session);
   odomcalib::cli::add_graph(app, session);
   odomcalib::cli::add_questions(app, session);
+  odomcalib::cli::add_wait(app, session);
   odomcalib::cli::add_monitor(app, session);
   odomcalib::cli::add_view(app, session);
   odomcalib::cli::add_record(app, session);

@@ -30,6 +30,13 @@ inline constexpr double kWholeOverShown = std::numbers::sqrt2;
 /// Share of a pattern in the residual from which on the variable is said to be what it depends on. Chosen.
 inline constexpr double kDependsOn = 0.5;
 
+// --- Waiting for the daemon ------------------------------------------------------------------------------
+
+/// Between two looks. Chosen: people notice no delay, and the daemon no load.
+inline constexpr std::chrono::milliseconds kLookAgain{250};
+/// s. Chosen: a day.
+inline constexpr double kLongestWait_s = 86400.0;
+
 // --- A motion's lease ------------------------------------------------------------------------------------
 
 /// Between renewals. Derived: a quarter of the lease's 120 ms.

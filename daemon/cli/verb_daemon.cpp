@@ -36,6 +36,14 @@ ordered_json document_of(const ordered_json& answer, const Question& question) {
   return question.document == "status" ? answer.value(question.member, ordered_json::object()) : answer;
 }
 
+/// A check that fails is a failure of the command; everything else is answered.
+int status_of(const ordered_json& body, const Question& question) {
+  if (question.document != "checks") return kDone;
+  for (const auto& check : body.value(question.member, ordered_json::array()))
+    if (check.value("outcome", "") == "fail") return kFailure;
+  return kDone;
+}
+
 int ask(const Session& session, const Question& question) {
   auto client = Client::connect(session.socket);
   if (!client) return report_error(client.error(), session.json);
@@ -46,7 +54,7 @@ int ask(const Session& session, const Question& question) {
     print_document(question.document, document_of(body, question), session.json);
   else
     question.print(question.member.empty() ? body : body.value(question.member, ordered_json()), session);
-  return kDone;
+  return status_of(body, question);
 }
 
 /// Of a recording: what it holds of each kind of motion, and what a solve would miss.

@@ -39,6 +39,8 @@ int export_calibration(const Options& options, const Session& session) {
   if (!text) return report_error(text.error(), session.json);
   if (calibration.value().verdict == Verdict::refused)
     warn(refusal_of(calibration.value(), options.calibration).text());
+  if (configuration)
+    for (const std::string& sentence : not_held(calibration.value(), options.what)) warn(sentence);
   if (options.out.empty()) {
     print(options.what, text.value(), session);
     return kDone;
@@ -57,7 +59,8 @@ void add_export(CLI::App& app, Session& session) {
   verb->add_option(
           "--what", options->what,
           "CSV: parameters, effects, errors, residual, paths, traces; robot.toml: toml; parameters of "
-          "ros2_control's diff_drive_controller: diff_drive")
+          "ros2_control's diff_drive_controller: diff_drive; joint of the lidar: urdf; parameters of "
+          "ros_arduino_bridge: ros_arduino; changes to ARCOS (Pioneer): arcos")
       ->check(CLI::IsMember(export_formats()))
       ->capture_default_str();
   verb->add_option("--out", options->out, "file to write instead of standard output");

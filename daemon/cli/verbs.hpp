@@ -35,6 +35,7 @@ void add_graph(CLI::App& app, Session& session);
 int show_status(const Session& session);
 int show_checks(const Session& session);
 void add_questions(CLI::App& app, Session& session);
+void add_wait(CLI::App& app, Session& session);
 void add_monitor(CLI::App& app, Session& session);
 void add_view(CLI::App& app, Session& session);
 void add_record(CLI::App& app, Session& session);

@@ -1,5 +1,7 @@
 #include "daemon/config/config.hpp"
 
+#include <algorithm>
+
 #include "daemon/config/toml_reader.hpp"
 #include "proto/file_bytes.hpp"
 
@@ -39,7 +41,10 @@ void read_limits(TomlReader& toml, Config& config) {
   config.area_length = toml.number("limits.area_length", config.area_length, 0.6, 20.0);
   config.area_width = toml.number("limits.area_width", config.area_width, 0.6, 20.0);
   config.clearance = toml.number("limits.clearance", config.clearance, 0.05, 2.0);
-  config.countdown = toml.number("limits.countdown", config.countdown, 0.0, 60.0);
+  // Rule M16: whoever stands beside the robot gets a moment, whatever the file says.
+  constexpr double kShortestCountdown_s = 1.0;
+  config.countdown =
+      std::max(kShortestCountdown_s, toml.number("limits.countdown", config.countdown, 0.0, 60.0));
 }
 
 void read_service(TomlReader& toml, Config& config) {

@@ -23,7 +23,9 @@ std::string new_id() {
 }  // namespace
 
 Result<std::string> Lease::acquire(std::uint64_t owner, double now) {
-  if (active()) return refused("another client holds the lease", "wait, or stop it with odomcalibctl stop");
+  if (active())
+    return Error{ErrorCode::busy, "another client holds the lease", "motion lease",
+                 "wait for its end, or odomcalibctl stop"};
   id_ = new_id();
   owner_ = owner;
   renewed_ = looked_ = now;

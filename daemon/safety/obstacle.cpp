@@ -93,6 +93,17 @@ void ObstacleGuard::seen(const std::vector<Point>& points, const Twist& twist) {
   }
 }
 
+void ObstacleGuard::turned(double t) {
+  if (!scan_times_.empty() && t <= scan_times_.back()) return;
+  scan_times_.push_back(t);
+  if (scan_times_.size() > settings::kPeriods + 1) scan_times_.pop_front();
+  if (scan_times_.size() < 2) return;
+  double period = 0.0;
+  for (std::size_t i = 1; i < scan_times_.size(); ++i)
+    period = std::max(period, scan_times_[i] - scan_times_[i - 1]);
+  options_.reaction = std::min(period, settings::kScanTimeout) + settings::kReaction_s;
+}
+
 std::vector<Pose> distinct_poses(const routines::Preview& preview) {
   const auto cell = [](double value, double size) { return std::lround(value / size); };
   std::set<std::array<long, 3>> taken;

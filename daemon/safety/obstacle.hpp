@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +35,9 @@ struct ObstacleOptions {
   Footprint footprint;
   double margin = settings::kMargin_m;           ///< m, ahead of the stopping distance
   double side_margin = settings::kSideMargin_m;  ///< m
-  double reaction = settings::kReaction_s;       ///< s: one scan period and one control step
+  /// s, until the robot brakes: a period of the lidar, and what follows it. Before it is known: the longest one
+  /// with which the robot may move.
+  double reaction = settings::kScanTimeout + settings::kReaction_s;
   double acceleration = settings::kBraking;      ///< m/s^2, braking
   int points = settings::kPoints;                ///< so many readings are an obstacle
   int release_scans = settings::kReleaseScans;   ///< so many free scans in a row release
@@ -59,11 +62,14 @@ class ObstacleGuard {
  public:
   explicit ObstacleGuard(ObstacleOptions options) : options_(options) {}
   void seen(const std::vector<Point>& points, const routines::Twist& twist);
+  /// A scan of that time has come, s: the stopping distance counts the lidar's period as it is.
+  void turned(double t);
   [[nodiscard]] bool blocked() const { return blocked_; }
   [[nodiscard]] const ObstacleOptions& options() const { return options_; }
 
  private:
   ObstacleOptions options_;
+  std::deque<double> scan_times_;  // s
   bool blocked_ = false;
   int free_scans_ = 0;
 };

@@ -1,8 +1,11 @@
 #include "daemon/service/status_report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
+#include "daemon/safety/settings.hpp"
 #include "daemon/service/settings.hpp"
 #include "odomcalib_version.hpp"
 
@@ -47,6 +50,14 @@ ordered_json controller_check(const Drive& drive) {
                                  : "correct the profile, or the controller";
   return check("controller", good,
                name_of(state) + (good || drive.trouble.empty() ? "" : ": " + drive.trouble), remedy);
+}
+
+/// A slow watchdog limits the speed (rule M1).
+std::string watchdog_text(double time) {
+  const double fastest = safety::settings::kMargin_m / time;
+  const std::string stops = fmt::format("controller stops by itself after {:.2g} s", time);
+  return fastest < routines::kCaps.speed ? stops + fmt::format("; that limits the speed to {:.2f} m/s", fastest)
+                                         : stops;
 }
 
 ordered_json check_disk(const Bench& bench) {
@@ -225,7 +236,8 @@ ordered_json check_report(const Bench& bench) {
   list.push_back(controller_check(drive));
   const bool armed = drive.controller().watchdog_armed();
   list.push_back(check("watchdog", armed,
-                       armed ? "controller stops by itself" : "controller would not stop by itself",
+                       armed ? watchdog_text(drive.controller().watchdog_time())
+                             : "controller would not stop by itself",
                        "use a profile with a watchdog"));
   list.push_back(check("encoders", !drive.encoders.stale(bench.now),
                        drive.encoders.stale(bench.now).value_or("counts arrive"), "check the bus"));

@@ -102,7 +102,9 @@ class Controller {
   /// Zero speed and quick stop at once, whatever the state; cannot fail and may be repeated.
   virtual void quick_stop(double now) = 0;
   /// True when the controller itself will stop the wheels if this program dies, set up and read back.
-  [[nodiscard]] virtual bool watchdog_armed() const = 0;
+  [[nodiscard]] bool watchdog_armed() const { return watchdog_time() > 0.0; }
+  /// s, how long it waits before that; 0: it does not.
+  [[nodiscard]] virtual double watchdog_time() const = 0;
 
   /// The wheels have stood for at least 0.1 s: parameters may be written and stored.
   [[nodiscard]] virtual bool at_rest() const = 0;

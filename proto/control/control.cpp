@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr std::array<std::pair<ErrorCode, std::string_view>, 14> kErrorNames{{
+constexpr std::array<std::pair<ErrorCode, std::string_view>, 15> kErrorNames{{
     {ErrorCode::usage, "Usage"},
     {ErrorCode::io, "Io"},
     {ErrorCode::format, "Format"},
@@ -26,6 +26,7 @@ constexpr std::array<std::pair<ErrorCode, std::string_view>, 14> kErrorNames{{
     {ErrorCode::write_unknown, "WriteUnknown"},
     {ErrorCode::not_running, "NotRunning"},
     {ErrorCode::not_permitted, "NotPermitted"},
+    {ErrorCode::busy, "Busy"},
 }};
 
 Error format_error(const std::string& what) {

@@ -408,6 +408,39 @@ TEST_F(Completion, knows_the_verbs_and_options_that_the_program_knows) {
   EXPECT_EQ(offered("graph optimize --json in.g2o --sv"), "--svg\n");
 }
 
+class OtherShells : public CommandLine, public ::testing::WithParamInterface<const char*> {
+ protected:
+  /// What the shell offers behind these words, the last of which is being typed; zsh leaves out what does not
+  /// fit only afterwards.
+  std::string offered(const std::string& words) {
+    const std::string shell = GetParam();
+    const fs::path program(ODOMCALIB_CTL);
+    const std::string path = "PATH=" + program.parent_path().string() + ":$PATH\n";
+    if (shell == "fish")
+      write("complete.sh", path + "exec fish --no-config -c 'source " ODOMCALIB_FISH_COMPLETION
+                                  "; complete -C \"odomcalibctl " + words + "\"'\n");
+    else
+      write("complete.sh", path + "exec zsh -f -c 'source " ODOMCALIB_ZSH_COMPLETION R"(
+compadd() { print -rl -- "${(@P)@[-1]}" }
+_files() { print FILES }
+words=(odomcalibctl )" + words + R"(); CURRENT=$#words; _odomcalibctl'
+)");
+    return run("bash", "complete.sh").out;
+  }
+};
+
+TEST_P(OtherShells, know_the_verbs_and_options_that_the_program_knows) {
+  EXPECT_THAT(offered("sol"), HasSubstr("solve"));
+  EXPECT_THAT(offered("wa"), HasSubstr("wait"));
+  EXPECT_THAT(offered("solve --rep"), HasSubstr("--report"));
+  EXPECT_THAT(offered("graph opt"), HasSubstr("optimize"));
+  EXPECT_THAT(offered("graph optimize --json in.g2o --sv"), HasSubstr("--svg"));
+  EXPECT_THAT(offered("graph opt"), Not(HasSubstr("calibrate")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Shells, OtherShells, ::testing::Values("fish", "zsh"),
+                         [](const auto& info) { return std::string(info.param); });
+
 TEST_F(Completion, leaves_files_to_the_shell) { EXPECT_EQ(offered("graph optimize in"), "\n"); }
 
 class DaemonUsage : public CommandLine {

@@ -16,6 +16,8 @@ TRIES = 4
 # verb, arguments, exit status, schema; in this order, each with what the calls before it left.
 TABLE = [
     ("status", "", DONE, "status"),
+    ("wait", "", DONE, "wait"),
+    ("wait", "--until idle --timeout 1", DONE, "wait"),
     ("check", "", DONE, "checks"),
     ("check", "--nudge --dry-run", DONE, "plan"),
     ("check", "--nudge --yes", DONE, "checks"),

@@ -73,6 +73,14 @@ TEST_F(Processes, a_killed_daemon_leaves_the_wheels_at_rest_through_the_watchdog
   EXPECT_NE(last_stop().find("without being stopped, during \"straight\""), std::string::npos) << last_stop();
 }
 
+TEST_F(Processes, a_command_while_the_robot_moves_ends_as_busy_and_waiting_outlasts_the_motion) {
+  constexpr int kBusy = 12, kDone = 0;
+  EXPECT_EQ(both_.run({"record", "--duration", "0.2"})->wait(5.0), kBusy) << both_.output();
+  EXPECT_EQ(both_.run({"spin", "--yes"})->wait(5.0), kBusy) << both_.output();
+  both_.run({"stop"})->wait(5.0);
+  EXPECT_EQ(both_.run({"wait", "--until", "ready", "--timeout", "10"})->wait(12.0), kDone) << both_.output();
+}
+
 TEST_F(Processes, a_cut_bus_leaves_the_wheels_at_rest_and_is_reported_by_name) {
   const double begin = monotonic();
   both_.robot->tell("cut can");

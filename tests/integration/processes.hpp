@@ -27,6 +27,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
+  [[nodiscard]] pid_t id() const { return pid_; }
   void signal(int number) const;
   void tell(const std::string& line) const;  ///< to its standard input
   /// Exit status, 128 + signal when a signal ended it, nullopt when it still runs after `seconds`.

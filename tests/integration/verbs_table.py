@@ -51,6 +51,8 @@ TABLE = [
     ("graph build", "drive.jsonl --out built.g2o", FAILURE, "error"),
     ("status", "", NO_DAEMON, "error"),
     ("stop", "", NO_DAEMON, "error"),
+    ("wait", "--timeout 0.2", NO_DAEMON, "error"),
+    ("wait", "--until never", USAGE, "error"),
     ("history", "", NO_DAEMON, "error"),
     ("params get", "", NO_DAEMON, "error"),
     ("params diff", "", NO_DAEMON, "error"),

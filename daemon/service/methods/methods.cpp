@@ -50,7 +50,7 @@ std::optional<Error> not_now(const Method& method, const Context& context, bool 
     return Error{ErrorCode::refused, "the daemon is ending", "odomcalibd",
                  "start it again: systemctl start odomcalib"};
   if (context.task != nullptr && method.when == When::when_idle)
-    return Error{ErrorCode::refused, "busy: " + activity(context.bench, context.task), "",
+    return Error{ErrorCode::busy, "busy: " + activity(context.bench, context.task), "",
                  "wait for its end, or stop it"};
   if (stopped_since && method.when == When::when_idle)
     return Error{ErrorCode::cancelled, "stopped on request before it began", method.name, "start again"};

@@ -16,6 +16,7 @@ void Surroundings::judge(const Scan& scan, const routines::Twist& twist, double 
   ++scan_count;
   scans.seen(scan, now);
   cover.seen(scan, config_.lidar_pose, config_.footprint, now);
+  obstacles.turned(scan.t);
   points = safety::points_of(scan, config_.lidar_pose);
   obstacles.seen(points, twist);
 }

@@ -56,7 +56,7 @@ void WriteBack::begin_reading(const drivers::Controller& controller, bool values
 
 Result<void> WriteBack::write(const std::string& label, const ParameterMap& values,
                               const std::string& calibration) {
-  if (settling) return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
+  if (settling) return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
   ended.reset();
   return transaction.write(label, values, calibration);
 }

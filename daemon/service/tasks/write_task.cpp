@@ -11,7 +11,7 @@ ordered_json to_json(const RoundingError& error) {
 
 Result<std::unique_ptr<Task>> WriteTask::begin(Bench& bench, const Caller& caller, const Order& order) {
   if (bench.write_back.busy())
-    return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
+    return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
   std::unique_ptr<WriteTask> task(new WriteTask(caller, order, bench.now));
   task->announce(bench);
   return std::unique_ptr<Task>(std::move(task));

@@ -151,7 +151,10 @@ Result<void> AxisPair::command(double left_rad_s, double right_rad_s, double now
   return {};
 }
 
-bool AxisPair::watchdog_armed() const { return drives_[0].watchdog_armed() && drives_[1].watchdog_armed(); }
+double AxisPair::watchdog_time() const {
+  const bool both = drives_[0].watchdog_armed() && drives_[1].watchdog_armed();
+  return both ? std::max(drives_[0].watchdog_time(), drives_[1].watchdog_time()) : 0.0;
+}
 
 Result<void> AxisPair::begin(Job job) {
   if (job_)

@@ -29,7 +29,7 @@ class AxisPair final : public Controller {
   void disable(double now) override;
   Result<void> command(double left_rad_s, double right_rad_s, double now) override;
   void quick_stop(double now) override;
-  [[nodiscard]] bool watchdog_armed() const override;
+  [[nodiscard]] double watchdog_time() const override;
   [[nodiscard]] bool at_rest() const override { return drives_[0].at_rest() && drives_[1].at_rest(); }
 
   Result<void> start_read_parameters(double now) override;

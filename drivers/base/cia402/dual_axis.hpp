@@ -36,7 +36,9 @@ class DualAxis final : public Controller, private MotionDevice {
   void disable(double now) override;
   Result<void> command(double left_rad_s, double right_rad_s, double now) override;
   void quick_stop(double now) override;
-  [[nodiscard]] bool watchdog_armed() const override { return watchdog_armed_; }
+  [[nodiscard]] double watchdog_time() const override {
+    return watchdog_armed_ ? 1e-3 * profile_.watchdog.time_ms : 0.0;
+  }
   [[nodiscard]] bool at_rest() const override { return motion_.at_rest(now_); }
 
   Result<void> start_read_parameters(double now) override;

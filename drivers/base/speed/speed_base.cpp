@@ -159,11 +159,12 @@ void SpeedBase::drive(double left_rad_s, double right_rad_s) {
 double SpeedBase::idle() { return kIdle_s; }
 
 /// A time-out that the device itself states goes before the one that the profile promises.
-bool SpeedBase::watchdog_armed() const {
+double SpeedBase::watchdog_time() const {
   const double promised =
       profile_.watchdog.kind == ProfileWatchdog::Kind::builtin ? 1e-3 * profile_.watchdog.time_ms : 0.0;
   const double timeout = protocol_->reported_timeout_s().value_or(promised);
-  return present_ && timeout > 0.0 && timeout <= kLongestWatchdog_s;
+  const bool armed = present_ && timeout > 0.0 && timeout <= kLongestWatchdog_s;
+  return armed ? timeout : 0.0;
 }
 
 ControllerState SpeedBase::state() const {

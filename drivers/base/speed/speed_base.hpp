@@ -35,7 +35,7 @@ class SpeedBase final : public Controller, private MotionDevice {
   void disable(double now) override;
   Result<void> command(double left_rad_s, double right_rad_s, double now) override;
   void quick_stop(double now) override;
-  [[nodiscard]] bool watchdog_armed() const override;
+  [[nodiscard]] double watchdog_time() const override;
   [[nodiscard]] bool at_rest() const override { return motion_.at_rest(now_); }
 
   /// These devices hold no geometry that this program could write: reading gives none, the rest is refused.

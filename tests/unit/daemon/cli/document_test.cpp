@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/calibration_document.hpp"
+#include "daemon/cli/export_configurations.hpp"
 #include "daemon/cli/export_formats.hpp"
 #include "daemon/cli/figure_svg.hpp"
 #include "daemon/cli/parameter_tables.hpp"
@@ -134,8 +135,55 @@ TEST(Export, csv_and_configuration_files) {
   EXPECT_THAT(yaml.value(), HasSubstr("left_wheel_radius_multiplier: 1"));
 }
 
+Calibration for_export() {
+  Calibration calibration = example();
+  calibration.robot.robot_id = "r-1";
+  calibration.robot.ticks_per_rev = 4096.0;
+  calibration.parameters = {{"left_wheel_diameter", {0.1485, 1e-4, "m"}}, {"right_wheel_diameter", {0.147, 1e-4, "m"}},
+                            {"track_width", {0.41, 2e-4, "m"}},           {"lidar_x", {0.12, 1e-3, "m"}},
+                            {"lidar_y", {-0.01, 1e-3, "m"}},              {"lidar_yaw", {1.5, 1e-3, "rad"}}};
+  calibration.data = {{.name = "drive--1.jsonl", .sha256 = "abc", .begin = 1.75e9, .duration = 60.0,
+                       .counts = {}, .discarded = {}, .choices = {}}};
+  EffectResult delay;
+  delay.name = "time_offset";
+  delay.parameters = {{"offset", {0.05, 0.001, "s"}}};
+  EffectResult eccentric;
+  eccentric.name = "wheel_eccentricity";
+  eccentric.parameters = {{"left_amplitude", {0.012, 0.001, "1"}}, {"left_phase", {0.3, 0.1, "rad"}}};
+  calibration.effects = {delay, eccentric};
+  return calibration;
+}
+
+TEST(Export, of_a_configuration_says_where_it_is_from_and_what_it_cannot_hold) {
+  for (const char* what : {"toml", "diff_drive", "ros_arduino", "arcos"}) {
+    const auto text = exported(for_export(), what);
+    ASSERT_TRUE(text.ok()) << text.error().text();
+    EXPECT_THAT(text.value(), HasSubstr("calibration of r-1 by odomcalib")) << what;
+    EXPECT_THAT(text.value(), HasSubstr(", 2025-06-15, sha256 abc")) << what;
+    EXPECT_THAT(text.value(), HasSubstr("not held here: wheel_eccentricity.left_amplitude = 0.012")) << what;
+  }
+  EXPECT_THAT(exported(for_export(), "ros_arduino").value(), HasSubstr("wheel differ by 1.02 %"));
+  EXPECT_THAT(exported(for_export(), "diff_drive").value(), Not(HasSubstr("differ by")));
+  EXPECT_TRUE(not_held(example(), "diff_drive").empty());
+}
+
+TEST(Export, to_other_programs_has_their_numbers) {
+  const std::string urdf = exported(for_export(), "urdf").value();
+  EXPECT_THAT(urdf, HasSubstr("<origin xyz=\"0.12 -0.01 0\" rpy=\"0 0 1.5\"/>"));
+  EXPECT_THAT(urdf, Not(HasSubstr("drive--1"))) << "it would end the comment";
+  EXPECT_EQ(exported(example(), "urdf").error().code, ErrorCode::format) << "no lidar pose";
+  const std::string arduino = exported(for_export(), "ros_arduino").value();
+  EXPECT_THAT(arduino, HasSubstr("wheel_diameter: 0.14775\nwheel_track: 0.41\nencoder_resolution: 4096\n"));
+  EXPECT_EQ(exported(example(), "ros_arduino").error().code, ErrorCode::format) << "no counts per turn";
+  // Diameters 0.15 and 0.15 were right 0.147 and left 0.1485; the track 0.4 is 0.41.
+  const std::string arcos = exported(for_export(), "arcos").value();
+  EXPECT_THAT(arcos, HasSubstr("TicksMM      * 1.020408\n"));
+  EXPECT_THAT(arcos, HasSubstr("RevCount     * 1.045918\n"));
+  EXPECT_THAT(arcos, HasSubstr("DriftFactor  + 84\n"));
+}
+
 TEST(Export, every_format_is_known_and_others_are_not) {
-  for (const auto& format : export_formats()) EXPECT_TRUE(exported(example(), format).ok()) << format;
+  for (const auto& format : export_formats()) EXPECT_TRUE(exported(for_export(), format).ok()) << format;
   EXPECT_EQ(exported(example(), "fax").error().code, ErrorCode::usage);
   EXPECT_EQ(exported(Calibration{}, "toml").error().code, ErrorCode::refused);
 }

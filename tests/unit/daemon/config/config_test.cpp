@@ -54,7 +54,7 @@ void expect_within_bounds(const Config& config) {
   ASSERT_LE(config.limits.speed, routines::kCaps.speed);
   ASSERT_LE(config.limits.turn_rate, routines::kCaps.turn_rate);
   ASSERT_LE(config.limits.acceleration, routines::kCaps.acceleration);
-  ASSERT_GE(config.countdown, 0.0);
+  ASSERT_GE(config.countdown, 1.0);
   ASSERT_GT(config.footprint.half_width, 0.0);
 }
 
@@ -69,6 +69,18 @@ TEST(ConfigFile, that_is_good_is_read) {
   ASSERT_TRUE(config.ok()) << config.error().text();
   EXPECT_EQ(config.value().robot.track_width, 0.4);
   EXPECT_EQ(config.value().limits.speed, 0.2);
+}
+
+TEST(ConfigFile, gives_a_second_before_a_motion_whatever_it_says) {
+  const auto countdown_of = [](const std::string& value) {
+    std::string text = kGood;
+    text.replace(text.find("countdown = 3.0"), 15, "countdown = " + value);
+    const auto config = parse_config(text, "test.toml");
+    return config ? config.value().countdown : -1.0;
+  };
+  EXPECT_EQ(countdown_of("0.0"), 1.0);
+  EXPECT_EQ(countdown_of("0.9"), 1.0);
+  EXPECT_EQ(countdown_of("1.5"), 1.5);
 }
 
 TEST(ConfigFile, cut_off_at_any_byte_is_sound_or_refused) {

@@ -169,7 +169,22 @@ TEST(Disagreement, finds_swapped_sides_in_a_turn) {
 std::vector<Point> cluster(double x, double y) { return {{x, y}, {x, y + 0.01}, {x, y - 0.01}}; }
 
 TEST(Obstacle, stopping_distance_has_the_figure_of_the_rule) {
-  EXPECT_NEAR(stopping_distance(0.20, {}), 0.066 + 0.30, 1e-3);
+  EXPECT_NEAR(stopping_distance(0.20, {.reaction = 0.13}), 0.066 + 0.30, 1e-3);
+}
+
+TEST(Obstacle, stopping_distance_counts_the_period_of_the_lidar_as_it_is) {
+  const auto reaction_at = [](double period, int late) {
+    ObstacleGuard guard({});
+    double t = 5.0;
+    for (int i = 0; i < 30; ++i) guard.turned(t += i == late ? 1.5 * period : period);
+    return guard.options().reaction;
+  };
+  EXPECT_NEAR(reaction_at(0.1, -1), 0.13, 1e-9) << "the figure of the rule is that of 10 Hz";
+  EXPECT_NEAR(reaction_at(0.2, -1), 0.23, 1e-9);
+  EXPECT_NEAR(reaction_at(0.025, -1), 0.055, 1e-9);
+  EXPECT_NEAR(reaction_at(0.1, 28), 0.18, 1e-9) << "one turn was slower";
+  EXPECT_NEAR(reaction_at(0.1, 5), 0.13, 1e-9) << "long ago";
+  EXPECT_NEAR(ObstacleGuard({}).options().reaction, 0.28, 1e-9) << "not known yet";
 }
 
 TEST(Obstacle, ahead_counts_when_driving_ahead_and_not_when_backing) {

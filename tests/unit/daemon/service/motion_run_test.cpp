@@ -40,7 +40,7 @@ class NotingController : public drivers::Controller {
     return {};
   }
   void quick_stop(double) override { note("quick stop"); }
-  bool watchdog_armed() const override { return true; }
+  double watchdog_time() const override { return 0.2; }
   bool at_rest() const override { return true; }
   Result<void> start_read_parameters(double) override { return {}; }
   Result<void> start_write_parameters(const std::vector<drivers::ParameterValue>&, double) override {

@@ -59,7 +59,7 @@ class FakeController : public drivers::Controller {
   void disable(double) override {}
   Result<void> command(double, double, double) override { return {}; }
   void quick_stop(double) override {}
-  bool watchdog_armed() const override { return true; }
+  double watchdog_time() const override { return 0.2; }
   std::optional<drivers::Identity> identity() const override { return who; }
   bool at_rest() const override { return rests; }
   RobotDescription description() const override { return {}; }
