@@ -46,20 +46,21 @@ Result<std::string> urdf(const Calibration& calibration, const std::string& wher
     return Error{ErrorCode::format, "the calibration has no lidar pose", where,
                  "solve a recording with scans of the lidar"};
   return fmt::format(
-      "<joint name=\"laser_joint\" type=\"fixed\">\n  <parent link=\"base_link\"/>\n  <child link=\"laser\"/>\n"
+      "<joint name=\"laser_joint\" type=\"fixed\">\n  <parent link=\"base_link\"/>\n  <child "
+      "link=\"laser\"/>\n"
       "  <!-- z is not measured -->\n  <origin xyz=\"{} {} 0\" rpy=\"0 0 {}\"/>\n</joint>\n",
       *x, *y, *yaw);
 }
 
 /// Parameters of the node that comes with ros_arduino_bridge (its README, "Base controller parameters"): one
 /// diameter for both wheels; what a gear does is in the counts per turn of the wheel already.
-Result<std::string> ros_arduino_yaml(const Calibration& calibration, const Dimensions& d, const std::string& where) {
+Result<std::string> ros_arduino_yaml(const Calibration& calibration, const Dimensions& d,
+                                     const std::string& where) {
   if (!(calibration.robot.ticks_per_rev > 0.0))
     return Error{ErrorCode::format, "the calibration has no counts per turn", where,
                  "state ticks_per_rev in the recording or the robot file, and solve again"};
-  return fmt::format(
-      "wheel_diameter: {}\nwheel_track: {}\nencoder_resolution: {:.0f}\ngear_reduction: 1.0\n", d.mean(),
-      d.track, calibration.robot.ticks_per_rev);
+  return fmt::format("wheel_diameter: {}\nwheel_track: {}\nencoder_resolution: {:.0f}\ngear_reduction: 1.0\n",
+                     d.mean(), d.track, calibration.robot.ticks_per_rev);
 }
 
 /// What the values of the controller are to be multiplied by, and what is to be added. TicksMM counts per mm
@@ -99,23 +100,25 @@ std::string commented(const std::string& what, std::string text) {
 /// Which robot, which recordings, which program, and what it said of the result.
 std::string provenance(const Calibration& calibration, const std::string& what) {
   const std::string robot = calibration.robot.robot_id.empty() ? "" : " of " + calibration.robot.robot_id;
-  std::string text = commented(what, "calibration" + robot + " by odomcalib " + kVersion + ": " +
-                                         name_of(calibration.verdict));
+  std::string text = commented(
+      what, "calibration" + robot + " by odomcalib " + kVersion + ": " + name_of(calibration.verdict));
   for (const DataUse& data : calibration.data) {
     // Stamps that count from 1970 say the day; others count from any start.
     constexpr double kSomeYears_s = 1e9;
     const bool dated = data.begin && *data.begin > kSomeYears_s;
     const std::string day =
         dated ? fmt::format(", {:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(*data.begin))) : "";
-    text += commented(what, "from " + data.name + day + (data.sha256.empty() ? "" : ", sha256 " + data.sha256));
+    text +=
+        commented(what, "from " + data.name + day + (data.sha256.empty() ? "" : ", sha256 " + data.sha256));
   }
   if (what == "arcos")
-    text += commented(what, "apply these to the values that the controller holds, and round to whole numbers");
+    text +=
+        commented(what, "apply these to the values that the controller holds, and round to whole numbers");
   return text;
 }
 
-Result<std::string> text_of(const Calibration& calibration, const Dimensions& dimensions, const std::string& what,
-                            const std::string& where) {
+Result<std::string> text_of(const Calibration& calibration, const Dimensions& dimensions,
+                            const std::string& what, const std::string& where) {
   if (what == "toml") return robot_toml(calibration, dimensions);
   if (what == "diff_drive") return diff_drive_yaml(dimensions);
   if (what == "urdf") return urdf(calibration, where);
@@ -142,14 +145,17 @@ std::vector<std::string> not_held(const Calibration& calibration, const std::str
   for (const auto& placement : calib::odometry::effect_placements(calibration)) {
     if (placement.place != calib::odometry::Place::odometry) continue;
     const Quantity& q = placement.quantity;
-    const std::string name = placement.effect + (placement.parameter.empty() ? "" : "." + placement.parameter);
+    const std::string name =
+        placement.effect + (placement.parameter.empty() ? "" : "." + placement.parameter);
     const std::string value = placement.parameter.empty() ? "" : fmt::format(" = {:.4g} {}", q.value, q.unit);
     sentences.push_back("not held here: " + name + value);
   }
-  const auto left = calibration.parameter("left_wheel_diameter"), right = calibration.parameter("right_wheel_diameter");
+  const auto left = calibration.parameter("left_wheel_diameter"),
+             right = calibration.parameter("right_wheel_diameter");
   if (what == "ros_arduino" && left && right && *left != *right)
-    sentences.push_back(fmt::format("not held here: left and right wheel differ by {:.2f} %, this is their mean",
-                                    100.0 * (*left / *right - 1.0)));
+    sentences.push_back(
+        fmt::format("not held here: left and right wheel differ by {:.2f} %, this is their mean",
+                    100.0 * (*left / *right - 1.0)));
   return sentences;
 }
 

@@ -61,12 +61,14 @@ int wait_for(const Session& session, const Options& options) {
       return kDone;
     }
     const bool for_good = !missing && missing.error().code == ErrorCode::not_permitted;
-    if (for_good || (!missing && elapsed() >= options.timeout)) return report_error(missing.error(), session.json);
+    if (for_good || (!missing && elapsed() >= options.timeout))
+      return report_error(missing.error(), session.json);
     const std::string now = missing ? missing.value() : missing.error().what;
     if (elapsed() >= options.timeout)
-      return report_error({ErrorCode::timeout, fmt::format("not {} after {:g} s: {}", options.until, options.timeout, now),
-                           "odomcalibd", "odomcalibctl check"},
-                          session.json);
+      return report_error(
+          {ErrorCode::timeout, fmt::format("not {} after {:g} s: {}", options.until, options.timeout, now),
+           "odomcalibd", "odomcalibctl check"},
+          session.json);
     if (now != said) tell("waiting: " + now);
     said = now;
     std::this_thread::sleep_for(settings::kLookAgain);
@@ -78,15 +80,15 @@ int wait_for(const Session& session, const Options& options) {
 void add_wait(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
   auto* wait = app.add_subcommand("wait", "Wait until the daemon is ready for a motion, or idle");
-  wait->add_option("--until", options->until, "ready: nothing that check looks at fails, and nothing runs; idle: nothing runs")
+  wait->add_option("--until", options->until,
+                   "ready: nothing that check looks at fails, and nothing runs; idle: nothing runs")
       ->check(CLI::IsMember({"ready", "idle"}))
       ->capture_default_str();
   wait->add_option("--timeout", options->timeout, "s")
       ->check(CLI::Range(0.0, settings::kLongestWait_s))
       ->capture_default_str();
-  wait->callback([&session, options] {
-    session.run = [&session, options] { return wait_for(session, *options); };
-  });
+  wait->callback(
+      [&session, options] { session.run = [&session, options] { return wait_for(session, *options); }; });
 }
 
 }  // namespace odomcalib::cli

@@ -35,12 +35,12 @@ struct ObstacleOptions {
   Footprint footprint;
   double margin = settings::kMargin_m;           ///< m, ahead of the stopping distance
   double side_margin = settings::kSideMargin_m;  ///< m
-  /// s, until the robot brakes: a period of the lidar, and what follows it. Before it is known: the longest one
-  /// with which the robot may move.
+  /// s, until the robot brakes: a period of the lidar, and what follows it. Before it is known: the longest
+  /// one with which the robot may move.
   double reaction = settings::kScanTimeout + settings::kReaction_s;
-  double acceleration = settings::kBraking;      ///< m/s^2, braking
-  int points = settings::kPoints;                ///< so many readings are an obstacle
-  int release_scans = settings::kReleaseScans;   ///< so many free scans in a row release
+  double acceleration = settings::kBraking;     ///< m/s^2, braking
+  int points = settings::kPoints;               ///< so many readings are an obstacle
+  int release_scans = settings::kReleaseScans;  ///< so many free scans in a row release
 };
 
 /// v t_react + v^2 / (2 a) + margin, m.

@@ -61,8 +61,8 @@ inline constexpr double kEdgeStep_m = 0.05;
 
 /// m ahead of the stopping distance, and beside the robot. Chosen.
 inline constexpr double kMargin_m = 0.30, kSideMargin_m = 0.05;
-/// s until the robot brakes, beyond one period of the lidar. Derived: a control step, and the way of the command
-/// over the bus.
+/// s until the robot brakes, beyond one period of the lidar. Derived: a control step, and the way of the
+/// command over the bus.
 inline constexpr double kReaction_s = 0.03;
 /// Turns of the lidar, the slowest of which counts as its period. Chosen: a second or two.
 inline constexpr std::size_t kPeriods = 10;

@@ -56,8 +56,9 @@ ordered_json controller_check(const Drive& drive) {
 std::string watchdog_text(double time) {
   const double fastest = safety::settings::kMargin_m / time;
   const std::string stops = fmt::format("controller stops by itself after {:.2g} s", time);
-  return fastest < routines::kCaps.speed ? stops + fmt::format("; that limits the speed to {:.2f} m/s", fastest)
-                                         : stops;
+  return fastest < routines::kCaps.speed
+             ? stops + fmt::format("; that limits the speed to {:.2f} m/s", fastest)
+             : stops;
 }
 
 ordered_json check_disk(const Bench& bench) {
@@ -235,10 +236,10 @@ ordered_json check_report(const Bench& bench) {
                        "connect the adapter; check controller.device"));
   list.push_back(controller_check(drive));
   const bool armed = drive.controller().watchdog_armed();
-  list.push_back(check("watchdog", armed,
-                       armed ? watchdog_text(drive.controller().watchdog_time())
-                             : "controller would not stop by itself",
-                       "use a profile with a watchdog"));
+  list.push_back(
+      check("watchdog", armed,
+            armed ? watchdog_text(drive.controller().watchdog_time()) : "controller would not stop by itself",
+            "use a profile with a watchdog"));
   list.push_back(check("encoders", !drive.encoders.stale(bench.now),
                        drive.encoders.stale(bench.now).value_or("counts arrive"), "check the bus"));
   list.push_back(check("lidar port", around.link.connected(),

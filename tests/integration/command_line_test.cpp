@@ -417,13 +417,16 @@ class OtherShells : public CommandLine, public ::testing::WithParamInterface<con
     const fs::path program(ODOMCALIB_CTL);
     const std::string path = "PATH=" + program.parent_path().string() + ":$PATH\n";
     if (shell == "fish")
-      write("complete.sh", path + "exec fish --no-config -c 'source " ODOMCALIB_FISH_COMPLETION
-                                  "; complete -C \"odomcalibctl " + words + "\"'\n");
+      write("complete.sh", path +
+                               "exec fish --no-config -c 'source " ODOMCALIB_FISH_COMPLETION
+                               "; complete -C \"odomcalibctl " +
+                               words + "\"'\n");
     else
       write("complete.sh", path + "exec zsh -f -c 'source " ODOMCALIB_ZSH_COMPLETION R"(
 compadd() { print -rl -- "${(@P)@[-1]}" }
 _files() { print FILES }
-words=(odomcalibctl )" + words + R"(); CURRENT=$#words; _odomcalibctl'
+words=(odomcalibctl )" + words +
+                               R"(); CURRENT=$#words; _odomcalibctl'
 )");
     return run("bash", "complete.sh").out;
   }

@@ -29,12 +29,12 @@ class Watchdog : public ::testing::Test {
     address.sun_family = AF_UNIX;
     (folder_ / "notify").string().copy(address.sun_path, sizeof(address.sun_path) - 1);
     ASSERT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-    std::ofstream(folder_ / "d.toml") << "[controller]\ndevice = \"slcan:" << (folder_ / "absent").string()
-                                      << "?bitrate=500000\"\nprofile = \"" ODOMCALIB_PROFILE
-                                      << "\"\n[lidar]\ndevice = \"serial:" << (folder_ / "none").string()
-                                      << "?baud=230400\"\n[lcm]\nenabled = false\n[daemon]\nstate_dir = \""
-                                      << (folder_ / "state").string() << "\"\nsocket = \""
-                                      << (folder_ / "control").string() << "\"\n";
+    std::ofstream(folder_ / "d.toml")
+        << "[controller]\ndevice = \"slcan:" << (folder_ / "absent").string()
+        << "?bitrate=500000\"\nprofile = \"" ODOMCALIB_PROFILE
+        << "\"\n[lidar]\ndevice = \"serial:" << (folder_ / "none").string()
+        << "?baud=230400\"\n[lcm]\nenabled = false\n[daemon]\nstate_dir = \"" << (folder_ / "state").string()
+        << "\"\nsocket = \"" << (folder_ / "control").string() << "\"\n";
     daemon_ = std::make_unique<Process>(
         std::vector<std::string>{"/usr/bin/env", "NOTIFY_SOCKET=" + (folder_ / "notify").string(),
                                  "WATCHDOG_USEC=400000", ODOMCALIB_DAEMON, "--config", folder_ / "d.toml"},
@@ -67,7 +67,8 @@ TEST_F(Watchdog, is_fed_by_the_loop_and_by_nothing_else) {
   ASSERT_TRUE(hears("WATCHDOG=1", 2.0));
   ASSERT_TRUE(hears("no bus", 2.0)) << "the status line says what is missing";
   const fs::path tasks = "/proc/" + std::to_string(daemon_->id()) + "/task";
-  ASSERT_GT(std::distance(fs::directory_iterator(tasks), fs::directory_iterator()), 1) << "other threads run on";
+  ASSERT_GT(std::distance(fs::directory_iterator(tasks), fs::directory_iterator()), 1)
+      << "other threads run on";
   ASSERT_EQ(ptrace(PTRACE_SEIZE, daemon_->id(), nullptr, nullptr), 0);
   ASSERT_EQ(ptrace(PTRACE_INTERRUPT, daemon_->id(), nullptr, nullptr), 0);
   int status = 0;

@@ -139,11 +139,19 @@ Calibration for_export() {
   Calibration calibration = example();
   calibration.robot.robot_id = "r-1";
   calibration.robot.ticks_per_rev = 4096.0;
-  calibration.parameters = {{"left_wheel_diameter", {0.1485, 1e-4, "m"}}, {"right_wheel_diameter", {0.147, 1e-4, "m"}},
-                            {"track_width", {0.41, 2e-4, "m"}},           {"lidar_x", {0.12, 1e-3, "m"}},
-                            {"lidar_y", {-0.01, 1e-3, "m"}},              {"lidar_yaw", {1.5, 1e-3, "rad"}}};
-  calibration.data = {{.name = "drive--1.jsonl", .sha256 = "abc", .begin = 1.75e9, .duration = 60.0,
-                       .counts = {}, .discarded = {}, .choices = {}}};
+  calibration.parameters = {{"left_wheel_diameter", {0.1485, 1e-4, "m"}},
+                            {"right_wheel_diameter", {0.147, 1e-4, "m"}},
+                            {"track_width", {0.41, 2e-4, "m"}},
+                            {"lidar_x", {0.12, 1e-3, "m"}},
+                            {"lidar_y", {-0.01, 1e-3, "m"}},
+                            {"lidar_yaw", {1.5, 1e-3, "rad"}}};
+  calibration.data = {{.name = "drive--1.jsonl",
+                       .sha256 = "abc",
+                       .begin = 1.75e9,
+                       .duration = 60.0,
+                       .counts = {},
+                       .discarded = {},
+                       .choices = {}}};
   EffectResult delay;
   delay.name = "time_offset";
   delay.parameters = {{"offset", {0.05, 0.001, "s"}}};
