@@ -141,9 +141,10 @@ bool is_configuration(const std::string& what) {
 
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what) {
   std::vector<std::string> sentences;
-  if (what == "urdf") return sentences;
   for (const auto& placement : calib::odometry::effect_placements(calibration)) {
-    if (placement.place != calib::odometry::Place::odometry) continue;
+    using calib::odometry::Place;
+    // What belongs to the place or the day is nobody's to hold; a lidar's joint has no wheels.
+    if (placement.place == Place::nowhere || (what == "urdf" && placement.place == Place::odometry)) continue;
     const Quantity& q = placement.quantity;
     const std::string name =
         placement.effect + (placement.parameter.empty() ? "" : "." + placement.parameter);

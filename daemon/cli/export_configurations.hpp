@@ -14,7 +14,8 @@ bool is_configuration(const std::string& what);
 /// Names that `configuration` takes.
 const std::vector<std::string>& configurations();
 
-/// What odometry would need of this calibration and the format has no room for: a sentence each. The text of
+/// What odometry, or a comparison of it with the lidar, would need of this calibration and the format has no
+/// room for: a sentence each. The text of
 /// the format has them as comments.
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what);
 

@@ -34,8 +34,10 @@ inline constexpr double kDependsOn = 0.5;
 
 /// Between two looks. Chosen: people notice no delay, and the daemon no load.
 inline constexpr std::chrono::milliseconds kLookAgain{250};
-/// s. Chosen: a day.
-inline constexpr double kLongestWait_s = 86400.0;
+/// In which the daemon answers one question. Chosen.
+inline constexpr std::chrono::milliseconds kAnswerOfDaemon{5000};
+/// s, usual and longest. Chosen: devices are opened within two seconds; a day.
+inline constexpr double kUsualWait_s = 30.0, kLongestWait_s = 86400.0;
 
 // --- A motion's lease ------------------------------------------------------------------------------------
 

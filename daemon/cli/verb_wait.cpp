@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/numbers.hpp"
 #include "daemon/cli/settings.hpp"
 #include "daemon/cli/verbs.hpp"
 
@@ -17,31 +19,52 @@ namespace odomcalib::cli {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 struct Options {
   std::string until = "ready";
-  double timeout = 30.0;  // s
+  double timeout = settings::kUsualWait_s;
 };
 
-/// Member of the daemon's answer; null where it has none.
-Result<ordered_json> answer_of(Client& client, const char* method, const char* member) {
-  const auto answer = client.call(method);
+class Deadline {
+ public:
+  explicit Deadline(double seconds) : seconds_(seconds) {}
+  [[nodiscard]] double elapsed() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+  [[nodiscard]] bool over() const { return elapsed() >= seconds_; }
+  /// What is left, at most so much.
+  [[nodiscard]] std::chrono::milliseconds left(std::chrono::milliseconds most) const {
+    const std::chrono::duration<double> rest(std::max(0.0, seconds_ - elapsed()));
+    return std::min(most, std::chrono::ceil<std::chrono::milliseconds>(rest));
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double seconds_;
+};
+
+/// Member of the daemon's answer. Errors: those of the client; format, it has no such member.
+Result<ordered_json> answer_of(Client& client, const char* method, const char* member,
+                               const Deadline& deadline) {
+  const auto within = static_cast<int>(deadline.left(settings::kAnswerOfDaemon).count());
+  const auto answer = client.call(method, "{}", within);
   if (!answer) return answer.error();
   const auto body = ordered_json::parse(answer.value(), nullptr, false);
-  return body.is_object() ? body.value(member, ordered_json()) : ordered_json();
+  if (!body.is_object() || !body.contains(member))
+    return Error{ErrorCode::format, std::string("the daemon's answer has no ") + member, method, ""};
+  return body[member];
 }
 
 /// What is missing, for people; empty: nothing. Errors: those of the client.
-Result<std::string> missing_for(const std::string& socket, bool ready) {
+Result<std::string> missing_for(const std::string& socket, bool ready, const Deadline& deadline) {
   auto client = Client::connect(socket);
   if (!client) return client.error();
-  const auto status = answer_of(client.value(), "GetStatus", "status");
+  const auto status = answer_of(client.value(), "GetStatus", "status", deadline);
   if (!status) return status.error();
-  const std::string state = status.value().is_object() ? status.value().value("state", "") : "";
+  const std::string state = status.value().value("state", "");
   std::string missing = state == "idle" ? "" : "odomcalibd: " + state;
   if (!ready) return missing;
-  const auto checks = answer_of(client.value(), "Check", "checks");
+  const auto checks = answer_of(client.value(), "Check", "checks", deadline);
   if (!checks) return checks.error();
   for (const auto& check : checks.value())
     if (check.value("outcome", "") == "fail")
@@ -49,29 +72,38 @@ Result<std::string> missing_for(const std::string& socket, bool ready) {
   return missing;
 }
 
+/// Nobody has answered: the daemon does not run, or does not get to it.
+bool silent(const Error& error) {
+  return error.code == ErrorCode::not_running || error.code == ErrorCode::timeout;
+}
+
+Error too_late(const Options& options, const std::string& missing) {
+  return {ErrorCode::timeout, fmt::format("not {} after {:g} s: {}", options.until, options.timeout, missing),
+          "odomcalibd", "odomcalibctl check"};
+}
+
 int wait_for(const Session& session, const Options& options) {
-  const auto begin = Clock::now();
-  const auto elapsed = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const Deadline deadline(options.timeout);
+  bool answered = false;
   std::string said;
   for (;;) {
-    const auto missing = missing_for(session.socket, options.until == "ready");
+    const auto missing = missing_for(session.socket, options.until == "ready", deadline);
     if (missing && missing.value().empty()) {
       if (session.json != JsonMode::off)
-        print_document("wait", {{"until", options.until}, {"seconds", elapsed()}}, session.json);
+        print_document("wait", {{"until", options.until}, {"seconds", deadline.elapsed()}}, session.json);
       return kDone;
     }
-    const bool for_good = !missing && missing.error().code == ErrorCode::not_permitted;
-    if (for_good || (!missing && elapsed() >= options.timeout))
+    if (!missing && missing.error().code == ErrorCode::not_permitted)
       return report_error(missing.error(), session.json);
+    answered = answered || missing || !silent(missing.error());
     const std::string now = missing ? missing.value() : missing.error().what;
-    if (elapsed() >= options.timeout)
-      return report_error(
-          {ErrorCode::timeout, fmt::format("not {} after {:g} s: {}", options.until, options.timeout, now),
-           "odomcalibd", "odomcalibctl check"},
-          session.json);
+    if (deadline.over() && answered) return report_error(too_late(options, now), session.json);
+    if (deadline.over())
+      return report_error({ErrorCode::not_running, now, session.socket, missing.error().remedy},
+                          session.json);
     if (now != said) tell("waiting: " + now);
     said = now;
-    std::this_thread::sleep_for(settings::kLookAgain);
+    std::this_thread::sleep_for(deadline.left(settings::kLookAgain));
   }
 }
 
@@ -85,7 +117,7 @@ void add_wait(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"ready", "idle"}))
       ->capture_default_str();
   wait->add_option("--timeout", options->timeout, "s")
-      ->check(CLI::Range(0.0, settings::kLongestWait_s))
+      ->check(finite(0.0, settings::kLongestWait_s))
       ->capture_default_str();
   wait->callback(
       [&session, options] { session.run = [&session, options] { return wait_for(session, *options); }; });

@@ -67,6 +67,8 @@ std::vector<Point> points_of(const Scan& scan, const std::array<double, 3>& lida
   return points;
 }
 
+double fastest_with(double watchdog_time) { return settings::kMargin_m / watchdog_time; }
+
 double stopping_distance(double speed, const ObstacleOptions& options) {
   const double v = std::abs(speed);
   return v * options.reaction + v * v / (2.0 * options.acceleration) + options.margin;

@@ -46,6 +46,11 @@ struct ObstacleOptions {
 /// v t_react + v^2 / (2 a) + margin, m.
 double stopping_distance(double speed, const ObstacleOptions& options);
 
+/// m/s at which what the robot drives on, until a controller stops it that waits so long, stays within the
+/// margin (rule M1).
+/// @param watchdog_time s
+double fastest_with(double watchdog_time);
+
 /// Poses along the circle of the twist until `distance` m are driven, the present one included.
 std::vector<routines::Pose> path_of(const routines::Twist& twist, double distance);
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "daemon/safety/settings.hpp"
+#include "daemon/safety/obstacle.hpp"
 #include "daemon/service/settings.hpp"
 #include "odomcalib_version.hpp"
 
@@ -54,7 +54,7 @@ ordered_json controller_check(const Drive& drive) {
 
 /// A slow watchdog limits the speed (rule M1).
 std::string watchdog_text(double time) {
-  const double fastest = safety::settings::kMargin_m / time;
+  const double fastest = safety::fastest_with(time);
   const std::string stops = fmt::format("controller stops by itself after {:.2g} s", time);
   return fastest < routines::kCaps.speed
              ? stops + fmt::format("; that limits the speed to {:.2f} m/s", fastest)

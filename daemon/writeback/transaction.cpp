@@ -105,7 +105,7 @@ bool holds(const std::vector<drivers::StoredParameter>& stored, const ParameterM
 }
 
 Result<void> Transaction::begin(Task task, const std::string& label) {
-  if (busy()) return Error{ErrorCode::refused, "another write-back is running", "", "wait for its end"};
+  if (busy()) return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
   report_ = {};
   report_.label = label;
   task_ = task;

@@ -442,7 +442,7 @@ TEST_P(OtherShells, know_the_verbs_and_options_that_the_program_knows) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shells, OtherShells, ::testing::Values("fish", "zsh"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& shell) { return std::string(shell.param); });
 
 TEST_F(Completion, leaves_files_to_the_shell) { EXPECT_EQ(offered("graph optimize in"), "\n"); }
 

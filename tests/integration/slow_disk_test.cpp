@@ -105,7 +105,7 @@ TEST_F(OnSlowDisk, a_second_write_back_waits_for_the_whole_end_of_the_first) {
   ASSERT_FALSE(active());
   EXPECT_TRUE(service_->writing());
   other.call("SetParameters", {{"lease", lease_}, {"values", kNew}});
-  EXPECT_EQ(wait_reply(other, 0.1).error, "org.odomcalib.Calibration.Refused");
+  EXPECT_EQ(wait_reply(other, 0.1).error, "org.odomcalib.Calibration.Busy");
   EXPECT_EQ(wait_reply(writer, 3.0).error, "");
   EXPECT_TRUE(active());
   EXPECT_FALSE(service_->writing());

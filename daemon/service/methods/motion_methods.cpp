@@ -10,7 +10,7 @@
 #include "daemon/routines/plans.hpp"
 #include "daemon/routines/settings.hpp"
 #include "daemon/routines/wiring.hpp"
-#include "daemon/safety/settings.hpp"
+#include "daemon/safety/obstacle.hpp"
 #include "daemon/service/call_parameters.hpp"
 #include "daemon/service/methods/methods.hpp"
 #include "daemon/service/motion_gate.hpp"
@@ -113,16 +113,11 @@ ordered_json plan_report(const routines::Plan& plan, const routines::Preview& pr
           {"limited", routines::limited(plan)}};
 }
 
-/// Rule M1: what the robot drives on until the controller stops it by itself stays within the margin to
-/// obstacles.
-double fastest_for(const drivers::Controller& controller) {
-  return safety::settings::kMargin_m / controller.watchdog_time();
-}
-
 Outcome begin_motion(Bench& bench, const Caller& caller, MotionTask::Order order, bool dry_run) {
   routines::Plan& plan = order.plan;
   if (bench.drive.controller().watchdog_armed())
-    plan.limits.speed = std::min(routines::capped(plan.limits).speed, fastest_for(bench.drive.controller()));
+    plan.limits.speed = std::min(routines::capped(plan.limits).speed,
+                                 safety::fastest_with(bench.drive.controller().watchdog_time()));
   if (const auto error = too_long(plan)) return *error;
   const auto preview = routines::preview(plan);
   if (const auto error = motion_forbidden(bench, preview)) return *error;

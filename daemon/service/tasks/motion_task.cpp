@@ -76,7 +76,11 @@ TaskTurn MotionTask::turn(Bench& bench) {
   next_step_ = bench.now + service::settings::kControlStep_s;
   watch_loop(bench);
   if (const auto problem = bench.outbox.telemetry.recorder.problem()) run_->stop(*problem);
-  speed_.seen(bench.drive.newest_ticks.t, bench.odometry.pose(), run_->twist());
+  // A nudge finds out what the counts are worth: they are held to the limits, not to the command.
+  const bool nudge = std::holds_alternative<ReportWiring>(purpose_);
+  const routines::Twist commanded =
+      nudge ? routines::Twist{routines::kCaps.speed, routines::kCaps.turn_rate} : run_->twist();
+  speed_.seen(bench.drive.newest_ticks.t, bench.odometry.pose(), commanded);
   run_->step(situation(bench));
   const auto rates = routines::to_wheels(run_->twist(), bench.drive.geometry());
   bench.drive.encoders.commanded(rates.left, rates.right, bench.now);

@@ -157,7 +157,7 @@ Calibration for_export() {
   delay.parameters = {{"offset", {0.05, 0.001, "s"}}};
   EffectResult eccentric;
   eccentric.name = "wheel_eccentricity";
-  eccentric.parameters = {{"left_amplitude", {0.012, 0.001, "1"}}, {"left_phase", {0.3, 0.1, "rad"}}};
+  eccentric.parameters = {{"left_cos", {0.012, 0.001, "1"}}, {"left_sin", {0.003, 0.001, "1"}}};
   calibration.effects = {delay, eccentric};
   return calibration;
 }
@@ -168,7 +168,8 @@ TEST(Export, of_a_configuration_says_where_it_is_from_and_what_it_cannot_hold) {
     ASSERT_TRUE(text.ok()) << text.error().text();
     EXPECT_THAT(text.value(), HasSubstr("calibration of r-1 by odomcalib")) << what;
     EXPECT_THAT(text.value(), HasSubstr(", 2025-06-15, sha256 abc")) << what;
-    EXPECT_THAT(text.value(), HasSubstr("not held here: wheel_eccentricity.left_amplitude = 0.012")) << what;
+    EXPECT_THAT(text.value(), HasSubstr("not held here: wheel_eccentricity.left_cos = 0.012")) << what;
+    EXPECT_THAT(text.value(), HasSubstr("not held here: time_offset.offset = 0.05 s")) << what;
   }
   EXPECT_THAT(exported(for_export(), "ros_arduino").value(), HasSubstr("wheel differ by 1.02 %"));
   EXPECT_THAT(exported(for_export(), "diff_drive").value(), Not(HasSubstr("differ by")));
@@ -179,6 +180,8 @@ TEST(Export, to_other_programs_has_their_numbers) {
   const std::string urdf = exported(for_export(), "urdf").value();
   EXPECT_THAT(urdf, HasSubstr("<origin xyz=\"0.12 -0.01 0\" rpy=\"0 0 1.5\"/>"));
   EXPECT_THAT(urdf, Not(HasSubstr("drive--1"))) << "it would end the comment";
+  EXPECT_THAT(urdf, HasSubstr("time_offset"));
+  EXPECT_THAT(urdf, Not(HasSubstr("eccentricity"))) << "of the wheels";
   EXPECT_EQ(exported(example(), "urdf").error().code, ErrorCode::format) << "no lidar pose";
   const std::string arduino = exported(for_export(), "ros_arduino").value();
   EXPECT_THAT(arduino, HasSubstr("wheel_diameter: 0.14775\nwheel_track: 0.41\nencoder_resolution: 4096\n"));

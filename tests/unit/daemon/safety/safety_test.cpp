@@ -169,7 +169,15 @@ TEST(Disagreement, finds_swapped_sides_in_a_turn) {
 std::vector<Point> cluster(double x, double y) { return {{x, y}, {x, y + 0.01}, {x, y - 0.01}}; }
 
 TEST(Obstacle, stopping_distance_has_the_figure_of_the_rule) {
-  EXPECT_NEAR(stopping_distance(0.20, {.reaction = 0.13}), 0.066 + 0.30, 1e-3);
+  ObstacleOptions options;
+  options.reaction = 0.13;
+  EXPECT_NEAR(stopping_distance(0.20, options), 0.066 + 0.30, 1e-3);
+}
+
+TEST(Obstacle, margin_limits_the_speed_with_a_watchdog_that_waits_long) {
+  EXPECT_NEAR(fastest_with(2.0), 0.15, 1e-12);
+  EXPECT_NEAR(fastest_with(1.0), 0.30, 1e-12);
+  EXPECT_GT(fastest_with(0.2), routines::kCaps.speed);
 }
 
 TEST(Obstacle, stopping_distance_counts_the_period_of_the_lidar_as_it_is) {
