@@ -149,7 +149,7 @@ std::vector<std::string> not_held(const Calibration& calibration, const std::str
     const std::string name =
         placement.effect + (placement.parameter.empty() ? "" : "." + placement.parameter);
     const std::string value = placement.parameter.empty() ? "" : fmt::format(" = {:.4g} {}", q.value, q.unit);
-    sentences.push_back("not held here: " + name + value);
+    sentences.push_back(fmt::format("not held here: {}{}", name, value));
   }
   const auto left = calibration.parameter("left_wheel_diameter"),
              right = calibration.parameter("right_wheel_diameter");

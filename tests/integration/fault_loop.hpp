@@ -9,8 +9,6 @@ namespace odomcalib {
 
 class FaultLoop : public ServiceLoop {
  protected:
-  using ServiceLoop::adjust;
-  void adjust(sim::SimRobotOptions& options) override { options.link_dir = folder_; }
   Calibrator calibrator() override { return make_calibrator(); }
   bool drive_turns() {
     const auto order = robot_->node().order();
