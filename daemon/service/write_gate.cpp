@@ -20,7 +20,6 @@ bool comes_to_rest(const Bench& bench) {
 
 std::optional<Error> write_forbidden(const Bench& bench) {
   const auto state = bench.drive.controller().state();
-  if (const auto& why = bench.folder.read_only()) return *why;
   if (bench.write_back.busy())
     return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
   if (state != drivers::ControllerState::disabled && !comes_to_rest(bench)) return axes_not_off(bench);
