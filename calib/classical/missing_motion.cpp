@@ -21,4 +21,9 @@ std::optional<std::string> missing_motion(std::span<const wheels::WheelMotion> m
   return std::nullopt;
 }
 
+std::string record_more(std::span<const wheels::WheelMotion> motions) {
+  return "record " +
+         missing_motion(motions).value_or("more of each motion: straight lines, arcs and turns on the spot");
+}
+
 }  // namespace odomcalib::calib::classical

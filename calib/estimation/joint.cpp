@@ -131,9 +131,7 @@ std::optional<Error> check_rank(const NormalSystem& system, const Eigen::MatrixX
   for (std::size_t i = 0; i < free.size(); ++i)
     direction(free[i]) = eigen.eigenvectors()(static_cast<Eigen::Index>(i), 0);
   return Error{ErrorCode::refused, "the motion does not determine: " + parameter_names(direction),
-               "joint estimate",
-               "record " + classical::missing_motion(measurement::wheel_motions(data, 0.0))
-                               .value_or("more of each motion: straight lines, arcs and turns on the spot")};
+               "joint estimate", classical::record_more(measurement::wheel_motions(data, 0.0))};
 }
 
 double prior_cost(const Eigen::MatrixXd& information, const Eigen::VectorXd& p) {

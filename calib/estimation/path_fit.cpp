@@ -309,8 +309,7 @@ class Fitter {
         motions.push_back(
             wheels::motion_between(data.model->track(), data.scans[k].time, data.scans[k + 1].time, {}));
     return {ErrorCode::refused, "the motion does not determine all parameters", "path estimate",
-            "record " + classical::missing_motion(motions).value_or(
-                            "more of each motion: straight lines, arcs and turns on the spot")};
+            classical::record_more(motions)};
   }
 
   std::optional<Error> step() {

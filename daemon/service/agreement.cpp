@@ -16,11 +16,6 @@ bool beyond(const routines::Pose& moved, double way, double turn) {
   return std::hypot(moved.x, moved.y) > way || std::abs(moved.yaw) > turn;
 }
 
-routines::Pose composed(const routines::Pose& a, const routines::Pose& b) {
-  const double c = std::cos(a.yaw), s = std::sin(a.yaw);
-  return {a.x + c * b.x - s * b.y, a.y + s * b.x + c * b.y, a.yaw + b.yaw};
-}
-
 }  // namespace
 
 bool AgreementWatch::due(const routines::Pose& odometry) const {

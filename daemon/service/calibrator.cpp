@@ -10,18 +10,13 @@
 #include "calib/report/next_test.hpp"
 #include "calib/solve.hpp"
 #include "calib/terms/effect_names.hpp"
+#include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/settings.hpp"
 
 namespace odomcalib {
 namespace {
 
 using routines::Pose;
-
-Pose composed(const Pose& a, const Pose& b) {
-  const double c = std::cos(a.yaw);
-  const double s = std::sin(a.yaw);
-  return {a.x + c * b.x - s * b.y, a.y + s * b.x + c * b.y, a.yaw + b.yaw};
-}
 
 Pose inverse(const Pose& pose) {
   const double c = std::cos(pose.yaw);

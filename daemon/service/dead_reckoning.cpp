@@ -55,4 +55,10 @@ routines::Pose relative(const routines::Pose& start, const routines::Pose& pose)
   return {c * dx + s * dy, -s * dx + c * dy, pose.yaw - start.yaw};
 }
 
+routines::Pose composed(const routines::Pose& a, const routines::Pose& b) {
+  const double c = std::cos(a.yaw);
+  const double s = std::sin(a.yaw);
+  return {a.x + c * b.x - s * b.y, a.y + s * b.x + c * b.y, a.yaw + b.yaw};
+}
+
 }  // namespace odomcalib

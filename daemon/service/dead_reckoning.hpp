@@ -44,5 +44,7 @@ double middle_of(const Scan& scan);
 
 /// `pose` in the frame of `start`; yaw difference continuous.
 routines::Pose relative(const routines::Pose& start, const routines::Pose& pose);
+/// `b`, a pose in the frame of `a`, in the frame that `a` is in.
+routines::Pose composed(const routines::Pose& a, const routines::Pose& b);
 
 }  // namespace odomcalib
