@@ -143,20 +143,20 @@ Result<std::string> Client::call(const std::string& method, const std::string& p
 Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
                                     const std::string& parameters,
                                     const std::function<void(const std::string&)>& progress,
-                                    WhenInterrupted interrupted) {
+                                    WhenInterrupted interrupted, Client* on) {
   if (signalled != 0 && interrupted != WhenInterrupted::begin)
     return Error{ErrorCode::cancelled, "interrupted", method, "start again"};
   auto keeper = Client::connect(socket);
-  auto worker = Client::connect(socket);
   if (!keeper) return keeper.error();
-  if (!worker) return worker.error();
+  auto own = on == nullptr ? std::optional(Client::connect(socket)) : std::nullopt;
+  if (own && !*own) return own->error();
+  Client& worker = own ? own->value() : *on;
   const SignalsCaught caught;
   hurry();
   const auto given = keeper.value().call("Acquire");
   if (!given) return given.error();
   const auto lease = ordered_json::parse(given.value(), nullptr, false).value("lease", std::string());
-  if (auto sent = worker.value().send(method, with_lease(parameters, lease), true); !sent)
-    return sent.error();
+  if (auto sent = worker.send(method, with_lease(parameters, lease), true); !sent) return sent.error();
   auto next = Clock::now();
   while (signalled == 0 || interrupted != WhenInterrupted::stop) {
     if (Clock::now() >= next) {
@@ -164,7 +164,7 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
       if (auto sent = keeper.value().send("Renew", renewal_of(lease)); !sent) return sent.error();
     }
     (void)keeper.value().receive(0);
-    const auto reply = worker.value().receive(10);
+    const auto reply = worker.receive(10);
     if (!reply) return reply.error();
     if (!reply.value()) continue;
     if (const auto last = final_reply(*reply.value(), progress)) return value_of(*last);

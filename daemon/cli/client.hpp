@@ -61,9 +61,12 @@ enum class WhenInterrupted {
 /// robot stops.
 /// @param parameters JSON object text without "lease"
 /// @param progress called with the JSON text of each progress object
+/// @param on outlives the call: for what the daemon ends with the connection that asked for it; null: a
+/// connection of the call's own
 Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
                                     const std::string& parameters,
                                     const std::function<void(const std::string&)>& progress,
-                                    WhenInterrupted interrupted = WhenInterrupted::stop);
+                                    WhenInterrupted interrupted = WhenInterrupted::stop,
+                                    Client* on = nullptr);
 
 }  // namespace odomcalib::cli

@@ -81,7 +81,8 @@ Result<ordered_json> run_method(const Session& session, const Consent& given, co
     line.show(fmt::format("{} {:3.0f} %   Ctrl-C stops the robot", body.value("phase", ""),
                           100.0 * body.value("fraction", 0.0)));
   };
-  const auto answer = call_with_lease(session.socket, method, parameters.dump(), progress, given.interrupted);
+  const auto answer =
+      call_with_lease(session.socket, method, parameters.dump(), progress, given.interrupted, given.on);
   if (!answer) return answer.error();
   return ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
 }

@@ -16,6 +16,7 @@ struct Consent {
   bool yes = false;
   bool dry_run = false;
   WhenInterrupted interrupted = WhenInterrupted::stop;
+  Client* on = nullptr;  ///< see call_with_lease
 };
 
 /// Asks for consent where it was not given, and runs the method with the lease. With dry_run nothing moves.

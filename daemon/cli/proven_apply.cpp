@@ -109,35 +109,38 @@ Error not_proven(Error why) {
   return why;
 }
 
-/// Every length of `wanted` is in `held`, and the same.
-bool same_lengths(const ordered_json& wanted, const ordered_json& held) {
-  if (!wanted.is_object() || wanted.empty() || !held.is_object()) return false;
-  for (const auto& one : wanted.items())
-    if (!(std::abs(held.value(one.key(), kUnknown) - one.value().get<double>()) <= settings::kSameLength_m))
-      return false;
-  return true;
-}
-
-/// Takes back what this program has written, and nothing that somebody else has written since.
-/// @param written result of Apply
-Result<void> take_back(const RunMethod& always, const ordered_json& written) {
-  const auto plan = always("Rollback", {{"dry_run", true}});
-  if (!plan) return plan.error();
-  const auto member = [](const ordered_json& body, const char* name) {
-    return body.value(name, ordered_json());
-  };
-  if (!same_lengths(member(written, "after"), member(plan.value(), "before")) ||
-      !same_lengths(member(written, "before"), member(plan.value(), "after")))
-    return Error{ErrorCode::refused, "somebody else has written other values since", "rollback",
-                 "odomcalibctl history"};
-  const auto done = always("Rollback", ordered_json::object());
-  if (!done) return done.error();
-  return {};
-}
-
+/// The daemon goes on trying; what it has not stored does not outlive the controller's power either.
 Error not_taken_back(const Error& why, const Error& failed) {
-  return {ErrorCode::write_unknown, why.what + "; but they could not be taken back: " + failed.text(),
-          "proof run", "see odomcalibctl params get, then odomcalibctl rollback"};
+  return {
+      ErrorCode::write_unknown,
+      "nothing was stored, but nobody has seen the old values return (" + failed.text() + "): " + why.what,
+      "proof run", "see odomcalibctl params get once the controller answers"};
+}
+
+ProvenApply not_applied(ProvenApply applied, const Error& why) {
+  applied.error = why;
+  if (!is_settled(why)) applied.end = ProvenApply::End::in_doubt;
+  return applied;
+}
+
+ProvenApply take_back(const RunMethod& always, ProvenApply applied, const Error& why) {
+  applied.error = why;
+  applied.end = ProvenApply::End::taken_back;
+  const auto back = always("Discard", ordered_json::object());
+  if (back) return applied;
+  applied.error = not_taken_back(why, back.error());
+  applied.end = ProvenApply::End::in_doubt;
+  return applied;
+}
+
+/// A store that has begun and failed has ended with the old values, or says that it has not.
+ProvenApply store(const RunMethod& run, const RunMethod& always, ProvenApply applied) {
+  const auto stored = run("Store", ordered_json::object());
+  applied.end = stored ? ProvenApply::End::stored : ProvenApply::End::taken_back;
+  if (stored) return applied;
+  const bool begun = stored.error().code == ErrorCode::write_failed || !is_settled(stored.error());
+  return begun ? not_applied(std::move(applied), stored.error())
+               : take_back(always, std::move(applied), not_proven(stored.error()));
 }
 
 }  // namespace
@@ -191,25 +194,13 @@ ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const
   applied.before = before;
   if ((applied.error = needs_a_person(calibration))) return applied;
   const auto wanted = ordered_json::parse(to_json(calibration), nullptr, false);
-  const auto written = run("Apply", {{"calibration", wanted}});
-  if (!written) {
-    applied.error = written.error();
-    if (!is_settled(written.error())) applied.end = ProvenApply::End::in_doubt;
-    return applied;
-  }
+  if (const auto written = run("Apply", {{"calibration", wanted}, {"prove", true}}); !written)
+    return not_applied(std::move(applied), written.error());
   const auto after = drive_errors(run);
   if (after) applied.after = after.value();
   const auto what = after ? worse(before, after.value()) : std::nullopt;
-  applied.end = ProvenApply::End::stored;
-  if (after && !what) return applied;
-  applied.error = after ? not_better(*what) : not_proven(after.error());
-  applied.end = ProvenApply::End::taken_back;
-  if (const auto back = take_back(always, written.value()); !back) {
-    applied.error =
-        not_taken_back(after ? Error{ErrorCode::refused, *what, "", ""} : after.error(), back.error());
-    applied.end = ProvenApply::End::in_doubt;
-  }
-  return applied;
+  if (after && !what) return store(run, always, std::move(applied));
+  return take_back(always, std::move(applied), after ? not_better(*what) : not_proven(after.error()));
 }
 
 ordered_json to_json(const ProvenApply& applied) {
@@ -222,7 +213,7 @@ ordered_json to_json(const ProvenApply& applied) {
 Document describe(const ProvenApply& applied) {
   constexpr std::array kHeadlines = {"stored, and proven by a fresh motion", "not stored",
                                      "taken back, the old values are in force",
-                                     "IN DOUBT: not proven, and not taken back"};
+                                     "IN DOUBT: not proven, and what is in force was not seen"};
   Section section{"", {}, {{"odometry off by", "before", "after", "unit"}, {}}};
   for (const Judged& one : kJudgeds) {
     const auto text = [&](const DriveErrors& errors) {

@@ -1,5 +1,5 @@
-// calibrate --apply: odometry is compared with the lidar before the write-back and, on fresh motion, after
-// it. What is not better is taken back.
+// calibrate --apply: odometry is compared with the lidar before the write-back and, on fresh motion, with the
+// new values before they are stored. What is not better goes back.
 #pragma once
 
 #include <functional>
@@ -41,8 +41,8 @@ struct ProvenApply {
   enum class End {
     stored,      ///< new values in force, on fresh motion better
     not_stored,  ///< nothing was written, or it failed: old values in force
-    taken_back,  ///< old values in force again
-    in_doubt     ///< new values may be in force, without proof
+    taken_back,  ///< old values in force again, nothing was stored
+    in_doubt     ///< what is in force could not be seen
   };
   End end = End::not_stored;
   DriveErrors before;
@@ -50,9 +50,8 @@ struct ProvenApply {
   std::optional<Error> error;  ///< why it was not stored
 };
 
-/// Writes the calibration, drives again, and takes it back unless it is proven.
+/// Writes the calibration without storing it, drives again, and stores it only when that has proven it.
 /// @param before drive_errors() with the values that are in force
-/// Values that somebody else has written since stay as they are.
 /// @param always runs what takes it back; unlike `run` it asks nobody and is not given up
 ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const Calibration& calibration,
                             const DriveErrors& before);

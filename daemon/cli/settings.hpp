@@ -15,8 +15,6 @@ namespace odomcalib::cli::settings {
 /// What a comparison of scans at rest cannot tell: m over a metre, rad over a turn. Chosen: two to three
 /// times the largest error after a calibration in simulated campaigns, and below what a wheel of 0.3 % makes.
 inline constexpr double kLengthNoise_m = 0.002, kHeadingNoise_rad = 0.1 * std::numbers::pi / 180.0;
-/// m, lengths as text and back. Derived: a tenth of the finest step of a controller, 1 um.
-inline constexpr double kSameLength_m = 1e-7;
 
 // --- Measuring by hand -----------------------------------------------------------------------------------
 

@@ -107,10 +107,20 @@ Result<std::optional<DriveErrors>> before_apply(const Session& session, const Op
   return std::optional(errors.value());
 }
 
-// From the write on until it is proven or taken back no signal ends this program.
-ProvenApply prove(const Session& session, const RunMethod& run, const Calibration& calibration,
-                  const DriveErrors& before) {
+// From the write on until it is proven or taken back no signal ends this program. Should something else end
+// it, its connection ends too, and the daemon takes back what is not proven.
+Result<ProvenApply> prove(const Session& session, Consent consent, const Calibration& calibration,
+                          const DriveErrors& before) {
+  auto held = Client::connect(session.socket);
+  if (!held) return held.error();
   const SignalsCaught caught;
+  const RunMethod run = [&](const std::string& method, ordered_json parameters) {
+    const bool writes = method == "Apply" || method == "Store";
+    consent.interrupted = writes ? WhenInterrupted::finish : WhenInterrupted::stop;
+    consent.on = method == "Apply" ? &held.value() : nullptr;
+    consent.yes = consent.yes || method == "Store";  // it was asked for with the write
+    return run_method(session, consent, method, std::move(parameters));
+  };
   const RunMethod always = [&session](const std::string& method, ordered_json parameters) {
     const Consent nobody_is_asked{.yes = true, .interrupted = WhenInterrupted::begin};
     return run_method(session, nobody_is_asked, method, std::move(parameters));
@@ -134,9 +144,7 @@ int calibrate(const Session& session, const Options& options) {
     return print_result(session, "plan",
                         run_method(session, options.consent, "Calibrate", {{"options", wanted}}));
   const RunMethod run = [&](const std::string& method, ordered_json parameters) {
-    Consent consent = options.consent;
-    if (method == "Apply") consent.interrupted = WhenInterrupted::finish;
-    return run_method(session, consent, method, std::move(parameters));
+    return run_method(session, options.consent, method, std::move(parameters));
   };
   const auto before = before_apply(session, options, run);
   if (!before) return report_error(before.error(), session.json);
@@ -148,7 +156,11 @@ int calibrate(const Session& session, const Options& options) {
     if (auto written = write_output(options.file, to_json(best.calibration)); !written)
       return report_lost(written.error(), best);
   std::optional<ProvenApply> applied;
-  if (before.value()) applied = prove(session, run, best.calibration, *before.value());
+  if (before.value()) {
+    auto proven = prove(session, options.consent, best.calibration, *before.value());
+    if (!proven) return report_error(proven.error(), session.json);
+    applied = std::move(proven).value();
+  }
   print_calibration(session, best.calibration, applied);
   if (applied && applied->error) return report_error(*applied->error, JsonMode::off);
   return best.calibration.verdict == Verdict::refused ? kRefused : kDone;
@@ -229,7 +241,7 @@ void add_motions(CLI::App& app, Session& session) {
   all->add_flag("--quick", options->quick, "a shorter pattern");
   all->add_flag("--one-drive", options->one_drive, "no second motion, whatever the first leaves open");
   all->add_flag("--apply", options->apply,
-                "write it, drive straight and spin again, and take it back unless odometry is better");
+                "try it, drive straight and spin again, and store it only if odometry is better");
   all->add_option("--out", options->file, "calibration file to write");
   add_action(app, session, options, "apply", "Write a calibration to the controller", apply)
       ->add_option("CALIBRATION", options->file)

@@ -129,6 +129,7 @@ void Loop::serve_clients() {
 
 void Loop::forget(ClientId gone) {
   bench_.lease.lost(gone);
+  bench_.write_back.forget(gone);
   bench_.outbox.forget(gone);
   if (task_ && task_->caller.client == gone) task_->abandoned(bench_);
 }

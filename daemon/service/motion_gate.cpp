@@ -40,6 +40,8 @@ std::optional<Error> motion_forbidden(const Bench& bench, const routines::Previe
     return forbidden(ErrorCode::write_unknown,
                      "an interrupted write-back has left the controller's values unknown",
                      "connect the controller and restart odomcalibd, then see odomcalibctl params get");
+  if (bench.write_back.going_back())
+    return forbidden(ErrorCode::busy, "values that were not proven are taken back first", "wait for its end");
   if (auto wrong = controller_forbids(bench.drive.controller())) return wrong;
   if (const auto stale = bench.drive.encoders.stale(bench.now))
     return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");

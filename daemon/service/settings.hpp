@@ -155,6 +155,10 @@ inline constexpr double kReadAgain_s = 2.0;
 /// permanent memory is good for 100 000 stores, at one each ten minutes for two years.
 inline constexpr double kRecoverAgain_s = 2.0, kLongestRecoverAgain_s = 600.0;
 
+/// s from the write to the store in which a motion proves the values. Chosen: a straight and a spin out and
+/// back take two minutes.
+inline constexpr double kLongestProof_s = 900.0;
+
 // --- Calibrations ----------------------------------------------------------------------------------------
 
 /// Calibrations whose files are kept. Chosen: those of months; each has some 100 kB.

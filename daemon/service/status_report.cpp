@@ -185,6 +185,7 @@ std::string one_line(const Bench& bench, const Task* task) {
   const LidarLink& lidar = bench.surroundings.link;
   if (!lidar.connected() || bench.surroundings.scans.stale(bench.now))
     missing("scans", text_of(lidar.problem()));
+  if (bench.write_back.proving()) line += "; new values wait for their proof";
   return line;
 }
 

@@ -22,6 +22,9 @@ std::optional<Error> write_forbidden(const Bench& bench) {
   const auto state = bench.drive.controller().state();
   if (bench.write_back.busy())
     return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
+  if (bench.write_back.proving())
+    return Error{ErrorCode::busy, "other values wait for their proof", "write-back",
+                 "wait for its end, or take them back: odomcalibctl rollback"};
   if (state != drivers::ControllerState::disabled && !comes_to_rest(bench)) return axes_not_off(bench);
   if (!bench.drive.values_known)
     return Error{ErrorCode::device, "the controller's values were not read yet", "write-back",

@@ -78,8 +78,15 @@ void settle_write(Bench& bench, const WriteReport& report) {
   learn(bench, report);
   if (report.outcome == WriteOutcome::read) return;
   const bool committed = report.outcome == WriteOutcome::committed;
-  bench.outbox.event(committed ? messages::Severity::info : messages::Severity::fault, "write_back",
+  const bool proving = report.outcome == WriteOutcome::proving;
+  bench.outbox.event(committed || proving ? messages::Severity::info : messages::Severity::fault,
+                     "write_back",
                      name_of(report.outcome) + (report.error ? ": " + report.error->text() : ""));
+  // Nothing of it lasts yet: neither the history nor the calibration in force changes.
+  if (proving) {
+    bench.write_back.ended = WriteEnd{report, std::nullopt};
+    return;
+  }
   const auto end = std::make_shared<Settlement>();
   end->calibration = committed ? report.calibration : "";
   end->entry = entry_of(bench, report);

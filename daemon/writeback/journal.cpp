@@ -19,8 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kNames = {"begin",  "write",    "readback_ok", "store_begin",   "store_ok",
-                               "commit", "rollback", "rolled_back", "needs_operator"};
+constexpr std::array kNames = {"begin",    "write",  "readback_ok", "proof_ok",    "store_begin",
+                               "store_ok", "commit", "rollback",    "rolled_back", "needs_operator"};
 
 std::optional<JournalState> state_named(const std::string& name) {
   for (std::size_t i = 0; i < kNames.size(); ++i)
@@ -74,7 +74,8 @@ std::string to_line(const JournalRecord& record) {
                      {"after", record.after},
                      {"device", record.device},
                      {"calibration", record.calibration},
-                     {"store_begun", record.store_begun}};
+                     {"store_begun", record.store_begun},
+                     {"unproven", record.unproven}};
   const std::string text = body.dump(-1, ' ', true, json::error_handler_t::replace);
   return crc_of(text) + " " + text + "\n";
 }
@@ -96,7 +97,8 @@ std::optional<JournalRecord> from_line(const std::string& line) {
                          .after = body.at("after").get<std::map<std::string, double>>(),
                          .device = body.value("device", ""),
                          .calibration = body.value("calibration", ""),
-                         .store_begun = body.value("store_begun", may_have_stored(*state))};
+                         .store_begun = body.value("store_begun", may_have_stored(*state)),
+                         .unproven = body.value("unproven", false)};
   } catch (const json::exception&) {
     return std::nullopt;
   }

@@ -19,6 +19,7 @@ enum class JournalState {
   begin,           ///< old values are known, nothing is changed
   write,           ///< new values go to the controller's RAM
   readback_ok,     ///< RAM holds the new values
+  proof_ok,        ///< a motion with the new values has proven them
   store_begin,     ///< RAM goes to permanent memory
   store_ok,        ///< stored and read again
   commit,          ///< done: new values in force
@@ -40,6 +41,7 @@ struct JournalRecord {
   std::string device;  ///< who holds these values; empty: it does not say, or an earlier version wrote this
   std::string calibration;   ///< id of the one in force with `after`, see CalibrationInForce
   bool store_begun = false;  ///< permanent memory may hold other values than `before`
+  bool unproven = false;     ///< `after` is to be proven by a motion first: until then `before` comes back
 };
 
 /// One line: CRC-32 (zlib's) as hex, a space, a JSON object, a newline.

@@ -77,7 +77,7 @@ Error nothing_to_compare() {
 /// The others tell of what has happened: where they are missing, the comparison at the next start finds out.
 bool must_be_written(JournalState state) {
   return state == JournalState::begin || state == JournalState::write || state == JournalState::readback_ok ||
-         state == JournalState::store_begin;
+         state == JournalState::proof_ok || state == JournalState::store_begin;
 }
 
 Error mismatch(const char* when) {
@@ -112,6 +112,8 @@ Result<void> Transaction::begin(Task task, const std::string& label) {
   interrupted_ = journal_.unfinished();
   store_begun_ = false;
   old_known_ = true;
+  unproven_ = false;
+  proof_.reset();
   phase_ = Phase::read_first;
   started_ = false;
   return {};
@@ -121,7 +123,7 @@ Result<void> Transaction::read() { return begin(Task::read, "read"); }
 Result<void> Transaction::recover() { return begin(Task::recover, "recovery"); }
 
 Result<void> Transaction::write(const std::string& label, const ParameterMap& values,
-                                const std::string& calibration) {
+                                const std::string& calibration, Proof proof) {
   for (const auto& [name, value] : values)
     if (!std::isfinite(value) || value <= 0.0)
       return Error{ErrorCode::refused, fmt::format("{} = {} is no length", name, value), label,
@@ -129,6 +131,14 @@ Result<void> Transaction::write(const std::string& label, const ParameterMap& va
   if (auto begun = begin(Task::write, label); !begun) return begun;
   report_.after = values;
   report_.calibration = calibration;
+  unproven_ = proof == Proof::wanted;
+  return {};
+}
+
+Result<void> Transaction::conclude(const Result<void>& proof) {
+  if (!proving())
+    return Error{ErrorCode::refused, "no values wait for a proof", "write-back", "odomcalibctl params get"};
+  proof_ = proof;
   return {};
 }
 
@@ -142,7 +152,8 @@ JournalRecord Transaction::record_of(JournalState state) const {
           .after = report_.after,
           .device = report_.device,
           .calibration = report_.calibration,
-          .store_begun = store_begun_ || state == JournalState::store_begin};
+          .store_begun = store_begun_ || state == JournalState::store_begin,
+          .unproven = unproven_};
 }
 
 void Transaction::announce(std::deque<JournalState> states, After after, drivers::Controller& controller,
@@ -172,7 +183,7 @@ void Transaction::go_on_announcing(drivers::Controller& controller, double now) 
 void Transaction::not_announced(const Error& why, drivers::Controller& controller, double now) {
   announced_.clear();
   announcing_ = false;
-  const bool touched = phase_ == Phase::write_new;
+  const bool touched = phase_ == Phase::write_new || phase_ == Phase::proving;
   return touched ? go_back(why, controller, now) : not_begun(why, controller, now);
 }
 
@@ -180,6 +191,11 @@ void Transaction::proceed(After after, drivers::Controller& controller, double n
   switch (after) {
     case After::write_new:
       return start(Phase::write_new, controller, now);
+    case After::prove:
+      phase_ = Phase::proving;
+      report_.outcome = WriteOutcome::proving;
+      finished_ = report_;
+      return;
     case After::store_new:
       store_begun_ = true;
       return start(Phase::store_new, controller, now);
@@ -252,6 +268,7 @@ void Transaction::step(drivers::Controller& controller, double now, std::int64_t
   wall_us_ = wall_us;
   if (phase_ == Phase::idle) return;
   if (announcing_) return go_on_announcing(controller, now);
+  if (phase_ == Phase::proving) return on_proof(controller, now);
   if (!started_) return start_when_at_rest(controller, now);
   // The driver bounds the time of its jobs: it knows how long a store may take.
   const auto result = controller.take_job_result();
@@ -278,6 +295,7 @@ void Transaction::on_result(const Job& job, drivers::Controller& controller, dou
     case Phase::verify_old:
       return on_old_verified(job, controller, now);
     case Phase::idle:
+    case Phase::proving:
       return;
   }
 }
@@ -334,9 +352,22 @@ void Transaction::on_written(const Job& job, drivers::Controller& controller, do
   if (job.error) return go_back(*job.error, controller, now);
   if (!holds(job.parameters, report_.after)) return go_back(mismatch("read back"), controller, now);
   report_.in_force = job.parameters;
-  if (!stores_any(controller, report_.after))
-    return announce({JournalState::readback_ok}, After::commit, controller, now);
-  announce({JournalState::readback_ok, JournalState::store_begin}, After::store_new, controller, now);
+  if (unproven_) return announce({JournalState::readback_ok}, After::prove, controller, now);
+  keep({JournalState::readback_ok}, controller, now);
+}
+
+void Transaction::on_proof(drivers::Controller& controller, double now) {
+  if (!proof_) return;
+  if (!*proof_) return go_back(proof_->error(), controller, now);
+  unproven_ = false;
+  keep({JournalState::proof_ok}, controller, now);
+}
+
+/// Stores what RAM holds, where there is something to store it in.
+void Transaction::keep(std::deque<JournalState> states, drivers::Controller& controller, double now) {
+  const bool stored = stores_any(controller, report_.after);
+  if (stored) states.push_back(JournalState::store_begin);
+  announce(std::move(states), stored ? After::store_new : After::commit, controller, now);
 }
 
 void Transaction::on_verified(const Job& job, drivers::Controller& controller, double now) {
@@ -379,7 +410,7 @@ void Transaction::decide_recovery(drivers::Controller& controller, double now) {
   report_.after = interrupted_->after;
   report_.calibration = interrupted_->calibration;
   store_begun_ = interrupted_->store_begun;
-  const bool forward = interrupted_->state != JournalState::rollback;
+  const bool forward = interrupted_->state != JournalState::rollback && !interrupted_->unproven;
   if (forward && holds(report_.in_force, report_.after)) return store_again(controller, now);
   if (report_.before.empty()) return leave_alone(nothing_to_compare(), controller, now);
   if (holds(report_.in_force, report_.before) && !store_begun_)

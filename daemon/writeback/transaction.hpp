@@ -1,5 +1,6 @@
 // Writing parameters so that a crash or a power failure at any moment leaves wholly old or wholly new values:
-// read, journal, write RAM, compare, journal, store once, compare, commit; otherwise everything back.
+// read, journal, write RAM, compare, prove by a motion where that is wanted, journal, store once, compare,
+// commit; otherwise everything back.
 #pragma once
 
 #include <deque>
@@ -17,10 +18,14 @@ using ParameterMap = std::map<std::string, double>;  ///< SI, by quantity
 
 enum class WriteOutcome {
   read,         ///< only read
+  proving,      ///< new values in force and not stored: they wait for their proof
   committed,    ///< new values in force and stored
   rolled_back,  ///< old values in force
   unknown,      ///< forbids motion until an operator or a recovery has decided
 };
+
+/// Whether new values are stored at once, or after a motion with them.
+enum class Proof { none, wanted };
 
 struct WriteReport {
   WriteOutcome outcome = WriteOutcome::unknown;
@@ -52,20 +57,35 @@ class Transaction {
   /// values: what the controller holds may be a mixture.
   /// @param calibration id of the one that is in force with these values (see CalibrationInForce)
   Result<void> write(const std::string& label, const ParameterMap& values,
-                     const std::string& calibration = "");
+                     const std::string& calibration = "", Proof proof = Proof::none);
+
+  /// New values wait for their proof: there was a report of them, and there will be one of their end.
+  [[nodiscard]] bool proving() const { return phase_ == Phase::proving && !proof_; }
+  /// Ends that: a value stores them, an error says why the old ones come back. Error: refused, none wait.
+  Result<void> conclude(const Result<void>& proof);
 
   /// Call every few ms.
   void step(drivers::Controller& controller, double now, std::int64_t wall_us);
   [[nodiscard]] bool busy() const { return phase_ != Phase::idle; }
-  /// Once, when it has ended.
+  /// Once, when it has ended, and once before that where new values wait for their proof.
   std::optional<WriteReport> take_report();
   /// What is on the disk.
   [[nodiscard]] const JournalWriter& journal() const { return journal_; }
 
  private:
   enum class Task { read, recover, write };
-  enum class Phase { idle, read_first, write_new, store_new, verify_new, write_old, store_old, verify_old };
-  enum class After { write_new, store_new, commit, write_old, report };  // what records announce
+  enum class Phase {
+    idle,
+    read_first,
+    write_new,
+    proving,
+    store_new,
+    verify_new,
+    write_old,
+    store_old,
+    verify_old
+  };
+  enum class After { write_new, prove, store_new, commit, write_old, report };  // what records announce
   using Job = drivers::ParameterJobResult;
 
   Result<void> begin(Task task, const std::string& label);
@@ -78,6 +98,8 @@ class Transaction {
   void on_result(const Job& job, drivers::Controller& controller, double now);
   void on_read(const Job& job, drivers::Controller& controller, double now);
   void on_written(const Job& job, drivers::Controller& controller, double now);
+  void on_proof(drivers::Controller& controller, double now);
+  void keep(std::deque<JournalState> states, drivers::Controller& controller, double now);
   void on_verified(const Job& job, drivers::Controller& controller, double now);
   void on_old_written(const Job& job, drivers::Controller& controller, double now);
   void on_old_verified(const Job& job, drivers::Controller& controller, double now);
@@ -107,6 +129,8 @@ class Transaction {
   After after_ = After::report;
   bool store_begun_ = false;  // permanent memory may hold other values than the old ones
   bool old_known_ = true;     // the old values are a whole set, not what was read of a mixture
+  bool unproven_ = false;     // the new values are to be proven before they are stored
+  std::optional<Result<void>> proof_;
   double entered_ = 0.0, now_ = 0.0;
   std::int64_t wall_us_ = 0;
   std::optional<JournalRecord> interrupted_;  // that the journal was left with

@@ -39,6 +39,7 @@ class Campaign : public WholeLoop {
     acquire();
   }
   void end() {
+    held_.reset();
     client_.reset();
     WholeLoop::TearDown();
   }
@@ -46,7 +47,10 @@ class Campaign : public WholeLoop {
   cli::RunMethod method() {
     return [this](const std::string& name,
                   const nlohmann::ordered_json& parameters) -> Result<nlohmann::ordered_json> {
-      const auto reply = ask(name, json::parse(parameters.dump()));
+      // What is to be proven lasts as long as the connection that wrote it.
+      if (name == "Apply") held_ = std::make_unique<TestClient>(folder_ / "control");
+      const auto wanted = json::parse(parameters.dump());
+      const auto reply = name == "Apply" ? ask(*held_, name, wanted) : ask(name, wanted);
       if (!reply.error.empty()) return control::error_of(reply);
       return nlohmann::ordered_json::parse(reply.parameters)
           .value("result", nlohmann::ordered_json::object());
@@ -70,6 +74,7 @@ class Campaign : public WholeLoop {
   }
 
   std::uint64_t seed_ = 1;
+  std::unique_ptr<TestClient> held_;
 };
 
 struct Errors {

@@ -27,8 +27,11 @@ class WholeLoop : public ServiceLoop {
     };
     return functions;
   }
-  control::Reply ask(const std::string& method, json parameters) {
+  control::Reply ask(const std::string& method, const json& parameters) {
     TestClient caller(folder_ / "control");
+    return ask(caller, method, parameters);
+  }
+  control::Reply ask(TestClient& caller, const std::string& method, json parameters) {
     parameters["lease"] = lease_;
     caller.call(method, parameters, true);
     std::optional<control::Reply> reply;

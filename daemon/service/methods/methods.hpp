@@ -35,6 +35,8 @@ Reading record(Context& context, const Call& call);
 
 // write_methods.cpp
 Reading apply(Context& context, const Call& call);
+Reading store(Context& context, const Call& call);
+Reading discard(Context& context, const Call& call);
 Reading set_parameters(Context& context, const Call& call);
 Reading rollback(Context& context, const Call& call);
 

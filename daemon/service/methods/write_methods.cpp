@@ -3,6 +3,7 @@
 #include "daemon/service/json_text.hpp"
 #include "daemon/service/methods/methods.hpp"
 #include "daemon/service/status_report.hpp"
+#include "daemon/service/tasks/proof_task.hpp"
 #include "daemon/service/tasks/write_task.hpp"
 #include "daemon/service/write_gate.hpp"
 
@@ -27,6 +28,7 @@ struct Wish {
   std::string label = "apply";
   std::optional<std::string> calibration;  ///< JSON text
   bool replaces_calibration = true;
+  bool prove = false;
 };
 
 ordered_json dry_run_report(const Bench& bench, const ParameterMap& present, const RoundedParameters& rounded,
@@ -46,8 +48,8 @@ Outcome begin_write(Bench& bench, const Caller& caller, const Wish& wish, bool d
   if (auto wrong = implausible(wish.values, present)) return *wrong;
   const RoundedParameters rounded = round_together(wish.values, bench.drive.in_force);
   if (dry_run) return Answer{{{"result", dry_run_report(bench, present, rounded, wish)}}};
-  auto task =
-      WriteTask::begin(bench, caller, {wish.label, rounded, wish.calibration, wish.replaces_calibration});
+  auto task = WriteTask::begin(
+      bench, caller, {wish.label, rounded, wish.calibration, wish.replaces_calibration, wish.prove});
   if (!task) return task.error();
   return std::move(task).value();
 }
@@ -105,15 +107,39 @@ Reading write_request(Context& context, const Call& call, MakeWish make_wish) {
 Reading apply(Context& context, const Call& call) {
   CallParameters given(call.parameters);
   (void)given.flag("dry_run");
+  const bool prove = given.flag("prove");
   const ordered_json& wanted = given.member("calibration");
   if (!wanted.is_object()) given.reject("calibration");
   if (given.wrong()) return WrongParameter{*given.wrong()};
-  return write_request(context, call, [&bench = context.bench, &wanted]() -> Result<Wish> {
+  return write_request(context, call, [&bench = context.bench, &wanted, prove]() -> Result<Wish> {
     const auto calibration = calibration_from_json(json_text(wanted), "calibration");
     if (!calibration) return calibration.error();
-    return wish_of(calibration.value(), bench.drive.robot().robot_id);
+    auto wish = wish_of(calibration.value(), bench.drive.robot().robot_id);
+    if (wish) wish.value().prove = prove;
+    return wish;
   });
 }
+
+namespace {
+
+Reading end_proof(Context& context, const Call& call, bool proven) {
+  return Request{CallParameters(call.parameters).text("lease", ""), false,
+                 [&bench = context.bench, caller = call.caller, proven]() -> Outcome {
+                   const WriteBack& values = bench.write_back;
+                   // What has gone back by itself is discarded, too.
+                   if (proven ? !values.proving() : !values.busy() && !values.proving() && !values.ended)
+                     return Error{ErrorCode::refused, "no values wait for their proof", "write-back",
+                                  "odomcalibctl params get"};
+                   return std::make_unique<ProofTask>(caller, proven, bench.now);
+                 }};
+}
+
+}  // namespace
+
+// What was written with "prove", and has been proven.
+Reading store(Context& context, const Call& call) { return end_proof(context, call, true); }
+
+Reading discard(Context& context, const Call& call) { return end_proof(context, call, false); }
 
 Reading set_parameters(Context& context, const Call& call) {
   CallParameters given(call.parameters);
@@ -133,6 +159,8 @@ Reading rollback(Context& context, const Call& call) {
   (void)given.flag("dry_run");
   const std::string id = given.text("id", "");
   if (given.wrong()) return WrongParameter{*given.wrong()};
+  if (context.bench.write_back.proving() && id.empty() && !given.flag("dry_run"))
+    return end_proof(context, call, false);
   return write_request(context, call, [&bench = context.bench, id]() -> Result<Wish> {
     const auto former = bench.write_back.former_values(id, bench.applied.text());
     if (!former)

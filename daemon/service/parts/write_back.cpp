@@ -1,8 +1,8 @@
 #include "daemon/service/parts/write_back.hpp"
 
 #include <algorithm>
-
 #include <limits>
+
 #include "daemon/service/settings.hpp"
 
 namespace odomcalib {
@@ -16,6 +16,7 @@ bool away(drivers::ControllerState state) {
 
 std::string name_of(WriteOutcome outcome) {
   if (outcome == WriteOutcome::committed) return "committed";
+  if (outcome == WriteOutcome::proving) return "proving";
   return outcome == WriteOutcome::rolled_back ? "rolled_back" : "unknown";
 }
 
@@ -30,6 +31,7 @@ std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, boo
                                             bool may_begin, double now, std::int64_t wall_us) {
   const auto state = controller.state();
   was_away_ = was_away_ || away(state);
+  serve_proof(state, may_begin, now);
   // What is there when it comes back, and what it holds, is to be seen, at once: nothing moves before.
   if (was_away_ && !busy()) {
     was_away_ = values_known = recovery_tried_ = false;
@@ -39,6 +41,32 @@ std::optional<WriteReport> WriteBack::serve(drivers::Controller& controller, boo
     begin_reading(controller, values_known, now);
   transaction.step(controller, now, wall_us);
   return transaction.take_report();
+}
+
+// What RAM holds is as fleeting as the one who wanted it proven: what ends the one ends the other.
+void WriteBack::serve_proof(drivers::ControllerState state, bool may_begin, double now) {
+  if (!transaction.proving()) {
+    proof_ends_ = now + service::settings::kLongestProof_s;
+    return;
+  }
+  if (was_away_) take_back("the controller was away");
+  if (now >= proof_ends_) take_back("the proof took too long");
+  if (not_proven_ && may_begin && state == drivers::ControllerState::disabled)
+    (void)transaction.conclude(*not_proven_);
+}
+
+Result<void> WriteBack::store() {
+  if (!not_proven_) return transaction.conclude({});
+  return *not_proven_;
+}
+
+void WriteBack::take_back(const std::string& why) {
+  if (transaction.busy() && prover_ && !not_proven_)
+    not_proven_ = {ErrorCode::write_failed, "not proven: " + why, "proof run", "calibrate again"};
+}
+
+void WriteBack::forget(ClientId gone) {
+  if (prover_ == gone) take_back("whoever drove the proof has left");
 }
 
 // One recovery each time the controller was configured: each may store once, and permanent memory wears out.
@@ -55,10 +83,14 @@ void WriteBack::begin_reading(const drivers::Controller& controller, bool values
 }
 
 Result<void> WriteBack::write(const std::string& label, const ParameterMap& values,
-                              const std::string& calibration) {
+                              const std::string& calibration, std::optional<ClientId> prover) {
   if (settling) return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
+  auto begun = transaction.write(label, values, calibration, prover ? Proof::wanted : Proof::none);
+  if (!begun) return begun;
   ended.reset();
-  return transaction.write(label, values, calibration);
+  prover_ = prover;
+  not_proven_.reset();
+  return begun;
 }
 
 void WriteBack::learn(const WriteReport& report) {
@@ -74,6 +106,7 @@ void WriteBack::learn(const WriteReport& report) {
 
 void WriteBack::end() {
   ending_ = true;
+  take_back("the daemon ends");
   next_read_ = std::numeric_limits<double>::infinity();
 }
 

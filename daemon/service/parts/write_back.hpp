@@ -5,8 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "daemon/service/control_server.hpp"
 #include "daemon/writeback/history.hpp"
 #include "daemon/writeback/journal.hpp"
+#include "daemon/writeback/rounding.hpp"
 #include "daemon/writeback/transaction.hpp"
 
 namespace odomcalib {
@@ -36,13 +38,25 @@ class WriteBack {
   std::optional<WriteReport> serve(drivers::Controller& controller, bool& values_known, bool may_begin,
                                    double now, std::int64_t wall_us);
   /// Begins one, see Transaction::write.
-  Result<void> write(const std::string& label, const ParameterMap& values, const std::string& calibration);
+  /// @param prover client that will drive the proof; nullopt: the values are stored without one
+  Result<void> write(const std::string& label, const ParameterMap& values, const std::string& calibration,
+                     std::optional<ClientId> prover);
+  /// New values wait for the proof. The robot may move meanwhile, with them.
+  [[nodiscard]] bool proving() const { return transaction.proving() && !not_proven_; }
+  /// They wait until the axes are off, to be taken back.
+  [[nodiscard]] bool going_back() const { return transaction.proving() && not_proven_; }
+  /// They are proven, and are stored. Error: refused, none wait.
+  Result<void> store();
+  /// They are not: the old ones come back as soon as the axes are off.
+  void take_back(const std::string& why);
+  /// Values that this client was about to prove are not proven any more.
+  void forget(ClientId gone);
   /// What the end of a transaction says about what the controller holds.
   void learn(const WriteReport& report);
   /// From now on nothing is read or recovered any more.
   void end();
   /// Until what it came to is in the history, too.
-  [[nodiscard]] bool busy() const { return transaction.busy() || settling; }
+  [[nodiscard]] bool busy() const { return (transaction.busy() && !proving()) || settling; }
   /// Without an id: what an unfinished write-back is to be taken back to, else what the newest committed one
   /// replaced. @param in_force JSON text of the calibration in force. nullopt: there is nothing to go back to
   [[nodiscard]] std::optional<FormerValues> former_values(const std::string& id,
@@ -55,11 +69,13 @@ class WriteBack {
   History history;
   bool operator_needed = false;
   std::string problem = "an interrupted write-back waits for the controller";  ///< operator_needed: why
-  bool settling = false;  ///< its end is on the way to the disk
+  bool settling = false;   ///< its end is on the way to the disk
+  RoundingError rounding;  ///< that the values of the newest write-back leave
   std::optional<WriteEnd> ended;
 
  private:
   void begin_reading(const drivers::Controller& controller, bool values_known, double now);
+  void serve_proof(drivers::ControllerState state, bool may_begin, double now);
 
   [[nodiscard]] bool unfinished() const { return transaction.journal().unfinished().has_value(); }
 
@@ -69,6 +85,9 @@ class WriteBack {
   double recovery_pause_;        // s
   bool ending_ = false;
   double next_read_ = 0.0;
+  std::optional<ClientId> prover_;
+  std::optional<Error> not_proven_;  // why the values that wait go back
+  double proof_ends_ = 0.0;          // s, of the longest wait
 };
 
 std::string name_of(WriteOutcome outcome);

@@ -35,8 +35,11 @@ TaskTurn WriteTask::begin_writing(Bench& bench) {
   if (comes_to_rest(bench))
     return bench.now - asked_at_ < service::settings::kComesToRest_s ? TaskTurn(Running{})
                                                                      : Failed{axes_not_off(bench)};
-  const auto begun = bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value());
+  const auto prover = order_.prove ? std::optional(caller.client) : std::nullopt;
+  const auto begun =
+      bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value(), prover);
   if (!begun) return Failed{begun.error()};
+  bench.write_back.rounding = order_.rounded.remaining;
   bench.outbox.event(messages::Severity::info, "write_back",
                      order_.label + " begins, for " + bench.outbox.server.name_of(caller.client));
   begun_ = true;
@@ -46,18 +49,27 @@ TaskTurn WriteTask::begin_writing(Bench& bench) {
 TaskTurn WriteTask::turn(Bench& bench) {
   if (!begun_) return begin_writing(bench);
   const auto end = bench.write_back.take_end();
-  if (!end) return Running{};
-  const WriteReport& report = end->report;
-  if (report.outcome != WriteOutcome::committed)
+  return end ? turn_of(bench, *end, order_.rounded.remaining) : TaskTurn(Running{});
+}
+
+ordered_json write_reply(const Bench& bench, const WriteReport& report, const ParameterMap& before,
+                         const ParameterMap& after, const RoundingError& remaining) {
+  const bool waits = report.outcome == WriteOutcome::proving;
+  return {{"result",
+           {{"outcome", name_of(waits ? WriteOutcome::proving : WriteOutcome::committed)},
+            {"steps", report.steps},
+            {"before", before},
+            {"after", after},
+            {"rounding_error", to_json(remaining)},
+            {"parameters", parameter_report(bench, bench.applied.get())}}}};
+}
+
+TaskTurn turn_of(const Bench& bench, const WriteEnd& end, const RoundingError& remaining) {
+  const WriteReport& report = end.report;
+  if (report.outcome != WriteOutcome::committed && report.outcome != WriteOutcome::proving)
     return Failed{report.error.value_or(Error{ErrorCode::write_failed, "write-back failed", "", ""})};
-  if (end->unsettled) return Failed{*end->unsettled};
-  return Done{{{"result",
-                {{"outcome", name_of(report.outcome)},
-                 {"steps", report.steps},
-                 {"before", report.before},
-                 {"after", report.after},
-                 {"rounding_error", to_json(order_.rounded.remaining)},
-                 {"parameters", parameter_report(bench, bench.applied.get())}}}}};
+  if (end.unsettled) return Failed{*end.unsettled};
+  return Done{write_reply(bench, report, report.before, report.after, remaining)};
 }
 
 }  // namespace odomcalib

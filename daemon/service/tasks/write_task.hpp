@@ -17,6 +17,7 @@ class WriteTask final : public Task {
     RoundedParameters rounded;                    ///< what the controller can hold of the values
     std::optional<std::string> calibration = {};  ///< JSON text that comes into force with them
     bool replaces_calibration = true;             ///< false: the one in force stays
+    bool prove = false;                           ///< they are stored when the caller has proven them
   };
   /// Error: refused while another write-back runs. Errors of announcing the calibration (io) and of
   /// Transaction::write end the task.
@@ -48,5 +49,13 @@ class WriteTask final : public Task {
 };
 
 ordered_json to_json(const RoundingError& error);
+
+/// What a write-back answers that has come to its end: done with the values that were asked for, or waiting
+/// for their proof.
+ordered_json write_reply(const Bench& bench, const WriteReport& report, const ParameterMap& before,
+                         const ParameterMap& after, const RoundingError& remaining);
+
+/// The end of a write-back as the last turn of the task that waited for it.
+TaskTurn turn_of(const Bench& bench, const WriteEnd& end, const RoundingError& remaining);
 
 }  // namespace odomcalib

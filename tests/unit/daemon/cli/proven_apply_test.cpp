@@ -30,17 +30,14 @@ class Daemon {
   ordered_json straight{{"moves", {move(0.5, 0.0, 0.0005, 0.0005), move(0.5, 0.0, -0.0005, -0.0005)}}};
   ordered_json spin{{"moves", {move(0.0, 0.5 * kTurn, 0.0, 0.0005)}}};
   ordered_json written{{"before", {{"track_width", 0.4}}}, {"after", {{"track_width", 0.41}}}};
-  ordered_json taken_back{{"before", {{"track_width", 0.41}}}, {"after", {{"track_width", 0.4}}}};
   std::map<std::string, Error> failures;
   std::vector<std::string> asked;
 
   RunMethod run() {
     return [this](const std::string& method, const ordered_json& parameters) -> Result<ordered_json> {
-      const bool dry_run = parameters.value("dry_run", false);
-      asked.push_back(dry_run ? method + " --dry-run" : method);
-      if (failures.contains(asked.back())) return failures.at(asked.back());
-      if (method == "Apply") return written;
-      if (method == "Rollback") return taken_back;
+      asked.push_back(parameters.value("prove", false) ? method + ", to be proven" : method);
+      if (failures.contains(method)) return failures.at(method);
+      if (method == "Apply" || method == "Store" || method == "Discard") return written;
       return method == "Straight" ? straight : spin;
     };
   }
@@ -80,7 +77,7 @@ TEST(ProvenApply, what_is_better_stays) {
   const ProvenApply applied = daemon.apply(kOff);
   EXPECT_EQ(applied.end, End::stored);
   EXPECT_FALSE(applied.error);
-  EXPECT_THAT(daemon.asked, ElementsAre("Apply", "Straight", "Spin"));
+  EXPECT_THAT(daemon.asked, ElementsAre("Apply, to be proven", "Straight", "Spin", "Store"));
   EXPECT_THAT(to_text(describe(applied)), HasSubstr("20.00"));
   EXPECT_EQ(to_json(applied)["outcome"], "stored");
 }
@@ -96,7 +93,7 @@ TEST(ProvenApply, what_is_worse_in_one_thing_is_taken_back) {
     EXPECT_EQ(applied.end, End::taken_back);
     ASSERT_TRUE(applied.error);
     EXPECT_EQ(exit_status(applied.error->code), kWriteFailed);
-    EXPECT_THAT(daemon.asked, ElementsAre("Apply", "Straight", "Spin", "Rollback --dry-run", "Rollback"));
+    EXPECT_THAT(daemon.asked, ElementsAre("Apply, to be proven", "Straight", "Spin", "Discard"));
   }
 }
 
@@ -116,14 +113,14 @@ TEST(ProvenApply, a_proof_run_that_was_stopped_is_none) {
     ASSERT_TRUE(applied.error);
     EXPECT_EQ(exit_status(applied.error->code), kProtectiveStop);
     EXPECT_THAT(applied.error->what, HasSubstr("old values are in force again"));
-    EXPECT_EQ(daemon.asked.back(), "Rollback");
+    EXPECT_EQ(daemon.asked.back(), "Discard");
   }
 }
 
-TEST(ProvenApply, what_cannot_be_taken_back_needs_an_operator) {
+TEST(ProvenApply, what_was_not_seen_to_return_is_in_doubt) {
   Daemon daemon;
   daemon.spin["moves"] = {move(0.0, kTurn, 0.0, 0.5)};
-  daemon.failures["Rollback"] = {ErrorCode::write_failed, "no answer", "bus", ""};
+  daemon.failures["Discard"] = {ErrorCode::write_failed, "no answer", "bus", ""};
   const ProvenApply applied = daemon.apply(kOff);
   EXPECT_EQ(applied.end, End::in_doubt);
   ASSERT_TRUE(applied.error);
@@ -131,24 +128,29 @@ TEST(ProvenApply, what_cannot_be_taken_back_needs_an_operator) {
   EXPECT_THAT(applied.error->what, HasSubstr("no answer"));
 }
 
-TEST(ProvenApply, what_somebody_else_has_written_since_is_not_taken_back) {
-  for (const char* side : {"before", "after"}) {
-    Daemon daemon;
-    daemon.spin["moves"] = {move(0.0, kTurn, 0.0, 0.5)};
-    daemon.taken_back[side]["track_width"] = 0.42;
-    const ProvenApply applied = daemon.apply(kOff);
-    EXPECT_EQ(applied.end, End::in_doubt) << side;
-    ASSERT_TRUE(applied.error);
-    EXPECT_THAT(applied.error->what, HasSubstr("somebody else"));
-    EXPECT_EQ(daemon.asked.back(), "Rollback --dry-run");
-  }
+TEST(ProvenApply, a_store_that_failed_has_ended_with_the_old_values_or_says_that_it_has_not) {
+  Daemon daemon;
+  daemon.failures["Store"] = {ErrorCode::write_failed, "abort", "bus", ""};
+  EXPECT_EQ(daemon.apply(kOff).end, End::taken_back);
+  EXPECT_EQ(daemon.asked.back(), "Store");
+  daemon.failures["Store"].code = ErrorCode::write_unknown;
+  EXPECT_EQ(daemon.apply(kOff).end, End::in_doubt);
+  EXPECT_EQ(daemon.asked.back(), "Store");
+}
+
+TEST(ProvenApply, what_was_proven_and_whose_store_did_not_begin_goes_back) {
+  Daemon daemon;
+  daemon.failures["Store"] = {ErrorCode::cancelled, "interrupted", "Store", "start again"};
+  const ProvenApply applied = daemon.apply(kOff);
+  EXPECT_EQ(applied.end, End::taken_back);
+  EXPECT_EQ(daemon.asked.back(), "Discard");
 }
 
 TEST(ProvenApply, a_write_that_failed_is_not_proven) {
   Daemon daemon;
   daemon.failures["Apply"] = {ErrorCode::write_failed, "abort", "bus", ""};
   EXPECT_EQ(daemon.apply(kOff).end, End::not_stored);
-  EXPECT_THAT(daemon.asked, ElementsAre("Apply"));
+  EXPECT_THAT(daemon.asked, ElementsAre("Apply, to be proven"));
   for (const ErrorCode code : {ErrorCode::write_unknown, ErrorCode::not_running, ErrorCode::io}) {
     daemon.failures["Apply"].code = code;
     EXPECT_EQ(daemon.apply(kOff).end, End::in_doubt);
