@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "daemon/cli/client.hpp"
+#include "daemon/cli/plan_document.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -18,16 +19,28 @@ using nlohmann::ordered_json;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-// Rule M11: somebody has looked at the robot.
-Result<void> ask(const Consent& given, const std::string& what, const std::string& besides) {
+/// What a person should know before it moves.
+struct Prospect {
+  std::string drawing;        ///< the space that it requires (rule M10)
+  std::string besides;        ///< what of it the lidar would not see
+  bool first_motion = false;  ///< nothing has moved this robot before
+};
+
+// Rule M11: somebody has looked at the robot. What a script was given for good, nobody has said for a robot
+// that has never moved: where there is somebody to ask, that one is asked.
+Result<void> ask(const Consent& given, const std::string& what, const Prospect& prospect) {
+  const std::string& besides = prospect.besides;
+  const bool somebody = isatty(STDIN_FILENO) == 1;
   if (given.dry_run) return {};
-  if (given.yes) {
+  if (given.yes && !(prospect.first_motion && somebody)) {
     if (!besides.empty()) std::cerr << "odomcalibctl: " << besides << '\n';
+    if (prospect.first_motion) std::cerr << "odomcalibctl: this is the first motion of this robot\n";
     return {};
   }
-  if (isatty(STDIN_FILENO) != 1)
-    return Error{ErrorCode::usage, "moving or writing needs consent", what, "add --yes"};
+  if (!somebody) return Error{ErrorCode::usage, "moving or writing needs consent", what, "add --yes"};
   std::cerr
+      << prospect.drawing
+      << (prospect.first_motion ? "This is the first motion of this robot: --yes is not enough. " : "")
       << what
       << ": is the area clear and an emergency stop at hand? This program's obstacle stop replaces neither"
       << " a safety scanner nor an emergency stop. " << besides << "Type yes to go on: " << std::flush;
@@ -41,18 +54,9 @@ bool moves(const std::string& method) {
   return method == "Straight" || method == "Spin" || method == "Calibrate" || method == "Check";
 }
 
-// What the motion would be, and what of it the lidar would not see (rule M10). Empty: the lidar sees it all.
-Result<std::string> unseen_question(const Session& session, const std::string& method,
-                                    ordered_json parameters) {
-  auto client = Client::connect(session.socket);
-  if (!client) return client.error();
-  parameters["dry_run"] = true;
-  const auto answer = client.value().call(method, parameters.dump());
-  if (!answer) return answer.error();
-  const auto plan =
-      ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
+std::string unseen_question(const ordered_json& plan) {
   const auto unseen = plan.value("unseen_moves", std::vector<std::string>());
-  if (unseen.empty()) return std::string();
+  if (unseen.empty()) return {};
   std::string where;
   for (const auto& sector : plan.value("blind_sectors", std::vector<std::array<double, 2>>()))
     where += fmt::format("{}{:.0f} to {:.0f}", where.empty() ? "" : ", ", sector[0] * kDegrees,
@@ -63,17 +67,29 @@ Result<std::string> unseen_question(const Session& session, const std::string& m
       where, fmt::join(unseen, "\", \""));
 }
 
+// What the motion would be, from the daemon that would drive it.
+Result<Prospect> prospect_of(const Session& session, const std::string& method, ordered_json parameters) {
+  auto client = Client::connect(session.socket);
+  if (!client) return client.error();
+  parameters["dry_run"] = true;
+  const auto answer = client.value().call(method, parameters.dump());
+  if (!answer) return answer.error();
+  const auto plan =
+      ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
+  return Prospect{to_text(describe_plan(plan)), unseen_question(plan), plan.value("first_motion", false)};
+}
+
 }  // namespace
 
 Result<ordered_json> run_method(const Session& session, const Consent& given, const std::string& method,
                                 ordered_json parameters) {
-  std::string unseen;
+  Prospect prospect;
   if (moves(method) && !given.dry_run) {
-    auto asked = unseen_question(session, method, parameters);
-    if (!asked) return asked.error();
-    unseen = asked.value();
+    auto expected = prospect_of(session, method, parameters);
+    if (!expected) return expected.error();
+    prospect = std::move(expected).value();
   }
-  if (auto agreed = ask(given, method, unseen); !agreed) return agreed.error();
+  if (auto agreed = ask(given, method, prospect); !agreed) return agreed.error();
   if (given.dry_run) parameters["dry_run"] = true;
   ProgressLine line;
   const auto progress = [&line](const std::string& text) {

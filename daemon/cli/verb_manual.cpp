@@ -16,6 +16,7 @@
 #include "daemon/cli/motion_call.hpp"
 #include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
+#include "daemon/cli/plan_document.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "daemon/routines/settings.hpp"
 #include "proto/file_bytes.hpp"
@@ -164,7 +165,7 @@ std::string describe_move(const ordered_json& move) {
 void print(const Session& session, const Outcome& outcome) {
   const auto& [driven, proposal, plan] = outcome;
   if (!plan.is_null()) {
-    session.json == JsonMode::off ? void(std::cout << plan.dump(2) << '\n')
+    session.json == JsonMode::off ? void(std::cout << to_text(describe_plan(plan), session.legend))
                                   : print_document("plan", plan, session.json);
     return;
   }

@@ -18,6 +18,7 @@
 #include "daemon/cli/motion_call.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/parameter_tables.hpp"
+#include "daemon/cli/plan_document.hpp"
 #include "daemon/cli/proven_apply.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration/calibration.hpp"
@@ -41,6 +42,8 @@ int print_result(const Session& session, const std::string& document, const Resu
   const ordered_json& body = result.value();
   if (session.json != JsonMode::off) {
     print_document(document, body, session.json);
+  } else if (document == "plan") {
+    std::cout << to_text(describe_plan(body), session.legend);
   } else if (body.contains("steps") || body.contains("parameters")) {
     std::cout << to_text(describe_write_back(body), session.legend);
   } else {

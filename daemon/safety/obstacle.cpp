@@ -74,8 +74,10 @@ double stopping_distance(double speed, const ObstacleOptions& options) {
   return v * options.reaction + v * v / (2.0 * options.acceleration) + options.margin;
 }
 
-int points_in_way(const std::vector<Point>& points, const Twist& twist, const ObstacleOptions& options) {
-  if (twist.v == 0.0 && twist.w == 0.0) return 0;
+std::vector<Point> in_way(const std::vector<Point>& points, const Twist& twist,
+                          const ObstacleOptions& options) {
+  std::vector<Point> found;
+  if (twist.v == 0.0 && twist.w == 0.0) return found;
   const double circle = options.footprint.radius() + options.side_margin;
   const auto path =
       is_spin(twist) ? std::vector<Pose>{} : path_of(twist, stopping_distance(twist.v, options));
@@ -83,15 +85,32 @@ int points_in_way(const std::vector<Point>& points, const Twist& twist, const Ob
     if (inside(point, options.footprint, 0.0)) return false;
     return is_spin(twist) ? std::hypot(point.x, point.y) <= circle : on_path(point, path, options);
   };
-  return static_cast<int>(std::count_if(points.begin(), points.end(), counts));
+  std::copy_if(points.begin(), points.end(), std::back_inserter(found), counts);
+  return found;
+}
+
+ObstacleOptions ObstacleGuard::options() const {
+  ObstacleOptions measured = options_;
+  measured.reaction += overrun_;
+  return measured;
+}
+
+std::optional<std::string> ObstacleGuard::obstacle() const {
+  if (!nearest_) return std::nullopt;
+  return fmt::format("something is in the way, {:.2f} m {} and {:.2f} m to the {} of the robot's middle",
+                     std::abs(nearest_->x), nearest_->x < 0.0 ? "behind" : "ahead", std::abs(nearest_->y),
+                     nearest_->y < 0.0 ? "right" : "left");
 }
 
 void ObstacleGuard::seen(const std::vector<Point>& points, const Twist& twist) {
-  if (points_in_way(points, twist, options_) >= options_.points) {
-    blocked_ = true;
+  const auto found = in_way(points, twist, options());
+  if (static_cast<int>(found.size()) >= options_.points) {
+    nearest_ = *std::min_element(found.begin(), found.end(), [](const Point& a, const Point& b) {
+      return std::hypot(a.x, a.y) < std::hypot(b.x, b.y);
+    });
     free_scans_ = 0;
-  } else if (blocked_ && ++free_scans_ >= options_.release_scans) {
-    blocked_ = false;
+  } else if (nearest_ && ++free_scans_ >= options_.release_scans) {
+    nearest_.reset();
   }
 }
 
@@ -119,18 +138,21 @@ std::vector<Pose> distinct_poses(const routines::Preview& preview) {
   return out;
 }
 
+bool near_way(const Point& point, const std::vector<Pose>& poses, const Footprint& footprint,
+              double clearance) {
+  return std::any_of(poses.begin(), poses.end(),
+                     [&](const Pose& pose) { return inside(seen_from(pose, point), footprint, clearance); });
+}
+
 std::optional<std::string> occupied(const std::vector<Point>& points, const routines::Preview& preview,
                                     const Footprint& footprint, double clearance) {
   const auto poses = distinct_poses(preview);
-  for (const Point& point : points) {
-    if (inside(point, footprint, 0.0)) continue;
-    for (const Pose& pose : poses)
-      if (inside(seen_from(pose, point), footprint, clearance))
-        return fmt::format(
-            "something stands {:.2f} m ahead and {:.2f} m to the left of the robot, nearer than "
-            "{:.2f} m to its way",
-            point.x, point.y, clearance);
-  }
+  for (const Point& point : points)
+    if (!inside(point, footprint, 0.0) && near_way(point, poses, footprint, clearance))
+      return fmt::format(
+          "something stands {:.2f} m ahead and {:.2f} m to the left of the robot, nearer than "
+          "{:.2f} m to its way",
+          point.x, point.y, clearance);
   return std::nullopt;
 }
 

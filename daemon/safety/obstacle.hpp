@@ -59,8 +59,8 @@ bool is_spin(const routines::Twist& twist);
 
 /// Readings inside the area that the robot sweeps until it can have stopped. Readings on the robot itself do
 /// not count. A spin sweeps the full circle of its farthest corner.
-int points_in_way(const std::vector<Point>& points, const routines::Twist& twist,
-                  const ObstacleOptions& options);
+std::vector<Point> in_way(const std::vector<Point>& points, const routines::Twist& twist,
+                          const ObstacleOptions& options);
 
 /// One scan with enough points blocks; release_scans free ones in a row release.
 class ObstacleGuard {
@@ -69,19 +69,29 @@ class ObstacleGuard {
   void seen(const std::vector<Point>& points, const routines::Twist& twist);
   /// A scan of that time has come, s: the stopping distance counts the lidar's period as it is.
   void turned(double t);
-  [[nodiscard]] bool blocked() const { return blocked_; }
-  [[nodiscard]] const ObstacleOptions& options() const { return options_; }
+  /// And the drive as it brakes. @param overrun s, see Braking
+  void brakes(double overrun) { overrun_ = overrun; }
+  [[nodiscard]] bool blocked() const { return nearest_.has_value(); }
+  /// What blocks, and where; nullopt: nothing.
+  [[nodiscard]] std::optional<std::string> obstacle() const;
+  /// With what was measured of lidar and drive.
+  [[nodiscard]] ObstacleOptions options() const;
 
  private:
   ObstacleOptions options_;
   std::deque<double> scan_times_;  // s
-  bool blocked_ = false;
+  double overrun_ = 0.0;           // s
+  std::optional<Point> nearest_;   // reading in the way, while it is blocked
   int free_scans_ = 0;
 };
 
 /// Poses of the preview that differ from each other: a plan that comes by a place again and again has one for
 /// it, so their number is bounded by the way and not by the time.
 std::vector<routines::Pose> distinct_poses(const routines::Preview& preview);
+
+/// Whether a point is nearer than `clearance` to the footprint at one of the poses.
+bool near_way(const Point& point, const std::vector<routines::Pose>& poses, const Footprint& footprint,
+              double clearance);
 
 /// Before a motion: points nearer than `clearance` to the footprint anywhere on the previewed path.
 /// @return what is in the way, with its place, or nullopt

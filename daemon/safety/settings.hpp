@@ -77,6 +77,24 @@ inline constexpr int kArcSteps = 12;
 /// m and rad, of poses of a preview that are one. Chosen: fine against any clearance.
 inline constexpr double kSamePlace_m = 0.02, kSameHeading_rad = 0.05;
 
+/// m, edge of a cell of the map of the required space, and cells that it has at most. Chosen: a wheel is
+/// seen, and it fits a terminal.
+inline constexpr double kMapCell_m = 0.1, kMapCells = 40.0;
+/// m that it shows around. Chosen.
+inline constexpr double kMapMargin_m = 0.3;
+
+// --- Braking ---------------------------------------------------------------------------------------------
+
+/// Share by which a command falls that is a stop or the beginning of one. Chosen: rounding is less.
+inline constexpr double kFallsBy = 0.02;
+/// s of a command that stays, after which the robot drives and does not brake. Chosen: no ramp is so slow.
+inline constexpr double kSteady_s = 0.3;
+/// m/s of a robot at rest, and s that it is so. Chosen: a count of the coarsest encoders now and then.
+inline constexpr double kRests_m_s = 0.01, kRests_s = 0.1;
+/// m/s from which a stop is measured, and stops that count. Chosen: half the usual speed; those of a run.
+inline constexpr double kMeasuredFrom_m_s = 0.1;
+inline constexpr std::size_t kStops = 10;
+
 // --- Speed watch ------------------------------------------------------------------------------------------
 
 /// s over which a speed is measured. Chosen: two readings of the slowest controllers.

@@ -74,7 +74,7 @@ void MotionRun::check(const Situation& situation) {
     return stop({ErrorCode::device, "the controller left the enabled state", "controller",
                  "see odomcalibctl status"});
   if (phase_ != Phase::driving) return;
-  if (situation.blocked) return stop(protective("something is in the way"));
+  if (situation.obstacle) return stop(protective(*situation.obstacle));
   if (situation.disagreement) return stop(protective(*situation.disagreement));
   const double elapsed = situation.now - drive_began_;
   for (const auto& from_start : {relative(start_, situation.odometry), situation.by_lidar})

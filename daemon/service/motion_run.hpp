@@ -34,7 +34,7 @@ struct Situation {
   std::optional<std::string> disagreement;                  ///< between odometry and lidar
   routines::Pose by_lidar;                                  ///< motion since the drive began, yaw continuous
   std::optional<std::string> too_fast;                      ///< what was measured, not what was commanded
-  bool blocked = false;                                     ///< obstacle in the way
+  std::optional<std::string> obstacle;                      ///< in the way
 };
 
 class MotionRun {

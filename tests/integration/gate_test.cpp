@@ -53,6 +53,22 @@ TEST_F(Gate, names_the_limit_that_it_sets) {
   }
 }
 
+TEST_F(Gate, says_what_a_motion_would_be_and_learns_how_the_drive_brakes) {
+  const auto plan = [this] {
+    return json::parse(call("Straight", {{"distance", 1.0}, {"dry_run", true}}).parameters)["result"];
+  };
+  const json before = plan();
+  EXPECT_EQ(before["first_motion"], true);
+  EXPECT_NEAR(before["clear_space"]["ahead"]["needed"].get<double>(), 1.55, 0.02);
+  EXPECT_GT(before["clear_space"]["ahead"]["nearest"].get<double>(), 1.55);
+  ASSERT_EQ(call("Straight", straight()).error, "");
+  const json after = plan();
+  EXPECT_EQ(after["first_motion"], false);
+  // The simulated motors follow their command some 85 ms late: 0.3 m/s times that.
+  EXPECT_NEAR(after["stopping_distance"].get<double>() - before["stopping_distance"].get<double>(), 0.025,
+              0.015);
+}
+
 TEST_F(Gate, of_a_way_that_is_not_clear) {
   robot_->room().add_pillar({robot_->pose().x + 0.9, robot_->pose().y}, 0.08);
   run(1.0);

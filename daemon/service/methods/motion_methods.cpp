@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "daemon/routines/manoeuvres.hpp"
@@ -10,6 +11,7 @@
 #include "daemon/routines/plans.hpp"
 #include "daemon/routines/settings.hpp"
 #include "daemon/routines/wiring.hpp"
+#include "daemon/safety/clear_space.hpp"
 #include "daemon/safety/obstacle.hpp"
 #include "daemon/service/call_parameters.hpp"
 #include "daemon/service/methods/methods.hpp"
@@ -102,7 +104,18 @@ ordered_json json_of(const std::vector<safety::Sector>& sectors) {
   return list;
 }
 
-ordered_json plan_report(const routines::Plan& plan, const routines::Preview& preview,
+ordered_json json_of(const safety::ClearSpace& space) {
+  constexpr std::array kSides = {"ahead", "left", "behind", "right"};
+  ordered_json body = {{"cell", space.cell}, {"rows", space.rows}};
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    const auto& one = space.sides.at(side);
+    body[kSides.at(side)] = {{"needed", one.needed}, {"nearest", nullptr}};
+    if (one.nearest) body[kSides.at(side)]["nearest"] = *one.nearest;
+  }
+  return body;
+}
+
+ordered_json plan_report(const Bench& bench, const routines::Plan& plan, const routines::Preview& preview,
                          const std::vector<std::string>& unseen, const std::vector<safety::Sector>& blind) {
   return {{"plan", plan.name},
           {"moves", plan.moves.size()},
@@ -110,7 +123,12 @@ ordered_json plan_report(const routines::Plan& plan, const routines::Preview& pr
           {"reach", preview.reach},
           {"unseen_moves", unseen},
           {"blind_sectors", json_of(blind)},
-          {"limited", routines::limited(plan)}};
+          {"limited", routines::limited(plan)},
+          {"first_motion", !bench.last_run.moved()},
+          {"stopping_distance",
+           safety::stopping_distance(plan.limits.speed, bench.surroundings.obstacles.options())},
+          {"clear_space", json_of(safety::clear_space(bench.surroundings.points, preview,
+                                                      bench.config.footprint, bench.config.clearance))}};
 }
 
 Outcome begin_motion(Bench& bench, const Caller& caller, MotionTask::Order order, bool dry_run) {
@@ -123,7 +141,7 @@ Outcome begin_motion(Bench& bench, const Caller& caller, MotionTask::Order order
   if (const auto error = motion_forbidden(bench, preview)) return *error;
   const auto blind = bench.surroundings.cover.blind(bench.now);
   const auto unseen = safety::unseen_moves(plan, blind, bench.surroundings.obstacles.options());
-  if (dry_run) return Answer{{{"result", plan_report(plan, preview, unseen, blind.sectors())}}};
+  if (dry_run) return Answer{{{"result", plan_report(bench, plan, preview, unseen, blind.sectors())}}};
   if (!unseen.empty())
     bench.outbox.event(messages::Severity::warning, "lidar_blind",
                        fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",

@@ -28,6 +28,7 @@ LastRun::LastRun(std::filesystem::path file, Background& disk) : file_(std::move
     return left.contains(name) && left[name].is_string() ? left[name].get<std::string>() : "";
   };
   if (left.is_object()) {
+    moved_ = left.contains("moved") && left["moved"] == true;
     const std::string doing = text("doing");
     after_crash_ = left.contains("ended") && left["ended"] == false;
     last_stop_ = !after_crash_ ? text("last_stop")
@@ -39,14 +40,18 @@ LastRun::LastRun(std::filesystem::path file, Background& disk) : file_(std::move
 
 void LastRun::begins(const std::string& what) {
   doing_ = what;
+  moved_ = true;
   write();
 }
 
-void LastRun::ends() { begins(""); }
+void LastRun::ends() {
+  doing_.clear();
+  write();
+}
 
 void LastRun::stopped(const std::string& why) {
   last_stop_ = why;
-  begins("");
+  ends();
 }
 
 void LastRun::daemon_ends() {
@@ -55,7 +60,7 @@ void LastRun::daemon_ends() {
 }
 
 void LastRun::write() {
-  const json body = {{"ended", ended_}, {"doing", doing_}, {"last_stop", last_stop_}};
+  const json body = {{"ended", ended_}, {"doing", doing_}, {"last_stop", last_stop_}, {"moved", moved_}};
   disk_.post([file = file_,
               text = body.dump(2, ' ', false, json::error_handler_t::replace)] { replace(file, text); },
              [] {});

@@ -19,6 +19,9 @@ class LastRun {
   /// Why the robot was stopped last, by this daemon or an earlier one; empty: never.
   [[nodiscard]] const std::string& last_stop() const { return last_stop_; }
 
+  /// Something that moves the robot has begun before, in this state directory.
+  [[nodiscard]] bool moved() const { return moved_; }
+
   /// Something begins that moves the robot.
   void begins(const std::string& what);
   /// It has come to its end.
@@ -33,7 +36,7 @@ class LastRun {
 
   std::filesystem::path file_;
   Background& disk_;
-  bool after_crash_ = false, ended_ = false;
+  bool after_crash_ = false, ended_ = false, moved_ = false;
   std::string doing_, last_stop_;
 };
 

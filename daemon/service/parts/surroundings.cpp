@@ -17,6 +17,7 @@ void Surroundings::judge(const Scan& scan, const routines::Twist& twist, double 
   scans.seen(scan, now);
   cover.seen(scan, config_.lidar_pose, config_.footprint, now);
   obstacles.turned(scan.t);
+  obstacles.brakes(braking.overrun());
   points = safety::points_of(scan, config_.lidar_pose);
   obstacles.seen(points, twist);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/config/config.hpp"
+#include "daemon/safety/braking.hpp"
 #include "daemon/safety/cover.hpp"
 #include "daemon/safety/freshness.hpp"
 #include "daemon/safety/obstacle.hpp"
@@ -31,6 +32,7 @@ class Surroundings {
   LidarLink link;
   safety::ScanFreshness scans;
   safety::ObstacleGuard obstacles;
+  safety::Braking braking;
   safety::Cover cover;
   std::vector<safety::Point> points;  ///< of the newest scan, base frame
   std::uint64_t scan_count = 0;

@@ -17,6 +17,7 @@ Result<std::unique_ptr<Task>> MotionTask::begin(Bench& bench, const Caller& call
   outbox.send_robot(bench.drive.robot());
   bench.loop.motion_begins();
   bench.last_run.begins(order.plan.name);
+  bench.surroundings.braking.begins();
   const std::string name = order.plan.name;
   std::unique_ptr<Task> task(new MotionTask(bench, caller, std::move(order)));
   outbox.event(messages::Severity::info, "motion",
@@ -81,6 +82,7 @@ TaskTurn MotionTask::turn(Bench& bench) {
   const routines::Twist commanded =
       nudge ? routines::Twist{routines::kCaps.speed, routines::kCaps.turn_rate} : run_->twist();
   speed_.seen(bench.drive.newest_ticks.t, bench.odometry.pose(), commanded);
+  bench.surroundings.braking.seen(bench.drive.newest_ticks.t, bench.odometry.pose(), run_->twist());
   run_->step(situation(bench));
   const auto rates = routines::to_wheels(run_->twist(), bench.drive.geometry());
   bench.drive.encoders.commanded(rates.left, rates.right, bench.now);
@@ -99,7 +101,7 @@ Situation MotionTask::situation(const Bench& bench) const {
           .disagreement = agreement_.disagreement(),
           .by_lidar = agreement_.motion(),
           .too_fast = speed_.too_fast(),
-          .blocked = bench.surroundings.obstacles.blocked()};
+          .obstacle = bench.surroundings.obstacles.obstacle()};
 }
 
 // While the loop is held up, nobody steers. The drive's own watchdog stops it after 200 ms without us (M1);

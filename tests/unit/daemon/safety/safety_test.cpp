@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "daemon/routines/plans.hpp"
+#include "daemon/safety/braking.hpp"
+#include "daemon/safety/clear_space.hpp"
 #include "daemon/safety/cover.hpp"
 #include "daemon/safety/envelope.hpp"
 #include "daemon/safety/freshness.hpp"
@@ -195,14 +197,128 @@ TEST(Obstacle, stopping_distance_counts_the_period_of_the_lidar_as_it_is) {
   EXPECT_NEAR(ObstacleGuard({}).options().reaction, 0.28, 1e-9) << "not known yet";
 }
 
+/// A robot that follows its command `lag` s late and brakes with at most `deceleration`; 0.2 m/s, then a
+/// stop.
+double overrun_of(double lag, double deceleration, double from = 0.2) {
+  Braking braking;
+  braking.begins();
+  constexpr double kStep = 0.01, kRamp = 0.5;
+  std::deque<double> commands;
+  double x = 0.0, command = 0.0, speed = 0.0;
+  for (int i = 0; i < 800; ++i) {
+    const double t = i * kStep;
+    command = t < 4.0 ? std::min(from, command + kRamp * kStep) : std::max(0.0, command - kRamp * kStep);
+    commands.push_back(command);
+    const double late = commands.front();
+    if (static_cast<double>(commands.size()) * kStep > lag) commands.pop_front();
+    speed = std::max(late, speed - deceleration * kStep);
+    if (late > speed) speed = late;
+    x += speed * kStep;
+    braking.seen(t, {x, 0.0, 0.0}, {command, 0.0});
+  }
+  return braking.overrun();
+}
+
+TEST(Braking, overrun_is_the_lag_of_the_drive_and_what_a_weaker_deceleration_adds) {
+  EXPECT_NEAR(overrun_of(0.0, 10.0), 0.0, 0.011);
+  EXPECT_NEAR(overrun_of(0.1, 10.0), 0.1, 0.011);
+  // v / (2 a) for 0.25 m/s^2 instead of 0.5: 0.4 s instead of 0.2 s.
+  EXPECT_NEAR(overrun_of(0.0, 0.25), 0.2, 0.011);
+  EXPECT_EQ(overrun_of(0.1, 10.0, 0.05), 0.0) << "a creep";
+}
+
+TEST(Braking, neither_a_slower_move_nor_a_turn_on_the_spot_is_a_stop) {
+  Braking braking;
+  double x = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    const double command = i < 200 ? 0.2 : 0.1;
+    x += 1.05 * command * 0.01;  // 5 % faster than commanded, all the time
+    braking.seen(0.01 * i, {x, 0.0, 0.0}, {command, 0.0});
+  }
+  for (int i = 400; i < 450; ++i) braking.seen(0.01 * i, {x, 0.0, 0.0}, {0.0, 0.5});
+  EXPECT_LT(braking.overrun(), 0.02);
+}
+
+TEST(Braking, what_rolled_on_after_a_motion_was_broken_off_is_no_stop_of_the_next_one) {
+  Braking braking;
+  for (int i = 0; i < 100; ++i) braking.seen(0.01 * i, {0.002 * i, 0.0, 0.0}, {0.2, 0.0});
+  braking.begins();
+  for (int i = 200; i < 260; ++i) braking.seen(0.01 * i, {0.4, 0.0, 0.0}, {0.0, 0.0});
+  EXPECT_EQ(braking.overrun(), 0.0);
+}
+
+TEST(Obstacle, stopping_distance_counts_the_drive_as_it_brakes) {
+  ObstacleGuard guard{{}};
+  const double before = stopping_distance(0.2, guard.options());
+  guard.brakes(0.2);
+  EXPECT_NEAR(stopping_distance(0.2, guard.options()), before + 0.04, 1e-9);
+  const auto beyond =
+      cluster(0.25 + 0.05 + before + 0.02, 0.0);  // footprint and its margin, then the way to rest
+  ObstacleGuard quick{{}};
+  quick.seen(beyond, {0.2, 0.0});
+  guard.seen(beyond, {0.2, 0.0});
+  EXPECT_FALSE(quick.blocked());
+  EXPECT_TRUE(guard.blocked());
+}
+
+TEST(Obstacle, says_where_the_nearest_of_it_is) {
+  ObstacleGuard guard{{}};
+  EXPECT_FALSE(guard.obstacle());
+  guard.seen(cluster(0.5, -0.1), {0.2, 0.0});
+  EXPECT_NE(guard.obstacle().value_or("").find("0.50 m ahead and 0.09"), std::string::npos)
+      << *guard.obstacle();
+  EXPECT_NE(guard.obstacle().value_or("").find("right"), std::string::npos) << *guard.obstacle();
+}
+
+TEST(ClearSpace, reaches_as_far_as_the_way_and_names_what_is_nearest) {
+  const auto preview = routines::preview(routines::straight_plan({}));  // a metre
+  std::vector<Point> points = cluster(2.0, 0.0);
+  points.push_back({0.0, 1.5});
+  points.push_back({3.0, 1.4});  // beside the lane
+  const ClearSpace space = clear_space(points, preview, {}, 0.3);
+  EXPECT_NEAR(space.sides[0].needed, 1.55, 0.01);  // 1 m, half the robot, the clearance
+  EXPECT_NEAR(space.sides[1].needed, 0.55, 0.01);
+  EXPECT_NEAR(space.sides[2].needed, 0.55, 0.01);
+  EXPECT_NEAR(space.sides[3].needed, 0.55, 0.01);
+  EXPECT_NEAR(space.sides[0].nearest.value_or(0.0), 2.0, 0.02);
+  EXPECT_NEAR(space.sides[1].nearest.value_or(0.0), 1.5, 1e-9);
+  EXPECT_FALSE(space.sides[2].nearest);
+}
+
+TEST(ClearSpace, map_shows_robot_way_and_readings_where_they_are) {
+  const auto preview = routines::preview(routines::straight_plan({}));
+  const ClearSpace space = clear_space({{0.8, 0.3}}, preview, {}, 0.3);
+  EXPECT_NEAR(space.cell, 0.1, 1e-9);
+  // From 1.85 m ahead to 0.85 m behind, 0.85 m to either side.
+  ASSERT_EQ(space.rows.size(), 19U + 9U + 1U);
+  ASSERT_EQ(space.rows[0].size(), 9U + 9U + 1U);
+  const auto at = [&](double x, double y) {
+    return space.rows[static_cast<std::size_t>(19 - std::lround(10.0 * x))]
+                     [static_cast<std::size_t>(9 - std::lround(10.0 * y))];
+  };
+  EXPECT_EQ(at(0.0, 0.0), 'R');
+  EXPECT_EQ(at(0.8, 0.3), '#');
+  EXPECT_EQ(at(0.8, -0.3), '.');
+  EXPECT_EQ(at(1.7, 0.0), ' ');
+  EXPECT_EQ(at(0.0, 0.7), ' ');
+}
+
+TEST(ClearSpace, of_a_long_way_has_coarse_cells) {
+  routines::StraightOptions far;
+  far.distance = 5.0;
+  const ClearSpace space = clear_space({}, routines::preview(routines::straight_plan(far)), {}, 0.3);
+  EXPECT_GT(space.cell, 0.1);
+  EXPECT_LT(space.rows.size(), 50U);
+}
+
 TEST(Obstacle, ahead_counts_when_driving_ahead_and_not_when_backing) {
   const ObstacleOptions options;
-  EXPECT_EQ(points_in_way(cluster(0.5, 0.0), {0.2, 0.0}, options), 3);
-  EXPECT_EQ(points_in_way(cluster(0.5, 0.0), {-0.2, 0.0}, options), 0);
-  EXPECT_EQ(points_in_way(cluster(-0.5, 0.0), {-0.2, 0.0}, options), 3);
-  EXPECT_EQ(points_in_way(cluster(0.5, 0.5), {0.2, 0.0}, options), 0);
-  EXPECT_EQ(points_in_way(cluster(1.5, 0.0), {0.2, 0.0}, options), 0);
-  EXPECT_EQ(points_in_way(cluster(0.5, 0.0), {0.0, 0.0}, options), 0);
+  EXPECT_EQ(in_way(cluster(0.5, 0.0), {0.2, 0.0}, options).size(), 3U);
+  EXPECT_EQ(in_way(cluster(0.5, 0.0), {-0.2, 0.0}, options).size(), 0U);
+  EXPECT_EQ(in_way(cluster(-0.5, 0.0), {-0.2, 0.0}, options).size(), 3U);
+  EXPECT_EQ(in_way(cluster(0.5, 0.5), {0.2, 0.0}, options).size(), 0U);
+  EXPECT_EQ(in_way(cluster(1.5, 0.0), {0.2, 0.0}, options).size(), 0U);
+  EXPECT_EQ(in_way(cluster(0.5, 0.0), {0.0, 0.0}, options).size(), 0U);
 }
 
 TEST(Obstacle, a_spin_watches_the_full_circle_from_its_first_step) {
@@ -211,15 +327,16 @@ TEST(Obstacle, a_spin_watches_the_full_circle_from_its_first_step) {
     const double angle = i * std::numbers::pi / 18.0;
     const double near = options.footprint.radius() + 0.03;
     const double far = options.footprint.radius() + 0.10;
-    EXPECT_EQ(points_in_way({{near * std::cos(angle), near * std::sin(angle)}}, {0.0, 0.1}, options), 1) << i;
-    EXPECT_EQ(points_in_way({{far * std::cos(angle), far * std::sin(angle)}}, {0.0, 0.1}, options), 0) << i;
+    EXPECT_EQ(in_way({{near * std::cos(angle), near * std::sin(angle)}}, {0.0, 0.1}, options).size(), 1U)
+        << i;
+    EXPECT_EQ(in_way({{far * std::cos(angle), far * std::sin(angle)}}, {0.0, 0.1}, options).size(), 0U) << i;
   }
 }
 
 TEST(Obstacle, an_arc_looks_into_its_bend) {
   const ObstacleOptions options;
-  EXPECT_GT(points_in_way(cluster(0.55, 0.38), {0.3, 0.6}, options), 0);
-  EXPECT_EQ(points_in_way(cluster(0.55, 0.38), {0.3, -0.6}, options), 0);
+  EXPECT_FALSE(in_way(cluster(0.55, 0.38), {0.3, 0.6}, options).empty());
+  EXPECT_EQ(in_way(cluster(0.55, 0.38), {0.3, -0.6}, options).size(), 0U);
 }
 
 TEST(Obstacle, one_scan_triggers_and_five_release) {

@@ -180,7 +180,7 @@ TEST_F(Motion, ends_when_a_sensor_is_stale_and_does_not_begin_with_one) {
 TEST_F(Motion, ends_when_something_is_in_the_way) {
   drive();
   Situation situation = good();
-  situation.blocked = true;
+  situation.obstacle = "something is in the way";
   expect_stop(situation, ErrorCode::protective_stop, "in the way");
 }
 

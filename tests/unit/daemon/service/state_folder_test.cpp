@@ -63,6 +63,17 @@ TEST_F(StateFolderTest, LastRun_knows_a_daemon_that_ended_in_a_motion_without_be
   EXPECT_NE(next.last_stop().find("straight"), std::string::npos) << next.last_stop();
 }
 
+TEST_F(StateFolderTest, LastRun_knows_whether_the_robot_has_ever_moved) {
+  for (const bool before : {false, true}) {
+    LastRun run(path_ / "last_run.json", foreground());
+    EXPECT_EQ(run.moved(), before);
+    run.begins("straight");
+    EXPECT_TRUE(run.moved());
+    run.ends();
+    run.daemon_ends();
+  }
+}
+
 TEST_F(StateFolderTest, LastRun_takes_a_damaged_file_for_none) {
   for (const char* text : {"", "{", "[1]", R"({"ended": 3, "doing": 4, "last_stop": null})"}) {
     std::ofstream(path_ / "last_run.json") << text;

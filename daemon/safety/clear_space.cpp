@@ -1,0 +1,100 @@
+#include "daemon/safety/clear_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/safety/settings.hpp"
+
+namespace odomcalib::safety {
+namespace {
+
+/// The required space as a box, m in the base frame.
+struct Box {
+  double back = 0.0, front = 0.0, right = 0.0, left = 0.0;
+};
+
+Box box_of(const std::vector<routines::Pose>& poses, const Footprint& footprint, double clearance) {
+  Box box;
+  const double front = footprint.front + clearance, back = footprint.back + clearance;
+  const double half_width = footprint.half_width + clearance;
+  for (const auto& pose : poses)
+    for (const double along : {front, -back})
+      for (const double across : {half_width, -half_width}) {
+        const double x = pose.x + along * std::cos(pose.yaw) - across * std::sin(pose.yaw);
+        const double y = pose.y + along * std::sin(pose.yaw) + across * std::cos(pose.yaw);
+        box = {std::min(box.back, x), std::max(box.front, x), std::min(box.right, y), std::max(box.left, y)};
+      }
+  return box;
+}
+
+// Nearest reading ahead, to the left, behind and to the right, beside nothing but the lane of the robot.
+std::optional<double> nearest(const std::vector<Point>& points, const Footprint& footprint, double clearance,
+                              std::size_t side) {
+  std::optional<double> found;
+  for (const Point& point : points) {
+    if (inside(point, footprint, 0.0)) continue;
+    const std::array<double, 4> towards = {point.x, point.y, -point.x, -point.y};
+    const bool along = side % 2 == 0;
+    const bool in_lane =
+        along ? std::abs(point.y) <= footprint.half_width + clearance
+              : point.x <= footprint.front + clearance && point.x >= -footprint.back - clearance;
+    if (in_lane && towards.at(side) > 0.0 && (!found || towards.at(side) < *found)) found = towards.at(side);
+  }
+  return found;
+}
+
+class Map {
+ public:
+  Map(const Box& box, double cell) : cell_(cell) {
+    front_ = cells(box.front + settings::kMapMargin_m);
+    left_ = cells(box.left + settings::kMapMargin_m);
+    const int rows = front_ + cells(settings::kMapMargin_m - box.back) + 1;
+    const int columns = left_ + cells(settings::kMapMargin_m - box.right) + 1;
+    rows_.assign(static_cast<std::size_t>(rows), std::string(static_cast<std::size_t>(columns), ' '));
+  }
+  template <typename CharacterOf>
+  void fill(CharacterOf character_of) {
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      for (std::size_t j = 0; j < rows_[i].size(); ++j)
+        rows_[i][j] = character_of(
+            Point{(front_ - static_cast<int>(i)) * cell_, (left_ - static_cast<int>(j)) * cell_});
+  }
+  void mark(const Point& point, char character) {
+    const auto row = static_cast<std::size_t>(front_ - std::lround(point.x / cell_));
+    const auto column = static_cast<std::size_t>(left_ - std::lround(point.y / cell_));
+    if (row < rows_.size() && column < rows_[row].size()) rows_[row][column] = character;
+  }
+  [[nodiscard]] const std::vector<std::string>& rows() const { return rows_; }
+
+ private:
+  [[nodiscard]] int cells(double length) const { return static_cast<int>(std::ceil(length / cell_)); }
+
+  double cell_;
+  int front_ = 0, left_ = 0;  // cells from the middle of the axle to the edge
+  std::vector<std::string> rows_;
+};
+
+}  // namespace
+
+ClearSpace clear_space(const std::vector<Point>& points, const routines::Preview& preview,
+                       const Footprint& footprint, double clearance) {
+  const auto poses = distinct_poses(preview);
+  const Box box = box_of(poses, footprint, clearance);
+  const double widest = std::max(box.front - box.back, box.left - box.right);
+  ClearSpace space;
+  space.cell = std::max(settings::kMapCell_m, widest / settings::kMapCells);
+  Map map(box, space.cell);
+  map.fill([&](const Point& point) {
+    if (inside(point, footprint, 0.0)) return 'R';
+    return near_way(point, poses, footprint, clearance) ? '.' : ' ';
+  });
+  for (const Point& point : points)
+    if (!inside(point, footprint, 0.0)) map.mark(point, '#');
+  space.rows = map.rows();
+  const std::array<double, 4> needed = {box.front, box.left, -box.back, -box.right};
+  for (std::size_t side = 0; side < needed.size(); ++side)
+    space.sides.at(side) = {needed.at(side), nearest(points, footprint, clearance, side)};
+  return space;
+}
+
+}  // namespace odomcalib::safety

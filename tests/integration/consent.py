@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Consent on a terminal (rule M11), against the simulated robot in real time: who is asked, what is shown, and what an answer does.
+
+usage: tests/integration/consent.py PROGRAMS PROFILE"""
+
+import os
+import pty
+import select
+import sys
+import time
+
+from simulated_robot import SimulatedRobot
+
+CANCELLED = 4
+QUESTION = "Type yes to go on: "
+PATIENCE = 20.0  # s
+
+
+def on_terminal(robot, words, answer, until):
+    """What a person sees until one of the texts has come, and the exit status after the answer; None: it was stopped by us."""
+    child, terminal = pty.fork()
+    if child == 0:
+        program = os.path.join(robot.programs, "odomcalibctl")
+        os.execv(program, [program, "--socket", robot.path("control"), *words])
+    seen, end = "", time.monotonic() + PATIENCE
+    while not any(text in seen for text in until) and time.monotonic() < end:
+        if not select.select([terminal], [], [], 0.1)[0]:
+            continue
+        try:
+            seen += os.read(terminal, 65536).decode()
+        except OSError:
+            break
+    os.write(terminal, (answer + "\n").encode() if QUESTION in seen else b"\x03")
+    while True:
+        try:
+            if not os.read(terminal, 65536):
+                break
+        except OSError:
+            break
+    _, status = os.waitpid(child, 0)
+    os.close(terminal)
+    return seen, os.waitstatus_to_exitcode(status)
+
+
+def main(programs, profile):
+    faults, move = [], ["straight", "--one-way", "--distance", "0.2"]
+
+    def expect(holds, otherwise):
+        if not holds:
+            faults.append(otherwise)
+
+    with SimulatedRobot(programs, profile, seed=3) as robot:
+        seen, status = on_terminal(robot, [*move, "--yes"], "no", [QUESTION])
+        expect(QUESTION in seen, "--yes was enough for a first motion:\n" + seen)
+        expect("first motion of this robot" in seen, "the question does not say that it is the first:\n" + seen)
+        expect("RRRRR" in seen and "required, m" in seen, "no drawing of the space:\n" + seen)
+        expect(status == CANCELLED, "status %d after no" % status)
+        robot.wait_until(robot.ready, "the robot is not at rest")
+        plan = robot.ctl(*move, "--dry-run")
+        expect("first motion of this robot" in plan.stdout, "it moved after no")
+
+        # A script has nobody to ask; its --yes is somebody's who gave it.
+        done = robot.ctl(*move, "--yes")
+        expect("first motion of this robot" in done.stderr, "a script is not told: " + done.stderr)
+        robot.wait_until(robot.ready, "the robot does not come to rest")
+        seen, _ = on_terminal(robot, [*move, "--yes"], "no", [QUESTION, "Ctrl-C stops the robot"])
+        expect(QUESTION not in seen, "asked again after the first motion:\n" + seen)
+        robot.wait_until(robot.ready, "the robot does not come to rest")
+        seen, status = on_terminal(robot, move, "no", [QUESTION, "Ctrl-C stops the robot"])
+        expect(QUESTION in seen and status == CANCELLED, "no question without --yes:\n" + seen)
+    for fault in faults:
+        print(fault)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    sys.exit(main(*sys.argv[1:]))
