@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "daemon/config/settings.hpp"
 #include "daemon/config/toml_reader.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
 namespace {
+
+namespace settings = config::settings;
 
 constexpr const char* kManual = "odomcalib.toml(5)";
 
@@ -21,30 +24,30 @@ void read_devices(TomlReader& toml, Config& config) {
 void read_robot(TomlReader& toml, Config& config) {
   RobotDescription& robot = config.robot;
   robot.robot_id = toml.text("robot.id", "");
-  const double both = toml.number("robot.wheel_diameter", 0.0, 1e-3, 10.0);
-  robot.left_wheel_diameter = toml.number("robot.left_wheel_diameter", both, 1e-3, 10.0);
-  robot.right_wheel_diameter = toml.number("robot.right_wheel_diameter", both, 1e-3, 10.0);
-  robot.track_width = toml.number("robot.track_width", 0.0, 1e-3, 10.0);
-  config.footprint.front = toml.number("robot.front", config.footprint.front, 0.01, 5.0);
-  config.footprint.back = toml.number("robot.back", config.footprint.back, 0.01, 5.0);
+  const double both = toml.number("robot.wheel_diameter", 0.0, settings::kLength_m);
+  robot.left_wheel_diameter = toml.number("robot.left_wheel_diameter", both, settings::kLength_m);
+  robot.right_wheel_diameter = toml.number("robot.right_wheel_diameter", both, settings::kLength_m);
+  robot.track_width = toml.number("robot.track_width", 0.0, settings::kLength_m);
+  config.footprint.front = toml.number("robot.front", config.footprint.front, settings::kReach_m);
+  config.footprint.back = toml.number("robot.back", config.footprint.back, settings::kReach_m);
   config.footprint.half_width =
-      0.5 * toml.number("robot.width", 2.0 * config.footprint.half_width, 0.02, 5.0);
+      0.5 * toml.number("robot.width", 2.0 * config.footprint.half_width, settings::kWidth_m);
 }
 
 void read_limits(TomlReader& toml, Config& config) {
   const auto& caps = routines::kCaps;
-  config.limits.speed = toml.number("limits.speed", caps.speed, 0.02, caps.speed);
-  config.limits.turn_rate = toml.number("limits.turn_rate", caps.turn_rate, 0.05, caps.turn_rate);
-  config.limits.acceleration = toml.number("limits.acceleration", caps.acceleration, 0.05, caps.acceleration);
-  config.limits.turn_acceleration =
-      toml.number("limits.turn_acceleration", caps.turn_acceleration, 0.1, caps.turn_acceleration);
-  config.area_length = toml.number("limits.area_length", config.area_length, 0.6, 20.0);
-  config.area_width = toml.number("limits.area_width", config.area_width, 0.6, 20.0);
-  config.clearance = toml.number("limits.clearance", config.clearance, 0.05, 2.0);
-  // Rule M16: whoever stands beside the robot gets a moment, whatever the file says.
-  constexpr double kShortestCountdown_s = 1.0;
-  config.countdown =
-      std::max(kShortestCountdown_s, toml.number("limits.countdown", config.countdown, 0.0, 60.0));
+  config.limits.speed = toml.number("limits.speed", caps.speed, {settings::kLeastSpeed_m_s, caps.speed});
+  config.limits.turn_rate =
+      toml.number("limits.turn_rate", caps.turn_rate, {settings::kLeastRate_rad_s, caps.turn_rate});
+  config.limits.acceleration = toml.number("limits.acceleration", caps.acceleration,
+                                           {settings::kLeastBraking_m_s2, caps.acceleration});
+  config.limits.turn_acceleration = toml.number("limits.turn_acceleration", caps.turn_acceleration,
+                                                {settings::kLeastTurning_rad_s2, caps.turn_acceleration});
+  config.area_length = toml.number("limits.area_length", config.area_length, settings::kArea_m);
+  config.area_width = toml.number("limits.area_width", config.area_width, settings::kArea_m);
+  config.clearance = toml.number("limits.clearance", config.clearance, settings::kClearance_m);
+  config.countdown = std::max(settings::kShortestCountdown_s,
+                              toml.number("limits.countdown", config.countdown, settings::kCountdown_s));
 }
 
 void read_service(TomlReader& toml, Config& config) {
@@ -55,7 +58,8 @@ void read_service(TomlReader& toml, Config& config) {
   constexpr double kMegabyte = 1e6;
   config.keep_recordings = static_cast<std::uintmax_t>(
       kMegabyte * toml.number("daemon.keep_recordings",
-                              static_cast<double>(config.keep_recordings) / kMegabyte, 1.0, 1e6));
+                              static_cast<double>(config.keep_recordings) / kMegabyte,
+                              settings::kRecordings_MB));
   config.socket = toml.text("daemon.socket", config.socket.string());
   config.group = toml.text("daemon.group", config.group);
 }

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "daemon/config/settings.hpp"
+
 namespace odomcalib {
 namespace {
+
+namespace settings = config::settings;
 
 std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
@@ -29,11 +33,9 @@ std::size_t distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::optional<std::string> near_miss(const std::string& word, const std::set<std::string>& known) {
-  constexpr std::size_t kLettersPerError = 3;  // as in "trackwidht" for "track_width"
-  constexpr std::size_t kLongest = 64;         // no key is longer; bounds the work on hostile files
-  if (word.empty() || word.size() > kLongest) return std::nullopt;
+  if (word.empty() || word.size() > settings::kLongestKey) return std::nullopt;
   std::optional<std::string> nearest;
-  std::size_t least = word.size() / kLettersPerError + 1;
+  std::size_t least = word.size() / settings::kLettersPerError + 1;
   for (const std::string& candidate : known) {
     const bool elsewhere = last_part(candidate) == last_part(word);
     const std::size_t errors = elsewhere ? 0 : distance(word, candidate);

@@ -3,10 +3,13 @@
 #include <array>
 #include <cmath>
 
+#include "daemon/config/settings.hpp"
 #include "daemon/config/toml_reader.hpp"
 
 namespace odomcalib {
 namespace {
+
+namespace settings = config::settings;
 
 constexpr const char* kManual = "odomcalib-robot.toml(5)";
 
@@ -45,11 +48,11 @@ constexpr std::array kOtherKeys = {"controller.", "lidar.",      "limits.",    "
 /// @param prefix "robot." in a file with that section, otherwise nothing
 RobotDescription read_keys(TomlReader& toml, const std::string& prefix) {
   RobotDescription robot;
-  const double both = toml.number(prefix + "wheel_diameter", 0.0, 1e-3, 10.0);
-  robot.left_wheel_diameter = toml.number(prefix + "left_wheel_diameter", both, 1e-3, 10.0);
-  robot.right_wheel_diameter = toml.number(prefix + "right_wheel_diameter", both, 1e-3, 10.0);
-  robot.track_width = toml.number(prefix + "track_width", 0.0, 1e-3, 10.0);
-  robot.ticks_per_rev = toml.number(prefix + "ticks_per_rev", 0.0, 1e-3, 1e9);
+  const double both = toml.number(prefix + "wheel_diameter", 0.0, settings::kLength_m);
+  robot.left_wheel_diameter = toml.number(prefix + "left_wheel_diameter", both, settings::kLength_m);
+  robot.right_wheel_diameter = toml.number(prefix + "right_wheel_diameter", both, settings::kLength_m);
+  robot.track_width = toml.number(prefix + "track_width", 0.0, settings::kLength_m);
+  robot.ticks_per_rev = toml.number(prefix + "ticks_per_rev", 0.0, settings::kTicks);
   robot.lidar_pose = toml.pose(prefix + "lidar_pose");
   robot.robot_id = toml.text(prefix + "robot_id", "");
   for (const auto& [foreign, instead] : kTranslations) toml.translate(prefix + foreign, instead);

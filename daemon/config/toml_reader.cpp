@@ -83,12 +83,12 @@ Result<TomlReader> TomlReader::parse(const std::string& text, const std::string&
   return TomlReader(std::move(state));
 }
 
-double TomlReader::number(const std::string& key, double otherwise, double least, double most) {
+double TomlReader::number(const std::string& key, double otherwise, const config::settings::Bounds& allowed) {
   const auto node = state_->find(key);
   if (!node) return otherwise;
   const auto value = node.value<double>();
-  if (value && std::isfinite(*value) && *value >= least && *value <= most) return *value;
-  state_->complain(key, fmt::format("a number from {} to {}", least, most));
+  if (value && std::isfinite(*value) && *value >= allowed.least && *value <= allowed.most) return *value;
+  state_->complain(key, fmt::format("a number from {} to {}", allowed.least, allowed.most));
   return otherwise;
 }
 

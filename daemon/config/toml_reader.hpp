@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/config/settings.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {
@@ -25,7 +26,7 @@ class TomlReader {
   TomlReader& operator=(TomlReader&&) noexcept;
   ~TomlReader();
 
-  double number(const std::string& key, double otherwise, double least, double most);
+  double number(const std::string& key, double otherwise, const config::settings::Bounds& allowed);
   std::string text(const std::string& key, const std::string& otherwise);
   bool flag(const std::string& key, bool otherwise);
   /// [x, y, yaw], all finite.
