@@ -45,9 +45,17 @@ struct TomlReader::State {
 
 namespace {
 
+// As the file spells it: without its quotes a key with a dot, or of no letters, would pass for a path of ours
+// that nobody reads there.
+std::string spelled(const toml::key& key) {
+  const std::string_view name = key.str();
+  const bool bare = !name.empty() && name.find('.') == std::string_view::npos;
+  return bare ? std::string(name) : fmt::format("\"{}\"", name);
+}
+
 void collect_leaves(const toml::table& table, const std::string& prefix, std::set<std::string>& keys) {
   for (const auto& [key, node] : table) {
-    const std::string path = prefix.empty() ? std::string(key.str()) : prefix + "." + std::string(key.str());
+    const std::string path = prefix.empty() ? spelled(key) : prefix + "." + spelled(key);
     if (const auto* inner = node.as_table())
       collect_leaves(*inner, path, keys);
     else

@@ -83,6 +83,14 @@ TEST(ConfigFile, gives_a_second_before_a_motion_whatever_it_says) {
   EXPECT_EQ(countdown_of("1.5"), 1.5);
 }
 
+TEST(ConfigFile, with_a_key_in_quotes_that_looks_like_a_path_is_refused) {
+  for (const std::string key : {R"("robot.track_width" = 0.4)", R"("" = {robot = {track_width = 0.4}})"}) {
+    const auto config = parse_config(key + "\n[robot]\nid = \"a\"\n", "test.toml");
+    ASSERT_FALSE(config.ok()) << key;
+    EXPECT_NE(config.error().what.find("unknown key"), std::string::npos) << config.error().text();
+  }
+}
+
 TEST(ConfigFile, cut_off_at_any_byte_is_sound_or_refused) {
   for (std::size_t size = 0; size < kGood.size(); ++size) expect_sound(kGood.substr(0, size));
 }
