@@ -639,6 +639,62 @@ def profiles():
         seed("profile", name, text)
 
 
+# configuration --------------------------------------------------------------------------------------------------------
+
+
+def config():
+    good = (CORPUS / "config" / "odomcalib.toml").read_text()
+    robot = (CORPUS / "config" / "robot.toml").read_text()
+
+    def changed(text, old, new):
+        assert old in text, old
+        return text.replace(old, new, 1)
+
+    cases = {
+        "syntax": changed(good, "speed = 0.30", "speed = = 0.30"), "text": changed(good, '"ld06"', "6"),
+        "flag": changed(good, "enabled = true", 'enabled = "true"'), "pose": changed(good, "[0.10, 0.0, 0.0]", "[0.10, nan, 0.0]"),
+        "pose_short": changed(good, "[0.10, 0.0, 0.0]", "[0.10, 0.0]"), "range": changed(good, "speed = 0.30", "speed = 1e3"),
+        "infinite": changed(good, "track_width = 0.400", "track_width = -inf"),
+        "sides": changed(good, "wheel_diameter = 0.150", "left_wheel_diameter = 0.15\nright_wheel_diameter = 0.149"),
+        "near": changed(good, "track_width", "track_widht"), "elsewhere": changed(good, "track_width = 0.400", "") + "track_width = 0.4\n",
+        "foreign": changed(good, "track_width", "wheelbase"), "whole": "limits.countdown = 0\n[robot]\ntrack_width = 1\n",
+        "quoted": '"robot.track_width" = 0.4\n[robot]\nid = "a"\n', "unnamed": '"" = {robot = {track_width = 0.4}}\n[robot]\nid = "a"\n',
+        "tables": "[[robot]]\ntrack_width = 0.4\n", "sections": "[other]\n[robot.inner]\n[limits]\n",
+        "robot_section": '[robot]\nticks_per_rev = 4096\nlidar_pose = [0.1, 0, 0]\nrobot_id = "a"\n[lidar]\npose = [0, 0, 1]\n',
+        "robot_radius": changed(robot, "wheel_diameter = 0.150", "wheel_radius = 0.075"), "robot_nothing": "\n",
+        "robot_ticks": changed(robot, "16384", "1e10"), "robot_id": changed(robot, '"robot-1"', "1"),
+        "robot_foreign": "[robot]\ncpr = 4096\n", "bytes": b'robot_id = "\xff"\n',
+    }
+    for name, text in cases.items():
+        seed("config", name, text)
+
+
+# write-back -----------------------------------------------------------------------------------------------------------
+
+
+def journal():
+    def record(number, step, **members):
+        body = {"after": {"track_width": 0.41}, "before": {"track_width": 0.4}, "label": "apply", "monotonic": 1.5,
+                "seq": number, "state": step, "wall_us": 7}
+        return "________ " + json.dumps(body | members) + "\n"
+
+    states = ["begin", "write", "readback_ok", "store_begin", "store_ok", "commit", "rollback", "rolled_back", "needs_operator"]
+    whole = "".join(record(i + 1, state, device="d", calibration="none", store_begun=i > 2) for i, state in enumerate(states))
+    seed("journal", "empty", b"\x00")
+    seed("journal", "states", "\x00" + whole)
+    for i, state in enumerate(states):
+        seed("journal", state, chr(i) + record(9, state))
+    seed("journal", "torn", "\x01" + record(1, "begin") + record(2, "write")[:-20])
+    seed("journal", "damaged", "\x02" + record(1, "begin") + record(2, "write").replace("________", "deadbeef"))
+    seed("journal", "noise", b"\x03\x00\xff\n\n" + record(1, "commit").encode() + b"\xfe\n\x00")
+    odd = [{"seq": -1}, {"seq": 1.5}, {"seq": 1e300}, {"seq": 2 ** 64 - 1}, {"seq": 2 ** 70}, {"seq": "1"}, {"monotonic": None},
+           {"monotonic": True}, {"wall_us": -1e300}, {"wall_us": 2 ** 63}, {"state": "other"}, {"state": 1}, {"label": None},
+           {"before": []}, {"before": {"a": "b"}}, {"after": {"a": 5e-324, "": -0.0}}, {"device": 5}, {"calibration": "\x00"},
+           {"store_begun": 1}, {"label": "\u00e4\ud83d\ude00"}]
+    for i, members in enumerate(odd):
+        seed("journal", "odd_%02d" % i, "\x04" + record(1, "begin") + record(2, "write", **members))
+
+
 # network captures -----------------------------------------------------------------------------------------------------
 
 
@@ -692,5 +748,5 @@ def network_captures():
 
 if __name__ == "__main__":
     for make in (candump, slcan, sdo, speed_can, speed_serial, ld06, rplidar, cola, scip, xv11, ydlidar, control, lcm_log,
-                 pose_graph, recordings, rosbag, mcap, rosbag2, ros_messages, profiles, network_captures):
+                 pose_graph, recordings, rosbag, mcap, rosbag2, ros_messages, profiles, config, journal, network_captures):
         make()
