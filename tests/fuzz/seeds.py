@@ -356,6 +356,63 @@ def control():
     seed("control", "deep", b"\xff" + b'{"method":"a.B","parameters":{"x":' + b"[" * 40 + b"]" * 40 + b"}}\0")
 
 
+def control_session():
+    come, hang_up, put, call, run, renew, listen, look = range(8)
+    stop, acquire, renewal, straight, spin, nudge, release, status, monitor, record, calibrate, dry, write, back = range(14)
+
+    def act(action, client=0, much=0):
+        return bytes([action | client << 3, much])
+
+    def send(client, *frames, cut=200):
+        text = b"".join(frames)
+        parts = [text[i:i + cut] for i in range(0, len(text), cut)]
+        return b"".join(act(put, client, len(part)) + part for part in parts)
+
+    def frame(name, **members):
+        text = json.dumps({"method": "org.odomcalib.Calibration." + name} | members).encode() + b"\0"
+        return text.replace(b"\\u0001", b"\x01")  # the lease
+
+    held = act(call, 0, acquire) + act(run, 0, 2)
+    driving = held + act(call, 0, straight) + act(renew, 0, 110)
+    cases = {
+        "nothing": b"", "drive": driving + act(renew, 0, 60), "stop": driving + act(call, 1, stop) + act(run, 0, 20),
+        "stop_then_gone": driving + act(call, 1, stop) + act(hang_up, 1) + act(renew, 0, 20),
+        "silent": driving + act(run, 0, 60), "gone": driving + act(hang_up, 0) + act(run, 0, 40),
+        "released": driving + act(call, 1, release) + act(run, 0, 40), "broken": driving + send(0, b"no call\0") + act(run, 0, 40),
+        "both": driving + act(call, 1, straight) + act(call, 1, acquire) + act(renew, 0, 30) + act(call, 0, stop) + act(call, 0, straight),
+        "spin": held + act(call, 0, spin) + act(renew, 0, 180), "nudge": held + act(call, 0, nudge) + act(renew, 0, 180),
+        "calibrate": held + act(call, 0, calibrate) + act(renew, 0, 130) + act(call, 0, stop) + act(renew, 0, 30),
+        "no_lease": act(call, 0, straight) + act(call, 0, 16) + act(call, 0, nudge) + act(run, 0, 100),
+        "others_lease": held + act(call, 1, straight) + act(renew, 0, 120) + act(hang_up, 0) + act(run, 0, 30),
+        "record": act(call, 0, record) + act(run, 0, 30) + act(call, 1, stop) + act(run, 0, 5),
+        "record_gone": act(call, 0, record) + act(run, 0, 30) + act(hang_up, 0) + act(run, 0, 5),
+        "monitor": act(call, 2, monitor) + act(call, 0, stop) + act(run, 0, 3) + act(call, 2, status) + act(run, 0, 3),
+        "write": held + act(call, 0, write) + act(renew, 0, 100) + act(call, 0, back) + act(renew, 0, 90),
+        "write_and_stop": held + act(call, 0, write) + act(renew, 0, 3) + act(call, 1, stop) + act(call, 1, write) + act(renew, 0, 50),
+        "many": b"".join(act(come, i) for i in range(12)) + act(run, 0, 1) + b"".join(act(call, i, status) for i in range(12)) +
+                act(run, 0, 1) + b"".join(act(come, i) + act(call, i, stop) for i in (0, 9, 11)) + act(run, 0, 2),
+        "many_in_motion": driving + b"".join(act(call, i, status) for i in range(1, 12)) + act(renew, 0, 2) + act(call, 11, stop),
+        "burst": act(look, 0, 1) + b"".join(act(call, i % 3, status) for i in range(60)) + act(call, 4, stop) + act(run, 0, 30),
+        "burst_and_stop": driving + b"".join(act(call, 1, status) for i in range(120)) + act(call, 1, stop) + act(renew, 0, 20),
+        "deaf": act(call, 0, monitor) + act(listen, 0, 1) + b"".join(act(call, 0, 17) for i in range(30)) + act(run, 0, 30) +
+                act(listen, 0, 0) + act(run, 0, 5),
+        "pieces": send(0, frame("GetStatus"), frame("Stop"), frame("Check", parameters={"nudge": 1}), cut=7) + act(run, 0, 2),
+        "escaped": driving + send(1, b'{"method":"org.odomcalib.Calibration.S\\u0074op"}\0') + act(renew, 0, 20),
+        "oneway": send(0, frame("Acquire", oneway=True), frame("Straight", oneway=True, parameters={"lease": "\x01", "distance": 1})) +
+                  act(run, 0, 9),
+        "services": send(0, *(frame(name)[:-1].replace(b"org.odomcalib.Calibration", b"org.varlink.service") + b"\0"
+                              for name in ("GetInfo", "GetInterfaceDescription", "No"))) + act(run, 0, 2),
+        "wrong": send(0, frame("Straight", parameters={"distance": "x"}), frame("Straight", parameters={"distance": None}),
+                      frame("Spin", parameters={"turns": -1}), frame("Record", parameters={"name": "../x", "duration": -1}),
+                      frame("Apply", parameters={"calibration": {}}), frame("History", parameters={"limit": -1}),
+                      frame("Renew", parameters={"lease": None, "sent": "now"}), frame("No"), frame("Monitor")) + act(run, 0, 3),
+        "rubbish": send(0, frame("GetStatus"), b"\0\0{\0") + send(1, b"[" * 90 + b"\0") + send(2, b"\xff" * 9) + act(run, 0, 3) +
+                   act(call, 0, stop) + act(call, 1, stop) + act(call, 2, stop) + act(run, 0, 3),
+    }
+    for name, records in cases.items():
+        seed("control_session", name, records)
+
+
 def event(number, channel, data, length=None):
     size = len(data) if length is None else length
     return b"\xed\xa1\xda\x01" + struct.pack(">QQII", number, 1700000000000000 + 10000 * number, len(channel), size) + channel + data
@@ -747,6 +804,6 @@ def network_captures():
 
 
 if __name__ == "__main__":
-    for make in (candump, slcan, sdo, speed_can, speed_serial, ld06, rplidar, cola, scip, xv11, ydlidar, control, lcm_log,
+    for make in (candump, slcan, sdo, speed_can, speed_serial, ld06, rplidar, cola, scip, xv11, ydlidar, control, control_session, lcm_log,
                  pose_graph, recordings, rosbag, mcap, rosbag2, ros_messages, profiles, config, journal, network_captures):
         make()
