@@ -78,7 +78,7 @@ using nlohmann::json;
 
 constexpr double kTurn = 0.010;       // s, virtual, between two turns of the loop
 constexpr int kLongestBoot = 600;     // turns until the robot is ready
-constexpr int kMostTurns = 200;       // that an input may ask for
+constexpr int kMostTurns = 150;       // that an input may ask for
 constexpr int kLongestEnd = 1000;     // turns from the last stop until nothing runs any more
 constexpr double kStopTaken = 0.025;  // s, from a stop to a drive that is not told to turn
 constexpr double kSilenceTaken =

@@ -1,6 +1,7 @@
 // Replays a corpus through a fuzz harness without libFuzzer: each file as it is, cut off at many places, and
-// with single bytes changed. Fails when the corpus is missing or empty, so that a lost corpus cannot pass
-// unnoticed. With --plain only each file as it is: what the corpus itself reaches.
+// with single bytes changed; at few places where an input is a whole session. Fails when the corpus is
+// missing or empty, so that a lost corpus cannot pass unnoticed. With --plain only each file as it is: what
+// the corpus itself reaches.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -12,6 +13,13 @@
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+#ifndef ODOMCALIB_FUZZ_CUTS
+#define ODOMCALIB_FUZZ_CUTS 64
+#endif
+#ifndef ODOMCALIB_FUZZ_CHANGES
+#define ODOMCALIB_FUZZ_CHANGES 200
+#endif
 
 namespace {
 
@@ -25,8 +33,8 @@ std::string read(const std::filesystem::path& path) {
 }
 
 void feed_variants(const std::string& bytes) {
-  constexpr std::size_t kCuts = 64;
-  constexpr int kChanges = 200;
+  constexpr std::size_t kCuts = ODOMCALIB_FUZZ_CUTS;
+  constexpr int kChanges = ODOMCALIB_FUZZ_CHANGES;
   feed(bytes);
   for (std::size_t i = 0; i < kCuts; ++i) feed(bytes.substr(0, bytes.size() * i / kCuts));
   std::mt19937 random(static_cast<std::uint32_t>(bytes.size()));  // fixed seed: a failure repeats

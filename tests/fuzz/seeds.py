@@ -373,17 +373,17 @@ def control_session():
         return text.replace(b"\\u0001", b"\x01")  # the lease
 
     held = act(call, 0, acquire) + act(run, 0, 2)
-    driving = held + act(call, 0, straight) + act(renew, 0, 110)
+    driving = held + act(call, 0, straight) + act(renew, 0, 85)
     cases = {
         "nothing": b"", "drive": driving + act(renew, 0, 60), "stop": driving + act(call, 1, stop) + act(run, 0, 20),
         "stop_then_gone": driving + act(call, 1, stop) + act(hang_up, 1) + act(renew, 0, 20),
         "silent": driving + act(run, 0, 60), "gone": driving + act(hang_up, 0) + act(run, 0, 40),
         "released": driving + act(call, 1, release) + act(run, 0, 40), "broken": driving + send(0, b"no call\0") + act(run, 0, 40),
         "both": driving + act(call, 1, straight) + act(call, 1, acquire) + act(renew, 0, 30) + act(call, 0, stop) + act(call, 0, straight),
-        "spin": held + act(call, 0, spin) + act(renew, 0, 180), "nudge": held + act(call, 0, nudge) + act(renew, 0, 180),
-        "calibrate": held + act(call, 0, calibrate) + act(renew, 0, 130) + act(call, 0, stop) + act(renew, 0, 30),
+        "spin": held + act(call, 0, spin) + act(renew, 0, 130), "nudge": held + act(call, 0, nudge) + act(renew, 0, 130),
+        "calibrate": held + act(call, 0, calibrate) + act(renew, 0, 90) + act(call, 0, stop) + act(renew, 0, 20),
         "no_lease": act(call, 0, straight) + act(call, 0, 16) + act(call, 0, nudge) + act(run, 0, 100),
-        "others_lease": held + act(call, 1, straight) + act(renew, 0, 120) + act(hang_up, 0) + act(run, 0, 30),
+        "others_lease": held + act(call, 1, straight) + act(renew, 0, 85) + act(hang_up, 0) + act(run, 0, 30),
         "record": act(call, 0, record) + act(run, 0, 30) + act(call, 1, stop) + act(run, 0, 5),
         "record_gone": act(call, 0, record) + act(run, 0, 30) + act(hang_up, 0) + act(run, 0, 5),
         "monitor": act(call, 2, monitor) + act(call, 0, stop) + act(run, 0, 3) + act(call, 2, status) + act(run, 0, 3),

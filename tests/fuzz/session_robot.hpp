@@ -87,13 +87,13 @@ class SessionRobot {
 
   static sim::BodyOptions body_options() {
     sim::BodyOptions options;
-    options.step = 0.002;  // s; the drive's timers count in tens of milliseconds
+    options.step = 0.005;  // s; the drive's timers count in tens of milliseconds
     return options;
   }
 
   sim::Body body_{sim::Geometry{}, body_options(), 1};
   sim::DriveNode node_{sim::DriveNodeOptions{}};
-  sim::LidarOptions lidar_;
+  const sim::LidarOptions lidar_;
   sim::Ld06Stream stream_{lidar_, 0.0, 0.0};
   std::int64_t beams_ = 0;
   std::vector<sim::Frame> frames_;
