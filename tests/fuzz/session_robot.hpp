@@ -93,7 +93,7 @@ class SessionRobot {
 
   sim::Body body_{sim::Geometry{}, body_options(), 1};
   sim::DriveNode node_{sim::DriveNodeOptions{}};
-  const sim::LidarOptions lidar_;
+  sim::LidarOptions lidar_;
   sim::Ld06Stream stream_{lidar_, 0.0, 0.0};
   std::int64_t beams_ = 0;
   std::vector<sim::Frame> frames_;

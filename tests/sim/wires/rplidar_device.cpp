@@ -50,7 +50,7 @@ void RplidarDevice::on_request(int command, std::string_view payload, double now
   if (command == 0x20) start(Data::standard, now);
   if (command == 0x82) start(options_.data, now);
   if (command != 0x84 || !options_.configurable) return;
-  const std::string key = little(code(0), 4);
+  const std::string key = little(static_cast<unsigned>(code(0)), 4);
   if (code(0) == 0x7C) answer(0x20, key + little(2, 2), now);
   if (code(0) == 0x75) answer(0x20, key + little(static_cast<unsigned>(type), 1), now);
   if (code(0) == 0x71) answer(0x20, key + little(static_cast<unsigned>(options_.sample_s * 256e6), 4), now);

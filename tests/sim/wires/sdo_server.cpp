@@ -76,7 +76,7 @@ SdoBytes SdoServer::download_segment(const SdoBytes& request) {
   if (buffer_.size() > kLongestWrite) return abort(abort_code::kLength);
   toggle_ ^= 1U;
   SdoBytes bytes{};
-  bytes[0] = static_cast<std::uint8_t>(0x20U + (toggle << 4U));
+  bytes[0] = static_cast<std::uint8_t>(0x20U + (static_cast<unsigned>(toggle) << 4U));
   if ((request[0] & 1U) == 0) return bytes;
   transfer_ = Transfer::none;
   if (announced_ != 0 && announced_ != buffer_.size()) return abort(abort_code::kLength);
@@ -118,7 +118,8 @@ SdoBytes SdoServer::upload_segment(const SdoBytes& request) {
   std::copy_n(buffer_.begin() + static_cast<std::ptrdiff_t>(done_), size, bytes.begin() + 1);
   done_ += size;
   const bool last = done_ == buffer_.size();
-  bytes[0] = static_cast<std::uint8_t>((toggle << 4U) + ((kSegment - size) << 1U) + (last ? 1U : 0U));
+  bytes[0] = static_cast<std::uint8_t>((static_cast<unsigned>(toggle) << 4U) + ((kSegment - size) << 1U) +
+                                       (last ? 1U : 0U));
   if (last) transfer_ = Transfer::none;
   return bytes;
 }
