@@ -93,7 +93,13 @@ class SessionRobot {
 
   sim::Body body_{sim::Geometry{}, body_options(), 1};
   sim::DriveNode node_{sim::DriveNodeOptions{}};
-  sim::LidarOptions lidar_;
+  static sim::LidarOptions lidar_options() {
+    sim::LidarOptions options;
+    options.turns_per_second = 5.5;  // each turn takes the daemon a while
+    return options;
+  }
+
+  sim::LidarOptions lidar_ = lidar_options();
   sim::Ld06Stream stream_{lidar_, 0.0, 0.0};
   std::int64_t beams_ = 0;
   std::vector<sim::Frame> frames_;
