@@ -310,6 +310,8 @@ class Session {
   void come(std::size_t client) {
     hang_up(client);
     clients_[client] = std::make_unique<Peer>(config_.socket);
+    const auto free = std::count(clients_.begin(), clients_.end(), nullptr);
+    unlooked_ = unlooked_ || kClients - static_cast<std::size_t>(free) > ControlServer::kMostClients;
   }
   void listen_or_not(std::size_t client, bool listens) {
     if (clients_[client]) clients_[client]->reads = listens;
@@ -443,7 +445,7 @@ class Session {
   bool stop_sent_ = false;  // since the last turn
   bool stopping_ = false;
   bool written_ = false;   // values were, since it was ready
-  bool unlooked_ = false;  // calls that the socket answers: nobody looks at the clock between them
+  bool unlooked_ = false;  // the socket answers calls: nobody looks at the clock between them
   int turns_ = 0;
 };
 
