@@ -155,11 +155,11 @@ void Loop::settle(TaskTurn turn) {
   if (auto* next = std::get_if<Then>(&turn)) task_ = std::move(next->task);
   if (const auto* failed = std::get_if<Failed>(&turn)) {
     bench_.outbox.event(messages::Severity::warning, "failed", failed->error.text());
-    bench_.outbox.refuse(task_->caller.client, failed->error);
+    bench_.outbox.refuse(task_->caller, failed->error);
     task_.reset();
   }
   if (const auto* done = std::get_if<Done>(&turn)) {
-    bench_.outbox.answer(task_->caller.client, done->reply);
+    bench_.outbox.answer(task_->caller, done->reply);
     task_.reset();
   }
 }

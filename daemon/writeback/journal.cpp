@@ -87,7 +87,8 @@ std::optional<JournalRecord> from_line(const std::string& line) {
   try {
     const json body = json::parse(line.substr(kCrc + 1));
     const auto state = state_named(body.at("state").get<std::string>());
-    if (!state) return std::nullopt;
+    const bool whole = body.at("seq").is_number_unsigned() && body.at("wall_us").is_number_integer();
+    if (!state || !whole) return std::nullopt;
     return JournalRecord{.seq = body.at("seq").get<std::uint64_t>(),
                          .monotonic = body.at("monotonic").get<double>(),
                          .wall_us = body.at("wall_us").get<std::int64_t>(),

@@ -49,9 +49,11 @@ class TestClient {
     if (fd_ >= 0) close(fd_);
     fd_ = -1;
   }
-  void call(const std::string& method, const json& parameters, bool more = false) {
-    const std::string frame = control::encode_call(
-        {.method = "org.odomcalib.Calibration." + method, .parameters = parameters.dump(), .more = more});
+  void call(const std::string& method, const json& parameters, bool more = false, bool oneway = false) {
+    const std::string frame = control::encode_call({.method = "org.odomcalib.Calibration." + method,
+                                                    .parameters = parameters.dump(),
+                                                    .oneway = oneway,
+                                                    .more = more});
     ASSERT_EQ(write(fd_, frame.data(), frame.size()), static_cast<ssize_t>(frame.size()));
   }
   /// The next reply that does not continue.

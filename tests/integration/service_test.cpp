@@ -197,6 +197,19 @@ TEST_F(ServiceLoop, stop_needs_no_lease) {
   EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
 }
 
+// org.varlink.service: a call that wants no reply gets none, from a task neither.
+TEST_F(ServiceLoop, a_call_that_wants_no_reply_gets_none) {
+  acquire();
+  TestClient quiet(folder_ / "control");
+  for (const char* method : {"GetStatus", "Straight", "Nope"})
+    quiet.call(method, {{"lease", lease_}, {"distance", 0.1}, {"one_way", true}}, false, true);
+  EXPECT_TRUE(run_until([this] { return robot_->fastest_rim() > 0.05; }, 8.0));
+  EXPECT_TRUE(run_until([this] { return ready(); }, 20.0));
+  EXPECT_FALSE(quiet.reply());
+  quiet.call("GetStatus", json::object());
+  EXPECT_EQ(wait_reply(quiet, 1.0).error, "");
+}
+
 TEST_F(ServiceLoop, a_motion_that_was_asked_for_before_a_stop_does_not_begin_after_it) {
   acquire();
   TestClient mover(folder_ / "control"), other(folder_ / "control");

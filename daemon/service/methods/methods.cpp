@@ -73,10 +73,10 @@ Outcome outcome_of(const Method& method, Context& context, const Call& call) {
   return begin(method, context, std::get<Request>(read));
 }
 
-std::unique_ptr<Task> reply_with(Outcome outcome, ClientId client, Outbox& outbox) {
-  if (const auto* answer = std::get_if<Answer>(&outcome)) outbox.answer(client, answer->parameters);
-  if (const auto* error = std::get_if<Error>(&outcome)) outbox.refuse(client, *error);
-  if (const auto* wrong = std::get_if<WrongParameter>(&outcome)) outbox.refuse_parameter(client, wrong->name);
+std::unique_ptr<Task> reply_with(Outcome outcome, const Caller& caller, Outbox& outbox) {
+  if (const auto* answer = std::get_if<Answer>(&outcome)) outbox.answer(caller, answer->parameters);
+  if (const auto* error = std::get_if<Error>(&outcome)) outbox.refuse(caller, *error);
+  if (const auto* wrong = std::get_if<WrongParameter>(&outcome)) outbox.refuse_parameter(caller, wrong->name);
   auto* task = std::get_if<std::unique_ptr<Task>>(&outcome);
   return task != nullptr ? std::move(*task) : nullptr;
 }
@@ -85,21 +85,21 @@ std::unique_ptr<Task> reply_with(Outcome outcome, ClientId client, Outbox& outbo
 
 std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming) {
   Outbox& outbox = context.bench.outbox;
-  const ClientId client = incoming.client;
+  const Caller caller{incoming.client, incoming.call.more, incoming.call.oneway};
   const auto parameters = ordered_json::parse(incoming.call.parameters, nullptr, false);
   if (!parameters.is_object())
     return reply_with(
-        Error{ErrorCode::usage, "parameters are no object", "parameters", "see odomcalibctl(1)"}, client,
+        Error{ErrorCode::usage, "parameters are no object", "parameters", "see odomcalibctl(1)"}, caller,
         outbox);
   const Method& method = method_of(incoming.call.name(), parameters);
   if (auto refused = not_now(method, context, incoming.stopped_since))
-    return reply_with(*refused, client, outbox);
+    return reply_with(*refused, caller, outbox);
   if (method.handle == nullptr) {
-    outbox.server.reply(client, control::encode_method_not_implemented(incoming.call.method));
+    outbox.refuse_method(caller, incoming.call.method);
     return nullptr;
   }
-  const Call call{{client, incoming.call.more}, parameters, incoming.arrived, incoming.stopped_since};
-  return reply_with(outcome_of(method, context, call), client, outbox);
+  const Call call{caller, parameters, incoming.arrived, incoming.stopped_since};
+  return reply_with(outcome_of(method, context, call), caller, outbox);
 }
 
 }  // namespace odomcalib

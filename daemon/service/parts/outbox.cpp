@@ -27,16 +27,22 @@ Outbox::Outbox(ControlServer control_server, const Config& config, const Clock& 
       clock_(time),
       log_(std::move(log)) {}
 
-void Outbox::answer(ClientId client, const ordered_json& parameters) {
-  server.reply(client, control::encode_reply(json_text(parameters)));
+void Outbox::reply(const Caller& caller, const std::string& frame) {
+  if (!caller.oneway) server.reply(caller.client, frame);
 }
 
-void Outbox::refuse(ClientId client, const Error& error) {
-  server.reply(client, control::encode_error(error));
+void Outbox::answer(const Caller& caller, const ordered_json& parameters) {
+  reply(caller, control::encode_reply(json_text(parameters)));
 }
 
-void Outbox::refuse_parameter(ClientId client, const std::string& name) {
-  server.reply(client, control::encode_invalid_parameter(name));
+void Outbox::refuse(const Caller& caller, const Error& error) { reply(caller, control::encode_error(error)); }
+
+void Outbox::refuse_parameter(const Caller& caller, const std::string& name) {
+  reply(caller, control::encode_invalid_parameter(name));
+}
+
+void Outbox::refuse_method(const Caller& caller, const std::string& name) {
+  reply(caller, control::encode_method_not_implemented(name));
 }
 
 void Outbox::event(messages::Severity severity, const std::string& code, const std::string& happened) {

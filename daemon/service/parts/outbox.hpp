@@ -22,7 +22,8 @@ using nlohmann::ordered_json;
 /// The client that waits for the end of what it asked for.
 struct Caller {
   ClientId client = 0;
-  bool more = false;  ///< it takes progress reports meanwhile
+  bool more = false;    ///< it takes progress reports meanwhile
+  bool oneway = false;  ///< it wants no reply at all
 };
 
 class Outbox {
@@ -32,10 +33,11 @@ class Outbox {
   /// What is sent until the next turn carries this time.
   void begin_turn(double now) { now_ = now; }
 
-  void answer(ClientId client, const ordered_json& parameters);
-  void refuse(ClientId client, const Error& error);
+  void answer(const Caller& caller, const ordered_json& parameters);
+  void refuse(const Caller& caller, const Error& error);
   /// A member of the call is missing or of a wrong type.
-  void refuse_parameter(ClientId client, const std::string& name);
+  void refuse_parameter(const Caller& caller, const std::string& name);
+  void refuse_method(const Caller& caller, const std::string& name);
 
   /// To the journal, the recording, over LCM and to every client that monitors; see EventRate.
   void event(messages::Severity severity, const std::string& code, const std::string& text);
@@ -62,6 +64,7 @@ class Outbox {
   Telemetry telemetry;
 
  private:
+  void reply(const Caller& caller, const std::string& frame);
   [[nodiscard]] messages::Stamp stamp(double t) const;
 
   const Clock& clock_;

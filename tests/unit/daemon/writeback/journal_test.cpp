@@ -60,6 +60,13 @@ TEST(Journal, that_is_read_only_is_read_and_never_written) {
   EXPECT_FALSE(Journal::open_read_only(folder.path).ok()) << "a folder";
 }
 
+std::string checked(const std::string& body) {
+  const auto crc = crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
+  std::array<char, 10> text{};
+  std::snprintf(text.data(), text.size(), "%08lx ", crc);
+  return text.data() + body;
+}
+
 TEST(Journal, rejects_every_flipped_bit) {
   JournalRecord record;
   record.after = {{"track_width", 0.4}};
@@ -78,14 +85,25 @@ TEST(Journal, records_of_earlier_versions_are_read) {
   const std::string body =
       R"({"after":{"track_width":0.41},"before":{"track_width":0.4},"label":"apply","monotonic":1.5,"seq":3,)"
       R"("state":"store_begin","wall_us":7})";
-  const auto crc = crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
-  std::array<char, 10> text{};
-  std::snprintf(text.data(), text.size(), "%08lx ", crc);
-  const auto record = from_line(text.data() + body);
+  const auto record = from_line(checked(body));
   ASSERT_TRUE(record.has_value());
   EXPECT_EQ(record->seq, 3U);
   EXPECT_EQ(record->device, "");
   EXPECT_TRUE(record->store_begun);
+}
+
+TEST(Journal, numbers_that_no_journal_writes_are_damage) {
+  const std::string good = to_line(record_of(JournalState::write));
+  ASSERT_TRUE(from_line(good.substr(0, good.size() - 1)));
+  for (const char* number : {"1e300", "-1", "0.5", "\"7\"", "null"}) {
+    for (const char* member : {"\"seq\":", "\"wall_us\":"}) {
+      std::string text = good.substr(9, good.size() - 10);
+      const std::size_t at = text.find(member) + std::string(member).size();
+      if (number == std::string("-1") && member == std::string("\"wall_us\":")) continue;  // before 1970
+      text.replace(at, text.find_first_of(",}", at) - at, number);
+      EXPECT_FALSE(from_line(checked(text))) << text;
+    }
+  }
 }
 
 TEST(Journal, keeps_who_holds_the_values_and_what_goes_with_them) {
