@@ -250,10 +250,11 @@ std::optional<control::Call> ControlServer::State::decode(Client& client, const 
 std::optional<control::Call> ControlServer::State::answer_some(Client& client, control::Call call) const {
   const control::ServiceInfo info{.version = kVersion};
   if (const auto answer = control::answer_introspection(call, info)) {
-    client.output += *answer;
+    if (!call.oneway) client.output += *answer;
     return std::nullopt;
   }
   if (!client.spare || call.name() == "Stop") return call;
+  if (call.oneway) return std::nullopt;
   client.output += control::encode_error({ErrorCode::refused, "too many clients are connected", path.string(),
                                           "end one of them; stopping works all the same"});
   return std::nullopt;
