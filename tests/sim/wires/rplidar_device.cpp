@@ -54,7 +54,7 @@ void RplidarDevice::on_request(int command, std::string_view payload, double now
   if (code(0) == 0x7C) answer(0x20, key + little(2, 2), now);
   if (code(0) == 0x75) answer(0x20, key + little(static_cast<unsigned>(type), 1), now);
   if (code(0) == 0x71) answer(0x20, key + little(static_cast<unsigned>(options_.sample_s * 256e6), 4), now);
-  if (code(0) == 0x74) answer(0x20, key + little(12 * 256, 4), now);
+  if (code(0) == 0x74) answer(0x20, key + little(std::uint64_t{12} * 256, 4), now);
 }
 
 void RplidarDevice::from_host(std::string_view bytes, double now) {
