@@ -1,5 +1,6 @@
 // ROS bags, rosbag2 and MCAP, in every packing and encoding, whole and cut off.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/unit/proto/recording/ros_support.hpp"
 
@@ -22,7 +23,9 @@ struct Form {
 };
 
 std::string rosbag2_bytes(Wire wire, const sim::Rosbag2Options& options = {}) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "odomcalib_rosbag2.db3";
+  // Tests of this file run beside each other, each in a process of its own.
+  const auto name = "odomcalib_rosbag2_" + std::to_string(getpid()) + ".db3";
+  const auto path = std::filesystem::path(testing::TempDir()) / name;
   sim::write_rosbag2(small_log(wire), path, options);
   std::string bytes = bytes_of(path);
   std::filesystem::remove(path);
