@@ -52,12 +52,17 @@ class Map {
     const int columns = left_ + cells(settings::kMapMargin_m - box.right) + 1;
     rows_.assign(static_cast<std::size_t>(rows), std::string(static_cast<std::size_t>(columns), ' '));
   }
-  template <typename CharacterOf>
-  void fill(CharacterOf character_of) {
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      for (std::size_t j = 0; j < rows_[i].size(); ++j)
-        rows_[i][j] = character_of(
-            Point{(front_ - static_cast<int>(i)) * cell_, (left_ - static_cast<int>(j)) * cell_});
+  /// Marks what `is_of` takes of the cells that are not marked yet, within `reach` m of a place: a way is
+  /// long, and a robot is small.
+  template <typename IsOf>
+  void fill(const Point& place, double reach, char character, IsOf is_of) {
+    const int row = front_ - static_cast<int>(std::lround(place.x / cell_));
+    const int column = left_ - static_cast<int>(std::lround(place.y / cell_));
+    const int around = cells(reach) + 1;
+    for (int i = std::max(0, row - around); i <= std::min(last_row(), row + around); ++i)
+      for (int j = std::max(0, column - around); j <= std::min(last_column(), column + around); ++j)
+        if (char& cell = at(i, j); cell == ' ' && is_of(Point{(front_ - i) * cell_, (left_ - j) * cell_}))
+          cell = character;
   }
   void mark(const Point& point, char character) {
     const auto row = static_cast<std::size_t>(front_ - std::lround(point.x / cell_));
@@ -67,6 +72,11 @@ class Map {
   [[nodiscard]] const std::vector<std::string>& rows() const { return rows_; }
 
  private:
+  [[nodiscard]] int last_row() const { return static_cast<int>(rows_.size()) - 1; }
+  [[nodiscard]] int last_column() const { return static_cast<int>(rows_.front().size()) - 1; }
+  [[nodiscard]] char& at(int row, int column) {
+    return rows_[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+  }
   [[nodiscard]] int cells(double length) const { return static_cast<int>(std::ceil(length / cell_)); }
 
   double cell_;
@@ -84,10 +94,12 @@ ClearSpace clear_space(const std::vector<Point>& points, const routines::Preview
   ClearSpace space;
   space.cell = std::max(settings::kMapCell_m, widest / settings::kMapCells);
   Map map(box, space.cell);
-  map.fill([&](const Point& point) {
-    if (inside(point, footprint, 0.0)) return 'R';
-    return near_way(point, poses, footprint, clearance) ? '.' : ' ';
-  });
+  map.fill({}, footprint.radius(), 'R', [&](const Point& cell) { return inside(cell, footprint, 0.0); });
+  const double reach =
+      std::hypot(std::max(footprint.front, footprint.back) + clearance, footprint.half_width + clearance);
+  for (const auto& pose : poses)
+    map.fill({pose.x, pose.y}, reach, '.',
+             [&](const Point& cell) { return near_robot(cell, pose, footprint, clearance); });
   for (const Point& point : points)
     if (!inside(point, footprint, 0.0)) map.mark(point, '#');
   space.rows = map.rows();

@@ -138,21 +138,27 @@ std::vector<Pose> distinct_poses(const routines::Preview& preview) {
   return out;
 }
 
-bool near_way(const Point& point, const std::vector<Pose>& poses, const Footprint& footprint,
-              double clearance) {
-  return std::any_of(poses.begin(), poses.end(),
-                     [&](const Pose& pose) { return inside(seen_from(pose, point), footprint, clearance); });
+bool near_robot(const Point& point, const Pose& pose, const Footprint& footprint, double clearance) {
+  // Most points are far from most of a way: that costs no sine.
+  constexpr double kRounding = 1e-9;
+  const double along = std::max(footprint.front, footprint.back) + clearance;
+  const double across = footprint.half_width + clearance;
+  const double dx = point.x - pose.x, dy = point.y - pose.y;
+  if (dx * dx + dy * dy > along * along + across * across + kRounding) return false;
+  return inside(seen_from(pose, point), footprint, clearance);
 }
 
 std::optional<std::string> occupied(const std::vector<Point>& points, const routines::Preview& preview,
                                     const Footprint& footprint, double clearance) {
   const auto poses = distinct_poses(preview);
-  for (const Point& point : points)
-    if (!inside(point, footprint, 0.0) && near_way(point, poses, footprint, clearance))
+  for (const Point& point : points) {
+    const auto near = [&](const Pose& pose) { return near_robot(point, pose, footprint, clearance); };
+    if (!inside(point, footprint, 0.0) && std::any_of(poses.begin(), poses.end(), near))
       return fmt::format(
           "something stands {:.2f} m ahead and {:.2f} m to the left of the robot, nearer than "
           "{:.2f} m to its way",
           point.x, point.y, clearance);
+  }
   return std::nullopt;
 }
 

@@ -89,9 +89,8 @@ class ObstacleGuard {
 /// it, so their number is bounded by the way and not by the time.
 std::vector<routines::Pose> distinct_poses(const routines::Preview& preview);
 
-/// Whether a point is nearer than `clearance` to the footprint at one of the poses.
-bool near_way(const Point& point, const std::vector<routines::Pose>& poses, const Footprint& footprint,
-              double clearance);
+/// Whether a point is nearer than `clearance` to the footprint of a robot at that pose.
+bool near_robot(const Point& point, const routines::Pose& pose, const Footprint& footprint, double clearance);
 
 /// Before a motion: points nearer than `clearance` to the footprint anywhere on the previewed path.
 /// @return what is in the way, with its place, or nullopt
