@@ -6,11 +6,7 @@
 
 namespace odomcalib {
 
-// What is not proven goes back once the axes are off, whether somebody waits for it or not.
-TaskTurn ProofTask::conclude(Bench& bench) {
-  if (!proven_) bench.write_back.take_back("whoever drove the proof takes the values back");
-  begun_ = !proven_;
-  if (!proven_) return Running{};
+TaskTurn ProofTask::store(Bench& bench) {
   if (comes_to_rest(bench) && bench.now - asked_at_ < service::settings::kComesToRest_s) return Running{};
   if (bench.drive.controller().state() != drivers::ControllerState::disabled)
     return Failed{axes_not_off(bench)};
@@ -20,7 +16,10 @@ TaskTurn ProofTask::conclude(Bench& bench) {
 }
 
 TaskTurn ProofTask::turn(Bench& bench) {
-  if (!begun_) return conclude(bench);
+  if (!begun_ && proven_) return store(bench);
+  // What is not proven goes back once the axes are off, whether somebody waits for it or not.
+  if (!begun_) bench.write_back.take_back("whoever drove the proof takes the values back");
+  begun_ = true;
   const bool waits = bench.write_back.transaction.proving();
   if (waits && bench.now - asked_at_ > service::settings::kComesToRest_s) return Failed{axes_not_off(bench)};
   const auto end = bench.write_back.take_end();
@@ -28,7 +27,7 @@ TaskTurn ProofTask::turn(Bench& bench) {
   const WriteReport& report = end->report;
   if (!proven_ && report.outcome == WriteOutcome::rolled_back)
     return Done{write_reply(bench, report, report.after, report.before, {})};
-  return turn_of(bench, *end, bench.write_back.rounding);
+  return turn_of(bench, *end);
 }
 
 }  // namespace odomcalib

@@ -49,14 +49,15 @@ TaskTurn WriteTask::begin_writing(Bench& bench) {
 TaskTurn WriteTask::turn(Bench& bench) {
   if (!begun_) return begin_writing(bench);
   const auto end = bench.write_back.take_end();
-  return end ? turn_of(bench, *end, order_.rounded.remaining) : TaskTurn(Running{});
+  return end ? turn_of(bench, *end) : TaskTurn(Running{});
 }
 
 ordered_json write_reply(const Bench& bench, const WriteReport& report, const ParameterMap& before,
                          const ParameterMap& after, const RoundingError& remaining) {
-  const bool waits = report.outcome == WriteOutcome::proving;
+  // Old values that a client asked back are what it wanted.
+  const bool asked = report.outcome == WriteOutcome::rolled_back;
   return {{"result",
-           {{"outcome", name_of(waits ? WriteOutcome::proving : WriteOutcome::committed)},
+           {{"outcome", name_of(asked ? WriteOutcome::committed : report.outcome)},
             {"steps", report.steps},
             {"before", before},
             {"after", after},
@@ -64,12 +65,12 @@ ordered_json write_reply(const Bench& bench, const WriteReport& report, const Pa
             {"parameters", parameter_report(bench, bench.applied.get())}}}};
 }
 
-TaskTurn turn_of(const Bench& bench, const WriteEnd& end, const RoundingError& remaining) {
+TaskTurn turn_of(const Bench& bench, const WriteEnd& end) {
   const WriteReport& report = end.report;
   if (report.outcome != WriteOutcome::committed && report.outcome != WriteOutcome::proving)
     return Failed{report.error.value_or(Error{ErrorCode::write_failed, "write-back failed", "", ""})};
   if (end.unsettled) return Failed{*end.unsettled};
-  return Done{write_reply(bench, report, report.before, report.after, remaining)};
+  return Done{write_reply(bench, report, report.before, report.after, bench.write_back.rounding)};
 }
 
 }  // namespace odomcalib

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "daemon/service/tasks/task.hpp"
+#include "daemon/service/tasks/parameter_task.hpp"
 #include "daemon/writeback/rounding.hpp"
 
 namespace odomcalib {
 
-class WriteTask final : public Task {
+class WriteTask final : public ParameterTask {
  public:
   struct Order {
     std::string label;                            ///< "apply" or "rollback"
@@ -23,18 +23,11 @@ class WriteTask final : public Task {
   /// Transaction::write end the task.
   static Result<std::unique_ptr<Task>> begin(Bench& bench, const Caller& caller, const Order& order);
 
-  [[nodiscard]] const char* part() const override { return "write-back"; }
-  [[nodiscard]] std::string activity(const Bench& /*bench*/) const override {
-    return "reading or writing parameters";
-  }
   TaskTurn turn(Bench& bench) override;
-  /// Values are written wholly or not at all: what has begun goes on.
-  void stop(Bench& /*bench*/) override {}
-  void abandoned(Bench& /*bench*/) override {}
 
  private:
   WriteTask(const Caller& waits, Order order, double now)
-      : Task(waits), order_(std::move(order)), asked_at_(now) {}
+      : ParameterTask(waits), order_(std::move(order)), asked_at_(now) {}
   void announce(Bench& bench);
   TaskTurn begin_writing(Bench& bench);
 
@@ -56,6 +49,6 @@ ordered_json write_reply(const Bench& bench, const WriteReport& report, const Pa
                          const ParameterMap& after, const RoundingError& remaining);
 
 /// The end of a write-back as the last turn of the task that waited for it.
-TaskTurn turn_of(const Bench& bench, const WriteEnd& end, const RoundingError& remaining);
+TaskTurn turn_of(const Bench& bench, const WriteEnd& end);
 
 }  // namespace odomcalib
