@@ -40,8 +40,7 @@ Result<void> ask(const Consent& given, const std::string& what, const Prospect& 
   if (!somebody) return Error{ErrorCode::usage, "moving or writing needs consent", what, "add --yes"};
   std::cerr
       << prospect.drawing
-      << (prospect.first_motion ? "This is the first motion of this robot: --yes is not enough. " : "")
-      << what
+      << (given.yes ? "This is the first motion of this robot: --yes is not enough. " : "") << what
       << ": is the area clear and an emergency stop at hand? This program's obstacle stop replaces neither"
       << " a safety scanner nor an emergency stop. " << besides << "Type yes to go on: " << std::flush;
   std::string answer;
