@@ -19,6 +19,12 @@ constexpr double kFastest = 10.0;  // m/s
 constexpr double kSpikeAcceleration = 30.0;  // m/s^2
 constexpr double kSpikeSpeed = 1.0;          // m/s
 
+// Steps of a count in which wheels at rest may rock about zero. Chosen.
+constexpr std::int64_t kRockingSteps = 8;
+// Counts. Derived: the finer counts of wheel_motion.hpp, of an encoder with 256 counts a turn; steps that are
+// larger are motion.
+constexpr std::int64_t kCoarsestStep = 4096;
+
 using Counts = std::array<std::int64_t, 2>;
 
 struct Step {
@@ -112,10 +118,12 @@ std::int64_t nearest_wrap(std::int64_t difference, const std::array<Width, 2>& w
 }
 
 /// Counters that both return to exactly zero by more than one sample's motion were reset.
-bool is_reset(const TickSample& now, const Counts& change, const Counts& previous_change) {
+/// @param finest smallest_step()
+bool is_reset(const TickSample& now, const Counts& change, const Counts& previous_change,
+              std::int64_t finest) {
   if (now.left != 0 || now.right != 0) return false;
-  const auto unlike = [](std::int64_t step, std::int64_t usual) {
-    return std::abs(step - usual) > 2 * std::abs(usual) + 8;
+  const auto unlike = [&](std::int64_t step, std::int64_t usual) {
+    return std::abs(step - usual) > 2 * std::abs(usual) + kRockingSteps * finest;
   };
   return unlike(change[0], previous_change[0]) || unlike(change[1], previous_change[1]);
 }
@@ -125,6 +133,21 @@ std::optional<std::int64_t> difference(std::int64_t now, std::int64_t before) {
   std::int64_t out = 0;
   if (__builtin_sub_overflow(now, before, &out) || out == INT64_MIN) return std::nullopt;
   return out;
+}
+
+/// The least by which a count changes: one, of an encoder; more, where its counts were turned into angles
+/// and those into the finer counts of this program. One where nothing changes.
+std::int64_t smallest_step(const std::vector<TickSample>& ticks) {
+  std::int64_t smallest = 0;
+  const auto look = [&](std::int64_t now, std::int64_t before) {
+    const std::int64_t step = std::abs(difference(now, before).value_or(0));
+    if (step > 0 && (smallest == 0 || step < smallest)) smallest = step;
+  };
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    look(ticks[i].left, ticks[i - 1].left);
+    look(ticks[i].right, ticks[i - 1].right);
+  }
+  return std::clamp<std::int64_t>(smallest, 1, kCoarsestStep);
 }
 
 struct Change {
@@ -138,7 +161,8 @@ class Continuation {
   Continuation(const std::vector<TickSample>& ticks, const RobotDescription& robot)
       : speeds_(ticks, robot),
         widths_{{{std::int64_t{1} << 16, fits(ticks, std::int64_t{1} << 16)},
-                 {std::int64_t{1} << 32, fits(ticks, std::int64_t{1} << 32)}}} {}
+                 {std::int64_t{1} << 32, fits(ticks, std::int64_t{1} << 32)}}},
+        finest_(smallest_step(ticks)) {}
 
   [[nodiscard]] std::vector<Change> changes(const std::vector<TickSample>& ticks) const {
     std::vector<Change> out(ticks.size());
@@ -157,7 +181,7 @@ class Continuation {
     if (before.segment != now.segment) return {};
     const auto left = difference(now.left, before.left);
     const auto right = difference(now.right, before.right);
-    if (!left || !right || is_reset(now, {*left, *right}, usual)) return {};
+    if (!left || !right || is_reset(now, {*left, *right}, usual, finest_)) return {};
     const Counts counts{nearest_wrap(*left, widths_), nearest_wrap(*right, widths_)};
     const double interval = now.t - before.t;
     const bool possible = speeds_.possible(counts[0], interval) && speeds_.possible(counts[1], interval);
@@ -224,6 +248,7 @@ class Continuation {
 
   Speeds speeds_;
   std::array<Width, 2> widths_;
+  std::int64_t finest_;
 };
 
 }  // namespace

@@ -86,6 +86,18 @@ TEST(TickCounts, start_a_new_segment_when_they_are_reset_and_keep_the_motion_of_
   }
 }
 
+/// A metre out and back, at whose end the wheels rock by one count of the encoder about where they began.
+TEST(TickCounts, that_rock_about_zero_were_not_reset_however_fine_they_are) {
+  for (const std::int64_t count : {1, 64, 4096}) {
+    std::vector<TickSample> ticks;
+    for (const std::int64_t at : {0, 0, 0, 2, 5, 8, 5, 2, 0, 0, 1, 1, 0, 0, 0, -1, 0, 0})
+      ticks.push_back({0.02 * static_cast<double>(ticks.size()), at * count, at * count, 0});
+    auto robot = test::example_robot();
+    robot.ticks_per_rev = 16384.0 * static_cast<double>(count);
+    EXPECT_EQ(continue_counts(ticks, robot).breaks, 0U) << count;
+  }
+}
+
 TEST(TickCounts, start_a_new_segment_at_a_jump_that_no_wheel_can_make) {
   std::mt19937 random(7);
   for (const std::int64_t jump : {3000, -3000, 70000, 1 << 20}) {
