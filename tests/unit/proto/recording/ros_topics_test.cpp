@@ -248,7 +248,7 @@ TEST(RosTopics, stamps_of_different_clocks_are_replaced_by_reception_and_it_is_s
   std::size_t k = 0;
   for (auto& message : log.messages)
     if (log.topics[message.topic].name == "/scan") {
-      const Scan& scan = small_drive().scans[k++];
+      const Scan scan = small_drive().scans[k++];
       message.bytes = encode_scan(log.wire, {17'000'000'000 + std::llround(1e9 * scan.t), "laser"}, scan);
     }
   const auto result = read_ros(mcap(log));
