@@ -82,6 +82,16 @@ class Packages(unittest.TestCase):
         interface = self.installed("usr/share/odomcalib/varlink/org.odomcalib.Calibration.varlink").read_text()
         self.assertIn("interface org.odomcalib.Calibration", interface)
 
+    def test_the_shells_look_where_their_completion_is(self):
+        looks = {"usr/share/fish/vendor_completions.d/odomcalibctl.fish":
+                 told("fish", "--command", "string join \\n $fish_complete_path"),
+                 "usr/share/zsh/vendor-completions/_odomcalibctl": told("zsh", "-fc", "print -l $fpath"),
+                 # As its documentation says: without the package nobody can be asked.
+                 "usr/share/bash-completion/completions/odomcalibctl": "/usr/share/bash-completion/completions"}
+        for path, folders in looks.items():
+            self.assertTrue(self.installed(path).exists(), path)
+            self.assertIn("/" + str(pathlib.PurePath(path).parent), folders.split())
+
     def test_every_json_schema_is_there(self):
         schemas = {path.name for path in (source / "docs/schema").iterdir()}
         self.assertEqual({path.name for path in self.installed("usr/share/odomcalib/schema").iterdir()}, schemas)
