@@ -6,12 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace odomcalib::cli {
+#include "daemon/cli/text_layout.hpp"
 
-struct Table {
-  std::vector<std::string> head;
-  std::vector<std::vector<std::string>> rows;  ///< first column left-aligned, the others right-aligned
-};
+namespace odomcalib::cli {
 
 /// What is drawn of a figure; the tone tells what it stands for, in every figure the same.
 struct Curve {
@@ -47,7 +44,8 @@ struct Document {
 };
 
 /// @param legend whether tables show their head
-std::string to_text(const Document& document, bool legend = true);
+/// @param width columns of a line
+std::string to_text(const Document& document, bool legend = true, std::size_t width = kAnyWidth);
 /// Self-contained page without scripts, readable on light and on dark screens; texts are escaped.
 std::string to_html(const Document& document);
 

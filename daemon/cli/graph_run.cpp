@@ -55,7 +55,8 @@ std::string state_name(calib::slam::GraphState state) {
   return "";
 }
 
-GraphRun run_graph(PoseGraph graph, const calib::slam::GraphOptions& options) {
+GraphRun run_graph(PoseGraph graph, const calib::slam::GraphOptions& options,
+                   const calib::slam::GraphObserver& observer) {
   GraphRun run;
   std::vector<std::string> notes = graph.notes;
   const std::size_t anchor = calib::slam::fix_first_pose(graph);
@@ -72,8 +73,9 @@ GraphRun run_graph(PoseGraph graph, const calib::slam::GraphOptions& options) {
   run.before = graph;
   const auto begin = Clock::now();
   run.summary = calib::slam::optimize_graph(
-      graph, options, [&run, begin](const calib::slam::GraphIteration& iteration) {
+      graph, options, [&run, &observer, begin](const calib::slam::GraphIteration& iteration) {
         run.iterations.push_back({iteration, microseconds_since(begin)});
+        if (observer) observer(iteration);
       });
   run.time_us = microseconds_since(begin);
   run.summary.notes.insert(run.summary.notes.begin(), notes.begin(), notes.end());

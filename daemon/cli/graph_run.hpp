@@ -35,7 +35,8 @@ struct GraphRun {
 
 /// Fixes the first pose for the time of the run if the graph fixes none, places the vertices along the
 /// odometry if the graph has none, and notes both.
-GraphRun run_graph(PoseGraph graph, const calib::slam::GraphOptions& options);
+GraphRun run_graph(PoseGraph graph, const calib::slam::GraphOptions& options,
+                   const calib::slam::GraphObserver& observer = {});
 
 nlohmann::ordered_json to_json(const GraphRun& run);
 Document describe(const GraphRun& run);

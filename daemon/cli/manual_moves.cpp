@@ -317,6 +317,10 @@ ordered_json to_json(const Proposal& proposal) {
   return body;
 }
 
+std::string next_command(const Proposal& proposal) {
+  return "odomcalibctl params set" + assignments(proposal);
+}
+
 std::vector<std::string> to_lines(const Proposal& proposal) {
   std::vector<std::string> lines;
   for (const auto& [name, q] : proposal.parameters) {
@@ -337,7 +341,6 @@ std::vector<std::string> to_lines(const Proposal& proposal) {
       proposal.method == "square" ? " squares both ways" : " moves",
       proposal.left_out > 0 ? fmt::format(", {} without a lidar match left out", proposal.left_out) : ""));
   lines.insert(lines.end(), proposal.remarks.begin(), proposal.remarks.end());
-  lines.push_back("Next: odomcalibctl params set" + assignments(proposal));
   return lines;
 }
 

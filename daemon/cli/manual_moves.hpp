@@ -44,6 +44,8 @@ Result<Proposal> square_proposal(const DrivenMoves& driven, double side);
 
 nlohmann::ordered_json to_json(const Proposal& proposal);
 std::vector<std::string> to_lines(const Proposal& proposal);
+/// That puts the proposal into force.
+std::string next_command(const Proposal& proposal);
 /// A calibration of these lengths alone, for `apply`.
 Calibration calibration_of(const Proposal& proposal, const DrivenMoves& driven);
 

@@ -75,7 +75,8 @@ Result<Prospect> prospect_of(const Session& session, const std::string& method, 
   if (!answer) return answer.error();
   const auto plan =
       ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
-  return Prospect{to_text(describe_plan(plan)), unseen_question(plan), plan.value("first_motion", false)};
+  return Prospect{to_text(describe_plan(plan), true, text_columns()), unseen_question(plan),
+                  plan.value("first_motion", false)};
 }
 
 }  // namespace

@@ -1,16 +1,49 @@
 #include "daemon/cli/output.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
 
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/settings.hpp"
 
 namespace odomcalib::cli {
+namespace {
+
+/// 0: it does not say.
+std::size_t columns_of(int terminal) {
+  winsize size{};
+  return ioctl(terminal, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+/// 0: there is none.
+std::size_t wanted_columns() {
+  const char* told = std::getenv("COLUMNS");  // NOLINT(concurrency-mt-unsafe): nobody sets it here
+  const std::string_view text = told == nullptr ? "" : told;
+  std::size_t columns = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), columns);
+  return parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size() ? columns : 0;
+}
+
+double seconds(std::chrono::steady_clock::duration time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+std::string duration_text(double time) {
+  return time < 90.0 ? fmt::format("{:.0f} s", time) : fmt::format("{:.0f} min", time / 60.0);
+}
+
+}  // namespace
 
 void print_json(const std::string& text, JsonMode mode) {
   const auto value = nlohmann::ordered_json::parse(text, nullptr, false);
@@ -54,20 +87,88 @@ int after_flush(int status) {
   return status == kDone ? static_cast<int>(kFailure) : status;
 }
 
-ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
+std::size_t text_columns() {
+  std::size_t columns = wanted_columns();
+  if (columns == 0) columns = columns_of(STDOUT_FILENO);
+  return columns == 0 ? settings::kTextColumns : std::max(columns, settings::kFewestColumns);
+}
+
+void print_text(const Document& document, bool legend) {
+  std::cout << to_text(document, legend, text_columns());
+}
+
+void print_line(const std::string& text) { std::cout << wrapped(text, text_columns()); }
+
+ProgressLine::ProgressLine()
+    : terminal_(isatty(STDERR_FILENO) == 1),
+      next_plain_(begun_ + std::chrono::duration_cast<Clock::duration>(
+                               std::chrono::duration<double>(settings::kQuiet_s))) {}
+
 ProgressLine::~ProgressLine() { clear(); }
 
-void ProgressLine::show(const std::string& text) {
+void ProgressLine::show(const std::string& text) { terminal_ ? replace(text) : add_plain(text); }
+
+void ProgressLine::show(const std::string& step, double fraction) {
+  const auto now = Clock::now();
+  if (step != step_ || fraction < fraction_) {
+    step_ = step;
+    step_begun_ = now;
+    step_from_ = fraction;
+  }
+  fraction_ = fraction;
+  std::string text = fmt::format("{} {:3.0f} %", step, 100.0 * fraction);
+  const double done = fraction - step_from_, taken = seconds(now - step_begun_);
+  if (done >= settings::kKnownAfterShare && taken >= settings::kKnownAfter_s)
+    text += ", " + duration_text(taken * (1.0 - fraction) / done) + " left of it";
+  if (seconds(now - begun_) >= settings::kQuiet_s)
+    text += "; " + duration_text(seconds(now - begun_)) + " so far";
+  show(text);
+}
+
+/// A line that is longer than the terminal is wide would not replace itself.
+void ProgressLine::replace(const std::string& text) {
   // A terminal that takes nothing now (Ctrl-S, a slow line) must not hold up whoever keeps a motion alive.
   pollfd terminal{STDERR_FILENO, POLLOUT, 0};
-  if (!terminal_ || poll(&terminal, 1, 0) != 1 || (terminal.revents & POLLOUT) == 0) return;
-  std::cerr << "\r\x1b[K" << text << std::flush;
+  if (poll(&terminal, 1, 0) != 1 || (terminal.revents & POLLOUT) == 0) return;
+  const std::size_t columns = columns_of(STDERR_FILENO);
+  std::cerr << "\r\x1b[K" << (columns > 1 ? text.substr(0, columns - 1) : text) << std::flush;
   shown_ = true;
+}
+
+/// A pipe that nobody reads must not hold anybody up either.
+void ProgressLine::add_plain(const std::string& text) {
+  const auto now = Clock::now();
+  pollfd pipe{STDERR_FILENO, POLLOUT, 0};
+  if (now < next_plain_ || poll(&pipe, 1, 0) != 1 || (pipe.revents & POLLOUT) == 0) return;
+  std::cerr << text << std::endl;
+  next_plain_ = now + std::chrono::duration_cast<Clock::duration>(
+                          std::chrono::duration<double>(settings::kPlainLine_s));
 }
 
 void ProgressLine::clear() {
   if (shown_) std::cerr << "\r\x1b[K" << std::flush;
   shown_ = false;
+}
+
+Meanwhile::Meanwhile(std::string what) : what_(std::move(what)), thread_([this] { run(); }) {}
+
+Meanwhile::~Meanwhile() {
+  {
+    const std::scoped_lock lock(mutex_);
+    end_ = true;
+  }
+  ended_.notify_one();
+  thread_.join();
+}
+
+void Meanwhile::run() {
+  ProgressLine line;
+  const auto begun = std::chrono::steady_clock::now();
+  std::unique_lock lock(mutex_);
+  while (!ended_.wait_for(lock, settings::kTick, [this] { return end_; })) {
+    const double taken = seconds(std::chrono::steady_clock::now() - begun);
+    if (taken >= settings::kQuiet_s) line.show(what_ + ", " + duration_text(taken) + " so far");
+  }
 }
 
 }  // namespace odomcalib::cli

@@ -62,7 +62,10 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
   }
   std::vector<Recording> recordings;
   for (const auto& path : paths) {
-    auto recording = read_recording(path, robot_file.empty() ? nullptr : &robot, topics.value());
+    auto recording = [&] {
+      const Meanwhile shown("reading " + path);
+      return read_recording(path, robot_file.empty() ? nullptr : &robot, topics.value());
+    }();
     if (!recording) return recording.error();
     for (const auto& choice : recording.value().choices) tell(fmt::format("{}: {}", path, choice));
     if (const Recording* one = same_drive(recordings, recording.value()))

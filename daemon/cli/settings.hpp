@@ -28,6 +28,21 @@ inline constexpr double kWholeOverShown = std::numbers::sqrt2;
 /// Share of a pattern in the residual from which on the variable is said to be what it depends on. Chosen.
 inline constexpr double kDependsOn = 0.5;
 
+// --- Columns and progress --------------------------------------------------------------------------------
+
+/// Columns of a line where no terminal says how many it has. Chosen: those of a terminal as it opens.
+inline constexpr std::size_t kTextColumns = 80;
+/// Columns below which nothing is narrowed further. Chosen: a table's first column and one more.
+inline constexpr std::size_t kFewestColumns = 40;
+/// s, of what ends sooner no progress is shown. Chosen: people begin to wonder.
+inline constexpr double kQuiet_s = 2.0;
+/// s between plain lines of progress where no terminal replaces them. Chosen: a log stays readable.
+inline constexpr double kPlainLine_s = 10.0;
+/// s and share of a step from which on the rest of it can be told. Chosen.
+inline constexpr double kKnownAfter_s = 1.0, kKnownAfterShare = 0.02;
+/// Between two looks at the clock while nothing reports progress. Chosen.
+inline constexpr std::chrono::milliseconds kTick{500};
+
 // --- Waiting for the daemon ------------------------------------------------------------------------------
 
 /// Between two looks. Chosen: people notice no delay, and the daemon no load.

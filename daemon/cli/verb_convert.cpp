@@ -31,11 +31,11 @@ nlohmann::ordered_json counts_of(const Recording& recording) {
 }
 
 void print_summary(const Recording& recording, const std::string& out) {
-  std::cout << fmt::format("{}: {} {}, {} scans, {} poses, {} gyro readings\n", out, recording.ticks.size(),
-                           name_of(recording.motion), recording.scans.size(), recording.poses.size(),
-                           recording.gyro.size());
+  print_line(fmt::format("{}: {} {}, {} scans, {} poses, {} gyro readings", out, recording.ticks.size(),
+                         name_of(recording.motion), recording.scans.size(), recording.poses.size(),
+                         recording.gyro.size()));
   for (const Discarded& one : recording.discarded)
-    std::cout << fmt::format("  not used: {} {}: {}\n", one.count, one.what, one.reason);
+    print_line(fmt::format("  not used: {} {}: {}", one.count, one.what, one.reason));
 }
 
 int convert_recording(const Options& options, const Session& session) {
@@ -50,8 +50,11 @@ int convert_recording(const Options& options, const Session& session) {
     return report_error({ErrorCode::format, "holds means over intervals, not samples", options.recording,
                          "solve reads it as it is"},
                         session.json);
-  if (const auto written = write_recording_jsonl(recording, options.out); !written)
-    return report_error(written.error(), session.json);
+  const auto written = [&] {
+    const Meanwhile shown("writing " + options.out);
+    return write_recording_jsonl(recording, options.out);
+  }();
+  if (!written) return report_error(written.error(), session.json);
   if (session.json == JsonMode::off)
     print_summary(recording, options.out);
   else

@@ -86,19 +86,19 @@ void print_status(const ordered_json& status, const Session& session) {
   for (const auto* device : {&controller, &lidar})
     if ((*device)["problem"] != "") section.lines.push_back(text_of((*device)["problem"]));
   document.sections.push_back(section);
-  std::cout << to_text(document, session.legend);
+  print_text(document, session.legend);
 }
 
 void print_checks(const ordered_json& checks, const Session& session) {
-  std::cout << to_text(describe_checks(checks), session.legend);
+  print_text(describe_checks(checks), session.legend);
 }
 
 void print_parameters(const ordered_json& parameters, const Session& session) {
-  std::cout << to_text(describe_parameters(parameters), session.legend);
+  print_text(describe_parameters(parameters), session.legend);
 }
 
 void print_history(const ordered_json& entries, const Session& session) {
-  std::cout << to_text(describe_history(entries), session.legend);
+  print_text(describe_history(entries), session.legend);
 }
 
 void add_question(CLI::App& app, Session& session, const char* verb, const char* help,

@@ -18,7 +18,10 @@ struct Options {
 int decode_file(const Options& options, const Session& session) {
   const auto bytes = read_file_bytes(options.file);
   if (!bytes) return report_error(bytes.error(), session.json);
-  const auto lines = drivers::decode(options.driver, bytes.value(), options.profiles, options.file);
+  const auto lines = [&] {
+    const Meanwhile shown("decoding " + options.file);
+    return drivers::decode(options.driver, bytes.value(), options.profiles, options.file);
+  }();
   if (!lines) return report_error(lines.error(), session.json);
   std::cout << lines.value();
   return kDone;

@@ -1,4 +1,6 @@
 // Pose graphs: optimise one, tell what it holds, or make one of a recording.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <map>
@@ -26,6 +28,7 @@ struct Options {
 
 Result<PoseGraph> read_files(const std::vector<std::string>& files) {
   const std::vector<std::filesystem::path> paths(files.begin(), files.end());
+  const Meanwhile shown("reading " + files.front());
   return read_pose_graph(paths);
 }
 
@@ -38,7 +41,7 @@ struct BuildOptions {
 template <typename... Described>
 void print(const Session& session, const std::string& document, const Described&... described) {
   if (session.json == JsonMode::off)
-    std::cout << to_text(describe(described...), session.legend);
+    print_text(describe(described...), session.legend);
   else
     print_document(document, to_json(described...), session.json);
 }
@@ -57,7 +60,12 @@ int optimize(const Options& options, const Session& session) {
     return report_error(files.error(), session.json);
   auto graph = read_files(options.files);
   if (!graph) return report_error(graph.error(), session.json);
-  const GraphRun run = run_graph(std::move(graph).value(), options.solver);
+  ProgressLine line;
+  std::size_t steps = 0;
+  const GraphRun run = run_graph(std::move(graph).value(), options.solver, [&](const auto& step) {
+    line.show(fmt::format("optimizing: iteration {}, chi2 {:.6g}", ++steps, step.chi2));
+  });
+  line.clear();
   if (!run.summary.is_usable())
     return report_error({ErrorCode::refused, state_name(run.summary.state) + ": " + run.summary.reason,
                          options.files.front(), "nothing was written"},
@@ -99,7 +107,10 @@ int build(const BuildOptions& options, const Session& session) {
     return report_error(files.error(), session.json);
   const auto recordings = read_recordings({options.recording}, options.reading);
   if (!recordings) return report_error(recordings.error(), session.json);
-  const auto map = calib::slam::map_recording(recordings.value().front(), options.graph);
+  const auto map = [&] {
+    const Meanwhile shown("matching scans and closing loops");
+    return calib::slam::map_recording(recordings.value().front(), options.graph);
+  }();
   if (!map) return report_error(map.error(), session.json);
   if (auto written = write_results(options, map.value()); !written)
     return report_error(written.error(), session.json);

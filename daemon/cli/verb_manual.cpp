@@ -165,7 +165,7 @@ std::string describe_move(const ordered_json& move) {
 void print(const Session& session, const Outcome& outcome) {
   const auto& [driven, proposal, plan] = outcome;
   if (!plan.is_null()) {
-    session.json == JsonMode::off ? void(std::cout << to_text(describe_plan(plan), session.legend))
+    session.json == JsonMode::off ? print_text(describe_plan(plan), session.legend)
                                   : print_document("plan", plan, session.json);
     return;
   }
@@ -177,10 +177,11 @@ void print(const Session& session, const Outcome& outcome) {
     body["recordings"] = driven.recordings;
     return print_document("moves", body, session.json);
   }
-  for (const auto& one : driven.moves) std::cout << describe_move(one) << '\n';
-  for (const auto& recording : driven.recordings) std::cout << "recording " << recording << '\n';
-  if (proposal)
-    for (const auto& line : to_lines(*proposal)) std::cout << line << '\n';
+  for (const auto& one : driven.moves) print_line(describe_move(one));
+  for (const auto& recording : driven.recordings) print_line("recording " + recording);
+  if (!proposal) return;
+  for (const auto& line : to_lines(*proposal)) print_line(line);
+  std::cout << wrapped_command("Next: " + next_command(*proposal), text_columns());
 }
 
 int finish(const Session& session, const Options& options, const Result<Outcome>& outcome) {

@@ -1,4 +1,6 @@
 // Scan pairs in, motions out: one JSON object a line. A line that cannot be used gets an answer of its own.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
@@ -109,8 +111,13 @@ int match_file(const std::string& path, calib::Matcher matcher, const Session& s
   const Unpacked text = is_gzip(bytes.value()) ? gunzip(bytes.value()) : Unpacked{bytes.value(), true, ""};
   if (!text.whole) warn(path + ": " + text.problem);
   std::istringstream file(text.bytes);
-  std::size_t pairs = 0;
+  std::size_t pairs = 0, read = 0;
+  ProgressLine progress;
   for (std::string line; std::getline(file, line);) {
+    // On a terminal the motions themselves show how far it is.
+    if (isatty(STDOUT_FILENO) != 1)
+      progress.show("matching", static_cast<double>(read) / static_cast<double>(text.bytes.size()));
+    read += line.size() + 1;
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     ++pairs;
     std::cout << match_pair(ordered_json::parse(line, nullptr, false), matcher).dump() << '\n';

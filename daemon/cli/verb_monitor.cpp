@@ -38,10 +38,10 @@ void print_event(const ordered_json& event, const Session& session) {
     return;
   }
   const auto seconds = static_cast<std::time_t>(event.value("time", std::int64_t{0}) / 1'000'000);
-  std::cout << fmt::format("{:%H:%M:%S}  {:<8}{:<18}{}", fmt::localtime(seconds),
-                           word_of(event.value("severity", -1)), event.value("code", ""),
-                           event.value("text", ""))
-            << std::endl;
+  print_line(fmt::format("{:%H:%M:%S}  {:<8}{:<18}{}", fmt::localtime(seconds),
+                         word_of(event.value("severity", -1)), event.value("code", ""),
+                         event.value("text", "")));
+  std::cout << std::flush;
 }
 
 /// State of the daemon as an event, when it is another than before.

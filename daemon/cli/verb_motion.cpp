@@ -43,9 +43,9 @@ int print_result(const Session& session, const std::string& document, const Resu
   if (session.json != JsonMode::off) {
     print_document(document, body, session.json);
   } else if (document == "plan") {
-    std::cout << to_text(describe_plan(body), session.legend);
+    print_text(describe_plan(body), session.legend);
   } else if (body.contains("steps") || body.contains("parameters")) {
-    std::cout << to_text(describe_write_back(body), session.legend);
+    print_text(describe_write_back(body), session.legend);
   } else {
     std::cout << body.dump(2) << '\n';
   }
@@ -135,7 +135,7 @@ void print_calibration(const Session& session, Calibration calibration,
                        const std::optional<ProvenApply>& applied) {
   if (applied) calibration.extensions["proof"] = to_json(*applied).dump();
   if (session.json != JsonMode::off) return print_json(to_json(calibration), session.json);
-  if (applied) std::cout << to_text(describe(*applied), session.legend);
+  if (applied) print_text(describe(*applied), session.legend);
 }
 
 int calibrate(const Session& session, const Options& options) {
@@ -154,7 +154,7 @@ int calibrate(const Session& session, const Options& options) {
   auto solved = drive_and_solve(session, options, wanted);
   if (!solved) return report_error(solved.error(), session.json);
   const Solved best = second_drive(session, options, std::move(solved).value());
-  if (session.json == JsonMode::off) std::cout << to_text(describe(best.calibration), session.legend);
+  if (session.json == JsonMode::off) print_text(describe(best.calibration), session.legend);
   if (!options.file.empty())
     if (auto written = write_output(options.file, to_json(best.calibration)); !written)
       return report_lost(written.error(), best);
@@ -188,7 +188,7 @@ int check(const Session& session, const Options& options) {
   if (session.json != JsonMode::off)
     print_document("checks", result.value(), session.json);
   else
-    std::cout << to_text(describe_checks(checks), session.legend);
+    print_text(describe_checks(checks), session.legend);
   return result.value()["wiring"].value("outcome", "") == "fail" ? kFailure : kDone;
 }
 

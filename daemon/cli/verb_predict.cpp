@@ -101,11 +101,11 @@ void print_end(const std::vector<PoseSample>& poses, const std::optional<std::ar
     if (deviation) body["std"] = *deviation;
     return print_document("prediction", body, session.json);
   }
-  std::cout << fmt::format("{} poses, end x {:.4f} m, y {:.4f} m, yaw {:.5f} rad\n", poses.size(), end.x,
-                           end.y, end.yaw);
+  print_line(fmt::format("{} poses, end x {:.4f} m, y {:.4f} m, yaw {:.5f} rad", poses.size(), end.x, end.y,
+                         end.yaw));
   if (deviation)
-    std::cout << fmt::format("standard deviations there: x {:.4f} m, y {:.4f} m, yaw {:.5f} rad\n",
-                             (*deviation)[0], (*deviation)[1], (*deviation)[2]);
+    print_line(fmt::format("standard deviations there: x {:.4f} m, y {:.4f} m, yaw {:.5f} rad",
+                           (*deviation)[0], (*deviation)[1], (*deviation)[2]));
 }
 
 int predict_trajectory(const Options& options, const Session& session) {

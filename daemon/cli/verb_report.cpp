@@ -30,7 +30,7 @@ int show_report(const Options& options, const Session& session) {
   if (session.json != JsonMode::off)
     print_json(to_json(calibration.value()), session.json);
   else
-    std::cout << to_text(describe(calibration.value()), session.legend);
+    print_text(describe(calibration.value()), session.legend);
   return kDone;
 }
 

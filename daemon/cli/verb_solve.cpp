@@ -74,9 +74,7 @@ int solve_recordings(const Options& options, const Session& session) {
   if (!recordings) return report_error(recordings.error(), session.json);
   for (Recording& recording : recordings.value()) recording = without_intensities(std::move(recording));
   ProgressLine line;
-  const auto progress = [&line](const std::string& phase, double fraction) {
-    line.show(fmt::format("{} {:3.0f} %", phase, 100.0 * fraction));
-  };
+  const auto progress = [&line](const std::string& phase, double fraction) { line.show(phase, fraction); };
   calib::Solution solution = calib::solve_with_pairs(recordings.value(), how, progress);
   Calibration& calibration = solution.calibration;
   calibration.extensions["settings"] = settings_of(options);
@@ -84,7 +82,7 @@ int solve_recordings(const Options& options, const Session& session) {
   if (auto written = write_results(options, solution); !written)
     return report_error(written.error(), session.json);
   if (session.json == JsonMode::off)
-    std::cout << to_text(describe(calibration), session.legend);
+    print_text(describe(calibration), session.legend);
   else
     print_json(to_json(calibration), session.json);
   return calibration.verdict == Verdict::refused ? kRefused : kDone;

@@ -73,9 +73,34 @@ void LidarLink::lose(const Error& error, double now) {
   ++failures_;
 }
 
+std::string LidarLink::host_name() const {
+  if (!address_.network || drivers::is_numeric(address_.path)) return "";
+  return address_.path.substr(0, address_.path.rfind(':'));
+}
+
+/// A name is looked up anew for each connection: the lidar may have got another address since.
+/// @return nullopt: no answer yet
+std::optional<Result<std::string>> LidarLink::address_now() {
+  if (!lookup_) {
+    if (host_name().empty()) return address_.path;
+    lookup_ = std::make_unique<drivers::HostLookup>(address_.path);
+    if (!problem_)
+      problem_ = {ErrorCode::device, "the name \"" + host_name() + "\" is being looked up", device_,
+                  "wait, or write the address in numbers"};
+  }
+  const auto answer = lookup_->answer();
+  if (!answer) return std::nullopt;
+  lookup_.reset();
+  if (answer->ok()) found_address_ = answer->value();
+  return answer;
+}
+
 void LidarLink::open_when_due(double now) {
   if (stream_ || now < next_try_) return;
-  auto opened = address_.network ? drivers::open_tcp(address_.path)
+  const auto address = address_now();
+  if (!address) return;
+  if (!*address) return lose(address->error(), now);
+  auto opened = address_.network ? drivers::open_tcp(address->value())
                                  : drivers::open_serial(address_.path, address_.baud, address_.lines);
   if (!opened) return lose(opened.error(), now);
   stream_ = std::move(opened).value();

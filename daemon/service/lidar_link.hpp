@@ -11,6 +11,7 @@
 #include "drivers/byte_stream.hpp"
 #include "drivers/lidar/lidar.hpp"
 #include "drivers/serial/port.hpp"
+#include "drivers/tcp/host_lookup.hpp"
 
 namespace odomcalib {
 
@@ -32,6 +33,10 @@ class LidarLink {
   [[nodiscard]] std::optional<Error> problem() const;
   [[nodiscard]] drivers::Counters counters() const;
   [[nodiscard]] const std::string& device() const { return device_; }
+  /// Host that is named in the device and has to be looked up; empty where its address is in numbers.
+  [[nodiscard]] std::string host_name() const;
+  /// What the name stood for when the connection was made; empty before, and without a name.
+  [[nodiscard]] const std::string& found_address() const { return found_address_; }
   /// As the device states it; empty before.
   [[nodiscard]] std::string identity() const { return lidar_->identity(); }
 
@@ -51,6 +56,7 @@ class LidarLink {
   LidarLink(std::string device, Address address, std::unique_ptr<drivers::Lidar> lidar);
   static Result<Address> address_of(const std::string& device, const drivers::LidarType& type);
   void open_when_due(double now);
+  [[nodiscard]] std::optional<Result<std::string>> address_now();
   bool finish_connecting(double now);
   void lose(const Error& error, double now);
   void watch(double now);
@@ -60,6 +66,8 @@ class LidarLink {
   Address address_;
   std::unique_ptr<drivers::Lidar> lidar_;
   std::unique_ptr<drivers::ByteStream> stream_;
+  std::unique_ptr<drivers::HostLookup> lookup_;  // while it runs
+  std::string found_address_;
   bool connected_ = false;
   std::optional<Error> problem_;       // with the connection
   std::optional<Error> data_problem_;  // with what comes over it, until something valid comes

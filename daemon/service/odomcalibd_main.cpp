@@ -132,6 +132,18 @@ int refuse(const odomcalib::Error& error, const std::string& path) {
   return kUsage;
 }
 
+// Whoever reads the journal sees that scans depend on a name service; a name that has no address is told
+// later, as whatever else keeps the lidar away.
+void tell_of_name(const odomcalib::Config& config) {
+  const auto lidar = odomcalib::LidarLink::create(config.lidar_device, config.lidar_type);
+  if (lidar && !lidar.value().host_name().empty())
+    spdlog::info(
+        "lidar.device has the name of a host, {}: it is looked up before each connection; an address in "
+        "numbers "
+        "needs no name service",
+        lidar.value().host_name());
+}
+
 int serve(const std::string& path) {
   const auto config = odomcalib::read_config(path);
   if (!config) return refuse(config.error(), path);
@@ -148,6 +160,7 @@ int serve(const std::string& path) {
     return kFailure;
   }
   spdlog::info("odomcalibd {} serves {}", odomcalib::kVersion, config.value().socket.string());
+  tell_of_name(config.value());
   run(*service.value(), clock, log);
   service.value().reset();
   log.finish();

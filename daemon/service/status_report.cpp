@@ -85,6 +85,13 @@ std::string found_at(bool connected, const std::optional<Error>& problem) {
   return connected ? "open" : "not open yet";
 }
 
+/// Of a lidar whose host is named: what the name stands for, so that a wrong one is seen.
+std::string by_name(const LidarLink& link) {
+  const std::string name = link.host_name();
+  if (name.empty() || link.found_address().empty()) return "";
+  return ", " + name + " is " + link.found_address();
+}
+
 // What a controller cannot hold stays on the host, value by value.
 void add_host_values(const std::vector<HostValue>& values, ordered_json& list) {
   for (const HostValue& value : values)
@@ -244,7 +251,7 @@ ordered_json check_report(const Bench& bench) {
   list.push_back(check("encoders", !drive.encoders.stale(bench.now),
                        drive.encoders.stale(bench.now).value_or("counts arrive"), "check the bus"));
   list.push_back(check("lidar port", around.link.connected(),
-                       found_at(around.link.connected(), around.link.problem()),
+                       found_at(around.link.connected(), around.link.problem()) + by_name(around.link),
                        "connect it; check lidar.device"));
   list.push_back(check("scans", !around.scans.stale(bench.now),
                        around.scans.stale(bench.now).value_or("scans arrive"), "check lidar and baud rate"));

@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "drivers/settings.hpp"
+#include "drivers/tcp/host_and_port.hpp"
 
 namespace odomcalib::drivers {
 namespace {
@@ -74,19 +75,6 @@ class TcpStream final : public ByteStream {
   int fd_;
   bool connected_ = false;
 };
-
-struct HostAndPort {
-  std::string host, port;
-};
-
-/// Splits "1.2.3.4:80" and "[::1]:80".
-HostAndPort split(const std::string& address) {
-  const std::size_t colon = address.rfind(':');
-  if (colon == std::string::npos) return {};
-  std::string host = address.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  return {host, address.substr(colon + 1)};
-}
 
 /// No delay for the short requests; a dead peer is noticed even while nothing is sent.
 void set_options(int fd) {

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""The verbs that need the daemon, against the simulated robot in real time: exit status, and the published schema of their JSON.
+"""The verbs that need the daemon, against the simulated robot in real time: exit status, and the published schema of their JSON,
+or with --text whether their text fits a terminal.
 
-usage: tests/integration/live_verbs.py PROGRAMS SCHEMAS PROFILE"""
+usage: tests/integration/live_verbs.py PROGRAMS SCHEMAS PROFILE [--text]"""
 
 import json
 import sys
 
 from schemas import Schemas
 from simulated_robot import SimulatedRobot
+from text_width import too_wide
 
 DONE, USAGE = 0, 2
 STOPPED = {4, 5, 6}  # protective stops: on a busy machine the simulated robot itself may be late
@@ -42,10 +44,10 @@ TABLE = [
 FILES = [("lengths.json", "calibration")]
 
 
-def call_until_it_goes(robot, words):
+def call_until_it_goes(robot, words, *options):
     for _ in range(TRIES):
         robot.wait_until(robot.ready, "the controller does not come to rest")
-        done = robot.ctl("--json=short", *words)
+        done = robot.ctl(*options, *words)
         if done.returncode not in STOPPED:
             break
         print("once more, after exit status %d: %s" % (done.returncode, done.stderr.strip()))
@@ -54,7 +56,7 @@ def call_until_it_goes(robot, words):
 
 def check_call(robot, schemas, verb, arguments, status, schema):
     call = (verb + " " + arguments).strip()
-    done = call_until_it_goes(robot, call.split())
+    done = call_until_it_goes(robot, call.split(), "--json=short")
     found = [] if done.returncode == status else ["status %d, not %d: %s" % (done.returncode, status, done.stderr.strip())]
     documents = [json.loads(line) for line in done.stdout.splitlines()]
     found += ["no document"] if not documents else []
@@ -63,11 +65,19 @@ def check_call(robot, schemas, verb, arguments, status, schema):
     return [call + ": " + fault for fault in found]
 
 
-def main(programs, schema_folder, profile):
+def check_text(robot, verb, arguments, status, _):
+    call = (verb + " " + arguments).strip()
+    done = call_until_it_goes(robot, call.split())
+    found = [] if done.returncode == status else ["status %d, not %d: %s" % (done.returncode, status, done.stderr.strip())]
+    found += ["%d columns: %s" % (len(line), line) for line in too_wide(done.stdout)]
+    return [call + ": " + fault for fault in found]
+
+
+def main(programs, schema_folder, profile, text):
     schemas, faults = Schemas(schema_folder), []
     with SimulatedRobot(programs, profile, seed=3) as robot:
         for row in TABLE:
-            faults += check_call(robot, schemas, *row)
+            faults += check_text(robot, *row) if text else check_call(robot, schemas, *row)
         for name, schema in FILES:
             with open(robot.path(name), encoding="utf-8") as file:
                 faults += schemas.faults(json.load(file), schema)
@@ -78,6 +88,6 @@ def main(programs, schema_folder, profile):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 4:
+    if len(sys.argv) not in (4, 5) or sys.argv[4:] not in ([], ["--text"]):
         sys.exit(__doc__)
-    sys.exit(main(*sys.argv[1:]))
+    sys.exit(main(*sys.argv[1:4], text=len(sys.argv) == 5))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Every verb of odomcalibctl in one table: what --help says, which exit status a call has, and which published schema its JSON
-keeps to. A verb that the program lists and the table lacks is a failure, and so is one that the program lacks, and a schema
+"""Every verb of odomcalibctl in one table: what --help says, which exit status a call has, which published schema its JSON
+keeps to, and whether its text fits a terminal. A verb that the program lists and the table lacks is a failure, and so is one that the program lacks, and a schema
 that no call shows.
 
 usage: tests/integration/verbs_table.py ODOMCALIBCTL SCHEMAS SAMPLE"""
@@ -16,6 +16,7 @@ import tempfile
 
 import live_verbs
 from schemas import Schemas
+from text_width import too_wide
 
 DONE, FAILURE, USAGE, REFUSED, NO_DAEMON = 0, 1, 2, 3, 9
 ABSENT = "/nonexistent/file"
@@ -70,6 +71,10 @@ TABLE = [
 # Files that the calls above read and write, and the schema of each or of its lines.
 FILES = [("cal.json", "calibration"), ("good.json", "calibration"), ("drive.jsonl", "recording"), ("copy.jsonl", "recording"),
          ("pairs.jsonl", "pair")]
+
+
+# Verbs whose output is a file for other programs: JSON Lines, configurations.
+FOR_PROGRAMS = {"decode", "match", "export"}
 
 
 class Program:
@@ -149,6 +154,15 @@ def check_call(program, verb, arguments, status, schema):
     program.demand(schema != "error" or done.stderr.strip(), call + ": nothing for people on standard error")
 
 
+def check_text(program, verb, arguments, status, _):
+    call = " ".join([verb, arguments]).strip()
+    done = program.run("--socket", "/nonexistent/control", *call.split())
+    program.demand(done.returncode == status, "%s: status %d, not %d: %s" % (call, done.returncode, status, done.stderr))
+    if verb not in FOR_PROGRAMS:
+        for line in too_wide(done.stdout):
+            program.demand(False, "%s: %d columns: %s" % (call, len(line), line))
+
+
 def check_file(program, name, schema):
     with open(os.path.join(program.folder, name), encoding="utf-8") as file:
         text = file.read()
@@ -169,6 +183,7 @@ def main(path, schema_folder, sample):
             check_help(program, verb)
         for row in TABLE:
             check_call(program, *row)
+            check_text(program, *row)
         for row in FILES:
             check_file(program, *row)
     shown = {row[-1] for row in TABLE + FILES + live_verbs.TABLE}

@@ -2,12 +2,15 @@
 // pseudo-terminal or a loopback connection. Time is simulated, so that seconds take milliseconds.
 #include "daemon/service/lidar_link.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <thread>
 #include <utility>
 
 #include "tests/sim/wires/cola_device.hpp"
@@ -394,10 +397,45 @@ TEST(LidarLinks, what_a_lidar_cannot_be_reached_by_is_refused_with_an_example) {
     EXPECT_NE(made.error().text().find("needs a device like"), std::string::npos);
   }
   EXPECT_FALSE(LidarLink::create("serial:/dev/x", "ld99").ok());
-  auto named = LidarLink::create("tcp:sick.local", "sick");
+}
+
+/// What is said of a lidar at a name, when the name service has answered. Its own times pass outside of the
+/// clock.
+std::string told_of(LidarLink& link) {
+  for (int k = 0; k < 2000; ++k) {
+    link.step(At(0.001 * k));
+    const auto problem = link.problem();
+    const std::string said = link.connected() ? "connected" : problem ? problem->text() : "not open yet";
+    if (said.find("is being looked up") == std::string::npos) return said;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return "no answer";
+}
+
+TEST(LidarLinks, the_name_of_a_host_is_looked_up_and_what_it_stands_for_is_told) {
+  auto port = sim::TcpPort::open(0);
+  ASSERT_TRUE(port.ok());
+  auto named = LidarLink::create("tcp:localhost:" + std::to_string(port.value()->port()), "sick");
   ASSERT_TRUE(named.ok());
-  named.value().step(At(0.0));
-  EXPECT_NE(named.value().problem()->text().find("numeric"), std::string::npos);
+  EXPECT_EQ(named.value().host_name(), "localhost");
+  EXPECT_EQ(named.value().found_address(), "");
+  EXPECT_EQ(told_of(named.value()).find("has no address"), std::string::npos);
+  EXPECT_THAT(named.value().found_address(),
+              ::testing::AnyOf(::testing::HasSubstr("127.0.0.1:"), ::testing::HasSubstr("[::1]:")));
+  EXPECT_EQ(LidarLink::create("tcp:192.168.0.1", "sick").value().host_name(), "");
+  EXPECT_EQ(LidarLink::create("tcp:[fe80::1]", "sick").value().host_name(), "");
+}
+
+TEST(LidarLinks, a_name_without_an_address_is_no_hindrance_to_start_and_is_told) {
+  // Longer than a label may be: name services know that without asking anybody.
+  const std::string name(70, 'x');
+  auto named = LidarLink::create("tcp:" + name, "sick");
+  ASSERT_TRUE(named.ok()) << named.error().text();
+  EXPECT_EQ(named.value().host_name(), name);
+  const std::string said = told_of(named.value());
+  EXPECT_NE(said.find("the name \"" + name + "\" has no address"), std::string::npos) << said;
+  EXPECT_NE(said.find("in numbers"), std::string::npos) << said;
+  EXPECT_FALSE(named.value().connected());
 }
 
 }  // namespace
