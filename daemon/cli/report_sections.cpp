@@ -192,7 +192,8 @@ Section residual_shape_section(const ReportData& data) {
   }
   if (section.table.rows.empty()) return section;
   section.table.head = {
-      "", "", "mean", "std", "std/expected", "autocorrelation", "runs test", "std of reference", "of wheels"};
+      "",          "", "mean", "std", "std / expected", "correlation in time", "runs test", "reference std",
+      "wheels std"};
   section.figures = figures_of_residual(data);
   return section;
 }
@@ -210,18 +211,19 @@ Section settings_section(const Calibration& calibration) {
 }
 
 Section reading_section() {
-  return {"How to read this page",
-          {"Before: odometry with the nominal values. After: with the values of this file and its effects. "
-           "Both are "
-           "judged on parts of the recording that their values were not fitted to.",
-           "Noise floor: what the error would be if the model were perfect and only the noise of the "
-           "reference and of "
-           "the wheels remained. After cannot be much below it; well above it, something is still missing.",
-           "std/expected near 1 and a runs test within -2 to 2: the residual is noise. Larger: something is "
-           "missing "
-           "or the matches are worse than they say.",
-           "More: odomcalib-report(7)."},
-          {}};
+  return {
+      "How to read this page",
+      {"Before: odometry with the nominal values. After: with the values of this file and its effects. "
+       "Both are "
+       "judged on parts of the recording that their values were not fitted to.",
+       "Noise floor: what the error would be if the model were perfect and only the noise of the "
+       "reference and of "
+       "the wheels remained. After cannot be much below it; well above it, something is still missing.",
+       "std / expected near 1 and a runs test within -2 to 2: the residual is noise. Larger: something is "
+       "missing "
+       "or the matches are worse than they say.",
+       "More: odomcalib-report(7)."},
+      {}};
 }
 
 }  // namespace odomcalib::cli

@@ -89,11 +89,23 @@ bool of_numbers(const Table& table, std::size_t column) {
   return column > 0 && numbers > 0 && numbers >= others;
 }
 
-/// Takes from the widest columns what is more than their longest word, until all fit or no more can be taken.
-void narrow(Layout& layout, std::size_t width) {
+enum class Kind { words, label, numbers };
+
+Kind kind_of(const Table& table, std::size_t column) {
+  if (column == 0) return Kind::label;
+  return of_numbers(table, column) ? Kind::numbers : Kind::words;
+}
+
+/// Takes from the widest columns of a kind what is more than their longest word, until all fit or no more can
+/// be taken.
+/// @param parts into which a cell may be broken
+void narrow(Layout& layout, Kind kind, std::size_t parts, std::size_t width) {
   std::vector<std::size_t> least;
-  for (const std::size_t column : layout.chosen)
-    least.push_back(widest(*layout.table, column, longest_word, longest_word));
+  for (std::size_t k = 0; k < layout.chosen.size(); ++k)
+    least.push_back(kind_of(*layout.table, layout.chosen[k]) == kind
+                        ? std::max(widest(*layout.table, layout.chosen[k], longest_word, longest_word),
+                                   (layout.columns[k] + parts - 1) / parts)
+                        : layout.columns[k]);
   while (layout.total() > width) {
     std::size_t widest_one = layout.columns.size();
     for (std::size_t k = 0; k < layout.columns.size(); ++k)
@@ -105,14 +117,20 @@ void narrow(Layout& layout, std::size_t width) {
   }
 }
 
+/// Sentences are broken first, then heads, then what a row is of, and numbers last.
 Layout layout_of(const Table& table, std::vector<std::size_t> chosen, std::size_t width) {
+  constexpr std::size_t kHalves = 2, kWords = kAnyWidth / 2;
   Layout layout{&table, std::move(chosen), {}};
   for (const std::size_t column : layout.chosen)
     layout.columns.push_back(widest(table, column, width_of, width_of));
+  narrow(layout, Kind::words, kWords, width);
   if (layout.total() <= width) return layout;
   for (std::size_t k = 0; k < layout.chosen.size(); ++k)
     layout.columns[k] = widest(table, layout.chosen[k], longest_word, width_of);
-  if (layout.total() > width) narrow(layout, width);
+  narrow(layout, Kind::words, kWords, width);
+  narrow(layout, Kind::label, kHalves, width);
+  narrow(layout, Kind::numbers, kWords, width);
+  narrow(layout, Kind::label, kWords, width);
   return layout;
 }
 
