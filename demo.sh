@@ -153,8 +153,8 @@ for move in json.load(open(sys.argv[1]))["moves"]:
     x, y, yaw = move["odometry"]
     if move["error"] is None:
         sys.exit("no lidar reference")
-    print(f"{move['move']:<20} odometry {math.hypot(x, y):7.4f} m {math.degrees(yaw):9.3f} deg   against the lidar "
-          f"{1000 * move['error']['distance']:+7.1f} mm {math.degrees(move['error']['yaw']):+8.3f} deg")
+    print(f"{move['move']:<17} odometry {math.hypot(x, y):7.4f} m {math.degrees(yaw):8.3f} deg; error "
+          f"{1000 * move['error']['distance']:+6.1f} mm {math.degrees(move['error']['yaw']):+7.3f} deg")
 PYTHON
 }
 

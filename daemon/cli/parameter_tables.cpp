@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -26,13 +27,31 @@ std::string value_in(const ordered_json& object, const char* name, const std::st
   return shown(found->get<double>(), unit);
 }
 
+/// Where values are applied, each place once: it takes too many words for a column.
+std::vector<std::string> places_of(const ordered_json& parameters) {
+  std::vector<std::pair<std::string, std::string>> places;
+  for (const auto& p : parameters) {
+    const std::string place = p.value("applied_in", ""), name = readable(p.value("name", ""));
+    const auto known =
+        std::find_if(places.begin(), places.end(), [&](const auto& one) { return one.first == place; });
+    if (known == places.end())
+      places.emplace_back(place, name);
+    else
+      known->second += ", " + name;
+  }
+  std::vector<std::string> lines;
+  for (const auto& [place, names] : places)
+    if (!place.empty()) lines.push_back("applied in " + place + ": " + names);
+  return lines;
+}
+
 Section parameter_section(const ordered_json& parameters) {
-  Section section{"", {}, {{"", "in force", "calibrated", "unit", "stored in", "applied in"}, {}}};
+  Section section{"", places_of(parameters), {{"", "in force", "calibrated", "unit", "stored in"}, {}}};
   for (const auto& p : parameters) {
     const std::string unit = p.value("unit", "");
     section.table.rows.push_back({readable(p.value("name", "")), value_in(p, "value", unit),
                                   value_in(p, "calibrated", unit), display_of(unit).unit,
-                                  p.value("stored_in", ""), p.value("applied_in", "")});
+                                  p.value("stored_in", "")});
   }
   return section;
 }
