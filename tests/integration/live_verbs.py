@@ -65,12 +65,11 @@ def check_call(robot, schemas, verb, arguments, status, schema):
     return [call + ": " + fault for fault in found]
 
 
-def check_text(robot, verb, arguments, status, _):
+def check_text(robot, verb, arguments, *_):
+    """Statuses are the business of check_call()."""
     call = (verb + " " + arguments).strip()
     done = call_until_it_goes(robot, call.split())
-    found = [] if done.returncode == status else ["status %d, not %d: %s" % (done.returncode, status, done.stderr.strip())]
-    found += ["%d columns: %s" % (len(line), line) for line in too_wide(done.stdout)]
-    return [call + ": " + fault for fault in found]
+    return ["%s: %d columns: %s" % (call, len(line), line) for line in too_wide(done.stdout)]
 
 
 def main(programs, schema_folder, profile, text):
