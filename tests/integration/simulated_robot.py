@@ -85,8 +85,8 @@ class SimulatedRobot:
     def ctl(self, *words):
         """The command line, which has ended."""
         return subprocess.run([os.path.join(self.programs, "odomcalibctl"), "--socket", self.path("control"), *words],
-                              cwd=self.folder, check=False, text=True, timeout=60, stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                              cwd=self.folder, env={**os.environ, "COLUMNS": "80"}, check=False, text=True, timeout=60,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     def ready(self):
         done = self.ctl("--json=short", "status")

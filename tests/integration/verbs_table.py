@@ -80,9 +80,10 @@ FOR_PROGRAMS = {"decode", "match", "export"}
 class Program:
     def __init__(self, path, folder, schemas):
         self.path, self.folder, self.schemas, self.faults = os.path.abspath(path), folder, schemas, []
+        self.environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
 
     def run(self, *words):
-        return subprocess.run([self.path, *words], cwd=self.folder, check=False, text=True, timeout=60,
+        return subprocess.run([self.path, *words], cwd=self.folder, env=self.environment, check=False, text=True, timeout=60,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     def demand(self, holds, what):
