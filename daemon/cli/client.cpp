@@ -29,10 +29,23 @@ Error not_running(const std::string& socket, const std::string& what) {
 }
 
 // A busy machine must not delay the renewals. Without the right to this the robot may stop early, no more.
-void hurry() {
-  const sched_param priority{.sched_priority = settings::kPriority};
-  (void)sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &priority);
-}
+// What comes after the motion, such as a long report, is as urgent as before: on one processor it would keep
+// the daemon from its life signs.
+class Hurry {
+ public:
+  Hurry() : policy_(sched_getscheduler(0)) {
+    (void)sched_getparam(0, &before_);
+    const sched_param priority{.sched_priority = settings::kPriority};
+    (void)sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &priority);
+  }
+  ~Hurry() { (void)sched_setscheduler(0, policy_, &before_); }
+  Hurry(const Hurry&) = delete;
+  Hurry& operator=(const Hurry&) = delete;
+
+ private:
+  int policy_;
+  sched_param before_{};
+};
 
 std::string with_lease(const std::string& parameters, const std::string& lease) {
   auto body = ordered_json::parse(parameters, nullptr, false);
@@ -152,7 +165,7 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
   if (own && !*own) return own->error();
   Client& worker = own ? own->value() : *on;
   const SignalsCaught caught;
-  hurry();
+  const Hurry until_it_ends;
   const auto given = keeper.value().call("Acquire");
   if (!given) return given.error();
   const auto lease = ordered_json::parse(given.value(), nullptr, false).value("lease", std::string());

@@ -3,9 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <thread>
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
@@ -177,6 +182,47 @@ TEST(ProvenApply, lengths_that_stay_on_the_host_cannot_be_proven_by_the_controll
   parameters[2]["stored_in"] = "host";
   ASSERT_TRUE(unprovable(parameters));
   EXPECT_THAT(unprovable(parameters)->what, HasSubstr("track_width"));
+}
+
+/// A daemon that hangs up on whoever calls.
+class HangsUp {
+ public:
+  explicit HangsUp(const std::string& path) : fd_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(std::begin(address.sun_path), sizeof(address.sun_path) - 1);
+    EXPECT_EQ(bind(fd_, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    EXPECT_EQ(listen(fd_, 2), 0);
+    thread_ = std::thread([this] {
+      const int keeper = accept(fd_, nullptr, nullptr), worker = accept(fd_, nullptr, nullptr);
+      close(keeper);
+      close(worker);
+    });
+  }
+  ~HangsUp() {
+    thread_.join();
+    close(fd_);
+  }
+  HangsUp(const HangsUp&) = delete;
+  HangsUp& operator=(const HangsUp&) = delete;
+
+ private:
+  int fd_;
+  std::thread thread_;
+};
+
+// Without the right to another priority there is none to give back.
+TEST(CallWithLease, is_as_urgent_after_it_as_before) {
+  const int before = sched_getscheduler(0);
+  const std::string path = testing::TempDir() + "odomcalib-hangs-up-" + std::to_string(getpid());
+  {
+    const HangsUp daemon(path);
+    const auto answer = call_with_lease(
+        path, "Straight", "{}", [](const auto&) {}, WhenInterrupted::stop);
+    EXPECT_EQ(answer.error().code, ErrorCode::not_running);
+  }
+  EXPECT_EQ(sched_getscheduler(0), before);
+  unlink(path.c_str());
 }
 
 TEST(CallWithLease, begins_nothing_after_ctrl_c_but_what_takes_a_write_back_back) {
