@@ -192,8 +192,7 @@ Section residual_shape_section(const ReportData& data) {
   }
   if (section.table.rows.empty()) return section;
   section.table.head = {
-      "",          "", "mean", "std", "std / expected", "correlation in time", "runs test", "reference std",
-      "wheels std"};
+      "", "", "mean", "std", "std / expected", "autocorrelation", "runs test", "reference std", "wheels std"};
   section.figures = figures_of_residual(data);
   return section;
 }

@@ -139,8 +139,7 @@ void tell_of_name(const odomcalib::Config& config) {
   if (lidar && !lidar.value().host_name().empty())
     spdlog::info(
         "lidar.device has the name of a host, {}: it is looked up before each connection; an address in "
-        "numbers "
-        "needs no name service",
+        "numbers needs no name service",
         lidar.value().host_name());
 }
 
