@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <unordered_set>
+#include <utility>
 
 #include "daemon/routines/runner.hpp"
 #include "daemon/routines/settings.hpp"
@@ -22,6 +25,41 @@ Pose advanced(const Pose& pose, const Twist& twist, double dt) {
           pose.yaw + twist.w * dt};
 }
 
+class DistinctPoses {
+ public:
+  void add(const Pose& pose) {
+    const std::uint64_t cell = cell_of(pose);
+    if (!poses_.empty() && cell == last_) return;
+    last_ = cell;
+    if (taken_.insert(cell).second) poses_.push_back(pose);
+  }
+  std::vector<Pose> take() && { return std::move(poses_); }
+
+ private:
+  /// In one number: 24 bits for each coordinate are more than any robot drives, 16 for the heading than a
+  /// turn has.
+  static std::uint64_t cell_of(const Pose& pose) {
+    const auto nearest = [](double value, double size) {
+      return static_cast<std::uint64_t>(std::lround(value / size));
+    };
+    constexpr std::uint64_t kCoordinate = 0xFFFFFF, kHeading = 0xFFFF;
+    return (nearest(pose.x, settings::kSamePlace_m) & kCoordinate) << 40U |
+           (nearest(pose.y, settings::kSamePlace_m) & kCoordinate) << 16U |
+           (nearest(wrapped(pose.yaw), settings::kSameHeading_rad) & kHeading);
+  }
+
+  std::unordered_set<std::uint64_t> taken_;
+  std::uint64_t last_ = 0;
+  std::vector<Pose> poses_;
+};
+
+/// So long that the robot moves by half of what makes two poses, s.
+double preview_step(const Twist& twist) {
+  const double moved =
+      std::max(std::abs(twist.v) / settings::kSamePlace_m, std::abs(twist.w) / settings::kSameHeading_rad);
+  return std::clamp(0.5 / moved, settings::kShortestPreviewStep_s, settings::kLongestPreviewStep_s);
+}
+
 }  // namespace
 
 Limits capped(const Limits& wanted) {
@@ -39,7 +77,9 @@ WheelRates to_wheels(const Twist& twist, const WheelGeometry& geometry) {
           2.0 * (twist.v + half) / geometry.right_wheel_diameter};
 }
 
-double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
+double wrapped(double angle) {
+  return std::abs(angle) <= std::numbers::pi ? angle : std::remainder(angle, 2.0 * std::numbers::pi);
+}
 
 Move straight(double distance, double speed, double settle) {
   return {.name = distance < 0.0 ? "straight backward" : "straight forward",
@@ -87,12 +127,18 @@ Preview preview(const Plan& plan) {
   Preview seen;
   Runner runner(plan);
   Pose pose;
+  DistinctPoses distinct;
   while (!runner.done() && seen.duration < settings::kLongestPreview_s) {
-    seen.path.push_back(pose);
+    distinct.add(pose);
     seen.reach = std::max(seen.reach, std::hypot(pose.x, pose.y));
-    pose = advanced(pose, runner.step(seen.duration, pose), settings::kPreviewStep_s);
-    seen.duration += settings::kPreviewStep_s;
+    seen.heading = std::max(seen.heading, std::abs(pose.yaw));
+    const Twist twist = runner.step(seen.duration, pose);
+    const double step = preview_step(twist);
+    pose = advanced(pose, twist, step);
+    seen.duration += step;
   }
+  seen.path = std::move(distinct).take();
+  seen.end = pose;
   for (const Move& move : plan.moves) {
     if (move.direction.w == 0.0) seen.distance = std::max(seen.distance, move.amount);
     if (move.direction.w != 0.0) seen.turn = std::max(seen.turn, move.amount);

@@ -83,8 +83,12 @@ double expected_duration(const Move& move, const Limits& limits);
 
 struct Preview {
   double duration = 0.0;  ///< s
+  /// Poses that differ from each other: a plan that comes by a place again and again has one for it, so their
+  /// number is bounded by the way and not by the time.
   std::vector<Pose> path;
+  Pose end;               ///< where the plan leaves the robot
   double reach = 0.0;     ///< m, farthest point of the path from its start
+  double heading = 0.0;   ///< rad, largest heading away from that of the start, continuous over full turns
   double distance = 0.0;  ///< m, longest single straight move
   double turn = 0.0;      ///< rad, largest turn of a single move
 };

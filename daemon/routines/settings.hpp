@@ -33,8 +33,12 @@ inline constexpr int kMostRepeats = 20;
 
 // --- Preview ---------------------------------------------------------------------------------------------
 
-/// s of its steps, and of the longest. Chosen.
-inline constexpr double kPreviewStep_s = 0.02, kLongestPreview_s = 3600.0;
+/// m and rad, of poses that are one. Chosen: fine against any clearance.
+inline constexpr double kSamePlace_m = 0.02, kSameHeading_rad = 0.05;
+/// s of its steps, the shortest while the robot is fast, the longest while it stands or creeps: half a pose
+/// from one to the next; s of the longest preview. Chosen.
+inline constexpr double kShortestPreviewStep_s = 0.02, kLongestPreviewStep_s = kLongestStep_s,
+                        kLongestPreview_s = 3600.0;
 
 // --- Motions that people ask for -------------------------------------------------------------------------
 

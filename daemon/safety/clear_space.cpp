@@ -1,7 +1,9 @@
 #include "daemon/safety/clear_space.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "daemon/safety/settings.hpp"
 
@@ -17,13 +19,14 @@ Box box_of(const std::vector<routines::Pose>& poses, const Footprint& footprint,
   Box box;
   const double front = footprint.front + clearance, back = footprint.back + clearance;
   const double half_width = footprint.half_width + clearance;
-  for (const auto& pose : poses)
+  for (const auto& pose : poses) {
+    const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
     for (const double along : {front, -back})
       for (const double across : {half_width, -half_width}) {
-        const double x = pose.x + along * std::cos(pose.yaw) - across * std::sin(pose.yaw);
-        const double y = pose.y + along * std::sin(pose.yaw) + across * std::cos(pose.yaw);
+        const double x = pose.x + along * c - across * s, y = pose.y + along * s + across * c;
         box = {std::min(box.back, x), std::max(box.front, x), std::min(box.right, y), std::max(box.left, y)};
       }
+  }
   return box;
 }
 
@@ -41,6 +44,19 @@ std::optional<double> nearest(const std::vector<Point>& points, const Footprint&
     if (in_lane && towards.at(side) > 0.0 && (!found || towards.at(side) < *found)) found = towards.at(side);
   }
   return found;
+}
+
+/// Of poses that are nearer than this to each other one: finer than a cell nothing is drawn.
+std::vector<routines::Pose> thinned(const std::vector<routines::Pose>& poses, double place, double heading) {
+  std::set<std::array<long, 3>> taken;
+  std::vector<routines::Pose> out;
+  for (const auto& pose : poses)
+    if (taken
+            .insert({std::lround(pose.x / place), std::lround(pose.y / place),
+                     std::lround(routines::wrapped(pose.yaw) / heading)})
+            .second)
+      out.push_back(pose);
+  return out;
 }
 
 class Map {
@@ -88,18 +104,19 @@ class Map {
 
 ClearSpace clear_space(const std::vector<Point>& points, const routines::Preview& preview,
                        const Footprint& footprint, double clearance) {
-  const auto poses = distinct_poses(preview);
-  const Box box = box_of(poses, footprint, clearance);
+  const Box box = box_of(preview.path, footprint, clearance);
   const double widest = std::max(box.front - box.back, box.left - box.right);
   ClearSpace space;
   space.cell = std::max(settings::kMapCell_m, widest / settings::kMapCells);
   Map map(box, space.cell);
   map.fill({}, footprint.radius(), 'R', [&](const Point& cell) { return inside(cell, footprint, 0.0); });
-  const double reach =
-      std::hypot(std::max(footprint.front, footprint.back) + clearance, footprint.half_width + clearance);
-  for (const auto& pose : poses)
+  const double reach = reach_of(footprint, clearance);
+  for (const auto& pose : thinned(preview.path, 0.5 * space.cell, 0.5 * space.cell / reach))
     map.fill({pose.x, pose.y}, reach, '.',
-             [&](const Point& cell) { return near_robot(cell, pose, footprint, clearance); });
+             [&, c = std::cos(pose.yaw), s = std::sin(pose.yaw)](const Point& cell) {
+               const double dx = cell.x - pose.x, dy = cell.y - pose.y;
+               return inside({c * dx + s * dy, c * dy - s * dx}, footprint, clearance);
+             });
   for (const Point& point : points)
     if (!inside(point, footprint, 0.0)) map.mark(point, '#');
   space.rows = map.rows();

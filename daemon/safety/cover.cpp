@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "daemon/routines/runner.hpp"
 #include "daemon/safety/settings.hpp"
@@ -153,9 +155,14 @@ BlindArea Cover::blind(double now) const {
 std::vector<std::string> unseen_moves(const routines::Plan& plan, const BlindArea& blind,
                                       const ObstacleOptions& options) {
   std::vector<std::string> names;
+  // A plan has many moves and few ways to move.
+  std::map<std::pair<double, double>, bool> unseen;
   for (const Move& move : plan.moves) {
     if (std::find(names.begin(), names.end(), move.name) != names.end()) continue;
-    if (goes_unseen(fastest_twist(move, plan.limits), blind, options)) names.push_back(move.name);
+    const Twist twist = fastest_twist(move, plan.limits);
+    const auto [known, is_new] = unseen.try_emplace({twist.v, twist.w}, false);
+    if (is_new) known->second = goes_unseen(twist, blind, options);
+    if (known->second) names.push_back(move.name);
   }
   return names;
 }

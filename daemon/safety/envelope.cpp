@@ -16,10 +16,8 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 }  // namespace
 
 Envelope Envelope::of(const routines::Preview& preview) {
-  double turn = 0.0;
-  for (const auto& pose : preview.path) turn = std::max(turn, std::abs(pose.yaw));
   return {std::max(settings::kLeastReach_m, settings::kReachAllowed * preview.reach),
-          std::max(settings::kLeastTurn_rad, settings::kTurnAllowed * turn),
+          std::max(settings::kLeastTurn_rad, settings::kTurnAllowed * preview.heading),
           settings::kTimeAllowed * preview.duration};
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 #include "daemon/safety/settings.hpp"
 
@@ -125,35 +124,22 @@ void ObstacleGuard::turned(double t) {
   options_.reaction = std::min(period, settings::kScanTimeout) + settings::kReaction_s;
 }
 
-std::vector<Pose> distinct_poses(const routines::Preview& preview) {
-  const auto cell = [](double value, double size) { return std::lround(value / size); };
-  std::set<std::array<long, 3>> taken;
-  std::vector<Pose> out;
-  for (const Pose& pose : preview.path)
-    if (taken
-            .insert({cell(pose.x, settings::kSamePlace_m), cell(pose.y, settings::kSamePlace_m),
-                     cell(routines::wrapped(pose.yaw), settings::kSameHeading_rad)})
-            .second)
-      out.push_back(pose);
-  return out;
-}
-
-bool near_robot(const Point& point, const Pose& pose, const Footprint& footprint, double clearance) {
-  // Most points are far from most of a way: that costs no sine.
-  constexpr double kRounding = 1e-9;
-  const double along = std::max(footprint.front, footprint.back) + clearance;
-  const double across = footprint.half_width + clearance;
-  const double dx = point.x - pose.x, dy = point.y - pose.y;
-  if (dx * dx + dy * dy > along * along + across * across + kRounding) return false;
-  return inside(seen_from(pose, point), footprint, clearance);
+double reach_of(const Footprint& footprint, double clearance) {
+  return std::hypot(std::max(footprint.front, footprint.back) + clearance, footprint.half_width + clearance);
 }
 
 std::optional<std::string> occupied(const std::vector<Point>& points, const routines::Preview& preview,
                                     const Footprint& footprint, double clearance) {
-  const auto poses = distinct_poses(preview);
+  // Most points are far from most of a way: that costs no sine.
+  constexpr double kRounding = 1e-9;  // m
+  const double reach = reach_of(footprint, clearance) + kRounding;
   for (const Point& point : points) {
-    const auto near = [&](const Pose& pose) { return near_robot(point, pose, footprint, clearance); };
-    if (!inside(point, footprint, 0.0) && std::any_of(poses.begin(), poses.end(), near))
+    if (std::hypot(point.x, point.y) > preview.reach + reach) continue;
+    const auto near = [&](const Pose& pose) {
+      const double dx = point.x - pose.x, dy = point.y - pose.y;
+      return dx * dx + dy * dy <= reach * reach && inside(seen_from(pose, point), footprint, clearance);
+    };
+    if (!inside(point, footprint, 0.0) && std::any_of(preview.path.begin(), preview.path.end(), near))
       return fmt::format(
           "something stands {:.2f} m ahead and {:.2f} m to the left of the robot, nearer than "
           "{:.2f} m to its way",

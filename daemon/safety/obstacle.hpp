@@ -85,12 +85,8 @@ class ObstacleGuard {
   int free_scans_ = 0;
 };
 
-/// Poses of the preview that differ from each other: a plan that comes by a place again and again has one for
-/// it, so their number is bounded by the way and not by the time.
-std::vector<routines::Pose> distinct_poses(const routines::Preview& preview);
-
-/// Whether a point is nearer than `clearance` to the footprint of a robot at that pose.
-bool near_robot(const Point& point, const routines::Pose& pose, const Footprint& footprint, double clearance);
+/// m from the middle of the axle to the farthest point that is nearer than `clearance` to the footprint.
+double reach_of(const Footprint& footprint, double clearance);
 
 /// Before a motion: points nearer than `clearance` to the footprint anywhere on the previewed path.
 /// @return what is in the way, with its place, or nullopt

@@ -74,8 +74,6 @@ inline constexpr int kPoints = 3, kReleaseScans = 5;
 inline constexpr double kSpin_m_s = 0.02;
 /// Steps of an arc ahead. Chosen.
 inline constexpr int kArcSteps = 12;
-/// m and rad, of poses of a preview that are one. Chosen: fine against any clearance.
-inline constexpr double kSamePlace_m = 0.02, kSameHeading_rad = 0.05;
 
 /// m, edge of a cell of the map of the required space, and cells that it has at most. Chosen: a wheel is
 /// seen, and it fits a terminal.

@@ -179,8 +179,8 @@ TEST(NudgePlan, moves_a_few_centimetres_by_time_and_ends_where_it_began) {
   EXPECT_LT(seen.reach, 0.06);
   EXPECT_LT(seen.turn, 0.3);
   EXPECT_LT(seen.duration, 12.0);
-  EXPECT_NEAR(seen.path.back().x, 0.0, 0.002);
-  EXPECT_NEAR(seen.path.back().yaw, 0.0, 0.01);
+  EXPECT_NEAR(seen.end.x, 0.0, 0.002);
+  EXPECT_NEAR(seen.end.yaw, 0.0, 0.01);
 }
 
 }  // namespace

@@ -432,12 +432,12 @@ TEST(UnseenMoves, are_those_backward_and_on_the_spot_of_a_lidar_that_looks_ahead
   EXPECT_TRUE(unseen_moves(routines::spin_plan({}), around, {}).empty());
 }
 
-TEST(DistinctPoses, are_bounded_by_the_way_however_often_it_is_driven) {
+TEST(PreviewedPath, is_bounded_by_the_way_however_often_it_is_driven) {
   routines::SpinOptions options;
-  const auto once = distinct_poses(routines::preview(routines::spin_plan(options)));
+  const auto once = routines::preview(routines::spin_plan(options)).path;
   options.turns = 3.0;
   options.repeat = 4;
-  const auto often = distinct_poses(routines::preview(routines::spin_plan(options)));
+  const auto often = routines::preview(routines::spin_plan(options)).path;
   EXPECT_GT(once.size(), 60U);
   EXPECT_LT(often.size(), once.size() + 10U);
 }

@@ -1,0 +1,90 @@
+// What the answer to a call takes of the loop: no call, however large what it asks for, holds the loop up
+// while the robot stands. Processor time of the loop's own thread, so that other load does not count.
+#include <ctime>
+
+#include "tests/integration/whole_loop.hpp"
+
+namespace odomcalib {
+namespace {
+
+// s. What the specification allows a turn; programs with sanitizers are slower.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr double kLongestTurn = 0.400;
+#else
+constexpr double kLongestTurn = 0.020;
+#endif
+constexpr double kAnswered = 2.0;  // s
+
+double processor_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+struct Asked {
+  const char* name;
+  const char* method;
+  json parameters;
+};
+
+std::ostream& operator<<(std::ostream& out, const Asked& asked) { return out << asked.name; }
+
+class CallAtRest : public WholeLoop, public testing::WithParamInterface<Asked> {
+ protected:
+  using WholeLoop::adjust;
+  // What is asked for fits, so that it is refused for no other reason, and the lidar sees walls all around.
+  void adjust(sim::SimRobotOptions& options) override { options.room = sim::box_room(16.0, 16.0, 8.0, 8.0); }
+  /// The longest turn until the answer is there, s of processor time.
+  double longest_turn(TestClient& caller) {
+    double longest = 0.0;
+    reply_.reset();
+    for (const double end = clock_.time + kAnswered; clock_.time < end && !reply_;) {
+      robot_->step(0.002);
+      clock_.time += 0.002;
+      const double begin = processor_time();
+      service_->poll_once(0);
+      longest = std::max(longest, processor_time() - begin);
+      reply_ = caller.reply();
+    }
+    return longest;
+  }
+
+  std::optional<control::Reply> reply_;
+};
+
+TEST_P(CallAtRest, takes_less_than_20_ms_of_a_turn) {
+  acquire();
+  json parameters = GetParam().parameters;
+  parameters["lease"] = lease_;
+  double least = 1.0;  // of a few: what else happens on the machine only adds to it
+  for (int i = 0; i < 3; ++i) {
+    TestClient caller(folder_ / "control");
+    caller.call(GetParam().method, parameters);
+    least = std::min(least, longest_turn(caller));
+    ASSERT_TRUE(reply_.has_value());
+    EXPECT_EQ(reply_->error, "") << reply_->parameters;
+  }
+  std::printf("%.1f ms\n", 1e3 * least);
+  EXPECT_LT(least, kLongestTurn);
+}
+
+const Asked kAsked[] = {
+    {"status", "GetStatus", json::object()},
+    {"check", "Check", json::object()},
+    {"parameters", "GetParameters", json::object()},
+    {"calibrate", "Calibrate", {{"dry_run", true}}},
+    {"calibrate_again_and_again", "Calibrate", {{"dry_run", true}, {"options", {{"repeat", 20}}}}},
+    {"longest_straight", "Straight", {{"dry_run", true}, {"distance", 5.0}, {"speed", 0.15}, {"repeat", 20}}},
+    {"slowest_straight", "Straight", {{"dry_run", true}, {"distance", 5.0}, {"speed", 0.02}, {"repeat", 3}}},
+    {"longest_square",
+     "Straight",
+     {{"dry_run", true}, {"square", true}, {"distance", 2.0}, {"speed", 0.3}, {"repeat", 15}}},
+    {"longest_spin", "Spin", {{"dry_run", true}, {"turns", 10.0}, {"rate", 1.0}, {"repeat", 8}}},
+    {"slowest_spin", "Spin", {{"dry_run", true}, {"turns", 5.0}, {"rate", 0.05}, {"repeat", 1}}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Methods, CallAtRest, testing::ValuesIn(kAsked),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace odomcalib
