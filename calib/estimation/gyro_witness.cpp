@@ -269,7 +269,7 @@ Noise noise_of(const Turns& turns, const std::vector<Row>& rows, const System& s
   return noise;
 }
 
-/// Rows beyond any noise are taken out: a push, a hole in the samples that was not seen.
+/// Rows beyond any noise are taken out: a knock, a hole in the samples that was not seen.
 void whiten(const Turns& turns, const std::vector<Row>& rows, const Noise& noise, System& system) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);

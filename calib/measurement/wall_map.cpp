@@ -70,7 +70,7 @@ void merge(MapWall& into, const MapWall& piece) {
 
 }  // namespace
 
-MapWall* WallMap::find_alike(const MapWall& wall) {
+MapWall* WallMap::find_similar(const MapWall& wall) {
   for (MapWall& known : walls_) {
     if (known.normal.dot(wall.normal) < settings::kWallNormals) continue;
     const auto [low, high] = ends_along(wall, known);
@@ -86,7 +86,7 @@ void WallMap::insert(const matching::Walls& seen, const math::Pose& sensor) {
   for (const matching::Wall& wall : seen.walls) {
     if (wall.high - wall.low < settings::kShortestWall_m) continue;
     const MapWall piece = in_map(wall, frame);
-    if (MapWall* known = find_alike(piece))
+    if (MapWall* known = find_similar(piece))
       merge(*known, piece);
     else
       walls_.push_back(piece);

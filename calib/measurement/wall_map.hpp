@@ -65,7 +65,7 @@ class WallMap {
                                double range_noise) const;
 
  private:
-  [[nodiscard]] MapWall* find_alike(const MapWall& wall);
+  [[nodiscard]] MapWall* find_similar(const MapWall& wall);
   [[nodiscard]] std::optional<std::size_t> struck_by(const Eigen::Vector2d& from,
                                                      const Eigen::Vector2d& direction,
                                                      std::span<const std::uint32_t> near) const;

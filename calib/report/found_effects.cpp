@@ -87,7 +87,7 @@ EffectResult found_effect(const EffectPtr& effect, Eigen::Index first, const Fin
     result.evidence = {finding->validation.family_p_value, finding->validation.before,
                        finding->validation.after};
   } else {
-    result.aliases = effect->always_alike();
+    result.aliases = effect->observationally_equivalent();
     result.evidence = evidence_against(plain, found, plainest_size(*effect, first, fit));
   }
   return result;

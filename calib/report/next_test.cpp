@@ -11,7 +11,7 @@ namespace {
 /// Aliases that some motion separates from the effect.
 std::vector<std::string> separable(const EffectResult& result, const vehicle::Effect& effect) {
   std::vector<std::string> names = result.aliases;
-  for (const std::string& alike : effect.always_alike()) std::erase(names, alike);
+  for (const std::string& alike : effect.observationally_equivalent()) std::erase(names, alike);
   return names;
 }
 

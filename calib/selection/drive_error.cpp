@@ -19,7 +19,7 @@ constexpr const char* kOpenLoopPosition = "open_loop_10s_position";
 
 constexpr unsigned kSeed = 20010823;
 
-/// Predicted minus measured motion of each stretch, in the base's frame at its begin.
+/// Predicted minus measured motion of each evaluation window, in the base's frame at its begin.
 std::vector<math::Pose> errors_of(std::span<const measurement::FitData> data,
                                   const std::vector<EvaluationWindow>& windows,
                                   const std::vector<Eigen::VectorXd>& parameters,

@@ -47,7 +47,7 @@ std::vector<vehicle::Covariate> covariates_like(const std::vector<Candidate>& ca
 std::vector<std::string> aliases_among(const std::vector<Candidate>& candidates, std::size_t candidate,
                                        const std::vector<std::size_t>& competitors) {
   const vehicle::Effect& effect = *candidates[candidate].effect;
-  std::vector<std::string> aliases = effect.always_alike();
+  std::vector<std::string> aliases = effect.observationally_equivalent();
   for (const std::size_t competitor : competitors)
     if (candidates[competitor].effect->name() != effect.name())
       add_once(candidates[competitor].effect->name(), aliases);

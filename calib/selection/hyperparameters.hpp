@@ -19,9 +19,9 @@ struct Reshaped {
 std::vector<Reshaped> reshaped(const FitTask& task, const Reshaped& now,
                                const std::vector<terms::SmoothTerm>& shapes);
 
-/// How long a stop or how hard a push it takes, of the smooth terms whose -2 log L is below `enough`: the
-/// middle of what the events of this drive leave open. Where no stop was too short the longest, so that
-/// nothing is made up of stops shorter than any that was seen.
+/// How long a stop or how large an acceleration it takes, of the smooth terms whose -2 log L is below
+/// `enough`: the middle of what the events of this drive leave open. Where no stop was too short the longest,
+/// so that nothing is made up of stops shorter than any that was seen.
 /// @param shapes of one smooth term; one that takes an event is below
 const Reshaped& most_sensible_event(const std::vector<Reshaped>& shapes, double enough);
 

@@ -82,7 +82,7 @@ constexpr std::array kCovariates = {
     Covariate{"last turn", "", Covariate::mean,
               [](const vehicle::StepContext& c) { return c.previous_turn[vehicle::kUsualMemory]; }},
     Covariate{"last push", "", Covariate::mean,
-              [](const vehicle::StepContext& c) { return c.previous_push[vehicle::kUsualMemory]; }},
+              [](const vehicle::StepContext& c) { return c.previous_acceleration[vehicle::kUsualMemory]; }},
     Covariate{"place, x", "m", Covariate::mean, [](const vehicle::StepContext& c) { return c.x; }},
     Covariate{"place, y", "m", Covariate::mean, [](const vehicle::StepContext& c) { return c.y; }},
     Covariate{

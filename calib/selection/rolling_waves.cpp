@@ -75,7 +75,7 @@ Rolled rolled(const measurement::FitData& data, vehicle::Covariate covariate) {
   return out;
 }
 
-/// Mean of the cosine and the sine over a stretch.
+/// Mean of the cosine and the sine over a window.
 Eigen::Vector2d mean_wave(double begin, double end) {
   const double half = 0.5 * (end - begin), middle = 0.5 * (begin + end);
   const double damping = std::abs(half) < 1e-6 ? 1.0 : std::sin(half) / half;

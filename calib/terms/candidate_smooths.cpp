@@ -57,7 +57,7 @@ Channels channels_of(vehicle::Covariate covariate) {
       return {both_travel, left_travel, right_travel, track, sideways_path, yaw_path};
     case vehicle::Covariate::distance:
       return {};
-    case vehicle::Covariate::previous_push:
+    case vehicle::Covariate::previous_acceleration:
       return {both_travel, left_travel, right_travel, track};
   }
   return {};
@@ -183,7 +183,7 @@ std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* c
         smooths.push_back(smooth);
         smooths.back().memory = vehicle::kSwayLags.size() - 1;
       }
-      // What stays until the opposite push hardly resembles what fades.
+      // What stays until the opposite acceleration hardly resembles what fades.
       for (std::size_t memory = 0; memory < memories_of(covariate); ++memory)
         if (is_relay(covariate, memory) &&
             (memory - vehicle::kMemorySpans.size()) % settings::kEveryRelay == 0) {

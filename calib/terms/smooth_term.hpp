@@ -68,7 +68,7 @@ bool is_the_lidars(const SmoothTerm& smooth);
 /// Has a phase or an origin that the next drive does not share.
 bool is_of_one_drive(const SmoothTerm& smooth);
 
-/// Begins with a stop or a push, of which it is not known how long or how hard it has to be.
+/// Begins with a stop or an acceleration, of which it is not known how long or how large it has to be.
 bool takes_an_event(const SmoothTerm& smooth);
 
 /// All of it at one moment: no function that bends, but an event.

@@ -79,7 +79,7 @@ class Means {
 };
 
 /// How many from the first on have the same functions.
-std::size_t count_alike(std::span<const SmoothTerm> smooths) {
+std::size_t count_same_functions(std::span<const SmoothTerm> smooths) {
   std::size_t count = 1;
   while (count < smooths.size() && differ_in_channel_only(smooths.front(), smooths[count])) ++count;
   return count;
@@ -106,7 +106,7 @@ std::vector<SmoothTerm> all_centred(std::vector<SmoothTerm> smooths,
     means.emplace_back(function_count(smooth));
   }
   for (std::size_t k = 0; k < smooths.size(); k += alike.back())
-    alike.push_back(count_alike(std::span<const SmoothTerm>(smooths).subspan(k)));
+    alike.push_back(count_same_functions(std::span<const SmoothTerm>(smooths).subspan(k)));
   for (const vehicle::DriveModel* model : models) {
     const std::span<const vehicle::StepContext> context = model->context();
     for (std::size_t begin = 0; begin < context.size(); begin += kIntervals) {

@@ -103,7 +103,7 @@ bool is_phase(Covariate covariate) {
 bool is_angle(Covariate covariate) { return is_phase(covariate) || covariate == Covariate::heading; }
 
 bool is_memory(Covariate covariate) {
-  return covariate == Covariate::previous_turn || covariate == Covariate::previous_push;
+  return covariate == Covariate::previous_turn || covariate == Covariate::previous_acceleration;
 }
 
 bool is_distance_since(Covariate covariate) {
@@ -115,8 +115,8 @@ std::size_t memories_of(Covariate covariate) {
   switch (covariate) {
     case Covariate::previous_turn:
       return kMemorySpans.size();
-    case Covariate::previous_push:
-      return kMemorySpans.size() + kPushes.size();
+    case Covariate::previous_acceleration:
+      return kMemorySpans.size() + kAccelerationThresholds.size();
     case Covariate::turn_acceleration:
       return kSwayLags.size();
     case Covariate::since_stop:
@@ -127,7 +127,7 @@ std::size_t memories_of(Covariate covariate) {
 }
 
 bool is_relay(Covariate covariate, std::size_t memory) {
-  return covariate == Covariate::previous_push && memory >= kMemorySpans.size();
+  return covariate == Covariate::previous_acceleration && memory >= kMemorySpans.size();
 }
 
 double value_of(Covariate covariate, const StepContext& c, std::size_t memory) {
@@ -173,8 +173,8 @@ double value_of(Covariate covariate, const StepContext& c, std::size_t memory) {
       return c.since_stop[memory];
     case Covariate::previous_turn:
       return c.previous_turn[memory];
-    case Covariate::previous_push:
-      return c.previous_push[memory];
+    case Covariate::previous_acceleration:
+      return c.previous_acceleration[memory];
   }
   return 0.0;
 }

@@ -32,9 +32,9 @@ enum class Covariate {
   right_since_reversal,
   since_stop,
   previous_turn,
-  previous_push,
+  previous_acceleration,
 };
-inline constexpr Covariate kLastCovariate = Covariate::previous_push;
+inline constexpr Covariate kLastCovariate = Covariate::previous_acceleration;
 std::string to_string(Covariate covariate);
 /// nullopt when there is none of that name.
 std::optional<Covariate> covariate_from(const std::string& name);
@@ -63,8 +63,8 @@ std::size_t memories_of(Covariate covariate);
 bool is_relay(Covariate covariate, std::size_t memory);
 
 /// Value in an interval; of the position, x; of each wheel's own covariate, the left wheel's.
-/// @param memory index of the span over which what happened before fades, of the strength that a push must
-/// have (kPushes, after the spans), of the time for which it must have stood still
+/// @param memory index of the span over which what happened before fades, of the size that an acceleration
+/// must have (kAccelerationThresholds, after the spans), of the time for which it must have stood still
 double value_of(Covariate covariate, const StepContext& context, std::size_t memory = kUsualMemory);
 
 /// `travel` is signed and reverses with the motion, `path` is unsigned. Left, right, both: relative to the

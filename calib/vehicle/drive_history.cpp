@@ -85,7 +85,7 @@ void DriveHistory::advance(StepContext& c) {
   remember_stop(c);
   wind_up(c, step);
   unwind(c);
-  remember_push(c);
+  remember_acceleration(c);
   remember_turn(c, step.yaw);
   c.face(pose_.yaw + step.yaw / 2.0);
   c.x = pose_.x;
@@ -127,12 +127,12 @@ void DriveHistory::relax_turn(StepContext& c, const math::Pose& step) {
 }
 
 void DriveHistory::remember_stop(StepContext& c) {
-  if (pace_ >= 1.0) {
+  if (relative_speed_ >= 1.0) {
     if (stood_ > 0.0) fastest_ = 0.0;
     stood_ = 0.0;
   }
-  stood_ += c.dt * share_below_one(pace_, c.pace);
-  pace_ = c.pace;
+  stood_ += c.dt * share_below_one(relative_speed_, c.relative_speed);
+  relative_speed_ = c.relative_speed;
   for (std::size_t k = 0; k < kStops.size(); ++k)
     if (stood_ > kStops[k]) since_stop_[k] = 0.0;
   c.since_stop = since_stop_;
@@ -169,12 +169,13 @@ void DriveHistory::unwind(StepContext& c) {
 }
 
 /// Noise of the acceleration at steady speed must not wash the memory out.
-void DriveHistory::remember_push(StepContext& c) {
-  c.previous_push = previous_push_;
-  if (std::abs(c.push) > kPushes.front()) remember(previous_push_, c.push * c.dt / settings::kPushMemory);
-  for (std::size_t k = 0; k < kPushes.size(); ++k)
-    if (std::abs(c.hardest_push) > kPushes[k])
-      previous_push_[kMemorySpans.size() + k] = std::copysign(1.0, c.hardest_push);
+void DriveHistory::remember_acceleration(StepContext& c) {
+  c.previous_acceleration = previous_acceleration_;
+  if (std::abs(c.forward_acceleration) > kAccelerationThresholds.front())
+    remember(previous_acceleration_, c.forward_acceleration * c.dt / settings::kAccelerationMemory_m_s);
+  for (std::size_t k = 0; k < kAccelerationThresholds.size(); ++k)
+    if (std::abs(c.peak_acceleration) > kAccelerationThresholds[k])
+      previous_acceleration_[kMemorySpans.size() + k] = std::copysign(1.0, c.peak_acceleration);
 }
 
 void DriveHistory::remember_turn(StepContext& c, double yaw) {

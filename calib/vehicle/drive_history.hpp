@@ -41,7 +41,7 @@ class DriveHistory {
   void remember_stop(StepContext& context);
   void wind_up(const StepContext& context, const math::Pose& step);
   void unwind(StepContext& context);
-  void remember_push(StepContext& context);
+  void remember_acceleration(StepContext& context);
   void remember_turn(StepContext& context, double yaw);
 
   wheels::BaseParameters base_;
@@ -52,14 +52,14 @@ class DriveHistory {
   double direction_ = 0.0;
   double since_reversal_ = settings::kBeforeTheDrive;
   double distance_ = 0.0;
-  double pace_ = 0.0;
+  double relative_speed_ = 0.0;
   double stood_ = 0.0;  ///< s
   std::array<Unwound, kWindings> wound_{};
   double fastest_ = 0.0;  ///< m/s
   std::array<double, kStops.size()> since_stop_;
   std::array<double, kRelaxations.size()> relaxed_turn_rate_{}, relaxed_lateral_acceleration_{};
   Memory previous_turn_{};
-  PushMemory previous_push_{};
+  AccelerationMemory previous_acceleration_{};
   std::array<double, kCasters> caster_{};  ///< rad, direction in which each would roll, base axes
 };
 

@@ -51,7 +51,7 @@ class Effect {
   /// Names of the effects that look alike, and the motion that separates them.
   [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
   /// Names that no motion can separate from this one: listed beside it whenever it is found.
-  [[nodiscard]] virtual std::vector<std::string> always_alike() const { return {}; }
+  [[nodiscard]] virtual std::vector<std::string> observationally_equivalent() const { return {}; }
   [[nodiscard]] virtual std::string separating_motion() const { return {}; }
   /// The motion that separates them, as a manoeuvre that can be driven in a small area; empty: none.
   [[nodiscard]] virtual std::string manoeuvre() const { return {}; }

@@ -38,12 +38,12 @@ inline constexpr std::array<double, 8> kMemorySpans = {0.3, 1.0, 3.3, 0.2, 0.45,
 inline constexpr std::size_t kUsualMemory = 1;
 using Memory = std::array<double, kMemorySpans.size()>;
 
-/// m/s^2; what a push of such strength moved stays until one the other way (the relay of Krasnosel'skii and
-/// Pokrovskii, Systems with Hysteresis, 1989, section 28, its thresholds symmetrical).
-inline constexpr std::array<double, 13> kPushes = {0.1,  0.12, 0.145, 0.17, 0.205, 0.25, 0.3,
-                                                   0.36, 0.43, 0.5,   0.6,  0.75,  0.9};
+/// m/s^2; what an acceleration of such size moved stays until one the other way (the relay of Krasnosel'skii
+/// and Pokrovskii, Systems with Hysteresis, 1989, section 28, its thresholds symmetrical).
+inline constexpr std::array<double, 13> kAccelerationThresholds = {0.1,  0.12, 0.145, 0.17, 0.205, 0.25, 0.3,
+                                                                   0.36, 0.43, 0.5,   0.6,  0.75,  0.9};
 /// Means as in Memory, then relays.
-using PushMemory = std::array<double, kMemorySpans.size() + kPushes.size()>;
+using AccelerationMemory = std::array<double, kMemorySpans.size() + kAccelerationThresholds.size()>;
 
 /// s; how long a robot has to stand until something sticks is not known either. Shorter stops are reversals.
 inline constexpr std::array<double, 14> kStops = {0.12,  0.14, 0.155, 0.17, 0.19, 0.21, 0.23,
@@ -97,11 +97,12 @@ struct alignas(64) StepContext {
   double left_acceleration = 0.0, right_acceleration = 0.0;  ///< m/s^2
   double left_acceleration_change = 0.0,
          right_acceleration_change = 0.0;  ///< over the interval, m/s^2
-  double pace = 0.0;          ///< mean speed of the rims of late, in units of the least that is no standing
-  double push = 0.0;          ///< forward acceleration, m/s^2
-  double hardest_push = 0.0;  ///< which it will come to before it falls below the least of kPushes, m/s^2
-  double speed = 0.0;         ///< forward, m/s
-  double turn_rate = 0.0;     ///< rad/s
+  double relative_speed = 0.0;  ///< mean speed of the rims of late, in units of the least that is no standing
+  double forward_acceleration = 0.0;  ///< m/s^2
+  /// Which it comes to before it falls below the least threshold, m/s^2.
+  double peak_acceleration = 0.0;
+  double speed = 0.0;                                           ///< forward, m/s
+  double turn_rate = 0.0;                                       ///< rad/s
   Sways turn_acceleration_before{}, turn_acceleration_after{};  ///< rad/s^2, at begin and end, late by each
   /// What makes tyres slip sideways, its sign that of the force, lagging by each of kRelaxations: the turn
   /// rate, rad/s, and the lateral acceleration, m/s^2. Not smoothed: the tyres do that.
@@ -115,8 +116,9 @@ struct alignas(64) StepContext {
   LostToPlay left_lost{}, right_lost{};
   /// Mean way of the two rims since the robot last stood still for each of kStops, m.
   std::array<double, kStops.size()> since_stop{};
-  Memory previous_turn{};      ///< which way it turned lately: mean of the turn's sign over a radian, -1 to 1
-  PushMemory previous_push{};  ///< whether it was sped up or slowed down lately: the same over 0.1 m/s
+  Memory previous_turn{};  ///< which way it turned lately: mean of the turn's sign over a radian, -1 to 1
+  /// Whether it was sped up or slowed down lately: the same over 0.1 m/s.
+  AccelerationMemory previous_acceleration{};
   /// Sine of the angle by which a caster behind the axle still points past the way its pivot moves, for each
   /// trail and lean: -1 to 1.
   std::array<double, kCasters> caster{};

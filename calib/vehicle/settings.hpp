@@ -22,8 +22,8 @@ inline constexpr double kWindWay_m = 0.05;
 inline constexpr double kWindTurn_rad = 0.15;
 /// s, in which what was wound up unwinds at rest. Chosen.
 inline constexpr double kUnwind_s = 0.15;
-/// m/s, change of speed that a push is remembered over. Chosen.
-inline constexpr double kPushMemory = 0.1;
+/// m/s, change of speed that an acceleration is remembered over. Chosen.
+inline constexpr double kAccelerationMemory_m_s = 0.1;
 /// m or rad: the drive begins as if the last reversal and the last stop lay so far back. Chosen.
 inline constexpr double kBeforeTheDrive = 1e3;
 /// Counts; coming back by no more is no reversal. Chosen.
@@ -42,9 +42,9 @@ inline constexpr std::size_t kSlowIntervals = 3;
 /// counts in them, mean of both wheels. Chosen.
 inline constexpr double kFewCounts = 1.5;
 /// m/s^2, deviation of an acceleration that a threshold is compared with. Chosen.
-inline constexpr double kPushNoise = 0.03;
+inline constexpr double kAccelerationNoise = 0.03;
 /// s; stamps are no better than to a millisecond. Chosen.
-inline constexpr double kShortestPush_s = 0.08;
+inline constexpr double kShortestAccelerationWindow_s = 0.08;
 /// Intervals that a curvature takes, and with some leeway. Derived: a parabola has three coefficients. The
 /// leeway is chosen.
 inline constexpr std::size_t kCurvatureIntervals = 3;

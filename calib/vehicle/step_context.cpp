@@ -134,38 +134,41 @@ void fill_speed_magnitudes(std::vector<StepContext>& contexts, const wheels::Whe
     for (std::size_t k = from; k < to; ++k)
       way += 0.5 * (base.left_radius * std::abs(track.left[k + 1] - track.left[k]) +
                     base.right_radius * std::abs(track.right[k + 1] - track.right[k]));
-    contexts[j].pace =
+    contexts[j].relative_speed =
         way / std::max(settings::kSlow * (track.t[to] - track.t[from]), settings::kFewCounts * count);
   }
 }
 
-/// A push may be short, but what lies beyond a threshold must not be noise: the curvature of a parabola
+/// Acceleration may be short, but what lies beyond a threshold must not be noise: the curvature of a parabola
 /// through values of deviation s, one every dt over a time T, has the deviation sqrt(720 dt / T^5) s.
-double duration_of_push(const wheels::WheelTrack& track, const wheels::BaseParameters& base) {
+double acceleration_window(const wheels::WheelTrack& track, const wheels::BaseParameters& base) {
   const double dt =
       (track.t.back() - track.t.front()) / std::max(1.0, static_cast<double>(track.t.size() - 1));
   const double count = track.tick_angle * std::max(base.left_radius, base.right_radius);
   const double variance = count * count / 12.0 / 2.0;  // of both wheels' mean
-  const double wanted = std::pow(720.0 * dt * variance / (settings::kPushNoise * settings::kPushNoise), 0.2);
-  return std::max(std::clamp(wanted, settings::kShortestPush_s, settings::kSmoothing_s),
+  const double wanted =
+      std::pow(720.0 * dt * variance / (settings::kAccelerationNoise * settings::kAccelerationNoise), 0.2);
+  return std::max(std::clamp(wanted, settings::kShortestAccelerationWindow_s, settings::kSmoothing_s),
                   settings::kCurvatureLeeway * dt);
 }
 
-double push_of(const WheelAccelerations& wheels, std::size_t k, const wheels::BaseParameters& base) {
+double forward_acceleration(const WheelAccelerations& wheels, std::size_t k,
+                            const wheels::BaseParameters& base) {
   return 0.5 * (base.left_radius * wheels.left[k] + base.right_radius * wheels.right[k]);
 }
 
-/// What a hard push moves it moves when it begins, however hard it has to be.
-void fill_pushes(std::vector<StepContext>& contexts, const wheels::WheelTrack& track, std::size_t first,
-                 const wheels::BaseParameters& base) {
-  const auto wheels = centred_accelerations(track, first, duration_of_push(track, base));
-  double hardest = 0.0;
+/// What strong acceleration moves it moves when that begins, however strong it has to be.
+void fill_forward_accelerations(std::vector<StepContext>& contexts, const wheels::WheelTrack& track,
+                                std::size_t first, const wheels::BaseParameters& base) {
+  const auto wheels = centred_accelerations(track, first, acceleration_window(track, base));
+  double peak = 0.0;
   for (std::size_t k = contexts.size(); k-- > 0;) {
-    const double push = push_of(wheels, k, base);
-    const bool goes_on = std::abs(push) > kPushes.front() && push * hardest > 0.0;
-    hardest = goes_on && std::abs(hardest) > std::abs(push) ? hardest : push;
-    contexts[k].push = push;
-    contexts[k].hardest_push = hardest;
+    const double acceleration = forward_acceleration(wheels, k, base);
+    const bool goes_on =
+        std::abs(acceleration) > kAccelerationThresholds.front() && acceleration * peak > 0.0;
+    peak = goes_on && std::abs(peak) > std::abs(acceleration) ? peak : acceleration;
+    contexts[k].forward_acceleration = acceleration;
+    contexts[k].peak_acceleration = peak;
   }
 }
 
@@ -220,7 +223,7 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
   }
   fill_accelerations_at_ends(contexts, track, first, base);
   fill_changes_of_acceleration(contexts);
-  fill_pushes(contexts, track, first, base);
+  fill_forward_accelerations(contexts, track, first, base);
   fill_speed_magnitudes(contexts, track, first, base);
   delay_sways(contexts);
   return contexts;
@@ -233,9 +236,10 @@ void see_from_the_past(StepContext& last, const wheels::WheelTrack& track,
                                            duration_for(track, base, settings::kSharpLatest_s));
   last.left_acceleration_change = base.left_radius * (wheels.left.back() - wheels.left.front());
   last.right_acceleration_change = base.right_radius * (wheels.right.back() - wheels.right.front());
-  const auto pushing =
-      latest_accelerations(track, n - std::min<std::size_t>(n, 3), duration_of_push(track, base));
-  last.push = last.hardest_push = push_of(pushing, pushing.left.size() - 1, base);
+  const auto latest =
+      latest_accelerations(track, n - std::min<std::size_t>(n, 3), acceleration_window(track, base));
+  last.forward_acceleration = last.peak_acceleration =
+      forward_acceleration(latest, latest.left.size() - 1, base);
 }
 
 std::vector<StepContext> make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base) {

@@ -16,6 +16,6 @@ inline constexpr double kGap_s = 0.5;
 // --- Wheel track -----------------------------------------------------------------------------------------
 
 /// Neighbours' durations. Chosen.
-inline constexpr double kAlikeIntervals = 2.0;
+inline constexpr double kSimilarIntervals = 2.0;
 
 }  // namespace odomcalib::calib::wheels::settings

@@ -35,8 +35,8 @@ Bend WheelTrack::bend(std::size_t interval) const {
   if (interval == 0 || interval + 2 >= t.size() || segment[interval - 1] != segment[interval + 2]) return {};
   const auto duration = [this](std::size_t k) { return t[k + 1] - t[k]; };
   const double own = duration(interval), before = duration(interval - 1), after = duration(interval + 1);
-  if (std::max(before, after) > settings::kAlikeIntervals * own ||
-      std::min(before, after) * settings::kAlikeIntervals < own)
+  if (std::max(before, after) > settings::kSimilarIntervals * own ||
+      std::min(before, after) * settings::kSimilarIntervals < own)
     return {};
   const double by_rate = own * own / (own + 0.5 * (before + after));
   return {by_rate / before, by_rate / after};

@@ -6,7 +6,8 @@
 
 namespace odomcalib::calib::terms {
 
-/// The sign of the last push (the relay of Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989).
+/// The sign of the last acceleration beyond a threshold (the relay of Krasnosel'skii and Pokrovskii, Systems
+/// with Hysteresis, 1989).
 struct Relay {
   [[nodiscard]] static BasisValues values(const Argument& at) { return {at.z}; }
   friend bool operator==(const Relay&, const Relay&) = default;

@@ -33,13 +33,13 @@ class AccelerationSlip final : public StepEffect<AccelerationSlip> {
 
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
-    step.left *= 1.0 - p[0] * push(c.left_acceleration, c.left_speed, plain(p[1]));
-    step.right *= 1.0 - p[0] * push(c.right_acceleration, c.right_speed, plain(p[1]));
+    step.left *= 1.0 - p[0] * growth_of_side(c.left_acceleration, c.left_speed, plain(p[1]));
+    step.right *= 1.0 - p[0] * growth_of_side(c.right_acceleration, c.right_speed, plain(p[1]));
   }
 
  private:
   /// Growth of the speed magnitude, m/s^2; of the other side zero.
-  static double push(double acceleration, double speed, double side) {
+  static double growth_of_side(double acceleration, double speed, double side) {
     const double growth = vehicle::growth_of_speed_magnitude(acceleration, speed);
     return growth * side < 0.0 ? 0.0 : growth;
   }

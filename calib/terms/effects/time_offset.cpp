@@ -18,7 +18,9 @@ class TimeOffset final : public StepEffect<TimeOffset> {
   [[nodiscard]] std::vector<std::string> aliases() const override {
     return {"encoder_lag", "acceleration_slip"};
   }
-  [[nodiscard]] std::vector<std::string> always_alike() const override { return {"encoder_lag"}; }
+  [[nodiscard]] std::vector<std::string> observationally_equivalent() const override {
+    return {"encoder_lag"};
+  }
   [[nodiscard]] std::string separating_motion() const override {
     return "equal accelerations at low and at high speed, forward and backward; a filter in the encoder path "
            "cannot be separated "

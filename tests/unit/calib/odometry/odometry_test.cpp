@@ -304,7 +304,7 @@ TEST(NextTest, what_no_motion_separates_asks_for_no_motion) {
   Calibration calibration = accepted(1e-5, 1e-5);
   EffectResult offset;
   offset.name = "time_offset";
-  offset.aliases = terms::find_effect("time_offset")->always_alike();
+  offset.aliases = terms::find_effect("time_offset")->observationally_equivalent();
   ASSERT_FALSE(offset.aliases.empty());
   calibration.effects = {offset};
   EXPECT_FALSE(report::next_test(calibration).has_value());

@@ -147,11 +147,12 @@ TEST(Selection, a_clock_is_asked_before_what_happened_before) {
 
 TEST(Selection, a_wheel_that_keeps_what_the_last_push_did_is_flagged) {
   const vehicle::DriveModel model = lively_model(3.0);
-  const terms::SmoothTerm seat{{vehicle::Covariate::previous_push, vehicle::Channel::track}, -1.0, 1.0};
+  const terms::SmoothTerm seat{
+      {vehicle::Covariate::previous_acceleration, vehicle::Channel::track}, -1.0, 1.0};
   const SearchResult result =
       searched(measured(model, {make_smooth_term_effect(seat)}, {0.01, 0.0, 0.0, 0.0}));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
-  EXPECT_EQ(result.smooths[0].smooth.dependence.covariate, vehicle::Covariate::previous_push);
+  EXPECT_EQ(result.smooths[0].smooth.dependence.covariate, vehicle::Covariate::previous_acceleration);
 }
 
 TEST(Selection, a_wheel_that_slips_while_it_is_braked_follows_one_law_both_ways) {
@@ -469,7 +470,8 @@ TEST(Selection, how_long_a_robot_remembers_is_found_out) {
 TEST(Selection, a_seat_that_only_the_opposite_push_changes_is_no_fading_memory) {
   const vehicle::DriveModel model = lively_model(3.0);
   const std::size_t hard = vehicle::kMemorySpans.size() + 2;
-  const terms::SmoothTerm seat{{vehicle::Covariate::previous_push, vehicle::Channel::track}, -1.0, 1.0, hard};
+  const terms::SmoothTerm seat{
+      {vehicle::Covariate::previous_acceleration, vehicle::Channel::track}, -1.0, 1.0, hard};
   const SearchResult result = searched(measured(model, {make_smooth_term_effect(seat)}, {0.01}));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.smooths[0].smooth.dependence, seat.dependence);
@@ -481,7 +483,8 @@ TEST(Selection, a_seat_that_only_the_opposite_push_changes_is_no_fading_memory) 
 TEST(Selection, a_slight_seat_is_found_as_what_it_is) {
   const vehicle::DriveModel model = jerky_model();
   const std::size_t hard = vehicle::kMemorySpans.size() + 2;
-  const terms::SmoothTerm seat{{vehicle::Covariate::previous_push, vehicle::Channel::track}, -1.0, 1.0, hard};
+  const terms::SmoothTerm seat{
+      {vehicle::Covariate::previous_acceleration, vehicle::Channel::track}, -1.0, 1.0, hard};
   const SearchResult result = searched(measured(model, {make_smooth_term_effect(seat)}, {0.001}));
   ASSERT_TRUE(result.has_unnamed()) << "seed " << kSeed;
   EXPECT_EQ(result.smooths[0].smooth.dependence, seat.dependence);

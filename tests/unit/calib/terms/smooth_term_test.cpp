@@ -307,11 +307,12 @@ TEST(SmoothTerm, of_an_event_takes_the_middle_of_what_is_open) {
   EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::since_stop, 0, vehicle::kStops.size(), {7})), 7U);
   // No stop was too short: what shorter ones do was not seen.
   EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::since_stop, 0, vehicle::kStops.size(), {0, 1, 2, 3})), 3U);
-  EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::previous_push, relays, vehicle::kPushes.size(), {0, 1, 2})),
+  EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::previous_acceleration, relays,
+                             vehicle::kAccelerationThresholds.size(), {0, 1, 2})),
             relays + 1);
   // What fades is another matter.
-  EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::previous_push, 0, relays + vehicle::kPushes.size(),
-                             {0, relays + 3})),
+  EXPECT_EQ(chosen(in_shapes(vehicle::Covariate::previous_acceleration, 0,
+                             relays + vehicle::kAccelerationThresholds.size(), {0, relays + 3})),
             relays + 3);
 }
 

@@ -103,7 +103,7 @@ std::size_t caster(std::size_t trail, double lean) {
 }
 
 /// Sine of the caster's angle summed over the way of the leg that begins at sample `first`, in trails.
-double push_of(const std::vector<StepContext>& contexts, std::size_t first, std::size_t which) {
+double swing_of(const std::vector<StepContext>& contexts, std::size_t first, std::size_t which) {
   double push = 0.0;
   for (std::size_t k = first; k < contexts.size(); ++k)
     push += contexts[k].caster[which] * kSpeed * kPeriod / kCasterTrails[which / kCasterLeans.size()];
@@ -118,7 +118,7 @@ TEST(Caster, falls_off_its_lean_and_turns_through_half_a_circle) {
       EXPECT_NEAR(contexts[480].caster[which], lean, 0.1 * std::abs(lean)) << trail;
       // Once reversed, it points past its way by the lean less half a turn. The integral of sin(beta) ds / t
       // is that of -dbeta: half a turn, and what the lean adds on the way.
-      EXPECT_NEAR(push_of(contexts, 500, which), -std::copysign(std::numbers::pi, lean), 0.8) << trail;
+      EXPECT_NEAR(swing_of(contexts, 500, which), -std::copysign(std::numbers::pi, lean), 0.8) << trail;
     }
 }
 
@@ -131,11 +131,11 @@ TEST(Caster, falls_inwards_after_an_arc) {
   for (const double side : {-1.0, 1.0}) {
     const double more = side * 0.02;
     const auto contexts = contexts_of({{kSpeed - more, kSpeed + more, 5.0}, {-kSpeed, -kSpeed, 5.0}});
-    EXPECT_GT(std::abs(push_of(contexts, 500, caster(2, 0.0))), 2.5);
-    EXPECT_EQ(std::signbit(push_of(contexts, 500, caster(2, 0.0))), std::signbit(side));
+    EXPECT_GT(std::abs(swing_of(contexts, 500, caster(2, 0.0))), 2.5);
+    EXPECT_EQ(std::signbit(swing_of(contexts, 500, caster(2, 0.0))), std::signbit(side));
     // A lean far smaller than the arc's angle does not change the side.
-    EXPECT_EQ(std::signbit(push_of(contexts, 500, caster(2, 0.002))), std::signbit(side));
-    EXPECT_EQ(std::signbit(push_of(contexts, 500, caster(2, -0.002))), std::signbit(side));
+    EXPECT_EQ(std::signbit(swing_of(contexts, 500, caster(2, 0.002))), std::signbit(side));
+    EXPECT_EQ(std::signbit(swing_of(contexts, 500, caster(2, -0.002))), std::signbit(side));
   }
 }
 
@@ -204,34 +204,37 @@ TEST(StepContext, remembers_the_last_push_through_steady_motion) {
     track.segment.push_back(0);
   }
   const auto context = make_context(track, kBase);
-  EXPECT_EQ(context.front().previous_push[kUsualMemory], 0.0);
-  EXPECT_GT(context[190].previous_push[kUsualMemory], 0.8);
-  EXPECT_LT(context[350].previous_push[kUsualMemory], -0.5);
-  const double push = 5.0 * kBase.left_radius;
-  for (std::size_t k = 0; k < kPushes.size(); ++k) {
-    const double stays = kPushes[k] < push ? 1.0 : 0.0;
-    EXPECT_EQ(context[190].previous_push[kMemorySpans.size() + k], stays) << kPushes[k];
-    EXPECT_EQ(context.back().previous_push[kMemorySpans.size() + k], -stays) << kPushes[k];
+  EXPECT_EQ(context.front().previous_acceleration[kUsualMemory], 0.0);
+  EXPECT_GT(context[190].previous_acceleration[kUsualMemory], 0.8);
+  EXPECT_LT(context[350].previous_acceleration[kUsualMemory], -0.5);
+  const double reached = 5.0 * kBase.left_radius;
+  for (std::size_t k = 0; k < kAccelerationThresholds.size(); ++k) {
+    const double stays = kAccelerationThresholds[k] < reached ? 1.0 : 0.0;
+    EXPECT_EQ(context[190].previous_acceleration[kMemorySpans.size() + k], stays)
+        << kAccelerationThresholds[k];
+    EXPECT_EQ(context.back().previous_acceleration[kMemorySpans.size() + k], -stays)
+        << kAccelerationThresholds[k];
   }
 }
 
-// Else how hard a push has to be would be told by when it got so hard, not by which pushes did.
-TEST(StepContext, a_push_moves_a_seat_when_it_begins_however_hard_it_has_to_be) {
+// Else the threshold would be found by when an acceleration passed it, not by which accelerations did.
+TEST(StepContext, an_acceleration_moves_a_seat_when_it_begins_whatever_the_threshold) {
   const wheels::WheelTrack track =
       driven_at([](double t) {  // 0.6 m/s^2 are reached in half a second, and left again
         const double along = std::clamp((t - 4.0) / 0.5, 0.0, 2.0);
         return 1.0 + 4.0 * (along < 1.0 ? 0.5 * along * along : 1.0 - 0.5 * std::pow(2.0 - along, 2));
       });
   const auto context = make_context(track, kBase);
-  const auto moved_at = [&](std::size_t push) {
+  const auto moved_at = [&](std::size_t threshold) {
     const auto is_moved = [&](const StepContext& c) {
-      return c.previous_push[kMemorySpans.size() + push] > 0.0;
+      return c.previous_acceleration[kMemorySpans.size() + threshold] > 0.0;
     };
     return std::find_if(context.begin(), context.end(), is_moved) - context.begin();
   };
   EXPECT_NEAR(static_cast<double>(moved_at(0)), 205.0, 5.0);
-  for (std::size_t k = 1; kPushes[k] < 0.5; ++k) EXPECT_EQ(moved_at(k), moved_at(0)) << kPushes[k];
-  EXPECT_EQ(static_cast<std::size_t>(moved_at(kPushes.size() - 1)), context.size());
+  for (std::size_t k = 1; kAccelerationThresholds[k] < 0.5; ++k)
+    EXPECT_EQ(moved_at(k), moved_at(0)) << kAccelerationThresholds[k];
+  EXPECT_EQ(static_cast<std::size_t>(moved_at(kAccelerationThresholds.size() - 1)), context.size());
 }
 
 TEST(StepContext, what_a_motion_has_wound_up_unwinds_once_in_the_stop_after_it) {
