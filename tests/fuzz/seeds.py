@@ -372,7 +372,18 @@ def control_session():
         text = json.dumps({"method": "org.odomcalib.Calibration." + name} | members).encode() + b"\0"
         return text.replace(b"\\u0001", b"\x01")  # the lease
 
+    lengths = {"left_wheel_diameter": 0.151, "right_wheel_diameter": 0.1495, "track_width": 0.402}
+    calibration = {"format": "odomcalib-calibration/1", "verdict": "accepted",
+                   "parameters": {name: {"value": value, "std": 1e-5, "unit": "m"} for name, value in lengths.items()}}
+
+    def prove(client=0):
+        return send(client, frame("Apply", parameters={"lease": "\x01", "prove": True, "calibration": calibration}))
+
+    def end_proof(name, client=0):
+        return send(client, frame(name, parameters={"lease": "\x01"}))
+
     held = act(call, 0, acquire) + act(run, 0, 2)
+    proving = held + prove() + act(renew, 0, 100)
     driving = held + act(call, 0, straight) + act(renew, 0, 85)
     cases = {
         "nothing": b"", "drive": driving + act(renew, 0, 60), "stop": driving + act(call, 1, stop) + act(run, 0, 20),
@@ -389,6 +400,13 @@ def control_session():
         "monitor": act(call, 2, monitor) + act(call, 0, stop) + act(run, 0, 3) + act(call, 2, status) + act(run, 0, 3),
         "write": held + act(call, 0, write) + act(renew, 0, 100) + act(call, 0, back) + act(renew, 0, 90),
         "write_and_stop": held + act(call, 0, write) + act(renew, 0, 3) + act(call, 1, stop) + act(call, 1, write) + act(renew, 0, 50),
+        "proof_stored": proving + end_proof("Store") + act(renew, 0, 100), "proof_discarded": proving + end_proof("Discard") + act(renew, 0, 100),
+        "proof_gone": proving + act(hang_up, 0) + act(run, 0, 100), "proof_twice": proving + prove() + act(renew, 0, 50),
+        "proof_driven": proving + act(call, 0, straight) + act(renew, 0, 85) + end_proof("Store") + act(call, 1, stop) + act(renew, 0, 40),
+        "proof_gone_in_motion": held + prove(2) + act(renew, 0, 100) + act(call, 0, straight) + act(renew, 0, 85) + act(hang_up, 2) +
+                                act(renew, 0, 120),
+        "proof_of_others": proving + end_proof("Store", 1) + end_proof("Discard", 3) + act(call, 0, write) + act(renew, 0, 50),
+        "no_proof": held + end_proof("Store") + end_proof("Discard") + act(run, 0, 20),
         "many": b"".join(act(come, i) for i in range(12)) + act(run, 0, 1) + b"".join(act(call, i, status) for i in range(12)) +
                 act(run, 0, 1) + b"".join(act(come, i) + act(call, i, stop) for i in (0, 9, 11)) + act(run, 0, 2),
         "many_in_motion": driving + b"".join(act(call, i, status) for i in range(1, 12)) + act(renew, 0, 2) + act(call, 11, stop),
