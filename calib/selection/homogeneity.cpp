@@ -2,12 +2,11 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "calib/selection/pooled_estimates.hpp"
 #include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
 
@@ -58,55 +57,12 @@ std::vector<Eigen::Index> free_parameters(const FitTask& task) {
   return free;
 }
 
-/// Several estimates as one, weighted by their inverse covariances.
-class Pool {
- public:
-  explicit Pool(Eigen::Index size)
-      : information_(Eigen::MatrixXd::Zero(size, size)), weighted_(Eigen::VectorXd::Zero(size)) {}
-  void add(const Eigen::VectorXd& value, const Eigen::MatrixXd& covariance) {
-    const Eigen::MatrixXd weight = inverse_of(covariance);
-    information_ += weight;
-    weighted_ += weight * value;
-  }
-  [[nodiscard]] Eigen::VectorXd value() const { return covariance() * weighted_; }
-  [[nodiscard]] Eigen::MatrixXd covariance() const { return inverse_of(information_); }
-
-  /// Units of the parameters differ by orders of magnitude.
-  static Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
-    const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
-    return scale.asDiagonal() * scaled.ldlt().solve(identity) * scale.asDiagonal();
-  }
-
- private:
-  Eigen::MatrixXd information_;
-  Eigen::VectorXd weighted_;
-};
-
-struct Reduced {
-  std::size_t recording;
-  Eigen::VectorXd value;
-  Eigen::MatrixXd covariance;
-  double freedom = 0.0;
-};
-
-std::vector<Reduced> reduced(const std::vector<std::optional<OwnEstimate>>& own,
-                             const std::vector<Eigen::Index>& free) {
-  std::vector<Reduced> all;
+std::vector<OwnValues> reduced(const std::vector<std::optional<OwnEstimate>>& own,
+                               const std::vector<Eigen::Index>& free) {
+  std::vector<OwnValues> all;
   for (std::size_t i = 0; i < own.size(); ++i)
     if (own[i]) all.push_back({i, own[i]->value(free), own[i]->covariance(free, free), own[i]->freedom});
   return all;
-}
-
-/// The square of a normal distance that is as unlikely as this one with an estimated covariance (H.
-/// Hotelling, Ann. Math. Statist. 2, 1931).
-double as_chi_squared(double square, double size, double freedom) {
-  namespace bm = boost::math;
-  const double spare = freedom - size + 1.0;
-  if (!(spare > 0.0) || !(square > 0.0)) return 0.0;
-  const double chance = bm::cdf(bm::complement(bm::fisher_f(size, spare), square * spare / (freedom * size)));
-  return chance > 0.0 ? bm::quantile(bm::complement(bm::chi_squared(size), chance)) : square;
 }
 
 struct Variance {
@@ -125,25 +81,12 @@ double in_deviations(double apart, const Variance& a, const Variance& b) {
   return std::copysign(bm::quantile(bm::complement(bm::normal(), chance)), deviations);
 }
 
-double cochran(const std::vector<Reduced>& estimates) {
-  Pool pool(estimates.front().value.size());
-  for (const Reduced& one : estimates) pool.add(one.value, one.covariance);
-  const Eigen::VectorXd mean = pool.value();
-  double sum = 0.0;
-  for (const Reduced& one : estimates) {
-    const Eigen::VectorXd apart = one.value - mean;
-    sum += as_chi_squared(apart.dot(Pool::inverse_of(one.covariance) * apart),
-                          static_cast<double>(apart.size()), one.freedom);
-  }
-  return sum;
-}
-
-void compare_with_others(const std::vector<Reduced>& estimates, const std::vector<Eigen::Index>& free,
+void compare_with_others(const std::vector<OwnValues>& estimates, const std::vector<Eigen::Index>& free,
                          Homogeneity& found) {
-  for (const Reduced& one : estimates) {
+  for (const OwnValues& one : estimates) {
     Pool others(one.value.size());
     double freedom = 0.0;  // of the others
-    for (const Reduced& other : estimates) {
+    for (const OwnValues& other : estimates) {
       if (other.recording == one.recording) continue;
       others.add(other.value, other.covariance);
       freedom += other.freedom;
@@ -177,23 +120,6 @@ void name_worst(const std::vector<std::string>& names, Homogeneity& found) {
     }
 }
 
-/// Beyond what the recordings' own deviations make, of one parameter.
-double variance_between(const std::vector<Reduced>& estimates, Eigen::Index parameter) {
-  double weights = 0.0, squares = 0.0, weighted = 0.0;
-  for (const Reduced& one : estimates) {
-    const double w = 1.0 / one.covariance(parameter, parameter);
-    weights += w;
-    squares += w * w;
-    weighted += w * one.value(parameter);
-  }
-  const double mean = weighted / weights;
-  double q = 0.0;
-  for (const Reduced& one : estimates)
-    q += (one.value(parameter) - mean) * (one.value(parameter) - mean) / one.covariance(parameter, parameter);
-  const double spare = weights - squares / weights;
-  return spare > 0.0 ? std::max(0.0, (q - static_cast<double>(estimates.size() - 1)) / spare) : 0.0;
-}
-
 }  // namespace
 
 std::optional<Homogeneity> homogeneity(const FitTask& task, const FittedModel& model, double metre,
@@ -201,7 +127,7 @@ std::optional<Homogeneity> homogeneity(const FitTask& task, const FittedModel& m
   Homogeneity found;
   for (std::size_t i = 0; i < task.data.size(); ++i) found.own.push_back(own_estimate(task, model, i, metre));
   const std::vector<Eigen::Index> free = free_parameters(task);
-  const std::vector<Reduced> estimates = reduced(found.own, free);
+  const std::vector<OwnValues> estimates = reduced(found.own, free);
   if (estimates.size() < 2) return std::nullopt;
   const auto recordings = static_cast<Eigen::Index>(task.data.size());
   found.sigmas = found.differences = Eigen::MatrixXd::Zero(recordings, kBase);
