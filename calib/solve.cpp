@@ -14,6 +14,7 @@
 #include "calib/selection/clocks.hpp"
 #include "calib/selection/lidar_correction.hpp"
 #include "calib/selection/placed_fit.hpp"
+#include "calib/selection/recording_clocks.hpp"
 #include "calib/selection/reference_mounting.hpp"
 #include "calib/selection/scan_times.hpp"
 #include "calib/selection/search.hpp"
@@ -54,6 +55,7 @@ Solution calibrate(measurement::Dataset opened, const terms::Request& request, c
   const estimation::Settling how = selection::settling(request.is_automatic, progress);
   estimation::Fit fit = settle(std::move(rough), start.value(), how);
   fit = selection::mount_reference(std::move(fit), how);
+  fit = selection::align_clocks(std::move(fit), request, how);
   fit = selection::even_out_scans(std::move(fit), how);
   fit = selection::let_scans_sweep(std::move(fit), request, how);
   auto [corrected, lidar, placement] = selection::correct_lidar(std::move(fit), request, how);

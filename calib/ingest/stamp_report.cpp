@@ -10,9 +10,10 @@
 namespace odomcalib::calib::ingest {
 
 std::string to_json(const StampReport& report) {
-  return nlohmann::ordered_json{
-      {"ticks", report.ticks}, {"scans", report.scans}, {"time_increment", report.sweep}}
-      .dump();
+  nlohmann::ordered_json body = {
+      {"ticks", report.ticks}, {"scans", report.scans}, {"time_increment", report.sweep}};
+  if (report.clocks > 0.0) body["clocks"] = report.clocks;
+  return body.dump();
 }
 
 std::vector<std::string> remarks_on(const StampReport& report) {
@@ -29,6 +30,11 @@ std::vector<std::string> remarks_on(const StampReport& report) {
     remarks.push_back(
         "scans do not say when their beams were sent; a head that turns once from scan to scan explains the "
         "motion better, and was assumed: record time_increment");
+  if (report.clocks > 0.0)
+    remarks.push_back(
+        "the clocks of the recordings differ by " + std::to_string(std::lround(1e3 * report.clocks)) +
+        " ms (standard deviation) beyond chance: each was read by a clock of its own; stamp wheels "
+        "and reference by one clock");
   return remarks;
 }
 

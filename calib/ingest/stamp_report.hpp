@@ -15,10 +15,12 @@ struct StampReport {
   double sweep = 0.0;          ///< between beams of scans that did not say so
   double turn = 0.0;           ///< s, of the head then; negative clockwise
   double sweep_p_value = 1.0;  ///< of scans taken for instants after all
-  [[nodiscard]] bool any() const { return ticks > 0.0 || scans > 0.0 || sweep > 0.0; }
+  /// s, standard deviation between the recordings, of clocks that were aligned.
+  double clocks = 0.0;
+  [[nodiscard]] bool any() const { return ticks > 0.0 || scans > 0.0 || sweep > 0.0 || clocks > 0.0; }
 };
 
-/// {"ticks", "scans", "time_increment"}, s
+/// {"ticks", "scans", "time_increment"}, and "clocks" where they differ, s
 std::string to_json(const StampReport& report);
 
 /// A sentence for each that is worth a look at the driver.

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "calib/solve.hpp"
@@ -91,6 +93,46 @@ TEST(OneRobot, with_exchanged_counts_in_one_recording_is_refused_by_name) {
       << reasons_of(result);
 }
 
+/// As a sensor stamps them whose clock is late by so much, and runs so much faster.
+Recording with_clock(Recording recording, double late, double fast) {
+  for (Scan& scan : recording.scans) scan.t += late + fast * (scan.t - 0.5 * kDuration);
+  return recording;
+}
+
+/// s, standard deviation between the clocks of the recordings as the result states it; 0: they are one.
+double clocks_apart(const Calibration& result) {
+  const auto stamps = result.extensions.find("stamps");
+  return stamps == result.extensions.end() ? 0.0 : nlohmann::json::parse(stamps->second).value("clocks", 0.0);
+}
+
+TEST(RecordingClocks, that_differ_are_each_its_own) {
+  constexpr std::array<double, 5> kLate = {-0.040, 0.025, 0.0, 0.012, -0.015};  // s
+  std::vector<Recording> recordings;
+  for (std::size_t i = 0; i < kLate.size(); ++i)
+    recordings.push_back(with_clock(recorded(9, i + 1), kLate.at(i), i == 1 ? 5e-4 : 0.0));
+  const Calibration result = calib::solve(recordings, {});
+  EXPECT_NE(result.verdict, Verdict::refused) << reasons_of(result);
+  EXPECT_NEAR(clocks_apart(result), 0.026, 0.006);
+  EXPECT_TRUE(holds(reasons_of(result), "the clocks of the recordings differ by")) << reasons_of(result);
+  const sim::Geometry truth = sim::standard_config(9).truth;
+  const std::array<double, 3> lengths = {truth.left_diameter, truth.right_diameter, truth.track_width};
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    const auto& [name, quantity] = result.parameters[k];
+    EXPECT_NEAR(quantity.value, lengths.at(k), 3.0 * quantity.std) << name;
+    EXPECT_LT(quantity.std, 3e-4 * quantity.value) << name;
+  }
+}
+
+TEST(RecordingClocks, that_are_late_alike_are_one) {
+  std::vector<Recording> recordings;
+  for (std::uint64_t noise = 1; noise <= 3; ++noise)
+    recordings.push_back(with_clock(recorded(9, noise), 0.030, 0.0));
+  const Calibration result = calib::solve(recordings, {});
+  EXPECT_EQ(clocks_apart(result), 0.0);
+  EXPECT_TRUE(std::any_of(result.effects.begin(), result.effects.end(),
+                          [](const EffectResult& effect) { return effect.name == "time_offset"; }));
+}
+
 constexpr std::uint64_t kCampaignSeed = 52000;  // robots and drives that no other test uses
 
 std::uint64_t campaign_size(std::uint64_t usual) {
@@ -127,6 +169,19 @@ TEST(OneRobotCampaign, tells_different_robots_apart) {
 TEST(OneRobotCampaign, takes_one_robot_for_one) {
   const std::uint64_t pairs = campaign_size(3);
   EXPECT_LE(count_told_apart(pairs, 0), pairs / 100);
+}
+
+TEST(OneRobotCampaign, takes_one_clock_for_one) {
+  const std::uint64_t sets = campaign_size(3);
+  std::uint64_t apart = 0;
+  for (std::uint64_t set = 0; set < sets; ++set) {
+    const std::uint64_t robot = kCampaignSeed + 10 * set;
+    std::vector<Recording> recordings;
+    for (std::uint64_t drive = 1; drive <= 3; ++drive) recordings.push_back(recorded(robot, robot + drive));
+    if (clocks_apart(calib::solve(recordings, {})) > 0.0) ++apart;
+  }
+  std::cout << apart << " of " << sets << " sets with clocks apart\n";
+  EXPECT_LE(apart, sets / 50);
 }
 
 TEST(OneRobotCampaign, names_the_recording_with_another_tyre) {
