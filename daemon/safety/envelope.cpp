@@ -36,8 +36,9 @@ std::optional<std::string> disagreement(const routines::Pose& odometry, const ro
   const double seen = std::hypot(lidar.x, lidar.y);
   const double longest = std::max(moved, seen);
   const double apart = std::hypot(odometry.x - lidar.x, odometry.y - lidar.y);
+  const double of_mount = settings::kMountError_m * 2.0 * std::abs(std::sin(0.5 * odometry.yaw));
   if (longest > settings::kJudgedDistance_m &&
-      apart > settings::kTolerance * longest + settings::kMatchDistance_m)
+      apart > settings::kTolerance * longest + settings::kMatchDistance_m + of_mount)
     return fmt::format("odometry says {:.3f} m, the lidar {:.3f} m, {:.3f} m apart", moved, seen, apart);
   const double turned = std::abs(routines::wrapped(odometry.yaw));
   const double turn_apart = std::abs(routines::wrapped(odometry.yaw - lidar.yaw));

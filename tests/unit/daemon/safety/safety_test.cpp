@@ -163,6 +163,14 @@ TEST(Disagreement, is_judged_after_a_tenth_of_a_metre_only) {
   EXPECT_TRUE(disagreement({0.0, 0.0, 0.0}, {0.5, 0.0, 0.0}).has_value());
 }
 
+// Else a lidar that sits 4 cm beside its stated place, which nobody knows before the calibration, stops it.
+TEST(Disagreement, grants_a_lidar_that_sits_elsewhere_what_a_turn_makes_of_that) {
+  const routines::Pose odometry{-0.012, -0.062, -1.1};
+  EXPECT_FALSE(disagreement(odometry, {-0.005, -0.111, -1.1}).has_value());
+  EXPECT_TRUE(disagreement(odometry, {0.0, -0.171, -1.1}).has_value());
+  EXPECT_TRUE(disagreement({0.1, 0.0, 0.0}, {0.16, 0.0, 0.0}).has_value()) << "not in a straight line";
+}
+
 TEST(Disagreement, finds_swapped_sides_in_a_turn) {
   EXPECT_TRUE(disagreement({0.0, 0.0, 0.8}, {0.0, 0.0, -0.8}).has_value());
   EXPECT_FALSE(disagreement({0.0, 0.0, 0.8}, {0.0, 0.0, 0.75}).has_value());
