@@ -48,8 +48,7 @@ std::optional<OwnValues> own_clock(const measurement::Dataset& dataset, const ve
                                    std::size_t recording) {
   estimation::FitOptions options;
   options.fixed.assign(static_cast<std::size_t>(model.parameters.size()), true);
-  std::vector<Eigen::Index> free;
-  for (const ClockPart part : kParts) free.push_back(*parameter_of(model.effects, part));
+  const std::array free = {*parameter_of(model.effects, kParts[0]), *parameter_of(model.effects, kParts[1])};
   for (const Eigen::Index k : free) options.fixed[static_cast<std::size_t>(k)] = false;
   const auto data = std::span<const measurement::FitData>(dataset.data).subspan(recording, 1);
   const auto fit = estimation::fit_joint(data, model.effects, model.parameters, options);
