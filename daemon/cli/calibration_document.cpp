@@ -46,20 +46,6 @@ std::vector<std::string> parameter_row(const RobotDescription& robot, const std:
   return row;
 }
 
-Section parameters_of(const Calibration& calibration) {
-  Section section{"Parameters", {}, {{"", "nominal", "value", "+-2 sigma", "unit", "change"}, {}}};
-  for (const auto& [name, quantity] : calibration.parameters)
-    section.table.rows.push_back(parameter_row(calibration.robot, name, quantity));
-  section.lines = effect_in_words(calibration);
-  if (const auto scale = scale_of(calibration))
-    section.lines.push_back(
-        fmt::format("+-2 sigma is against the metre of the reference, which is known to +-{:.3g} % ({}): so "
-                    "are all lengths, "
-                    "and no ratio of two; --scale states what a tape says.",
-                    100.0 * 2.0 * scale->std / scale->value, scale->source));
-  return section;
-}
-
 const Quantity* find(const QuantityList& list, const std::string& name) {
   for (const auto& [key, quantity] : list)
     if (key == name) return &quantity;
@@ -130,38 +116,6 @@ std::set<std::string> not_in_odometry(const Calibration& calibration) {
   for (const auto& placement : calib::odometry::effect_placements(calibration))
     if (placement.place == calib::odometry::Place::nowhere) names.insert(readable(placement.effect));
   return names;
-}
-
-Section effects_of(const Calibration& calibration) {
-  Section section{"Effects", {}, {{"", "value", "+-2 sigma", "unit", "p", "stored in"}, {}}};
-  for (const auto& effect : calibration.effects)
-    for (const auto& [name, quantity] : effect.parameters) {
-      const Display show = display_of(quantity.unit);
-      section.table.rows.push_back(
-          {readable(effect.name) + ": " + readable(name), number(quantity.value * show.factor, show.digits),
-           quantity.std >= 0.0 ? number(2.0 * quantity.std * show.factor, show.digits) : "-", show.unit,
-           fmt::format("{:.2g}", effect.evidence.p_value), effect.stored_in});
-    }
-  if (section.table.rows.empty()) section.table = {};
-  if (const auto& rest = calibration.unexplained) {
-    std::string on;
-    for (const auto& variable : rest->depends_on) on += (on.empty() ? "" : ", ") + readable(variable);
-    section.lines.push_back(
-        fmt::format("unexplained: the residual depends on {} (p {:.2g})", on, rest->p_value));
-  }
-  for (const std::string& name : not_in_odometry(calibration))
-    section.lines.push_back(
-        name +
-        ": of this place, day or drive; odometry goes on without it, and \"after\" is what "
-        "knowing it here and now would make of the errors");
-  for (const auto& effect : calibration.effects) {
-    std::string others;
-    for (const auto& alias : effect.aliases) others += (others.empty() ? "" : ", ") + readable(alias);
-    if (!others.empty())
-      section.lines.push_back(readable(effect.name) + " cannot be separated from " + others +
-                              " with this drive");
-  }
-  return section;
 }
 
 std::vector<std::string> residual_row(const char* name, const std::optional<std::array<double, 3>>& rms) {
@@ -250,14 +204,65 @@ std::string next_step(const Calibration& calibration) {
          "them.";
 }
 
+Section parameters_section(const Calibration& calibration) {
+  Section section{"Parameters", {}, {{"", "nominal", "value", "+-2 sigma", "unit", "change"}, {}}};
+  for (const auto& [name, quantity] : calibration.parameters)
+    section.table.rows.push_back(parameter_row(calibration.robot, name, quantity));
+  section.lines = effect_in_words(calibration);
+  if (const auto scale = scale_of(calibration))
+    section.lines.push_back(
+        fmt::format("+-2 sigma is against the metre of the reference, which is known to +-{:.3g} % ({}): so "
+                    "are all lengths, "
+                    "and no ratio of two; --scale states what a tape says.",
+                    100.0 * 2.0 * scale->std / scale->value, scale->source));
+  return section;
+}
+
+Section effects_section(const Calibration& calibration) {
+  Section section{"Effects", {}, {{"", "value", "+-2 sigma", "unit", "p", "stored in"}, {}}};
+  for (const auto& effect : calibration.effects)
+    for (const auto& [name, quantity] : effect.parameters) {
+      const Display show = display_of(quantity.unit);
+      section.table.rows.push_back(
+          {readable(effect.name) + ": " + readable(name), number(quantity.value * show.factor, show.digits),
+           quantity.std >= 0.0 ? number(2.0 * quantity.std * show.factor, show.digits) : "-", show.unit,
+           fmt::format("{:.2g}", effect.evidence.p_value), effect.stored_in});
+    }
+  if (section.table.rows.empty()) section.table = {};
+  if (const auto& rest = calibration.unexplained) {
+    std::string on;
+    for (const auto& variable : rest->depends_on) on += (on.empty() ? "" : ", ") + readable(variable);
+    section.lines.push_back(
+        fmt::format("unexplained: the residual depends on {} (p {:.2g})", on, rest->p_value));
+  }
+  for (const std::string& name : not_in_odometry(calibration))
+    section.lines.push_back(
+        name +
+        ": of this place, day or drive; odometry goes on without it, and \"after\" is what "
+        "knowing it here and now would make of the errors");
+  for (const auto& effect : calibration.effects) {
+    std::string others;
+    for (const auto& alias : effect.aliases) others += (others.empty() ? "" : ", ") + readable(alias);
+    if (!others.empty())
+      section.lines.push_back(readable(effect.name) + " cannot be separated from " + others +
+                              " with this drive");
+  }
+  return section;
+}
+
+Section verdict_section(const Calibration& calibration) {
+  Section section{"", calibration.reasons, {}};
+  section.lines.push_back(next_step(calibration));
+  return section;
+}
+
 Document describe(const Calibration& calibration) {
   const ReportData data = report_data_of(calibration);
   Document document{
-      headline(calibration.verdict), {{"", calibration.reasons, {}}}, tone_of(calibration.verdict)};
-  document.sections.front().lines.push_back(next_step(calibration));
-  std::vector<Section> sections = {parameters_of(calibration),
-                                   drive_errors_section(data),
-                                   effects_of(calibration),
+      headline(calibration.verdict), {verdict_section(calibration)}, tone_of(calibration.verdict)};
+  std::vector<Section> sections = {parameters_section(calibration),
+                                   drive_errors_section(data, true),
+                                   effects_section(calibration),
                                    traces_section(data),
                                    detectable_section(data),
                                    path_section(data),

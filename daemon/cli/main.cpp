@@ -20,6 +20,7 @@ using odomcalib::cli::JsonMode;
 void add_common_options(CLI::App& app, odomcalib::cli::Session& session, std::string& json) {
   app.add_flag("--json{pretty}", json, "print JSON: --json or --json=pretty|short|off")
       ->check(CLI::IsMember({"pretty", "short", "off"}));
+  app.add_flag("--verbose", session.verbose, "everything about a calibration instead of a summary");
   app.add_flag("!--no-legend", session.legend, "tables without their head line");
   app.add_flag_callback(
       "--no-pager", [] {}, "accepted for scripts; no pager is ever started");

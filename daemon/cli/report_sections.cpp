@@ -23,17 +23,18 @@ std::string title_of(const std::string& name) {
   return readable(name);
 }
 
-std::string with_interval(const std::optional<Bounded>& figure, const Display& show) {
+std::string figure_text(const std::optional<Bounded>& figure, const Display& show, bool interval) {
   if (!figure) return "-";
+  if (!interval) return number(figure->value * show.factor, 2);
   return fmt::format("{} ({}..{})", number(figure->value * show.factor, 2),
                      number(figure->low * show.factor, 2), number(figure->high * show.factor, 2));
 }
 
-std::vector<std::string> error_row(const DriveError& error, bool geometry) {
+std::vector<std::string> error_row(const DriveError& error, bool geometry, bool intervals) {
   const Display show = display_of(error.unit);
-  std::vector<std::string> row{title_of(error.name), show.unit, with_interval(error.before, show)};
-  if (geometry) row.push_back(with_interval(error.geometry, show));
-  row.push_back(with_interval(error.after, show));
+  std::vector<std::string> row{title_of(error.name), show.unit, figure_text(error.before, show, intervals)};
+  if (geometry) row.push_back(figure_text(error.geometry, show, intervals));
+  row.push_back(figure_text(error.after, show, intervals));
   row.push_back(error.noise_floor ? number(*error.noise_floor * show.factor, 2) : "-");
   row.push_back(std::to_string(error.stretches));
   return row;
@@ -81,11 +82,15 @@ std::vector<std::string> effect_in_words(const Calibration& calibration) {
       std::abs(turn), turn < 0.0 ? "little" : "much")};
 }
 
-Section drive_errors_section(const ReportData& data) {
-  Section section{"What odometry is off by, on data not used in the fit (RMS, 95 % interval)", {}, {}};
+Section drive_errors_section(const ReportData& data, bool intervals) {
+  Section section{fmt::format("What odometry is off by, on data not used in the fit (RMS{})",
+                              intervals ? ", 95 % interval" : ""),
+                  {},
+                  {}};
   const bool geometry = std::any_of(data.drive_errors.begin(), data.drive_errors.end(),
                                     [](const DriveError& e) { return e.geometry.has_value(); });
-  for (const DriveError& error : data.drive_errors) section.table.rows.push_back(error_row(error, geometry));
+  for (const DriveError& error : data.drive_errors)
+    section.table.rows.push_back(error_row(error, geometry, intervals));
   if (section.table.rows.empty()) return section;
   section.table.head = {"", "", "before", "after", "noise floor", "stretches"};
   if (geometry) section.table.head.insert(section.table.head.begin() + 3, "without effects");

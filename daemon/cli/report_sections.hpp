@@ -11,7 +11,8 @@ namespace odomcalib::cli {
 std::vector<std::string> effect_in_words(const Calibration& calibration);
 
 // Sections without lines and rows have nothing to say.
-Section drive_errors_section(const ReportData& data);
+/// @param intervals whether they are shown beside the figures
+Section drive_errors_section(const ReportData& data, bool intervals);
 Section traces_section(const ReportData& data);
 Section detectable_section(const ReportData& data);
 inline constexpr const char* kDriveTitle = "The drive";

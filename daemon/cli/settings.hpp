@@ -28,6 +28,12 @@ inline constexpr double kWholeOverShown = std::numbers::sqrt2;
 /// Share of a pattern in the residual from which on the variable is said to be what it depends on. Chosen.
 inline constexpr double kDependsOn = 0.5;
 
+// --- Summary ----------------------------------------------------------------------------------------------
+
+/// Lines of a result that is no longer than a screen, and reasons of many that stand in it. Chosen.
+inline constexpr std::ptrdiff_t kSummaryLines = 40;
+inline constexpr std::size_t kSummaryReasons = 3;
+
 // --- Columns and progress --------------------------------------------------------------------------------
 
 /// Columns of a line where no terminal says how many it has. Chosen: those of a terminal as it opens.

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "daemon/cli/calibration_document.hpp"
+#include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/motion_call.hpp"
@@ -154,7 +154,7 @@ int calibrate(const Session& session, const Options& options) {
   auto solved = drive_and_solve(session, options, wanted);
   if (!solved) return report_error(solved.error(), session.json);
   const Solved best = second_drive(session, options, std::move(solved).value());
-  if (session.json == JsonMode::off) print_text(describe(best.calibration), session.legend);
+  if (session.json == JsonMode::off) print_calibration(best.calibration, session);
   if (!options.file.empty())
     if (auto written = write_output(options.file, to_json(best.calibration)); !written)
       return report_lost(written.error(), best);

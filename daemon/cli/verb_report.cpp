@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "daemon/cli/calibration_document.hpp"
+#include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/verbs.hpp"
@@ -30,7 +31,7 @@ int show_report(const Options& options, const Session& session) {
   if (session.json != JsonMode::off)
     print_json(to_json(calibration.value()), session.json);
   else
-    print_text(describe(calibration.value()), session.legend);
+    print_calibration(calibration.value(), session);
   return kDone;
 }
 

@@ -8,6 +8,7 @@
 #include "calib/solve.hpp"
 #include "calib/terms/effect_names.hpp"
 #include "daemon/cli/calibration_document.hpp"
+#include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/export_formats.hpp"
 #include "daemon/cli/numbers.hpp"
@@ -82,7 +83,7 @@ int solve_recordings(const Options& options, const Session& session) {
   if (auto written = write_results(options, solution); !written)
     return report_error(written.error(), session.json);
   if (session.json == JsonMode::off)
-    print_text(describe(calibration), session.legend);
+    print_calibration(calibration, session);
   else
     print_json(to_json(calibration), session.json);
   return calibration.verdict == Verdict::refused ? kRefused : kDone;

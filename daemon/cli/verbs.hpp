@@ -17,6 +17,7 @@ namespace odomcalib::cli {
 struct Session {
   JsonMode json = JsonMode::off;
   bool legend = true;
+  bool verbose = false;                           ///< everything instead of a summary
   std::string socket = "/run/odomcalib/control";  ///< of the daemon
   std::function<int()> run;                       ///< set by the verb that was parsed
 };

@@ -36,7 +36,7 @@ class SampleRecording : public ::testing::Test {
   }
   static void solve(const std::string& name) {
     const std::string command = "cd '" + folder().string() +
-                                "' && COLUMNS=160 '" ODOMCALIB_CTL "' solve '" ODOMCALIB_SAMPLE "' --out " +
+                                "' && COLUMNS=160 '" ODOMCALIB_CTL "' --verbose solve '" ODOMCALIB_SAMPLE "' --out " +
                                 name + ".json --report " + name + ".html --pairs " + name + ".csv > " + name +
                                 ".txt 2> " + name + ".err";
     ASSERT_EQ(WEXITSTATUS(system(command.c_str())), 0) << read(name + ".err");

@@ -20,6 +20,8 @@ from text_width import too_wide
 
 DONE, FAILURE, USAGE, REFUSED, NO_DAEMON = 0, 1, 2, 3, 9
 ABSENT = "/nonexistent/file"
+# What a calibration comes to fits a screen; --verbose has the rest.
+SUMMARIES, SCREEN = {"solve", "report"}, 40
 
 # verb, arguments, exit status, schema of its JSON: one document, or lines where LINES has the schema.
 # A straight drive alone does not determine the track width: it is refused.
@@ -40,6 +42,7 @@ TABLE = [
     ("match", "pairs.jsonl --matcher brute", DONE, "match"),
     ("match", ABSENT, FAILURE, "error"),
     ("report", "cal.json", DONE, "calibration"),
+    ("report", "good.json", DONE, "calibration"),
     ("report", "drive.jsonl", FAILURE, "error"),
     ("export", "cal.json --what parameters", DONE, "export"),
     ("export", "cal.json --what toml", REFUSED, "error"),
@@ -159,6 +162,9 @@ def check_text(program, verb, arguments, status, _):
     call = " ".join([verb, arguments]).strip()
     done = program.run("--socket", "/nonexistent/control", *call.split())
     program.demand(done.returncode == status, "%s: status %d, not %d: %s" % (call, done.returncode, status, done.stderr))
+    if verb in SUMMARIES:
+        lines = len(done.stdout.splitlines())
+        program.demand(lines <= SCREEN, "%s: %d lines" % (call, lines))
     if verb not in FOR_PROGRAMS:
         for line in too_wide(done.stdout):
             program.demand(False, "%s: %d columns: %s" % (call, len(line), line))

@@ -1,0 +1,103 @@
+// The summary of a calibration fits a screen, whatever was found.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "daemon/cli/calibration_summary.hpp"
+#include "daemon/cli/settings.hpp"
+#include "proto/calibration/report_data.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::size_t kColumns = 80;
+
+Calibration example() {
+  Calibration calibration;
+  calibration.robot.left_wheel_diameter = calibration.robot.right_wheel_diameter = 0.15;
+  calibration.robot.track_width = 0.4;
+  for (const char* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
+    calibration.parameters.emplace_back(name, Quantity{0.147, 1e-4, "m"});
+  for (const char* name : {"lidar_x", "lidar_y"})
+    calibration.parameters.emplace_back(name, Quantity{0.1, 1e-4, "m"});
+  calibration.parameters.emplace_back("lidar_yaw", Quantity{0.01, 1e-4, "rad"});
+  calibration.verdict = Verdict::accepted;
+  calibration.reasons.clear();
+  ReportData data;
+  for (const char* name : {"straight_metre_length", "straight_metre_heading", "full_turn_heading",
+                           "open_loop_10s_position", "open_loop_10s_heading"})
+    data.drive_errors.push_back({name, "m", 12, Bounded{0.0204, 0.02, 0.021}, Bounded{0.002, 0.001, 0.003},
+                                 Bounded{0.0011, 0.0009, 0.0014}, 0.001});
+  store_report_data(data, calibration);
+  return calibration;
+}
+
+void add_effects(Calibration& calibration, int count) {
+  for (int k = 0; k < count; ++k) {
+    EffectResult effect;
+    effect.name = "effect_" + std::to_string(k);
+    effect.parameters = {{"kappa", {0.01, 0.001, "1"}}};
+    effect.aliases = {"another_effect", "and_still_another_one"};
+    effect.stored_in = "host";
+    calibration.effects.push_back(effect);
+  }
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+void expect_a_screen(const std::string& text) {
+  const auto lines = lines_of(text);
+  EXPECT_LE(lines.size(), static_cast<std::size_t>(settings::kSummaryLines)) << text;
+  for (const std::string& line : lines) EXPECT_LE(line.size(), kColumns) << line;
+}
+
+TEST(Summary, has_verdict_values_errors_and_what_was_found_and_leaves_the_rest) {
+  auto calibration = example();
+  add_effects(calibration, 2);
+  calibration.linear_correction = LinearCorrection{};
+  const std::string text = summary(calibration, true, kColumns);
+  expect_a_screen(text);
+  for (const char* said : {"ACCEPTED", "Next: odomcalibctl apply", "a metre read 20.4 mm too long",
+                           "lidar yaw", "10 s without reference: heading", "floor  stretches",
+                           "effect 1: kappa", "effect 0 cannot be separated from", "--verbose"})
+    EXPECT_THAT(text, HasSubstr(said));
+  for (const char* rest : {"Linear correction", "20.40 (20.00..21.00)"})
+    EXPECT_THAT(text, Not(HasSubstr(rest)));
+}
+
+TEST(Summary, fits_a_screen_with_many_reasons_and_effects) {
+  auto calibration = example();
+  calibration.verdict = Verdict::accepted_with_warnings;
+  add_effects(calibration, 6);
+  for (int k = 0; k < 20; ++k)
+    calibration.reasons.push_back("reason " + std::to_string(k) +
+                                  " has so much to say that no line holds it, " +
+                                  "not even one of eighty columns");
+  const std::string text = summary(calibration, true, kColumns);
+  expect_a_screen(text);
+  EXPECT_THAT(text, HasSubstr("reason 0 "));
+  EXPECT_THAT(text, HasSubstr("and 17 more: --verbose"));
+  EXPECT_THAT(text, HasSubstr("effect 5: kappa"));
+  EXPECT_THAT(text, HasSubstr("lidar yaw"));
+}
+
+TEST(Summary, of_a_refusal_has_the_reasons) {
+  Calibration calibration;
+  calibration.reasons = {"no data"};
+  const std::string text = summary(calibration, true, kColumns);
+  EXPECT_THAT(text, HasSubstr("REFUSED"));
+  EXPECT_THAT(text, HasSubstr("no data"));
+}
+
+}  // namespace
+}  // namespace odomcalib::cli
