@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace odomcalib {
 namespace {
@@ -13,49 +14,6 @@ std::array<double, 3> lidar_pose(const std::optional<Calibration>& applied, cons
   if (!applied || !applied->parameter("lidar_x")) return config.lidar_pose;
   return {*applied->parameter("lidar_x"), applied->parameter("lidar_y").value_or(0.0),
           applied->parameter("lidar_yaw").value_or(0.0)};
-}
-
-/// Base motion from rest to rest by the lidar, the mean over pairs of scans; nullopt when no pair matches.
-std::optional<routines::Pose> seen_motion(const Bench& bench, const Leg& from, const Leg& to,
-                                          const routines::Pose& told) {
-  const auto mount = lidar_pose(bench.applied.get(), bench.config);
-  const std::size_t pairs = std::min(from.scans_before.size(), to.scans_after.size());
-  routines::Pose sum;
-  double count = 0.0;
-  for (std::size_t k = 0; k < pairs; ++k) {
-    const auto seen = bench.calibrator.match(from.scans_before[k], to.scans_after[k], told, mount);
-    if (!seen) continue;
-    // The lidar cannot count full turns: the nearest to what the odometry says.
-    sum = {sum.x + seen->x, sum.y + seen->y, sum.yaw + told.yaw + routines::wrapped(seen->yaw - told.yaw)};
-    ++count;
-  }
-  if (count == 0.0) return std::nullopt;
-  return routines::Pose{sum.x / count, sum.y / count, sum.yaw / count};
-}
-
-// Base motion between two moments at rest, in the frame of the first.
-void add_motion(const Bench& bench, const Leg& from, const Leg& to, ordered_json& body) {
-  const auto told = relative(from.before, to.after);
-  body["odometry"] = json_of(told);
-  body["lidar"] = nullptr;
-  body["error"] = nullptr;
-  if (!bench.calibrator.match) return;
-  const auto seen = seen_motion(bench, from, to, told);
-  if (!seen) return;
-  body["lidar"] = json_of(*seen);
-  body["error"] = {{"distance", std::hypot(told.x, told.y) - std::hypot(seen->x, seen->y)},
-                   {"yaw", told.yaw - seen->yaw}};
-}
-
-/// @param is_matched false where nobody needs the lidar's view of single moves, which takes the loop some 50
-/// ms each
-ordered_json leg_report(const Bench& bench, const Leg& leg, bool is_matched) {
-  ordered_json body = {{"move", leg.move.name}, {"begin", leg.begin},
-                       {"end", leg.end},        {"odometry", json_of(relative(leg.before, leg.after))},
-                       {"lidar", nullptr},      {"error", nullptr}};
-  if (is_matched) add_motion(bench, leg, leg, body);
-  body["wheels"] = wheel_turns(leg, bench.drive.robot().ticks_per_rev);
-  return body;
 }
 
 ordered_json lengths(const RobotDescription& robot) {
@@ -74,14 +32,63 @@ std::array<double, 2> wheel_turns(const Leg& leg, double ticks_per_rev) {
           turn * static_cast<double>(leg.ticks_after.right - leg.ticks_before.right)};
 }
 
-ordered_json moves_report(const Bench& bench, const std::vector<Leg>& legs, std::size_t moves_in_round) {
+MovesReport::MovesReport(const Bench& bench, std::vector<Leg> legs, std::size_t moves_in_round)
+    : legs_(std::move(legs)), in_rounds_(moves_in_round != 0) {
+  const std::size_t together = in_rounds_ ? moves_in_round : 1;
+  for (std::size_t k = 0; k + together <= legs_.size(); k += together) {
+    const Leg &first = legs_[k], &last = legs_[k + together - 1];
+    const std::size_t pairs =
+        bench.calibrator.match ? std::min(first.scans_before.size(), last.scans_after.size()) : 0;
+    comparisons_.push_back({k, k + together - 1, relative(first.before, last.after), pairs});
+  }
+}
+
+bool MovesReport::compare_next(const Bench& bench) {
+  while (next_ < comparisons_.size() && comparisons_[next_].tried == comparisons_[next_].pairs) ++next_;
+  if (next_ == comparisons_.size()) return false;
+  Comparison& now = comparisons_[next_];
+  const auto seen =
+      bench.calibrator.match(legs_[now.from].scans_before[now.tried], legs_[now.to].scans_after[now.tried],
+                             now.told, lidar_pose(bench.applied.get(), bench.config));
+  ++now.tried;
+  if (!seen) return true;
+  // The lidar cannot count full turns: the nearest to what the odometry says.
+  const double yaw = now.told.yaw + routines::wrapped(seen->yaw - now.told.yaw);
+  now.sum = {now.sum.x + seen->x, now.sum.y + seen->y, now.sum.yaw + yaw};
+  ++now.matched;
+  return true;
+}
+
+/// The lidar's motion is the mean over pairs of scans; null when no pair matches.
+void MovesReport::add(const Comparison& comparison, ordered_json& body) {
+  const routines::Pose &told = comparison.told, &sum = comparison.sum;
+  body["odometry"] = json_of(told);
+  body["lidar"] = nullptr;
+  body["error"] = nullptr;
+  if (comparison.matched == 0) return;
+  const auto count = static_cast<double>(comparison.matched);
+  const routines::Pose seen{sum.x / count, sum.y / count, sum.yaw / count};
+  body["lidar"] = json_of(seen);
+  body["error"] = {{"distance", std::hypot(told.x, told.y) - std::hypot(seen.x, seen.y)},
+                   {"yaw", told.yaw - seen.yaw}};
+}
+
+ordered_json MovesReport::body(const Bench& bench) const {
   ordered_json body = {{"moves", ordered_json::array()}, {"robot", lengths(bench.drive.robot())}};
-  for (const Leg& leg : legs) body["moves"].push_back(leg_report(bench, leg, moves_in_round == 0));
-  if (moves_in_round == 0) return body;
+  for (std::size_t k = 0; k < legs_.size(); ++k) {
+    const Leg& leg = legs_[k];
+    ordered_json move = {{"move", leg.move.name}, {"begin", leg.begin},
+                         {"end", leg.end},        {"odometry", json_of(relative(leg.before, leg.after))},
+                         {"lidar", nullptr},      {"error", nullptr}};
+    if (!in_rounds_) add(comparisons_[k], move);
+    move["wheels"] = wheel_turns(leg, bench.drive.robot().ticks_per_rev);
+    body["moves"].push_back(std::move(move));
+  }
+  if (!in_rounds_) return body;
   body["rounds"] = ordered_json::array();
-  for (std::size_t k = 0; k + moves_in_round <= legs.size(); k += moves_in_round) {
+  for (const Comparison& comparison : comparisons_) {
     ordered_json round = ordered_json::object();
-    add_motion(bench, legs[k], legs[k + moves_in_round - 1], round);
+    add(comparison, round);
     body["rounds"].push_back(std::move(round));
   }
   return body;

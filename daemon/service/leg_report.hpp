@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <vector>
 
 #include "daemon/service/motion_run.hpp"
 #include "daemon/service/parts/bench.hpp"
@@ -11,9 +13,35 @@ namespace odomcalib {
 /// Turns of the left and the right wheel during a move, rad.
 std::array<double, 2> wheel_turns(const Leg& leg, double ticks_per_rev);
 
-/// {"moves": [...], "robot": {...}}: wheels, odometry and lidar of each move, all from rest to rest, and the
-/// values that odometry goes by. With `moves_in_round` also "rounds": odometry and lidar from the begin to
-/// the end of so many moves.
-ordered_json moves_report(const Bench& bench, const std::vector<Leg>& legs, std::size_t moves_in_round);
+/// Odometry and lidar from rest to rest, of each move or of rounds of several. Comparing scans takes time:
+/// the loop does it pair by pair, a turn each.
+class MovesReport {
+ public:
+  /// @param moves_in_round after so many the robot is back at its start: rounds are compared then, and nobody
+  /// needs the lidar's view of their moves; 0: each move is compared
+  MovesReport(const Bench& bench, std::vector<Leg> legs, std::size_t moves_in_round);
+
+  /// Compares one more pair of scans. @return false where all have been
+  bool compare_next(const Bench& bench);
+  /// {"moves": [...], "robot": {...}} and with rounds "rounds": wheels, odometry and lidar, and the values
+  /// that odometry goes by.
+  [[nodiscard]] ordered_json body(const Bench& bench) const;
+
+ private:
+  /// Base motion between two moments at rest, in the frame of the first.
+  struct Comparison {
+    std::size_t from, to;          ///< legs
+    routines::Pose told;           ///< by odometry
+    std::size_t pairs, tried = 0;  ///< of scans
+    routines::Pose sum = {};       ///< over the pairs that match, by the lidar
+    std::size_t matched = 0;
+  };
+  static void add(const Comparison& comparison, ordered_json& body);
+
+  std::vector<Leg> legs_;
+  bool in_rounds_;
+  std::vector<Comparison> comparisons_;  // in the order of the legs
+  std::size_t next_ = 0;
+};
 
 }  // namespace odomcalib

@@ -72,7 +72,7 @@ TaskTurn MotionTask::daemon_ends(Bench& bench, const Error& why) {
 }
 
 TaskTurn MotionTask::turn(Bench& bench) {
-  if (!run_) return written_.result() ? written(bench, *written_.result()) : TaskTurn(Running{});
+  if (!run_) return reported(bench);
   if (bench.now < next_step_) return Running{};
   next_step_ = bench.now + service::settings::kControlStep_s;
   watch_loop(bench);
@@ -137,7 +137,7 @@ std::optional<std::string> MotionTask::lapsed(const Bench& bench) const {
 
 TaskTurn MotionTask::ended(Bench& bench) {
   const auto error = run_->error();
-  if (!error) report_ = report(bench);
+  if (!error) begin_report(bench);
   run_.reset();
   bench.drive.encoders.commanded(0.0, 0.0, bench.now);
   if (error) {
@@ -153,11 +153,21 @@ TaskTurn MotionTask::ended(Bench& bench) {
   return Running{};
 }
 
-ordered_json MotionTask::report(const Bench& bench) const {
+void MotionTask::begin_report(const Bench& bench) {
+  report_ = ordered_json::object();
   if (const auto* moves = std::get_if<ReportMoves>(&purpose_))
-    return moves_report(bench, run_->legs(), moves->moves_in_round);
-  if (std::holds_alternative<ReportWiring>(purpose_)) return nudge_report(bench, run_->legs());
-  return ordered_json::object();
+    moves_.emplace(bench, run_->legs(), moves->moves_in_round);
+  if (std::holds_alternative<ReportWiring>(purpose_)) report_ = nudge_report(bench, run_->legs());
+}
+
+/// After the motion, until its moves are compared and its recording is on the disk.
+TaskTurn MotionTask::reported(const Bench& bench) {
+  if (moves_) {
+    if (moves_->compare_next(bench)) return Running{};
+    report_ = moves_->body(bench);
+    moves_.reset();
+  }
+  return written_.result() ? written(bench, *written_.result()) : TaskTurn(Running{});
 }
 
 TaskTurn MotionTask::written(const Bench& bench, const Result<std::filesystem::path>& path) {

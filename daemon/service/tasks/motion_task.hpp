@@ -9,6 +9,7 @@
 
 #include "daemon/safety/speed_watch.hpp"
 #include "daemon/service/agreement.hpp"
+#include "daemon/service/leg_report.hpp"
 #include "daemon/service/motion_run.hpp"
 #include "daemon/service/tasks/task.hpp"
 #include "daemon/service/tasks/written_recording.hpp"
@@ -56,7 +57,8 @@ class MotionTask final : public Task {
   [[nodiscard]] std::optional<std::string> lapsed(const Bench& bench) const;
   [[nodiscard]] Situation situation(const Bench& bench) const;
   TaskTurn ended(Bench& bench);
-  [[nodiscard]] ordered_json report(const Bench& bench) const;
+  void begin_report(const Bench& bench);
+  TaskTurn reported(const Bench& bench);
   TaskTurn written(const Bench& bench, const Result<std::filesystem::path>& path);
 
   std::string lease_;
@@ -64,8 +66,9 @@ class MotionTask final : public Task {
   std::vector<std::string> limited_;
   AgreementWatch agreement_;
   safety::SpeedWatch speed_;
-  std::optional<MotionRun> run_;  // until it has ended
-  ordered_json report_;           // of the motion, while its recording goes to the disk
+  std::optional<MotionRun> run_;      // until it has ended
+  std::optional<MovesReport> moves_;  // while its scans are compared
+  ordered_json report_;               // of the motion, while its recording goes to the disk
   WrittenRecording written_;
   double next_step_ = 0.0;     // s
   double stepped_at_ = 0.0;    // s, last control step
