@@ -39,7 +39,8 @@ Document summary_document(const Calibration& calibration, Brevity brevity) {
   Document document{headline(calibration.verdict), {}};
   for (Section& section : std::vector<Section>{
            std::move(verdict), std::move(values), drive_errors_section(report_data_of(calibration), false),
-           std::move(effects), Section{"", {"All of it: --verbose; as a page: odomcalibctl report FILE --html PAGE"}, {}}})
+           std::move(effects),
+           Section{"", {"All of it: --verbose; as a page: odomcalibctl report FILE --html PAGE"}, {}}})
     if (!section.lines.empty() || !section.table.rows.empty())
       document.sections.push_back(std::move(section));
   return document;

@@ -35,10 +35,10 @@ class SampleRecording : public ::testing::Test {
     return path;
   }
   static void solve(const std::string& name) {
-    const std::string command = "cd '" + folder().string() +
-                                "' && COLUMNS=160 '" ODOMCALIB_CTL "' --verbose solve '" ODOMCALIB_SAMPLE "' --out " +
-                                name + ".json --report " + name + ".html --pairs " + name + ".csv > " + name +
-                                ".txt 2> " + name + ".err";
+    const std::string command =
+        "cd '" + folder().string() +
+        "' && COLUMNS=160 '" ODOMCALIB_CTL "' --verbose solve '" ODOMCALIB_SAMPLE "' --out " + name +
+        ".json --report " + name + ".html --pairs " + name + ".csv > " + name + ".txt 2> " + name + ".err";
     ASSERT_EQ(WEXITSTATUS(system(command.c_str())), 0) << read(name + ".err");
   }
   static std::string read(const std::string& name) {
