@@ -13,7 +13,7 @@ constexpr double kLongestTurn = 0.400;
 #else
 constexpr double kLongestTurn = 0.020;
 #endif
-constexpr double kAnswered = 2.0;  // s
+constexpr double kAnswered = 2.0, kDriven_s = 2000.0;  // s
 
 double processor_time() {
   timespec time{};
@@ -41,6 +41,7 @@ class CallAtRest : public WholeLoop, public testing::WithParamInterface<Asked> {
     for (const double end = clock_.time + answered; clock_.time < end && !reply_;) {
       robot_->step(0.002);
       clock_.time += 0.002;
+      if (solving_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
       if (++steps_ % 10 == 0) client_->call("Renew", {{"lease", lease_}});
       const double begin = processor_time();
       service_->poll_once(0);
@@ -77,7 +78,7 @@ TEST_P(WholeMotion, takes_less_than_20_ms_of_any_turn) {
   json parameters = GetParam().parameters;
   parameters["lease"] = lease_;
   caller.call(GetParam().method, parameters, true);
-  const double longest = longest_turn(caller, 200.0);
+  const double longest = longest_turn(caller, kDriven_s);
   ASSERT_TRUE(reply_.has_value());
   EXPECT_EQ(reply_->error, "") << reply_->parameters;
   std::printf("%.1f ms\n", 1e3 * longest);
@@ -89,6 +90,7 @@ const Asked kDriven[] = {
     {"spin", "Spin", {{"turns", 1.0}}},
     {"spin_again_and_again", "Spin", {{"turns", 1.0}, {"repeat", 3}}},
     {"nudge", "Check", {{"nudge", true}}},
+    {"calibrate", "Calibrate", {{"options", {{"quick", true}}}}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, WholeMotion, testing::ValuesIn(kDriven),
