@@ -216,7 +216,8 @@ void in_a_corridor(sim::SimRobotOptions& options, std::uint64_t /*seed*/) {
 const Bad kBad[] = {
     {.name = "corridor", .said = {"corridor"}, .world = in_a_corridor},
     {.name = "slipping",
-     .said = {"odometry and lidar differ", "odometry says", "the robot moved otherwise than its wheels"},
+     .said = {"odometry and lidar differ", "odometry says", "the robot moved otherwise than its wheels",
+              "contradict what the others say of the wheels"},
      .world = [](sim::SimRobotOptions& options,
                  std::uint64_t seed) { options.disturbances.push_back(std::make_shared<LosesGrip>(seed)); }},
     {.name = "swapped_wires",
