@@ -103,6 +103,8 @@ estimation::Fit align_clocks(estimation::Fit fit, const terms::Request& request,
   const std::vector<OwnValues> own = own_clocks(fit);
   if (!differ(own)) return fit;
   const Eigen::Matrix2d spread = between(own);
+  // Rates alone that differ are no clocks set anew: crystals of one robot do not.
+  if (!(spread(0, 0) > 0.0)) return fit;
   const std::vector<Clock> clocks = shrunk(own, spread);
   const Clock common = clock_of(fit.model);
   ingest::Repairs repairs(dataset.recordings.view());
