@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <unordered_set>
 #include <utility>
 
+#include "daemon/routines/distinct_poses.hpp"
 #include "daemon/routines/runner.hpp"
 #include "daemon/routines/settings.hpp"
 
@@ -24,34 +23,6 @@ Pose advanced(const Pose& pose, const Twist& twist, double dt) {
   return {pose.x + twist.v * dt * std::cos(middle), pose.y + twist.v * dt * std::sin(middle),
           pose.yaw + twist.w * dt};
 }
-
-class DistinctPoses {
- public:
-  void add(const Pose& pose) {
-    const std::uint64_t cell = cell_of(pose);
-    if (!poses_.empty() && cell == last_) return;
-    last_ = cell;
-    if (taken_.insert(cell).second) poses_.push_back(pose);
-  }
-  std::vector<Pose> take() && { return std::move(poses_); }
-
- private:
-  /// In one number: 24 bits for each coordinate are more than any robot drives, 16 for the heading than a
-  /// turn has.
-  static std::uint64_t cell_of(const Pose& pose) {
-    const auto nearest = [](double value, double size) {
-      return static_cast<std::uint64_t>(std::lround(value / size));
-    };
-    constexpr std::uint64_t kCoordinate = 0xFFFFFF, kHeading = 0xFFFF;
-    return (nearest(pose.x, settings::kSamePlace_m) & kCoordinate) << 40U |
-           (nearest(pose.y, settings::kSamePlace_m) & kCoordinate) << 16U |
-           (nearest(wrapped(pose.yaw), settings::kSameHeading_rad) & kHeading);
-  }
-
-  std::unordered_set<std::uint64_t> taken_;
-  std::uint64_t last_ = 0;
-  std::vector<Pose> poses_;
-};
 
 /// So long that the robot moves by half of what makes two poses, s.
 double preview_step(const Twist& twist) {
@@ -127,7 +98,7 @@ Preview preview(const Plan& plan) {
   Preview seen;
   Runner runner(plan);
   Pose pose;
-  DistinctPoses distinct;
+  DistinctPoses distinct(settings::kSamePlace_m, settings::kSameHeading_rad);
   while (!runner.done() && seen.duration < settings::kLongestPreview_s) {
     distinct.add(pose);
     seen.reach = std::max(seen.reach, std::hypot(pose.x, pose.y));

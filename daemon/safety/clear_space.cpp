@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
+#include <utility>
 
+#include "daemon/routines/distinct_poses.hpp"
 #include "daemon/safety/settings.hpp"
 
 namespace odomcalib::safety {
@@ -44,19 +45,6 @@ std::optional<double> nearest(const std::vector<Point>& points, const Footprint&
     if (in_lane && towards.at(side) > 0.0 && (!found || towards.at(side) < *found)) found = towards.at(side);
   }
   return found;
-}
-
-/// Of poses that are nearer than this to each other one: finer than a cell nothing is drawn.
-std::vector<routines::Pose> thinned(const std::vector<routines::Pose>& poses, double place, double heading) {
-  std::set<std::array<long, 3>> taken;
-  std::vector<routines::Pose> out;
-  for (const auto& pose : poses)
-    if (taken
-            .insert({std::lround(pose.x / place), std::lround(pose.y / place),
-                     std::lround(routines::wrapped(pose.yaw) / heading)})
-            .second)
-      out.push_back(pose);
-  return out;
 }
 
 class Map {
@@ -111,7 +99,10 @@ ClearSpace clear_space(const std::vector<Point>& points, const routines::Preview
   Map map(box, space.cell);
   map.fill({}, footprint.radius(), 'R', [&](const Point& cell) { return inside(cell, footprint, 0.0); });
   const double reach = reach_of(footprint, clearance);
-  for (const auto& pose : thinned(preview.path, 0.5 * space.cell, 0.5 * space.cell / reach))
+  // Finer than a cell nothing is drawn.
+  routines::DistinctPoses drawn(0.5 * space.cell, 0.5 * space.cell / reach);
+  for (const auto& pose : preview.path) drawn.add(pose);
+  for (const auto& pose : std::move(drawn).take())
     map.fill({pose.x, pose.y}, reach, '.',
              [&, c = std::cos(pose.yaw), s = std::sin(pose.yaw)](const Point& cell) {
                const double dx = cell.x - pose.x, dy = cell.y - pose.y;
