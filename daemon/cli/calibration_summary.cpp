@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <iostream>
-#include <utility>
+#include <iterator>
 #include <vector>
 
 #include "daemon/cli/calibration_document.hpp"
@@ -16,11 +15,6 @@
 namespace odomcalib::cli {
 namespace {
 
-/// What gives way, one after the other.
-enum class Brevity { none, no_remarks_on_values, no_remarks_on_effects, few_reasons };
-constexpr std::array kBrevities = {Brevity::none, Brevity::no_remarks_on_values,
-                                   Brevity::no_remarks_on_effects, Brevity::few_reasons};
-
 /// The last line is what to do next.
 void leave_first_reasons(std::vector<std::string>& lines) {
   const std::size_t reasons = lines.size() - 1;
@@ -30,31 +24,34 @@ void leave_first_reasons(std::vector<std::string>& lines) {
   lines.insert(lines.end() - 1, fmt::format("and {} more: --verbose", reasons - settings::kSummaryReasons));
 }
 
-Document summary_document(const Calibration& calibration, Brevity brevity) {
-  Section verdict = verdict_section(calibration);
-  Section values = parameters_section(calibration), effects = effects_section(calibration);
-  if (brevity >= Brevity::no_remarks_on_values) values.lines.clear();
-  if (brevity >= Brevity::no_remarks_on_effects) effects.lines.clear();
-  if (brevity >= Brevity::few_reasons) leave_first_reasons(verdict.lines);
-  Document document{headline(calibration.verdict), {}};
-  for (Section& section : std::vector<Section>{
-           std::move(verdict), std::move(values), drive_errors_section(report_data_of(calibration), false),
-           std::move(effects),
-           Section{"", {"All of it: --verbose; as a page: odomcalibctl report FILE --html PAGE"}, {}}})
-    if (!section.lines.empty() || !section.table.rows.empty())
-      document.sections.push_back(std::move(section));
-  return document;
-}
-
 }  // namespace
 
 std::string summary(const Calibration& calibration, bool legend, std::size_t width) {
-  std::string text;
-  for (const Brevity brevity : kBrevities) {
-    text = to_text(summary_document(calibration, brevity), legend, width);
-    if (std::count(text.begin(), text.end(), '\n') <= settings::kSummaryLines) break;
+  constexpr std::size_t kVerdict = 0, kValues = 1, kEffects = 3;
+  Document document{headline(calibration.verdict),
+                    {verdict_section(calibration),
+                     parameters_section(calibration),
+                     drive_errors_section(report_data_of(calibration), false),
+                     effects_section(calibration),
+                     {"", {"All of it: --verbose; as a page: odomcalibctl report FILE --html PAGE"}, {}}}};
+  const auto text = [&] {
+    Document shown{document.headline, {}};
+    std::copy_if(document.sections.begin(), document.sections.end(), std::back_inserter(shown.sections),
+                 [](const Section& one) { return !one.lines.empty() || !one.table.rows.empty(); });
+    return to_text(shown, legend, width);
+  };
+  const auto too_long = [](const std::string& one) {
+    return std::count(one.begin(), one.end(), '\n') > settings::kSummaryLines;
+  };
+  std::string out = text();
+  for (const std::size_t remarks : {kValues, kEffects}) {
+    if (!too_long(out)) return out;
+    document.sections[remarks].lines.clear();
+    out = text();
   }
-  return text;
+  if (!too_long(out)) return out;
+  leave_first_reasons(document.sections[kVerdict].lines);
+  return text();
 }
 
 void print_calibration(const Calibration& calibration, const Session& session) {

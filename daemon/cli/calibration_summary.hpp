@@ -11,7 +11,7 @@ namespace odomcalib::cli {
 
 /// Verdict with its reasons, values, errors before and after, what was found: at most settings::kSummaryLines
 /// lines as long as the tables leave room. Remarks on values and effects give way first, then all reasons but
-/// the first.
+/// the first few.
 /// @param width columns of a line
 std::string summary(const Calibration& calibration, bool legend, std::size_t width);
 
