@@ -77,10 +77,8 @@ ordered_json MovesReport::body(const Bench& bench) const {
   ordered_json body = {{"moves", ordered_json::array()}, {"robot", lengths(bench.drive.robot())}};
   for (std::size_t k = 0; k < legs_.size(); ++k) {
     const Leg& leg = legs_[k];
-    ordered_json move = {{"move", leg.move.name}, {"begin", leg.begin},
-                         {"end", leg.end},        {"odometry", json_of(relative(leg.before, leg.after))},
-                         {"lidar", nullptr},      {"error", nullptr}};
-    if (!in_rounds_) add(comparisons_[k], move);
+    ordered_json move = {{"move", leg.move.name}, {"begin", leg.begin}, {"end", leg.end}};
+    add(in_rounds_ ? Comparison{k, k, relative(leg.before, leg.after), 0} : comparisons_[k], move);
     move["wheels"] = wheel_turns(leg, bench.drive.robot().ticks_per_rev);
     body["moves"].push_back(std::move(move));
   }

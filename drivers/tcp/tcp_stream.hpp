@@ -11,8 +11,8 @@ namespace odomcalib::drivers {
 
 /// Begins to connect; ByteStream::connected() tells when it is done. How long to wait is the caller's
 /// decision.
-/// @param address numeric "192.168.0.10:2112" or "[fe80::1]:2112": looking a name up would block
-/// (host_lookup.hpp) Errors: usage (address), device (no route).
+/// @param address numeric "192.168.0.10:2112" or "[fe80::1]:2112": looking a name up would block; see
+/// host_lookup.hpp Errors: usage (address), device (no route).
 Result<std::unique_ptr<ByteStream>> open_tcp(const std::string& address);
 
 }  // namespace odomcalib::drivers
