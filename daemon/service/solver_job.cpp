@@ -17,15 +17,17 @@ struct SolverJob::State {
   double fraction = 0.0;
   std::optional<Result<Calibration>> result;
   std::optional<Error> not_kept;
+  std::string text;
 
   void report(const std::string& name, double share) {
     const std::lock_guard lock(mutex);
     phase = name;
     fraction = share;
   }
-  void finish(Result<Calibration> calibration, std::optional<Error> problem) {
+  void finish(Result<Calibration> calibration, std::optional<Error> problem, std::string json) {
     const std::lock_guard lock(mutex);
     not_kept = std::move(problem);
+    text = std::move(json);
     result.emplace(std::move(calibration));
   }
 };
@@ -62,7 +64,8 @@ SolverJob::SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::
     const auto progress = [&state](const std::string& phase, double share) { state->report(phase, share); };
     auto result = solve(calibrator, paths, effects, progress);
     auto problem = result ? keep_copy(result.value(), keep) : std::nullopt;
-    state->finish(std::move(result), std::move(problem));
+    auto text = result ? to_json(result.value()) : std::string();
+    state->finish(std::move(result), std::move(problem), std::move(text));
   }).detach();
 }
 
@@ -76,6 +79,11 @@ std::pair<std::string, double> SolverJob::progress() const {
 std::optional<Error> SolverJob::not_kept() const {
   const std::lock_guard lock(state_->mutex);
   return state_->not_kept;
+}
+
+std::string SolverJob::text() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->text;
 }
 
 std::optional<Result<Calibration>> SolverJob::take_result() {

@@ -27,6 +27,9 @@ class SolverJob {
   [[nodiscard]] std::optional<Error> not_kept() const;
   /// Once, when it is there.
   std::optional<Result<Calibration>> take_result();
+  /// The calibration as JSON text: to make it takes the loop too long. Empty before the end, and of a
+  /// failure.
+  [[nodiscard]] std::string text() const;
 
  private:
   std::shared_ptr<State> state_;

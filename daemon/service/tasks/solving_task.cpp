@@ -47,7 +47,7 @@ TaskTurn SolvingTask::turn(Bench& bench) {
     return Failed{{ErrorCode::cancelled, "stopped on request", "solve",
                    "the recording is kept: odomcalibctl solve " + recording_.string()}};
   if (!*result) return Failed{result->error()};
-  const std::string text = to_json(result->value());
+  const std::string text = job_.text();
   bench.outbox.event(messages::Severity::info, "calibration", in_a_line(result->value(), recording_));
   bench.outbox.send_result(text);
   bench.outbox.send_paths(report_data_of(result->value()).paths);
