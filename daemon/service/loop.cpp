@@ -159,7 +159,7 @@ void Loop::settle(TaskTurn turn) {
     task_.reset();
   }
   if (const auto* done = std::get_if<Done>(&turn)) {
-    bench_.outbox.answer(task_->caller, done->reply);
+    bench_.outbox.reply(task_->caller, done->reply);
     task_.reset();
   }
 }

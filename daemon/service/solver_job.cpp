@@ -1,5 +1,7 @@
 #include "daemon/service/solver_job.hpp"
 
+#include <sys/resource.h>
+
 #include <exception>
 #include <limits>
 #include <mutex>
@@ -15,34 +17,22 @@ struct SolverJob::State {
   mutable std::mutex mutex;
   std::string phase = "reading";
   double fraction = 0.0;
-  std::optional<Result<Calibration>> result;
+  std::optional<Result<Solution>> result;
   std::optional<Error> not_kept;
-  std::string text;
 
   void report(const std::string& name, double share) {
     const std::lock_guard lock(mutex);
     phase = name;
     fraction = share;
   }
-  void finish(Result<Calibration> calibration, std::optional<Error> problem, std::string json) {
+  void finish(Result<Solution> solution, std::optional<Error> problem) {
     const std::lock_guard lock(mutex);
     not_kept = std::move(problem);
-    text = std::move(json);
-    result.emplace(std::move(calibration));
+    result.emplace(std::move(solution));
   }
 };
 
 namespace {
-
-// Nothing may leave the thread as an exception, not even that there is no memory for the recording.
-Result<Calibration> solve(const Calibrator& calibrator, const std::vector<std::filesystem::path>& paths,
-                          const std::vector<std::string>& effects, const Calibrator::Progress& progress) {
-  try {
-    return calibrator.solve(paths, effects, progress);
-  } catch (const std::exception& error) {
-    return Error{ErrorCode::format, error.what(), paths.front().string(), "report this recording"};
-  }
-}
 
 std::optional<Error> keep_copy(const Calibration& calibration, const std::filesystem::path& file) {
   if (file.empty()) return std::nullopt;
@@ -54,6 +44,24 @@ std::optional<Error> keep_copy(const Calibration& calibration, const std::filesy
   return written ? std::nullopt : std::optional(written.error());
 }
 
+struct End {
+  Result<Solution> solution;
+  std::optional<Error> not_kept = {};
+};
+
+// Nothing may leave the thread as an exception, not even that there is no memory for the recording.
+End solved(const Calibrator& calibrator, const std::vector<std::filesystem::path>& paths,
+           const std::vector<std::string>& effects, const std::filesystem::path& keep,
+           const Calibrator::Progress& progress) {
+  try {
+    const auto calibration = calibrator.solve(paths, effects, progress);
+    if (!calibration) return {calibration.error()};
+    return {solution_of(calibrator, calibration.value(), paths.back()), keep_copy(calibration.value(), keep)};
+  } catch (const std::exception& error) {
+    return {Error{ErrorCode::format, error.what(), paths.front().string(), "report this recording"}};
+  }
+}
+
 }  // namespace
 
 SolverJob::SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::path> recordings,
@@ -61,11 +69,10 @@ SolverJob::SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::
     : state_(std::make_shared<State>()) {
   std::thread([calibrator, paths = std::move(recordings), effects = std::move(effects),
                keep = std::move(keep), state = state_] {
+    (void)setpriority(PRIO_PROCESS, 0, service::settings::kLessUrgent);  // of this thread alone
     const auto progress = [&state](const std::string& phase, double share) { state->report(phase, share); };
-    auto result = solve(calibrator, paths, effects, progress);
-    auto problem = result ? keep_copy(result.value(), keep) : std::nullopt;
-    auto text = result ? to_json(result.value()) : std::string();
-    state->finish(std::move(result), std::move(problem), std::move(text));
+    auto end = solved(calibrator, paths, effects, keep, progress);
+    state->finish(std::move(end.solution), std::move(end.not_kept));
   }).detach();
 }
 
@@ -81,12 +88,7 @@ std::optional<Error> SolverJob::not_kept() const {
   return state_->not_kept;
 }
 
-std::string SolverJob::text() const {
-  const std::lock_guard lock(state_->mutex);
-  return state_->text;
-}
-
-std::optional<Result<Calibration>> SolverJob::take_result() {
+std::optional<Result<Solution>> SolverJob::take_result() {
   const std::lock_guard lock(state_->mutex);
   return std::exchange(state_->result, std::nullopt);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/service/calibrator.hpp"
+#include "daemon/service/solution.hpp"
 
 namespace odomcalib {
 
@@ -26,10 +27,7 @@ class SolverJob {
   /// Why there is no copy of the result, when that failed.
   [[nodiscard]] std::optional<Error> not_kept() const;
   /// Once, when it is there.
-  std::optional<Result<Calibration>> take_result();
-  /// The calibration as JSON text: to make it takes the loop too long. Empty before the end, and of a
-  /// failure.
-  [[nodiscard]] std::string text() const;
+  std::optional<Result<Solution>> take_result();
 
  private:
   std::shared_ptr<State> state_;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/calibration_value.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
@@ -252,7 +253,10 @@ bool covariance_fits(const Calibration& calibration) {
 }  // namespace
 
 Result<Calibration> calibration_from_json(const std::string& text, const std::string& where) {
-  const Json json = parse(text);
+  return calibration_from(parse(text), where);
+}
+
+Result<Calibration> calibration_from(const Json& json, const std::string& where) {
   if (!json.is_object())
     return Error{ErrorCode::format, "is not a calibration file (no JSON object)", where,
                  "name a file that solve wrote"};

@@ -1,11 +1,11 @@
 // Values into the controller, and back.
 #include "daemon/service/call_parameters.hpp"
-#include "daemon/service/json_text.hpp"
 #include "daemon/service/methods/methods.hpp"
 #include "daemon/service/status_report.hpp"
 #include "daemon/service/tasks/proof_task.hpp"
 #include "daemon/service/tasks/write_task.hpp"
 #include "daemon/service/write_gate.hpp"
+#include "proto/calibration/calibration_value.hpp"
 
 namespace odomcalib {
 namespace {
@@ -27,14 +27,15 @@ struct Wish {
   ParameterMap values;
   std::string label = "apply";
   std::optional<std::string> calibration;  ///< JSON text
+  std::optional<Calibration> given;        ///< what that was made of, where it was not a text
   bool replaces_calibration = true;
   bool prove = false;
 };
 
 ordered_json dry_run_report(const Bench& bench, const ParameterMap& present, const RoundedParameters& rounded,
                             const Wish& wish) {
-  std::optional<Calibration> wanted;
-  if (wish.calibration)
+  std::optional<Calibration> wanted = wish.given;
+  if (wish.calibration && !wanted)
     if (auto read = calibration_from_json(*wish.calibration, "calibration")) wanted = std::move(read).value();
   return {{"outcome", "dry_run"},
           {"before", present},
@@ -72,7 +73,7 @@ std::optional<Error> of_another_controller(const std::string& theirs, const std:
 }
 
 /// The values of a calibration that a controller may hold.
-Result<Wish> wish_of(const Calibration& calibration, const std::string& robot) {
+Result<Wish> wish_of(Calibration calibration, const std::string& robot) {
   if (calibration.verdict == Verdict::refused)
     return Error{ErrorCode::refused, "this calibration was refused by its quality gate", "calibration",
                  "record again and solve"};
@@ -84,6 +85,7 @@ Result<Wish> wish_of(const Calibration& calibration, const std::string& robot) {
   for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
     if (const auto value = calibration.parameter(name)) wish.values[name] = *value;
   wish.calibration = to_json(calibration);
+  wish.given = std::move(calibration);
   return wish;
 }
 
@@ -112,9 +114,9 @@ Reading apply(Context& context, const Call& call) {
   if (!wanted.is_object()) given.reject("calibration");
   if (given.wrong()) return WrongParameter{*given.wrong()};
   return write_request(context, call, [&bench = context.bench, &wanted, prove]() -> Result<Wish> {
-    const auto calibration = calibration_from_json(json_text(wanted), "calibration");
+    auto calibration = calibration_from(wanted, "calibration");
     if (!calibration) return calibration.error();
-    auto wish = wish_of(calibration.value(), bench.drive.robot().robot_id);
+    auto wish = wish_of(std::move(calibration).value(), bench.drive.robot().robot_id);
     if (wish) wish.value().prove = prove;
     return wish;
   });
@@ -169,7 +171,11 @@ Reading rollback(Context& context, const Call& call) {
                    "odomcalibctl history"};
     if (auto wrong = of_another_controller(former->device, device_of(bench.drive.controller())))
       return *wrong;
-    return Wish{former->values, "rollback", former->calibration};
+    Wish wish;
+    wish.values = former->values;
+    wish.label = "rollback";
+    wish.calibration = former->calibration;
+    return wish;
   });
 }
 

@@ -33,6 +33,7 @@ class Outbox {
   /// What is sent until the next turn carries this time.
   void begin_turn(double now) { now_ = now; }
 
+  void reply(const Caller& caller, const std::string& frame);
   void answer(const Caller& caller, const ordered_json& parameters);
   void refuse(const Caller& caller, const Error& error);
   /// A member of the call is missing or of a wrong type.
@@ -64,7 +65,6 @@ class Outbox {
   Telemetry telemetry;
 
  private:
-  void reply(const Caller& caller, const std::string& frame);
   [[nodiscard]] messages::Stamp stamp(double t) const;
 
   const Clock& clock_;

@@ -179,7 +179,7 @@ TaskTurn MotionTask::written(const Bench& bench, const Result<std::filesystem::p
   }
   report_["limited"] = limited_;
   report_["recording"] = path.value().string();
-  return Done{{{"result", report_}}};
+  return done_with({{"result", report_}});
 }
 
 }  // namespace odomcalib

@@ -26,7 +26,7 @@ TaskTurn ProofTask::turn(Bench& bench) {
   if (!end) return Running{};
   const WriteReport& report = end->report;
   if (!proven_ && report.outcome == WriteOutcome::rolled_back)
-    return Done{write_reply(bench, report, report.after, report.before, {})};
+    return done_with(write_reply(bench, report, report.after, report.before, {}));
   return turn_of(bench, *end);
 }
 

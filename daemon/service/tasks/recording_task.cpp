@@ -21,7 +21,7 @@ TaskTurn RecordingTask::turn(Bench& bench) {
   Recorder& recorder = bench.outbox.telemetry.recorder;
   if (const auto& path = written_.result()) {
     if (!*path) return Failed{path->error()};
-    return Done{{{"path", path->value().string()}}};
+    return done_with({{"path", path->value().string()}});
   }
   if (ending_) return Running{};
   const auto left = until_ ? std::optional(*until_ - bench.now) : std::nullopt;

@@ -1,30 +1,12 @@
 #include "daemon/service/tasks/solving_task.hpp"
 
-#include <fmt/format.h>
+#include <utility>
 
 namespace odomcalib {
 namespace {
 
 std::filesystem::path kept_at(const Config& config, const std::filesystem::path& recording) {
   return config.state_dir / "calibrations" / (recording.stem().string() + ".json");
-}
-
-ordered_json report_of(const Calibrator& calibrator, const Calibration& calibration, const std::string& text,
-                       const std::filesystem::path& recording) {
-  ordered_json report = {{"recording", recording.string()}, {"calibration", ordered_json::parse(text)}};
-  if (!calibrator.next_manoeuvre) return report;
-  if (const auto next = calibrator.next_manoeuvre(calibration))
-    report["next"] = {{"manoeuvre", next->name}, {"why", next->why}};
-  return report;
-}
-
-/// For the journal.
-std::string in_a_line(const Calibration& calibration, const std::filesystem::path& recording) {
-  std::string line = recording.filename().string() + ": " + name_of(calibration.verdict);
-  for (const auto& [name, quantity] : calibration.parameters)
-    line += fmt::format(", {} {:.6g} ± {:.2g} {}", name, quantity.value, quantity.std, quantity.unit);
-  for (const std::string& reason : calibration.reasons) line += "; " + reason;
-  return line;
 }
 
 }  // namespace
@@ -39,7 +21,7 @@ SolvingTask::SolvingTask(const Bench& bench, const Caller& waits, const Order& o
 TaskTurn SolvingTask::turn(Bench& bench) {
   const auto [phase, fraction] = job_.progress();
   bench.outbox.progress(caller, "solve: " + phase, fraction, std::nullopt);
-  const auto result = job_.take_result();
+  auto result = job_.take_result();
   if (!result) return Running{};
   if (const auto problem = job_.not_kept())
     bench.outbox.event(messages::Severity::warning, "not_kept", problem->text());
@@ -47,11 +29,11 @@ TaskTurn SolvingTask::turn(Bench& bench) {
     return Failed{{ErrorCode::cancelled, "stopped on request", "solve",
                    "the recording is kept: odomcalibctl solve " + recording_.string()}};
   if (!*result) return Failed{result->error()};
-  const std::string text = job_.text();
-  bench.outbox.event(messages::Severity::info, "calibration", in_a_line(result->value(), recording_));
-  bench.outbox.send_result(text);
-  bench.outbox.send_paths(report_data_of(result->value()).paths);
-  return Done{{{"result", report_of(bench.calibrator, result->value(), text, recording_)}}};
+  Solution solution = std::move(*result).value();
+  bench.outbox.event(messages::Severity::info, "calibration", solution.line);
+  bench.outbox.send_result(solution.calibration);
+  bench.outbox.send_paths(solution.paths);
+  return Done{std::move(solution.reply)};
 }
 
 }  // namespace odomcalib

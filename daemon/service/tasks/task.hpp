@@ -6,7 +6,9 @@
 #include <string>
 #include <variant>
 
+#include "daemon/service/json_text.hpp"
 #include "daemon/service/parts/bench.hpp"
+#include "proto/control/control.hpp"
 
 namespace odomcalib {
 
@@ -15,7 +17,7 @@ class Task;
 /// What a turn has made of a task.
 struct Running {};
 struct Done {
-  ordered_json reply;  ///< parameters of the reply to the caller
+  std::string reply;  ///< frame for the caller
 };
 struct Failed {
   Error error;
@@ -25,6 +27,10 @@ struct Then {
   std::unique_ptr<Task> task;
 };
 using TaskTurn = std::variant<Running, Done, Failed, Then>;
+
+[[nodiscard]] inline Done done_with(const ordered_json& parameters) {
+  return {control::encode_reply(json_text(parameters))};
+}
 
 /// Begins when it is made and has something to do in every turn of the loop until that says how it ended.
 class Task {

@@ -70,7 +70,7 @@ TaskTurn turn_of(const Bench& bench, const WriteEnd& end) {
   if (report.outcome != WriteOutcome::committed && report.outcome != WriteOutcome::proving)
     return Failed{report.error.value_or(Error{ErrorCode::write_failed, "write-back failed", "", ""})};
   if (end.unsettled) return Failed{*end.unsettled};
-  return Done{write_reply(bench, report, report.before, report.after, bench.write_back.rounding)};
+  return done_with(write_reply(bench, report, report.before, report.after, bench.write_back.rounding));
 }
 
 }  // namespace odomcalib

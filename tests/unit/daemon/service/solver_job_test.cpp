@@ -7,8 +7,11 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
+
+#include "proto/control/control.hpp"
 
 namespace odomcalib {
 namespace {
@@ -41,7 +44,7 @@ Calibrator slow(const std::shared_ptr<std::atomic<bool>>& may_end) {
   return calibrator;
 }
 
-std::optional<Result<Calibration>> wait_for(SolverJob& job) {
+std::optional<Result<Solution>> wait_for(SolverJob& job) {
   for (int i = 0; i < 30'000; ++i) {
     if (auto result = job.take_result()) return result;
     const auto [phase, fraction] = job.progress();
@@ -64,7 +67,18 @@ TEST(SolverJob, tells_its_progress_and_its_result_once) {
   *may_end = true;
   const auto result = wait_for(job);
   ASSERT_TRUE(result && result->ok());
-  EXPECT_EQ(result->value().robot.track_width, 0.3);
+  const Solution& solution = result->value();
+  const auto kept = calibration_from_json(solution.calibration, "solution");
+  ASSERT_TRUE(kept.ok());
+  EXPECT_EQ(kept.value().robot.track_width, 0.3);
+  EXPECT_EQ(solution.line.find(path.filename().string() + ": "), 0U) << solution.line;
+  control::FrameDecoder frames;
+  frames.feed(solution.reply);
+  const auto reply = control::decode_reply(frames.next().value_or(""));
+  ASSERT_TRUE(reply.ok());
+  const auto parameters = nlohmann::json::parse(reply.value().parameters);
+  EXPECT_EQ(parameters.at("result").at("recording"), path.string());
+  EXPECT_EQ(parameters.at("result").at("calibration"), nlohmann::json::parse(solution.calibration));
   EXPECT_FALSE(job.take_result());
   std::filesystem::remove(path);
 }
