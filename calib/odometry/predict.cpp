@@ -161,8 +161,8 @@ std::vector<PoseSample> predict(const Recording& recording, const Calibration& c
   if (track.empty()) return poses;
   const DriveClock clock(calibration, track.t.front());
   const Correction correction = correction_of(calibration, clock);
-  std::vector<vehicle::StepContext> context =
-      vehicle::make_context(track, vehicle::to_base(vehicle::as_span(correction.parameters)));
+  std::vector<vehicle::StepContext> context = vehicle::make_context(
+      track, vehicle::to_base(vehicle::as_span(correction.parameters)), covariates_of(correction.effects));
   for (vehicle::StepContext& c : context) c.t = clock.at(track.t.front() + c.t);
   const vehicle::DriveModel model(track, std::move(context));
   const std::vector<math::Pose> base =
@@ -182,6 +182,7 @@ struct Odometry::State {
   Correction correction;
   std::deque<TickSample> history;
   math::Pose pose;
+  vehicle::CovariateGroups groups;  ///< that the correction looks at
   vehicle::DriveHistory drive{{}, 0.0};
 
   [[nodiscard]] double ticks_per_rev() const { return calibration.robot.ticks_per_rev; }
@@ -190,7 +191,9 @@ struct Odometry::State {
     clock = DriveClock(calibration, stamp);
     correction = correction_of(calibration, clock);
     const double tick_angle = ticks_per_rev() > 0.0 ? 2.0 * math::kPi / ticks_per_rev() : 0.0;
-    drive = vehicle::DriveHistory(vehicle::to_base(vehicle::as_span(correction.parameters)), tick_angle);
+    groups = covariates_of(correction.effects);
+    drive =
+        vehicle::DriveHistory(vehicle::to_base(vehicle::as_span(correction.parameters)), tick_angle, groups);
   }
 };
 
@@ -219,8 +222,8 @@ PoseSample Odometry::update(const TickSample& sample) {
   const std::size_t n = track.t.size();
   const wheels::BaseParameters base = vehicle::to_base(vehicle::as_span(s.correction.parameters));
   vehicle::StepContext context =
-      vehicle::make_context_of_moment(track, base, n - std::min<std::size_t>(n, 3)).back();
-  see_from_the_past(context, track, base);
+      vehicle::make_context_of_moment(track, base, s.groups, n - std::min<std::size_t>(n, 3)).back();
+  see_from_the_past(context, track, base, s.groups);
   context.t = s.clock.at(sample.t);
   s.drive.advance(context);
 

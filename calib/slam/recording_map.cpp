@@ -122,7 +122,7 @@ Result<RecordingMap> map_recording(const Recording& recording, ScanGraphOptions 
     return Error{ErrorCode::empty, "no tick samples", recording.name, "a map begins with odometry"};
   if (recording.scans.empty()) return Error{ErrorCode::empty, "no scans", recording.name, ""};
   const wheels::BaseParameters nominal = wheels::nominal_base(robot);
-  const vehicle::DriveModel model(track, vehicle::make_context(track, nominal));
+  const vehicle::DriveModel model(track, vehicle::make_context(track, nominal, {}));
   const Eigen::VectorXd parameters = vehicle::to_vector(nominal);
   RecordingMap map;
   map.range_noise = options.loop.range_noise = matching::estimate_range_noise(recording.scans);

@@ -62,6 +62,9 @@ class SmoothTermEffect final : public StepEffect<SmoothTermEffect> {
                                         dependence.channel == vehicle::Channel::sideways);
   }
 
+  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
+    return groups_of(smooth_.dependence.covariate);
+  }
   template <typename T>
   void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) const {
     const std::span<const vehicle::Channel> channels = acts_on(smooth_);

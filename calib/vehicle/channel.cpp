@@ -10,6 +10,7 @@ namespace {
 struct CovariateRow {
   const char* name;
   const char* manoeuvre;  ///< that shows the most of what depends on it, in a small area; empty: none
+  CovariateGroups groups = {};
 };
 
 /// In the order of Covariate.
@@ -23,7 +24,7 @@ constexpr std::array<CovariateRow, static_cast<std::size_t>(kLastCovariate) + 1>
     {"left_acceleration", "accelerations"},
     {"right_acceleration", "accelerations"},
     {"acceleration", "accelerations"},
-    {"turn_acceleration", ""},
+    {"turn_acceleration", "", {CovariateGroup::sway}},
     {"left_phase", "slow_straights"},
     {"right_phase", "slow_straights"},
     {"time", ""},
@@ -33,15 +34,19 @@ constexpr std::array<CovariateRow, static_cast<std::size_t>(kLastCovariate) + 1>
     {"since_reversal", "reversals"},
     {"left_since_reversal", "reversals"},
     {"right_since_reversal", "reversals"},
-    {"since_stop", "accelerations"},
-    {"previous_turn", "turns"},
-    {"previous_push", "accelerations"},
+    {"since_stop", "accelerations", {CovariateGroup::stops}},
+    {"previous_turn", "turns", {CovariateGroup::previous_turn}},
+    {"previous_push", "accelerations", {CovariateGroup::previous_acceleration}},
 }};
 
 }  // namespace
 
 std::string to_string(Covariate covariate) {
   return kCovariates.at(static_cast<std::size_t>(covariate)).name;
+}
+
+CovariateGroups groups_of(Covariate covariate) {
+  return kCovariates.at(static_cast<std::size_t>(covariate)).groups;
 }
 
 std::optional<Covariate> covariate_from(const std::string& name) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/vehicle/covariates/covariate_groups.hpp"
 #include "calib/vehicle/motion_step.hpp"
 
 namespace odomcalib::calib::vehicle {
@@ -36,6 +37,8 @@ enum class Covariate {
 };
 inline constexpr Covariate kLastCovariate = Covariate::previous_acceleration;
 std::string to_string(Covariate covariate);
+/// In which it is computed; none where every interval has it.
+CovariateGroups groups_of(Covariate covariate);
 /// nullopt when there is none of that name.
 std::optional<Covariate> covariate_from(const std::string& name);
 /// The manoeuvre that shows the most of what depends on it, in a small area; empty: none.

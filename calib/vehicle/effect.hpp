@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calib/vehicle/channel.hpp"
+#include "calib/vehicle/covariates/covariate_groups.hpp"
 #include "calib/vehicle/motion_step.hpp"
 
 namespace odomcalib::calib::vehicle {
@@ -83,6 +84,8 @@ class Effect {
   /// normal one.
   [[nodiscard]] virtual bool has_two_states() const { return false; }
 
+  /// What apply() looks at beside the covariates that every interval has.
+  [[nodiscard]] virtual CovariateGroups covariates() const { return {}; }
   /// Changes the motion of one tick interval in place. Parameters at their start leave it unchanged.
   virtual void apply(const StepContext& context, std::span<const double> parameters,
                      WheelStep<double>& step) const {

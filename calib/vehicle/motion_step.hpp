@@ -5,6 +5,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "calib/vehicle/covariates/caster_swing.hpp"
+#include "calib/vehicle/covariates/gear_play.hpp"
+#include "calib/vehicle/covariates/motion_memory.hpp"
+#include "calib/vehicle/covariates/standstill.hpp"
+#include "calib/vehicle/covariates/sway.hpp"
+#include "calib/vehicle/covariates/tyre_relaxation.hpp"
+#include "calib/vehicle/covariates/winding.hpp"
+
 namespace odomcalib::calib::vehicle {
 
 /// Base motion in one tick interval before integration, m and rad.
@@ -32,55 +40,6 @@ std::size_t nearest_of(const std::array<double, N>& values, double value) {
   return best;
 }
 
-/// What happened lately, fading over several spans, the usual one second: nobody knows how long a robot
-/// remembers.
-inline constexpr std::array<double, 8> kMemorySpans = {0.3, 1.0, 3.3, 0.2, 0.45, 0.67, 1.5, 2.2};
-inline constexpr std::size_t kUsualMemory = 1;
-using Memory = std::array<double, kMemorySpans.size()>;
-
-/// m/s^2; what an acceleration of such size moved stays until one the other way (the relay of Krasnosel'skii
-/// and Pokrovskii, Systems with Hysteresis, 1989, section 28, its thresholds symmetrical).
-inline constexpr std::array<double, 13> kAccelerationThresholds = {0.1,  0.12, 0.145, 0.17, 0.205, 0.25, 0.3,
-                                                                   0.36, 0.43, 0.5,   0.6,  0.75,  0.9};
-/// Means as in Memory, then relays.
-using AccelerationMemory = std::array<double, kMemorySpans.size() + kAccelerationThresholds.size()>;
-
-/// s; how long a robot has to stand until something sticks is not known either. Shorter stops are reversals.
-inline constexpr std::array<double, 14> kStops = {0.12,  0.14, 0.155, 0.17, 0.19, 0.21, 0.23,
-                                                  0.255, 0.28, 0.31,  0.34, 0.37, 0.41, 0.45};
-
-/// rad; the play of a gear train is not known either (Renard numbers, ISO 3, R10).
-inline constexpr std::array<double, 20> kPlays = {0.004, 0.005, 0.0063, 0.008, 0.01, 0.0125, 0.016,
-                                                  0.02,  0.025, 0.0315, 0.04,  0.05, 0.063,  0.08,
-                                                  0.1,   0.125, 0.16,   0.2,   0.25, 0.315};
-using LostToPlay = std::array<double, kPlays.size()>;
-
-/// m; trails of casters are not known either ...
-inline constexpr std::array<double, 6> kCasterTrails = {0.02, 0.028, 0.04, 0.057, 0.08, 0.113};
-/// ... nor by how much a caster that has settled still points past its way, rad: to which side it falls after
-/// a straight motion is reversed hangs on this alone.
-inline constexpr std::array<double, 5> kCasterLeans = {0.0, -0.002, 0.002, -0.01, 0.01};
-inline constexpr std::size_t kCasters = kCasterTrails.size() * kCasterLeans.size();  ///< by trail, then lean
-
-/// m; nor are the ways over which tyres take up a slip angle (Pacejka, Tire and Vehicle Dynamics,
-/// chapter 7).
-inline constexpr std::array<double, 3> kRelaxations = {0.03, 0.07, 0.15};
-
-/// s; the time constants by which a mast may follow the base's acceleration late, the usual one second (see
-/// kUsualMemory).
-inline constexpr std::array<double, 4> kSwayLags = {0.05, 0.0, 0.1, 0.2};
-using Sways = std::array<double, kSwayLags.size()>;
-
-/// What unwinds after a stop of what a motion has wound up, as shares of the most it can: a straight motion
-/// winds up by its way, one on the spot by its turn, -1 to 1 in all.
-struct Unwound {
-  double way = 0.0;
-  double turn = 0.0;
-};
-/// The next few centimetres wind up anew whatever they are, as they do with the side walls of tyres; or a
-/// turn stays wound up until another.
-inline constexpr std::size_t kWindings = 2;
-
 /// Everything observable about one tick interval; effects depend on nothing else. Speeds and accelerations
 /// are smoothed, since differences of raw ticks are mostly quantisation noise.
 /// What waves of the place and the day depend on comes first, in one line of memory: thousands are tried.
@@ -95,36 +54,44 @@ struct alignas(64) StepContext {
   double left_delta = 0.0, right_delta = 0.0;                ///< wheel rotation in the interval, rad
   double left_speed = 0.0, right_speed = 0.0;                ///< wheel rim speed, m/s
   double left_acceleration = 0.0, right_acceleration = 0.0;  ///< m/s^2
-  double left_acceleration_change = 0.0,
-         right_acceleration_change = 0.0;  ///< over the interval, m/s^2
-  double relative_speed = 0.0;  ///< mean speed of the rims of late, in units of the least that is no standing
-  double forward_acceleration = 0.0;  ///< m/s^2
-  /// Which it comes to before it falls below the least threshold, m/s^2.
-  double peak_acceleration = 0.0;
-  double speed = 0.0;                                           ///< forward, m/s
-  double turn_rate = 0.0;                                       ///< rad/s
-  Sways turn_acceleration_before{}, turn_acceleration_after{};  ///< rad/s^2, at begin and end, late by each
-  /// What makes tyres slip sideways, its sign that of the force, lagging by each of kRelaxations: the turn
-  /// rate, rad/s, and the lateral acceleration, m/s^2. Not smoothed: the tyres do that.
-  std::array<double, kRelaxations.size()> relaxed_turn_rate{}, relaxed_lateral_acceleration{};
+  double speed = 0.0;                                        ///< forward, m/s
+  double turn_rate = 0.0;                                    ///< rad/s
+  double direction = 0.0;  ///< sign of the forward speed, kept while standing
   double way =
       0.0;  ///< of the base in its direction, m; not smoothed, so that in a spin ticks give either sign
   double since_reversal = 0.0;       ///< distance driven since the direction of travel last changed, m
   double left_since_reversal = 0.0;  ///< rotation of the wheel since it last reversed, rad, at the begin
   double right_since_reversal = 0.0;
-  /// Of the wheel's rotation in the interval, what a gear train with each of kPlays loses, rad.
+
+  // The rest is zero where nothing asks for its group.
+
+  /// CovariateGroup::acceleration_changes: over the interval, m/s^2.
+  double left_acceleration_change = 0.0, right_acceleration_change = 0.0;
+  /// sway: rad/s^2, at begin and end, late by each of kSwayLags.
+  Sways turn_acceleration_before{}, turn_acceleration_after{};
+  /// tyre_relaxation: what makes tyres slip sideways, its sign that of the force, lagging by each of
+  /// kRelaxations: the turn rate, rad/s, and the lateral acceleration, m/s^2. Not smoothed: the tyres do
+  /// that.
+  Relaxed relaxed_turn_rate{}, relaxed_lateral_acceleration{};
+  /// gear_play: of the wheel's rotation in the interval, what a gear train with each of kPlays loses, rad.
   LostToPlay left_lost{}, right_lost{};
-  /// Mean way of the two rims since the robot last stood still for each of kStops, m.
-  std::array<double, kStops.size()> since_stop{};
-  Memory previous_turn{};  ///< which way it turned lately: mean of the turn's sign over a radian, -1 to 1
-  /// Whether it was sped up or slowed down lately: the same over 0.1 m/s.
+  /// stops: mean speed of the rims of late, in units of the least that is no standing; and the mean way of
+  /// the two rims since the robot last stood still for each of kStops, m.
+  double relative_speed = 0.0;
+  SinceStop since_stop{};
+  /// winding: what unwinds in this interval, by each way of winding up, and the rim speed since the robot
+  /// last stood, m/s.
+  std::array<Unwound, kWindings> unwound{};
+  double fastest = 0.0;
+  /// previous_turn: which way it turned lately, mean of the turn's sign over a radian, -1 to 1.
+  Memory previous_turn{};
+  /// previous_acceleration: forward, and what it comes to before it falls below the least threshold, m/s^2;
+  /// whether the robot was sped up or slowed down lately, as in previous_turn over 0.1 m/s.
+  double forward_acceleration = 0.0, peak_acceleration = 0.0;
   AccelerationMemory previous_acceleration{};
-  /// Sine of the angle by which a caster behind the axle still points past the way its pivot moves, for each
-  /// trail and lean: -1 to 1.
-  std::array<double, kCasters> caster{};
-  std::array<Unwound, kWindings> unwound{};  ///< in this interval, by each way of winding up
-  double fastest = 0.0;                      ///< rim speed since the robot last stood, m/s
-  double direction = 0.0;                    ///< sign of the forward speed, kept while standing
+  /// caster: sine of the angle by which a caster behind the axle still points past the way its pivot moves,
+  /// for each trail and lean, -1 to 1.
+  CasterSines caster{};
 
   void face(double yaw) {
     heading = yaw;

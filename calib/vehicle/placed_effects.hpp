@@ -46,6 +46,13 @@ class PlacedEffects {
   std::vector<Place> places_;
 };
 
+/// What these effects look at together.
+inline CovariateGroups covariates_of(const EffectList& effects) {
+  CovariateGroups groups;
+  for (const auto& effect : effects) groups |= effect->covariates();
+  return groups;
+}
+
 /// Where a fit of these effects begins.
 inline std::vector<double> start_of(const EffectList& effects) {
   std::vector<double> values;

@@ -122,8 +122,8 @@ void fill_changes_of_acceleration(std::vector<StepContext>& contexts) {
 
 /// A robot that slows down ever more gently stands from no certain time on, but passes a slow speed at one; a
 /// count or two by which its wheels settle are no motion.
-void fill_speed_magnitudes(std::vector<StepContext>& contexts, const wheels::WheelTrack& track,
-                           std::size_t first, const wheels::BaseParameters& base) {
+void fill_relative_speeds(std::vector<StepContext>& contexts, const wheels::WheelTrack& track,
+                          std::size_t first, const wheels::BaseParameters& base) {
   const double count = track.tick_angle * std::max(base.left_radius, base.right_radius);
   for (std::size_t j = 0; j < contexts.size(); ++j) {
     std::size_t from = first + j;
@@ -188,22 +188,29 @@ void fill_accelerations_at_ends(std::vector<StepContext>& contexts, const wheels
   }
 }
 
-/// A mast with friction follows what bends it with a time constant.
 void delay_sways(std::vector<StepContext>& contexts) {
-  Sways bend{};
-  for (StepContext& c : contexts)
-    for (std::size_t k = 0; k < kSwayLags.size(); ++k) {
-      if (kSwayLags[k] == 0.0) continue;
-      c.turn_acceleration_before[k] = bend[k];
-      bend[k] -= std::expm1(-c.dt / kSwayLags[k]) * (c.turn_acceleration_after[k] - bend[k]);
-      c.turn_acceleration_after[k] = bend[k];
-    }
+  SwayLag mast;
+  for (StepContext& c : contexts) mast.advance(c.turn_acceleration_before, c.turn_acceleration_after, c.dt);
+}
+
+/// Those that take more than one interval.
+void fill_groups(std::vector<StepContext>& contexts, const wheels::WheelTrack& track, std::size_t first,
+                 const wheels::BaseParameters& base, CovariateGroups groups) {
+  if (groups.contain(CovariateGroup::sway)) {
+    fill_accelerations_at_ends(contexts, track, first, base);
+    delay_sways(contexts);
+  }
+  if (groups.contain(CovariateGroup::acceleration_changes)) fill_changes_of_acceleration(contexts);
+  if (groups.contain(CovariateGroup::previous_acceleration))
+    fill_forward_accelerations(contexts, track, first, base);
+  if (groups.contain(CovariateGroup::stops)) fill_relative_speeds(contexts, track, first, base);
 }
 
 }  // namespace
 
 std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
-                                                const wheels::BaseParameters& base, std::size_t first) {
+                                                const wheels::BaseParameters& base, CovariateGroups groups,
+                                                std::size_t first) {
   std::vector<StepContext> contexts;
   if (track.empty()) return contexts;
   contexts.reserve(track.t.size() - 1 - first);
@@ -221,30 +228,30 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
     window = window_around(track, k, window, centre, settings::kSmoothing_s);
     fill_speeds(c, track, window, centre, base);
   }
-  fill_accelerations_at_ends(contexts, track, first, base);
-  fill_changes_of_acceleration(contexts);
-  fill_forward_accelerations(contexts, track, first, base);
-  fill_speed_magnitudes(contexts, track, first, base);
-  delay_sways(contexts);
+  fill_groups(contexts, track, first, base, groups);
   return contexts;
 }
 
-void see_from_the_past(StepContext& last, const wheels::WheelTrack& track,
-                       const wheels::BaseParameters& base) {
-  const std::size_t n = track.t.size();
-  const auto wheels = latest_accelerations(track, n - std::min<std::size_t>(n, 3),
-                                           duration_for(track, base, settings::kSharpLatest_s));
-  last.left_acceleration_change = base.left_radius * (wheels.left.back() - wheels.left.front());
-  last.right_acceleration_change = base.right_radius * (wheels.right.back() - wheels.right.front());
-  const auto latest =
-      latest_accelerations(track, n - std::min<std::size_t>(n, 3), acceleration_window(track, base));
-  last.forward_acceleration = last.peak_acceleration =
-      forward_acceleration(latest, latest.left.size() - 1, base);
+void see_from_the_past(StepContext& last, const wheels::WheelTrack& track, const wheels::BaseParameters& base,
+                       CovariateGroups groups) {
+  const std::size_t n = track.t.size(), first = n - std::min<std::size_t>(n, 3);
+  if (groups.contain(CovariateGroup::acceleration_changes)) {
+    const auto wheels =
+        latest_accelerations(track, first, duration_for(track, base, settings::kSharpLatest_s));
+    last.left_acceleration_change = base.left_radius * (wheels.left.back() - wheels.left.front());
+    last.right_acceleration_change = base.right_radius * (wheels.right.back() - wheels.right.front());
+  }
+  if (groups.contain(CovariateGroup::previous_acceleration)) {
+    const auto wheels = latest_accelerations(track, first, acceleration_window(track, base));
+    last.forward_acceleration = last.peak_acceleration =
+        forward_acceleration(wheels, wheels.left.size() - 1, base);
+  }
 }
 
-std::vector<StepContext> make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base) {
-  std::vector<StepContext> contexts = make_context_of_moment(track, base);
-  DriveHistory history(base, track.tick_angle);
+std::vector<StepContext> make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
+                                      CovariateGroups groups) {
+  std::vector<StepContext> contexts = make_context_of_moment(track, base, groups);
+  DriveHistory history(base, track.tick_angle, groups);
   for (StepContext& c : contexts) history.advance(c);
   return contexts;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "calib/vehicle/covariates/covariate_groups.hpp"
 #include "calib/vehicle/motion_step.hpp"
 #include "calib/wheels/wheel_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
@@ -14,14 +15,17 @@ namespace odomcalib::calib::vehicle {
 /// right; but for what depends on the drive before.
 /// @param first interval that is wanted; the first of them takes its acceleration's change from itself alone
 std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
-                                                const wheels::BaseParameters& base, std::size_t first = 0);
+                                                const wheels::BaseParameters& base,
+                                                CovariateGroups groups = CovariateGroups::all(),
+                                                std::size_t first = 0);
 
 /// Where the last interval of the track is the present, changes of its acceleration come from what was
 /// before: half of a window about it would be missing, and their sum over a drive would grow with the noise.
-void see_from_the_past(StepContext& last, const wheels::WheelTrack& track,
-                       const wheels::BaseParameters& base);
+void see_from_the_past(StepContext& last, const wheels::WheelTrack& track, const wheels::BaseParameters& base,
+                       CovariateGroups groups);
 
 /// With what depends on the drive before.
-std::vector<StepContext> make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base);
+std::vector<StepContext> make_context(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
+                                      CovariateGroups groups = CovariateGroups::all());
 
 }  // namespace odomcalib::calib::vehicle

@@ -36,6 +36,10 @@ class Backlash final : public StepEffect<Backlash> {
             {vehicle::Covariate::right_since_reversal, vehicle::Channel::right_travel}};
   }
 
+  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
+    return {vehicle::CovariateGroup::gear_play};
+  }
+
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
     const double spread = plain(p[2]);

@@ -41,6 +41,10 @@ class CasterKick final : public StepEffect<CasterKick> {
     return {{vehicle::Covariate::since_reversal, vehicle::Channel::yaw_path}};
   }
 
+  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
+    return {vehicle::CovariateGroup::caster, vehicle::CovariateGroup::previous_turn};
+  }
+
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
     using std::exp;

@@ -31,6 +31,10 @@ class LateralSlip final : public StepEffect<LateralSlip> {
             {vehicle::Covariate::turn_rate, vehicle::Channel::sideways}};
   }
 
+  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
+    return {vehicle::CovariateGroup::tyre_relaxation};
+  }
+
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
     const double relaxation = plain(p[2]);

@@ -36,6 +36,10 @@ class StopSettling final : public StepEffect<StopSettling> {
             {vehicle::Covariate::since_stop, vehicle::Channel::yaw_path}};
   }
 
+  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
+    return {vehicle::CovariateGroup::stops, vehicle::CovariateGroup::winding};
+  }
+
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
     const vehicle::Unwound& unwound = c.unwound[plain(p[2]) > 0.5 ? 1 : 0];

@@ -41,6 +41,10 @@ class TimeOffset final : public StepEffect<TimeOffset> {
     return parameters[0];
   }
 
+  [[nodiscard]] vehicle::CovariateGroups covariates() const override {
+    return {vehicle::CovariateGroup::acceleration_changes};
+  }
+
   template <typename T>
   static void act(const vehicle::StepContext& c, std::span<const T> p, vehicle::WheelStep<T>& step) {
     step.left -= p[1] * c.left_acceleration_change;

@@ -1,0 +1,46 @@
+// What of the drive so far is computed for a model: most covariates are looked at by one or two terms alone.
+#pragma once
+
+#include <initializer_list>
+
+namespace odomcalib::calib::vehicle {
+
+/// Covariates that are computed together.
+enum class CovariateGroup : unsigned {
+  acceleration_changes,
+  sway,
+  tyre_relaxation,
+  gear_play,
+  stops,
+  winding,
+  previous_turn,
+  previous_acceleration,
+  caster,
+};
+inline constexpr CovariateGroup kLastCovariateGroup = CovariateGroup::caster;
+
+class CovariateGroups {
+ public:
+  constexpr CovariateGroups() = default;
+  constexpr CovariateGroups(std::initializer_list<CovariateGroup> groups) {
+    for (const CovariateGroup group : groups) bits_ |= bit(group);
+  }
+  static constexpr CovariateGroups all() {
+    CovariateGroups groups;
+    groups.bits_ = 2U * bit(kLastCovariateGroup) - 1U;
+    return groups;
+  }
+
+  [[nodiscard]] constexpr bool contain(CovariateGroup group) const { return (bits_ & bit(group)) != 0; }
+  constexpr CovariateGroups& operator|=(CovariateGroups others) {
+    bits_ |= others.bits_;
+    return *this;
+  }
+  friend constexpr bool operator==(CovariateGroups, CovariateGroups) = default;
+
+ private:
+  static constexpr unsigned bit(CovariateGroup group) { return 1U << static_cast<unsigned>(group); }
+  unsigned bits_ = 0;
+};
+
+}  // namespace odomcalib::calib::vehicle
