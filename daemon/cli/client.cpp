@@ -110,7 +110,7 @@ Result<Client> Client::connect(const std::string& path) {
 Result<void> Client::send(const std::string& method, const std::string& parameters, bool more) {
   control::Call call;
   call.method = std::string(control::kInterface) + "." + method;
-  call.parameters = parameters;
+  call.parameters = nlohmann::ordered_json::parse(parameters);
   call.more = more;
   const std::string frame = control::encode_call(call);
   for (std::size_t done = 0; done < frame.size();) {

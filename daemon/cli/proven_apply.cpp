@@ -12,6 +12,7 @@
 
 #include "daemon/cli/output.hpp"
 #include "daemon/cli/settings.hpp"
+#include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -193,7 +194,9 @@ ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const
   ProvenApply applied;
   applied.before = before;
   if ((applied.error = needs_a_person(calibration))) return applied;
-  const auto wanted = ordered_json::parse(to_json(calibration), nullptr, false);
+  Calibration lean = calibration;
+  lean.extensions.erase(kPictureMember);
+  const auto wanted = ordered_json::parse(to_json(lean), nullptr, false);
   if (const auto written = run("Apply", {{"calibration", wanted}, {"prove", true}}); !written)
     return not_applied(std::move(applied), written.error());
   const auto after = drive_errors(run);

@@ -22,6 +22,7 @@
 #include "daemon/cli/proven_apply.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/report_data.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -172,9 +173,10 @@ int calibrate(const Session& session, const Options& options) {
 int apply(const Session& session, const Options& options) {
   const auto bytes = read_file_bytes(options.file);
   if (!bytes) return report_error(bytes.error(), session.json);
-  const auto body = ordered_json::parse(bytes.value(), nullptr, false);
+  auto body = ordered_json::parse(bytes.value(), nullptr, false);
   if (!body.is_object())
     return report_error({ErrorCode::format, "no calibration file", options.file, ""}, session.json);
+  body.erase(kPictureMember);
   return print_result(session, "write-back",
                       run_method(session, options.consent, "Apply", {{"calibration", body}}));
 }

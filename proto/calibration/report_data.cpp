@@ -9,7 +9,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kErrorsMember = "drive_errors";
-constexpr const char* kPictureMember = "picture";
 constexpr const char* kDetectableMember = "detectable";
 
 /// Six significant digits: more than a picture shows, and the file stays small.

@@ -93,6 +93,9 @@ struct ReportData {
   std::vector<std::pair<std::string, std::vector<double>>> left_out;
 };
 
+/// Additive member with the points of the figures: most of a file's bytes, and nothing that odometry needs.
+inline constexpr const char* kPictureMember = "picture";
+
 /// Puts the data into the calibration's additive members, rounded to what a picture can show.
 void store_report_data(const ReportData& data, Calibration& calibration);
 /// What is there of it; members that are absent or not understood are empty.

@@ -105,11 +105,12 @@ bool take_flag(const ordered_json& object, const char* name, bool& out) {
   return true;
 }
 
-bool take_parameters(const ordered_json& object, std::string& out) {
+/// @return false when they are no object; leaves `out` where there are none
+bool take_parameters(ordered_json& object, ordered_json& out) {
   const auto found = object.find("parameters");
   if (found == object.end() || found->is_null()) return true;
   if (!found->is_object()) return false;
-  out = dump(*found);
+  out = std::move(*found);
   return true;
 }
 
@@ -152,9 +153,8 @@ error ExpectedMore ()
 )";
 
 std::string encode_description(const Call& call) {
-  const auto parameters = object_or_empty(call.parameters);
-  const auto found = parameters.find("interface");
-  if (found == parameters.end() || !found->is_string()) return encode_invalid_parameter("interface");
+  const auto found = call.parameters.find("interface");
+  if (found == call.parameters.end() || !found->is_string()) return encode_invalid_parameter("interface");
   const auto interface = found->get<std::string>();
   if (interface == kInterface)
     return encode_reply(dump(ordered_json{{"description", interface_description()}}));
@@ -205,7 +205,7 @@ std::string Call::name() const {
 }
 
 std::string encode_call(const Call& call) {
-  ordered_json message{{"method", call.method}, {"parameters", object_or_empty(call.parameters)}};
+  ordered_json message{{"method", call.method}, {"parameters", call.parameters}};
   if (call.oneway) message["oneway"] = true;
   if (call.more) message["more"] = true;
   if (call.upgrade) message["upgrade"] = true;
@@ -229,7 +229,7 @@ std::string encode_error(const Error& error) {
 }
 
 Result<Call> decode_call(std::string_view text) {
-  const auto object = parse_object(text);
+  auto object = parse_object(text);
   if (object.is_null()) return format_error("call is not a JSON object or is nested too deep");
   Call call;
   call.method = text_member(object, "method");
@@ -242,14 +242,16 @@ Result<Call> decode_call(std::string_view text) {
 }
 
 Result<Reply> decode_reply(std::string_view text) {
-  const auto object = parse_object(text);
+  auto object = parse_object(text);
   if (object.is_null()) return format_error("reply is not a JSON object or is nested too deep");
   Reply reply;
   if (object.contains("error") && !is_qualified_name(text_member(object, "error")))
     return format_error("\"error\" is not a qualified name");
   reply.error = text_member(object, "error");
-  if (!take_parameters(object, reply.parameters)) return format_error("\"parameters\" is not an object");
+  ordered_json parameters = ordered_json::object();
+  if (!take_parameters(object, parameters)) return format_error("\"parameters\" is not an object");
   if (!take_flag(object, "continues", reply.continues)) return format_error("\"continues\" is not a boolean");
+  reply.parameters = dump(parameters);
   return reply;
 }
 

@@ -1,8 +1,9 @@
-// The control protocol: Varlink messages (https://varlink.org) as text. JSON values cross this border as JSON
-// text.
+// The control protocol: Varlink messages (https://varlink.org). Parameters of calls are JSON values, because
+// a call may carry a whole calibration, which is parsed once; those of replies are JSON text.
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,10 +46,10 @@ class FrameDecoder {
 };
 
 struct Call {
-  std::string method = {};        ///< "org.odomcalib.Calibration.GetStatus"
-  std::string parameters = "{}";  ///< JSON object text
-  bool oneway = false;            ///< the client wants no reply
-  bool more = false;              ///< the client accepts replies that continue
+  std::string method = {};  ///< "org.odomcalib.Calibration.GetStatus"
+  nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
+  bool oneway = false;  ///< the client wants no reply
+  bool more = false;    ///< the client accepts replies that continue
   bool upgrade = false;
 
   [[nodiscard]] std::string interface() const;  ///< part of `method` before the last dot

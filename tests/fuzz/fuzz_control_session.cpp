@@ -331,7 +331,10 @@ class Session {
   }
   /// What a call may mean for a robot that moves. A stop that is spelled with escapes waits for its turn.
   void note(const control::Call& call) {
-    if (!lease_.empty() && call.parameters.find(lease_) != std::string::npos) renewed_ = clock_.time;
+    if (!lease_.empty() &&
+        call.parameters.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).find(lease_) !=
+            std::string::npos)
+      renewed_ = clock_.time;
     stop_sent_ = stop_sent_ || call.method == kInterface + "Stop";
     unlooked_ = unlooked_ || control::answer_introspection(call, {});
   }

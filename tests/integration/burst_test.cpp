@@ -25,7 +25,8 @@ struct Calls {
 
 Calls calls(const char* name, const char* parameters = "{}") {
   const std::string method = std::string(control::kInterface) + "." + name;
-  return {name, control::encode_call({.method = method, .parameters = parameters})};
+  return {name,
+          control::encode_call({.method = method, .parameters = nlohmann::ordered_json::parse(parameters)})};
 }
 
 std::ostream& operator<<(std::ostream& out, const Calls& calls) { return out << calls.name; }

@@ -51,7 +51,7 @@ class TestClient {
   }
   void call(const std::string& method, const json& parameters, bool more = false, bool oneway = false) {
     const std::string frame = control::encode_call({.method = "org.odomcalib.Calibration." + method,
-                                                    .parameters = parameters.dump(),
+                                                    .parameters = parameters,
                                                     .oneway = oneway,
                                                     .more = more});
     ASSERT_EQ(write(fd_, frame.data(), frame.size()), static_cast<ssize_t>(frame.size()));

@@ -86,19 +86,14 @@ std::unique_ptr<Task> reply_with(Outcome outcome, const Caller& caller, Outbox& 
 std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming) {
   Outbox& outbox = context.bench.outbox;
   const Caller caller{incoming.client, incoming.call.more, incoming.call.oneway};
-  const auto parameters = ordered_json::parse(incoming.call.parameters, nullptr, false);
-  if (!parameters.is_object())
-    return reply_with(
-        Error{ErrorCode::usage, "parameters are no object", "parameters", "see odomcalibctl(1)"}, caller,
-        outbox);
-  const Method& method = method_of(incoming.call.name(), parameters);
+  const Method& method = method_of(incoming.call.name(), incoming.call.parameters);
   if (auto refused = not_now(method, context, incoming.stopped_since))
     return reply_with(*refused, caller, outbox);
   if (method.handle == nullptr) {
     outbox.refuse_method(caller, incoming.call.method);
     return nullptr;
   }
-  const Call call{caller, parameters, incoming.arrived, incoming.stopped_since};
+  const Call call{caller, incoming.call.parameters, incoming.arrived, incoming.stopped_since};
   return reply_with(outcome_of(method, context, call), caller, outbox);
 }
 

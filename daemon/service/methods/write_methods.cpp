@@ -6,6 +6,7 @@
 #include "daemon/service/tasks/write_task.hpp"
 #include "daemon/service/write_gate.hpp"
 #include "proto/calibration/calibration_value.hpp"
+#include "proto/calibration/report_data.hpp"
 
 namespace odomcalib {
 namespace {
@@ -84,6 +85,8 @@ Result<Wish> wish_of(Calibration calibration, const std::string& robot) {
   Wish wish;
   for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
     if (const auto value = calibration.parameter(name)) wish.values[name] = *value;
+  // What is in force is kept, journaled and read again and again.
+  calibration.extensions.erase(kPictureMember);
   wish.calibration = to_json(calibration);
   wish.given = std::move(calibration);
   return wish;

@@ -76,7 +76,7 @@ std::string unframed(std::string frame) {
 
 TEST(ControlCall, survives_encoding) {
   const Call call{.method = "org.odomcalib.Calibration.Straight",
-                  .parameters = R"({"lease":"a\u0000b","distance":-1.5})",
+                  .parameters = nlohmann::ordered_json::parse(R"({"lease":"a\u0000b","distance":-1.5})"),
                   .oneway = true,
                   .more = true,
                   .upgrade = true};
@@ -134,7 +134,8 @@ TEST(ControlReply, tells_whether_it_continues) {
 }
 
 Reply introspect(const std::string& method, const std::string& parameters = "{}") {
-  const auto frame = answer_introspection({.method = method, .parameters = parameters}, {.version = "1.2.3"});
+  const auto frame = answer_introspection(
+      {.method = method, .parameters = nlohmann::ordered_json::parse(parameters)}, {.version = "1.2.3"});
   EXPECT_TRUE(frame.has_value()) << method;
   return decode_reply(unframed(frame.value_or(std::string(1, '\0')))).value();
 }

@@ -278,10 +278,10 @@ TEST(Damaged, pose_graphs_are_sound_or_refused_with_a_place) {
 }
 
 TEST(Damaged, calls_are_refused_or_survive_their_own_encoding) {
-  std::string good =
-      control::encode_call({.method = "org.odomcalib.Calibration.Straight",
-                            .parameters = R"({"lease":"a1","distance":-1.5,"list":[1,2,{"x":null}]})",
-                            .oneway = true});
+  std::string good = control::encode_call({.method = "org.odomcalib.Calibration.Straight",
+                                           .parameters = nlohmann::ordered_json::parse(
+                                               R"({"lease":"a1","distance":-1.5,"list":[1,2,{"x":null}]})"),
+                                           .oneway = true});
   good.pop_back();
   for_damaged(good, 121, [](const std::string& text) {
     const auto call = control::decode_call(text);
