@@ -278,6 +278,21 @@ TEST_F(Applied, a_recovery_that_commits_puts_the_calibration_in_force) {
   EXPECT_TRUE(history()[0].calibration.has_value());
 }
 
+TEST_F(Applied, a_calibration_is_kept_with_its_evidence_but_without_the_points_of_its_figures) {
+  json whole = calibration(kNew);
+  whole["picture"] = {{"paths", json::array()}};
+  whole["drive_errors"] = json::array();
+  whole["made_elsewhere"] = {{"by", "hand"}};
+  ASSERT_EQ(call("Apply", {{"calibration", whole}}).error, "");
+  const std::string in_history = history()[0].calibration.value_or("{}");
+  for (const std::string& text : {read_file_bytes(active()).value(), in_history}) {
+    const json kept = json::parse(text);
+    EXPECT_FALSE(kept.contains("picture"));
+    EXPECT_EQ(kept.value("drive_errors", json()), json::array());
+    EXPECT_EQ(kept.value("made_elsewhere", json()), whole["made_elsewhere"]);
+  }
+}
+
 TEST_F(Applied, a_commit_that_was_the_last_thing_done_is_settled_at_the_next_start) {
   ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}}).error, "");
   const std::string applied = read_file_bytes(active()).value();
