@@ -265,6 +265,7 @@ Document describe(const Calibration& calibration) {
                                    effects_section(calibration),
                                    traces_section(data),
                                    detectable_section(data),
+                                   untested_section(data),
                                    path_section(data),
                                    residual_of(calibration.residual),
                                    methods_of(calibration),

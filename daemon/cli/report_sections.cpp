@@ -114,15 +114,23 @@ Section detectable_section(const ReportData& data) {
   Section section{"What was not found, and the size at which nine of ten such drives would show it", {}, {}};
   for (const Detectable& effect : data.detectable) {
     const Display show = display_of(effect.unit);
-    const bool is_shown = effect.smallest && *effect.smallest < effect.typical;
     section.table.rows.push_back({readable(effect.effect) + ": " + readable(effect.parameter),
                                   effect.smallest ? significant(*effect.smallest * show.factor) : "never",
                                   significant(effect.typical * show.factor), show.unit});
-    if (!is_shown)
-      section.lines.push_back("this drive is no test of " + readable(effect.effect) + "; one has " +
-                              effect.motion);
   }
   if (!section.table.rows.empty()) section.table.head = {"", "smallest", "typical", "unit"};
+  return section;
+}
+
+Section untested_section(const ReportData& data) {
+  Section section{"What this drive is no test of, because no typical size shows", {}, {}};
+  auto& rows = section.table.rows;
+  for (const Detectable& effect : data.detectable) {
+    if (effect.smallest && *effect.smallest < effect.typical) continue;
+    std::vector<std::string> row{readable(effect.effect), effect.motion};
+    if (rows.empty() || rows.back() != row) rows.push_back(std::move(row));
+  }
+  if (!rows.empty()) section.table.head = {"", "a drive that tests it has"};
   return section;
 }
 

@@ -15,6 +15,7 @@ std::vector<std::string> effect_in_words(const Calibration& calibration);
 Section drive_errors_section(const ReportData& data, bool intervals);
 Section traces_section(const ReportData& data);
 Section detectable_section(const ReportData& data);
+Section untested_section(const ReportData& data);
 inline constexpr const char* kDriveTitle = "The drive";
 Section path_section(const ReportData& data);
 Section determination_section(const Calibration& calibration);
