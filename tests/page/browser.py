@@ -19,7 +19,8 @@ class Browser:
         program = shutil.which("chromium") or shutil.which("chromium-browser")
         if not program:
             raise RuntimeError("no chromium: apt-get install chromium")
-        self._profile = tempfile.TemporaryDirectory(prefix="odomcalib-browser-")
+        # Processes of the browser may outlive the one that was started, and write into the profile while it is removed.
+        self._profile = tempfile.TemporaryDirectory(prefix="odomcalib-browser-", ignore_cleanup_errors=True)
         to_browser, self._out = os.pipe()
         self._in, from_browser = os.pipe()
         # The browser reads its descriptor 3 and writes its 4.
