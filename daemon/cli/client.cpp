@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace odomcalib::cli {
 namespace {
@@ -47,17 +48,10 @@ class Hurry {
   sched_param before_{};
 };
 
-std::string with_lease(const std::string& parameters, const std::string& lease) {
-  auto body = ordered_json::parse(parameters, nullptr, false);
-  if (!body.is_object()) body = ordered_json::object();
-  body["lease"] = lease;
-  return body.dump();
-}
-
 // With its time: a daemon that reads late knows when it was sent.
-std::string renewal_of(const std::string& lease) {
+ordered_json renewal_of(const std::string& lease) {
   const std::chrono::duration<double> now = Clock::now().time_since_epoch();
-  return ordered_json{{"lease", lease}, {"sent", now.count()}}.dump();
+  return {{"lease", lease}, {"sent", now.count()}};
 }
 
 // Progress goes to the caller; a final reply is returned.
@@ -107,10 +101,10 @@ Result<Client> Client::connect(const std::string& path) {
   return not_running(path, "odomcalibd is not running");
 }
 
-Result<void> Client::send(const std::string& method, const std::string& parameters, bool more) {
+Result<void> Client::send(const std::string& method, ordered_json parameters, bool more) {
   control::Call call;
   call.method = std::string(control::kInterface) + "." + method;
-  call.parameters = nlohmann::ordered_json::parse(parameters);
+  call.parameters = std::move(parameters);
   call.more = more;
   const std::string frame = control::encode_call(call);
   for (std::size_t done = 0; done < frame.size();) {
@@ -142,8 +136,8 @@ Result<std::optional<control::Reply>> Client::receive(int timeout_ms) {
   return std::optional(std::move(reply).value());
 }
 
-Result<std::string> Client::call(const std::string& method, const std::string& parameters, int timeout_ms) {
-  if (auto sent = send(method, parameters); !sent) return sent.error();
+Result<std::string> Client::call(const std::string& method, ordered_json parameters, int timeout_ms) {
+  if (auto sent = send(method, std::move(parameters)); !sent) return sent.error();
   const auto until = Clock::now() + std::chrono::milliseconds(timeout_ms);
   while (Clock::now() < until) {
     const auto reply = receive(50);
@@ -154,7 +148,7 @@ Result<std::string> Client::call(const std::string& method, const std::string& p
 }
 
 Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
-                                    const std::string& parameters,
+                                    ordered_json parameters,
                                     const std::function<void(const std::string&)>& progress,
                                     WhenInterrupted interrupted, Client* on) {
   if (signalled != 0 && interrupted != WhenInterrupted::begin)
@@ -169,7 +163,8 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
   const auto given = keeper.value().call("Acquire");
   if (!given) return given.error();
   const auto lease = ordered_json::parse(given.value(), nullptr, false).value("lease", std::string());
-  if (auto sent = worker.send(method, with_lease(parameters, lease), true); !sent) return sent.error();
+  parameters["lease"] = lease;
+  if (auto sent = worker.send(method, std::move(parameters), true); !sent) return sent.error();
   auto next = Clock::now();
   while (signalled == 0 || interrupted != WhenInterrupted::stop) {
     if (Clock::now() >= next) {
@@ -182,7 +177,7 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
     if (!reply.value()) continue;
     if (const auto last = final_reply(*reply.value(), progress)) return value_of(*last);
   }
-  (void)keeper.value().call("Stop", "{}", 500);
+  (void)keeper.value().call("Stop", ordered_json::object(), 500);
   return Error{ErrorCode::cancelled, "interrupted, the robot was stopped", method, "start again"};
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -22,12 +23,14 @@ class Client {
   Client(Client&& other) noexcept;
   Client& operator=(Client&&) = delete;
 
-  Result<void> send(const std::string& method, const std::string& parameters, bool more = false);
+  /// @param parameters JSON object
+  Result<void> send(const std::string& method, nlohmann::ordered_json parameters, bool more = false);
   /// The next reply, or nullopt when none came within the time. Errors: not_running (connection lost),
   /// format.
   Result<std::optional<control::Reply>> receive(int timeout_ms);
   /// One call with one reply. @return parameters as JSON text; the daemon's error as ours
-  Result<std::string> call(const std::string& method, const std::string& parameters = "{}",
+  Result<std::string> call(const std::string& method,
+                           nlohmann::ordered_json parameters = nlohmann::ordered_json::object(),
                            int timeout_ms = 5000);
 
  private:
@@ -59,12 +62,12 @@ enum class WhenInterrupted {
 /// Runs a method that needs the lease: acquires it, renews it every 30 ms on a connection of its own, and
 /// lets go of it on Ctrl-C, Ctrl-Z, SIGTERM and SIGHUP. A suspended or killed process renews nothing, and the
 /// robot stops.
-/// @param parameters JSON object text without "lease"
+/// @param parameters JSON object without "lease"
 /// @param progress called with the JSON text of each progress object
 /// @param on outlives the call: for what the daemon ends with the connection that asked for it; null: a
 /// connection of the call's own
 Result<std::string> call_with_lease(const std::string& socket, const std::string& method,
-                                    const std::string& parameters,
+                                    nlohmann::ordered_json parameters,
                                     const std::function<void(const std::string&)>& progress,
                                     WhenInterrupted interrupted = WhenInterrupted::stop,
                                     Client* on = nullptr);

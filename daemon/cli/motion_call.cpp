@@ -8,6 +8,7 @@
 #include <array>
 #include <iostream>
 #include <numbers>
+#include <utility>
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/plan_document.hpp"
@@ -71,7 +72,7 @@ Result<Prospect> prospect_of(const Session& session, const std::string& method, 
   auto client = Client::connect(session.socket);
   if (!client) return client.error();
   parameters["dry_run"] = true;
-  const auto answer = client.value().call(method, parameters.dump());
+  const auto answer = client.value().call(method, std::move(parameters));
   if (!answer) return answer.error();
   const auto plan =
       ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
@@ -98,7 +99,7 @@ Result<ordered_json> run_method(const Session& session, const Consent& given, co
                           100.0 * body.value("fraction", 0.0)));
   };
   const auto answer =
-      call_with_lease(session.socket, method, parameters.dump(), progress, given.interrupted, given.on);
+      call_with_lease(session.socket, method, std::move(parameters), progress, given.interrupted, given.on);
   if (!answer) return answer.error();
   return ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
 }

@@ -194,9 +194,8 @@ ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const
   ProvenApply applied;
   applied.before = before;
   if ((applied.error = needs_a_person(calibration))) return applied;
-  Calibration lean = calibration;
-  lean.extensions.erase(kPictureMember);
-  const auto wanted = ordered_json::parse(to_json(lean), nullptr, false);
+  auto wanted = ordered_json::parse(to_json(calibration), nullptr, false);
+  wanted.erase(kPictureMember);
   if (const auto written = run("Apply", {{"calibration", wanted}, {"prove", true}}); !written)
     return not_applied(std::move(applied), written.error());
   const auto after = drive_errors(run);

@@ -47,7 +47,7 @@ int status_of(const ordered_json& body, const Question& question) {
 int ask(const Session& session, const Question& question) {
   auto client = Client::connect(session.socket);
   if (!client) return report_error(client.error(), session.json);
-  const auto answer = client.value().call(question.method, "{}");
+  const auto answer = client.value().call(question.method);
   if (!answer) return report_error(answer.error(), session.json);
   const auto body = ordered_json::parse(answer.value(), nullptr, false);
   if (session.json != JsonMode::off)

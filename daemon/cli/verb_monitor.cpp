@@ -60,7 +60,8 @@ Result<void> watch_state(Client& client, std::string& last, const Session& sessi
 
 int watch(Client& events, Client& questions, const Options& options, const Session& session) {
   using Clock = std::chrono::steady_clock;
-  if (auto sent = events.send("Monitor", "{}", true); !sent) return report_error(sent.error(), session.json);
+  if (auto sent = events.send("Monitor", ordered_json::object(), true); !sent)
+    return report_error(sent.error(), session.json);
   const auto begin = Clock::now();
   auto next = begin;
   std::string state;

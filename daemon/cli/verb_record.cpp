@@ -54,7 +54,7 @@ int record(const Options& options, const Session& session) {
   finish_when_interrupted();
   auto client = Client::connect(session.socket);
   if (!client) return report_error(client.error(), session.json);
-  const std::string wanted = ordered_json{{"name", options.name}, {"duration", options.duration}}.dump();
+  const ordered_json wanted = {{"name", options.name}, {"duration", options.duration}};
   if (auto sent = client.value().send("Record", wanted, true); !sent)
     return report_error(sent.error(), session.json);
   const auto answer = await_path(client.value(), session.socket);

@@ -49,7 +49,7 @@ class Board {
 };
 
 Result<ordered_json> ask(Client& client, const char* method, const char* member) {
-  const auto answer = client.call(method, "{}", settings::kAnswerWithin_ms);
+  const auto answer = client.call(method, ordered_json::object(), settings::kAnswerWithin_ms);
   if (!answer) return answer.error();
   const auto body = ordered_json::parse(answer.value(), nullptr, false);
   return body.is_object() ? body.value(member, ordered_json()) : ordered_json();

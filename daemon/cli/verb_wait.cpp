@@ -47,7 +47,7 @@ class Deadline {
 Result<ordered_json> answer_of(Client& client, const char* method, const char* member,
                                const Deadline& deadline) {
   const auto within = static_cast<int>(deadline.left(settings::kAnswerOfDaemon).count());
-  const auto answer = client.call(method, "{}", within);
+  const auto answer = client.call(method, ordered_json::object(), within);
   if (!answer) return answer.error();
   const auto body = ordered_json::parse(answer.value(), nullptr, false);
   if (!body.is_object() || !body.contains(member))

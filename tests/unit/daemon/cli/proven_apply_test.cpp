@@ -218,7 +218,7 @@ TEST(CallWithLease, is_as_urgent_after_it_as_before) {
   {
     const HangsUp daemon(path);
     const auto answer = call_with_lease(
-        path, "Straight", "{}", [](const auto&) {}, WhenInterrupted::stop);
+        path, "Straight", nlohmann::ordered_json::object(), [](const auto&) {}, WhenInterrupted::stop);
     EXPECT_EQ(answer.error().code, ErrorCode::not_running);
   }
   EXPECT_EQ(sched_getscheduler(0), before);
@@ -228,7 +228,7 @@ TEST(CallWithLease, is_as_urgent_after_it_as_before) {
 TEST(CallWithLease, begins_nothing_after_ctrl_c_but_what_takes_a_write_back_back) {
   const auto end = [](WhenInterrupted interrupted) {
     return call_with_lease(
-               "/nobody/listens", "Apply", "{}", [](const auto&) {}, interrupted)
+               "/nobody/listens", "Apply", nlohmann::ordered_json::object(), [](const auto&) {}, interrupted)
         .error()
         .code;
   };
