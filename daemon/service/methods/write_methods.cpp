@@ -28,15 +28,14 @@ struct Wish {
   ParameterMap values;
   std::string label = "apply";
   std::optional<std::string> calibration;  ///< JSON text
-  std::optional<Calibration> given;        ///< what that was made of, where it was not a text
   bool replaces_calibration = true;
   bool prove = false;
 };
 
 ordered_json dry_run_report(const Bench& bench, const ParameterMap& present, const RoundedParameters& rounded,
                             const Wish& wish) {
-  std::optional<Calibration> wanted = wish.given;
-  if (wish.calibration && !wanted)
+  std::optional<Calibration> wanted;
+  if (wish.calibration)
     if (auto read = calibration_from_json(*wish.calibration, "calibration")) wanted = std::move(read).value();
   return {{"outcome", "dry_run"},
           {"before", present},
@@ -88,7 +87,6 @@ Result<Wish> wish_of(Calibration calibration, const std::string& robot) {
   // What is in force is kept, journaled and read again and again.
   calibration.extensions.erase(kPictureMember);
   wish.calibration = to_json(calibration);
-  wish.given = std::move(calibration);
   return wish;
 }
 
@@ -174,11 +172,7 @@ Reading rollback(Context& context, const Call& call) {
                    "odomcalibctl history"};
     if (auto wrong = of_another_controller(former->device, device_of(bench.drive.controller())))
       return *wrong;
-    Wish wish;
-    wish.values = former->values;
-    wish.label = "rollback";
-    wish.calibration = former->calibration;
-    return wish;
+    return Wish{former->values, "rollback", former->calibration};
   });
 }
 
