@@ -12,7 +12,7 @@ enum class CovariateGroup : unsigned {
   tyre_relaxation,
   gear_play,
   stops,
-  winding,
+  winding,  ///< begins where a stop does: computed beside `stops` only
   previous_turn,
   previous_acceleration,
   caster,

@@ -1,7 +1,6 @@
 // Each term looks at no more of the drive than it states: what is left out is not computed.
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
 #include "calib/vehicle/drive_model.hpp"
-#include "calib/vehicle/placed_effects.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
