@@ -231,7 +231,7 @@ ControllerState DualAxis::state() const {
       break;
   }
   using enum canopen::DriveState;
-  if (motion_.motion() == Motion::enabling) return ControllerState::enabling;
+  if (motion_.enabling()) return ControllerState::enabling;
   if (any_axis(fault) || any_axis(fault_reaction)) return ControllerState::fault;
   // While the axes are brought to rest they still have torque: not disabled before the drive says so, and not
   // before it may be given a job.

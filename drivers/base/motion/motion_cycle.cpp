@@ -28,17 +28,27 @@ void MotionCycle::enable(double now) {
   if (const std::string refusal = device_.enable_refusal(); !refusal.empty())
     return event("enable_refused", refusal, false, now);
   if (active()) return;
-  motion_ = Motion::enabling;
-  since_ = now;
-  device_.begin_enabling();
+  // What the device shows of its axes may be older than the stop: they would seem to follow already.
+  if (motion_ != Motion::off) {
+    again_ = true;
+    return;
+  }
+  begin_enabling(now);
   step_enabling(now);
 }
 
+void MotionCycle::begin_enabling(double now) {
+  motion_ = Motion::enabling;
+  since_ = now;
+  device_.begin_enabling();
+}
+
 void MotionCycle::disable(double now) {
-  if (active()) end(Motion::disabling, now);
+  if (!std::exchange(again_, false) && active()) end(Motion::disabling, now);
 }
 
 void MotionCycle::quick_stop(double now) {
+  again_ = false;
   if (motion_ == Motion::stopping) return device_.stop();
   end(Motion::stopping, now);
 }
@@ -136,7 +146,9 @@ void MotionCycle::step_ending(double now) {
   if (!device_.shows_no_torque() && !stands && now - since_ <= kEnding_s)
     return stopping ? device_.stop() : device_.drive(0.0, 0.0);
   device_.release();
-  if (!torque) motion_ = Motion::off;
+  if (torque) return;
+  motion_ = Motion::off;
+  if (std::exchange(again_, false)) begin_enabling(now);
 }
 
 void MotionCycle::count_into(Counters& counters) const {

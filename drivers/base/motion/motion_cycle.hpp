@@ -63,11 +63,14 @@ class MotionCycle {
   MotionCycle(MotionDevice& device, Options options);
 
   [[nodiscard]] Motion motion() const { return motion_; }
+  /// On its way to torque, perhaps after the end of the motion before.
+  [[nodiscard]] bool enabling() const { return motion_ == Motion::enabling || again_; }
   /// Torque is wanted.
-  [[nodiscard]] bool active() const { return motion_ == Motion::on || motion_ == Motion::enabling; }
+  [[nodiscard]] bool active() const { return motion_ == Motion::on || enabling(); }
   [[nodiscard]] bool at_rest(double now) const { return now - moved_at_ >= options_.rest_s; }
 
   // What Controller asks for; `now` never goes back.
+  /// While a motion ends: as soon as the axes are off.
   void enable(double now);
   void disable(double now);
   Result<void> command(double left_rad_s, double right_rad_s, double now);
@@ -89,7 +92,10 @@ class MotionCycle {
   /// The axes got a step further: what is waited for may take its whole time again.
   void progressed(double now) { since_ = now; }
   /// The device is gone, or new: no motion is wanted and nothing is sent.
-  void forget() { motion_ = Motion::off; }
+  void forget() {
+    motion_ = Motion::off;
+    again_ = false;
+  }
 
   /// To be called as time passes while the device is there; sends what is due.
   void cycle(double now);
@@ -106,6 +112,7 @@ class MotionCycle {
     std::optional<std::int64_t> forward;
   };
 
+  void begin_enabling(double now);
   void step_enabling(double now);
   void step_on(double now);
   void step_ending(double now);
@@ -115,6 +122,7 @@ class MotionCycle {
   Options options_;
   std::array<Wheel, 2> wheels_;
   Motion motion_ = Motion::off;
+  bool again_ = false;     // torque was asked for while a motion ended
   double since_ = 0.0;     // s, beginning of what is waited for
   double due_ = 0.0;       // s, next cycle
   double moved_at_ = 0.0;  // s, last change of either count

@@ -169,7 +169,7 @@ double SpeedBase::watchdog_time() const {
 
 ControllerState SpeedBase::state() const {
   if (!present_) return ControllerState::absent;
-  if (motion_.motion() == Motion::enabling) return ControllerState::enabling;
+  if (motion_.enabling()) return ControllerState::enabling;
   if (motion_.motion() != Motion::off) return ControllerState::enabled;
   return last_fault_.empty() ? ControllerState::disabled : ControllerState::fault;
 }

@@ -56,7 +56,11 @@ class Bench {
   bool enabled() {
     if (!ready()) return false;
     controller->enable(now);
-    return run_until([&] { return controller->state() == ControllerState::enabled; }, 2.0);
+    return enabled_within(2.0);
+  }
+
+  bool enabled_within(double longest) {
+    return run_until([&] { return controller->state() == ControllerState::enabled; }, longest);
   }
 
   void drive(double left, double right, double duration) {
@@ -198,6 +202,40 @@ TEST(DualAxis, quick_stop_takes_effect_at_once_and_stays) {
   EXPECT_EQ(bench.controller->state(), ControllerState::disabled);
   EXPECT_FALSE(bench.controller->command(1.0, 1.0, bench.now).ok());
   EXPECT_TRUE(bench.enabled());  // a person may start again
+}
+
+// The last status that came is older than the stop: it shows axes that follow.
+TEST(DualAxis, enabled_right_after_a_stop_it_ends_the_motion_first) {
+  for (const double pause : {0.0, 0.001, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2}) {
+    Bench bench;
+    ASSERT_TRUE(bench.enabled());
+    bench.drive(2.0, 2.0, 0.5);
+    bench.controller->quick_stop(bench.now);
+    bench.controller->disable(bench.now);
+    bench.run(pause);
+    bench.controller->enable(bench.now);
+    EXPECT_EQ(bench.controller->state(), ControllerState::enabling) << pause;
+    EXPECT_TRUE(bench.run_until([&] { return !bench.node.order().torque; }, 1.0)) << pause;
+    ASSERT_TRUE(bench.enabled_within(2.0)) << pause;
+    bench.drive(2.0, 2.0, 0.5);
+    EXPECT_EQ(bench.find("axis_not_enabled"), nullptr) << pause;
+    EXPECT_EQ(bench.controller->state(), ControllerState::enabled) << pause;
+  }
+}
+
+TEST(DualAxis, stopped_again_before_the_motion_has_ended_it_is_not_enabled) {
+  using Call = void (Controller::*)(double);
+  for (const Call call : {&Controller::quick_stop, &Controller::disable}) {
+    Bench bench;
+    ASSERT_TRUE(bench.enabled());
+    bench.drive(2.0, 2.0, 0.5);
+    bench.controller->quick_stop(bench.now);
+    bench.controller->enable(bench.now);
+    bench.run(0.01);
+    (bench.controller.get()->*call)(bench.now);
+    bench.run(2.0);
+    EXPECT_EQ(bench.controller->state(), ControllerState::disabled);
+  }
 }
 
 TEST(DualAxis, a_quick_stop_that_is_lost_on_the_bus_is_sent_again) {

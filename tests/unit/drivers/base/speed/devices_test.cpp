@@ -143,6 +143,22 @@ TYPED_TEST(Devices, quick_stop_stops_at_once) {
   EXPECT_FALSE(bench.controller->command(1.0, 1.0, bench.now).ok());
 }
 
+TYPED_TEST(Devices, enabled_right_after_a_stop_they_stand_before_they_follow_again) {
+  TypeParam rig;
+  Bench& bench = *rig.bench;
+  ASSERT_NO_FATAL_FAILURE(enable(bench));
+  bench.drive(3.0, 3.0, 0.5);
+  bench.controller->quick_stop(bench.now);
+  bench.controller->enable(bench.now);
+  EXPECT_EQ(bench.controller->state(), ControllerState::enabling);
+  EXPECT_FALSE(bench.controller->command(3.0, 3.0, bench.now).ok());
+  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  EXPECT_EQ(rig.device.wheels().rate[0], 0.0);
+  bench.drive(3.0, 3.0, 0.5);
+  EXPECT_NE(rig.device.wheels().rate[0], 0.0) << bench.story();
+  EXPECT_FALSE(bench.happened("axis_not_enabled")) << bench.story();
+}
+
 // The stop guard sends what there is and may be the last to do so: nobody asks the controller again.
 TYPED_TEST(Devices, a_quick_stop_is_on_its_way_before_anything_else_happens) {
   TypeParam rig;
