@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,12 @@ struct Mistake {
   Change mend;
 };
 
+constexpr const char* kNegate = "negate yaw: it is counter-clockwise, x forward, y left";
+
 constexpr std::array kMistakes = {
     Mistake{"yaw looks like degrees", "multiply yaw by pi / 180",
             [](PoseSample p) { return p.yaw *= math::kPi / 180.0, p; }},
-    Mistake{"yaw has the opposite sign of the frame that x and y are in (clockwise, or z down)",
-            "negate yaw: it is counter-clockwise, x forward, y left",
+    Mistake{"yaw has the opposite sign of the frame that x and y are in (clockwise, or z down)", kNegate,
             [](PoseSample p) { return p.yaw = -p.yaw, p; }},
     Mistake{"yaw is a compass heading (clockwise from y) beside x and y of a map, or x and y are exchanged",
             "write pi / 2 - yaw: yaw is counter-clockwise from x",
@@ -50,6 +52,27 @@ double sideways(const std::vector<PoseSample>& steps, Change mend) {
   return all > 0.0 ? across / all : 0.0;
 }
 
+/// How much the direction of the way, ahead or back, varies against `sign` times the heading: its circular
+/// variance (Mardia and Jupp, Directional Statistics, 2000, 2.3.1). What looks to the side by an angle that
+/// stays does not vary.
+double scatter(const std::vector<PoseSample>& steps, double sign) {
+  std::complex<double> sum = 0.0;
+  double all = 0.0;
+  for (std::size_t k = 1; k < steps.size(); ++k) {
+    const PoseSample &a = steps[k - 1], &b = steps[k];
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    const double aside = std::atan2(b.y - a.y, b.x - a.x) - sign * middle_heading(a, b);
+    sum += std::polar(length, 2.0 * aside);
+    all += length;
+  }
+  return all > 0.0 ? 1.0 - std::abs(sum) / all : 0.0;
+}
+
+bool turns_the_other_way(const std::vector<PoseSample>& steps) {
+  const double given = scatter(steps, 1.0);
+  return given > settings::kScatterAtLeast && given > settings::kScatterRatio * scatter(steps, -1.0);
+}
+
 /// Poses so far from each other that noise hardly bends the way; the unit of length may be any.
 std::vector<PoseSample> spaced(const std::vector<PoseSample>& poses) {
   double length = 0.0;
@@ -70,10 +93,19 @@ bool heading_stands(const std::vector<PoseSample>& poses) {
   return true;
 }
 
-Error wrong(const Recording& recording, double share, const std::string& what, const std::string& remedy) {
-  return {ErrorCode::format,
-          "poses go sideways over " + std::to_string(std::lround(100.0 * share)) + " % of their way: " + what,
-          recording.name, remedy};
+std::optional<Error> goes_sideways(const std::vector<PoseSample>& steps, const std::string& where) {
+  const double given = sideways(steps, [](PoseSample p) { return p; });
+  if (given < settings::kSidewaysAtLeast) return std::nullopt;
+  const auto wrong = [&](const std::string& what, const std::string& remedy) {
+    return Error{
+        ErrorCode::format,
+        "poses go sideways over " + std::to_string(std::lround(100.0 * given)) + " % of their way: " + what,
+        where, remedy};
+  };
+  if (heading_stands(steps)) return wrong("yaw never changes", "record the heading of the robot in radians");
+  for (const Mistake& mistake : kMistakes)
+    if (sideways(steps, mistake.mend) < settings::kSidewaysAtMost) return wrong(mistake.what, mistake.remedy);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -81,14 +113,13 @@ Error wrong(const Recording& recording, double share, const std::string& what, c
 std::optional<Error> wrong_pose_frame(const Recording& recording) {
   const std::vector<PoseSample> steps = spaced(recording.poses);
   if (steps.size() < settings::kFewestPoseSteps) return std::nullopt;
-  const double given = sideways(steps, [](PoseSample p) { return p; });
-  if (given < settings::kSidewaysAtLeast) return std::nullopt;
-  if (heading_stands(steps))
-    return wrong(recording, given, "yaw never changes", "record the heading of the robot in radians");
-  for (const Mistake& mistake : kMistakes)
-    if (sideways(steps, mistake.mend) < settings::kSidewaysAtMost)
-      return wrong(recording, given, mistake.what, mistake.remedy);
-  return std::nullopt;
+  if (auto error = goes_sideways(steps, recording.name)) return error;
+  if (!turns_the_other_way(steps)) return std::nullopt;
+  return Error{
+      ErrorCode::format,
+      "yaw turns clockwise where the way through x and y turns counter-clockwise (yaw clockwise, or a "
+      "frame with z down)",
+      recording.name, "negate yaw: it is counter-clockwise, x forward, y left"};
 }
 
 }  // namespace odomcalib::calib::ingest

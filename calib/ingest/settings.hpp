@@ -90,6 +90,10 @@ inline constexpr std::size_t kFewestPoseSteps = 30;
 /// Derived: 0.64 where heading and way have nothing to do with each other; wheels slip by a few per cent, and
 /// a marker beside the middle of the axle moves sideways in turns.
 inline constexpr double kSidewaysAtLeast = 0.4, kSidewaysAtMost = 0.15;
+/// Circular variance of the way against the heading as it is given, and how many times that against its
+/// negative: of a heading that turns the other way. Derived: 0.06 where lines turn by 10 degrees and back.
+/// Measured: at most 1.1 times in 113 recordings whose yaw is right.
+inline constexpr double kScatterAtLeast = 0.01, kScatterRatio = 10.0;
 
 // --- Even stamps -----------------------------------------------------------------------------------------
 

@@ -92,6 +92,30 @@ TEST(PoseFrame, is_not_contradicted_by_poses_that_go_where_they_look) {
   EXPECT_FALSE(wrong_pose_frame(Recording{}));
 }
 
+/// Lines of a metre that turn by 10 degrees and back.
+Recording nearly_straight(double sign, double aside) {
+  Recording recording;
+  PoseSample pose;
+  for (int k = 0; k < 600; ++k) {
+    const double heading = k / 100 % 2 == 0 ? 0.0 : 10.0 * kPi / 180.0;
+    pose.t = 0.05 * k;
+    pose.x += 0.02 * std::cos(heading);
+    pose.y += 0.02 * std::sin(heading) + 0.001 * std::sin(3.0 * k);
+    pose.yaw = sign * (heading + aside);
+    recording.poses.push_back(pose);
+  }
+  return recording;
+}
+
+TEST(PoseFrame, sees_yaw_of_the_other_sign_in_turns_of_ten_degrees) {
+  for (const double aside : {0.0, 0.1, -0.3}) {
+    EXPECT_FALSE(wrong_pose_frame(nearly_straight(1.0, aside))) << aside;
+    const auto error = wrong_pose_frame(nearly_straight(-1.0, aside));
+    ASSERT_TRUE(error) << aside;
+    EXPECT_NE(error->what.find("turns clockwise"), std::string::npos) << error->what;
+  }
+}
+
 TEST(PoseFrame, names_what_is_wrong_with_yaw) {
   const auto told = [](double (*change)(double)) {
     Recording recording = along_its_heading();
@@ -104,6 +128,7 @@ TEST(PoseFrame, names_what_is_wrong_with_yaw) {
   };
   EXPECT_TRUE(holds(told([](double yaw) { return yaw * 180.0 / kPi; }), "degrees"));
   EXPECT_TRUE(holds(told([](double yaw) { return -yaw; }), "opposite sign"));
+  EXPECT_TRUE(holds(told([](double yaw) { return 0.3 - yaw; }), "turns clockwise")) << "and looks aside";
   EXPECT_TRUE(holds(told([](double yaw) { return 0.5 * kPi - yaw; }), "compass"));
   EXPECT_TRUE(holds(told([](double yaw) { return 0.5 * yaw; }), "half of the heading"));
   EXPECT_TRUE(holds(told([](double yaw) { return yaw - 0.5 * kPi; }), "quarter"));
