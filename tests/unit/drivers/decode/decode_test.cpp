@@ -92,7 +92,7 @@ TEST(Candump, no_damaged_line_gives_a_frame_that_cannot_be_written_again) {
         line.erase(at, 1);
       else
         line[at] =
-            static_cast<char>(random() % 2 == 0 ? random() & 0xFF : "0123456789AF#.R()"[random() % 17]);
+            random() % 2 == 0 ? static_cast<char>(random() & 0xFF) : "0123456789AF#.R()"[random() % 17];
       if (line.empty()) break;
     }
     SCOPED_TRACE(line);
