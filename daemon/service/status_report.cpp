@@ -61,6 +61,17 @@ std::string watchdog_text(double time) {
              : stops;
 }
 
+ordered_json watchdog_check(const drivers::Controller& controller) {
+  using drivers::ControllerState;
+  const auto state = controller.state();
+  if (state == ControllerState::absent || state == ControllerState::configuring)
+    return check("watchdog", false, "not known: the controller is " + name_of(state), "see its line");
+  const double time = controller.watchdog_time();
+  return check("watchdog", time > 0.0,
+               time > 0.0 ? watchdog_text(time) : "controller would not stop by itself",
+               "use a profile with a watchdog");
+}
+
 ordered_json check_disk(const Bench& bench) {
   const std::filesystem::path& folder = bench.config.state_dir;
   if (const auto& why = bench.folder.read_only()) return check("disk", false, why->what, why->remedy);
@@ -243,11 +254,7 @@ ordered_json check_report(const Bench& bench) {
   list.push_back(check("bus", drive.link.connected(), found_at(drive.link.connected(), drive.link.problem()),
                        "connect the adapter; check controller.device"));
   list.push_back(controller_check(drive));
-  const bool armed = drive.controller().watchdog_armed();
-  list.push_back(
-      check("watchdog", armed,
-            armed ? watchdog_text(drive.controller().watchdog_time()) : "controller would not stop by itself",
-            "use a profile with a watchdog"));
+  list.push_back(watchdog_check(drive.controller()));
   list.push_back(check("encoders", !drive.encoders.stale(bench.now),
                        drive.encoders.stale(bench.now).value_or("counts arrive"), "check the bus"));
   list.push_back(check("lidar port", around.link.connected(),

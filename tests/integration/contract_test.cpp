@@ -70,6 +70,15 @@ TEST_F(Contract, journal_names_devices_motions_who_asked_and_why_it_stopped) {
   EXPECT_EQ(stopped->severity, messages::Severity::stop);
 }
 
+TEST_F(Contract, check_does_not_blame_the_profile_for_a_controller_that_is_away) {
+  EXPECT_EQ(check_named("watchdog")["outcome"], "ok");
+  robot_->cut_can(true);
+  ASSERT_TRUE(run_until([&] { return status()["controller"]["state"] == "absent"; }, 5.0));
+  const json watchdog = check_named("watchdog");
+  EXPECT_EQ(watchdog["outcome"], "fail");
+  EXPECT_EQ(watchdog["found"], "not known: the controller is absent");
+}
+
 TEST_F(Contract, journal_names_write_backs_and_their_ends) {
   acquire();
   TestClient writer(folder_ / "control");
