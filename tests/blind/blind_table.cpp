@@ -10,7 +10,6 @@ namespace odomcalib::blind {
 namespace {
 
 constexpr double kDetectable = 1.3;  // times the noise floor
-constexpr double kSigmas = 3.0;
 
 bool contains(const std::vector<std::string>& list, const std::string& text) {
   return std::find(list.begin(), list.end(), text) != list.end();
@@ -80,8 +79,6 @@ bool mentions(const Trial& trial, const std::string& variable) {
   return false;
 }
 
-bool claims_anything(const Trial& trial) { return !trial.named.empty() || !trial.depends_on.empty(); }
-
 std::string percent(std::size_t part, std::size_t whole) {
   char text[64];
   std::snprintf(text, sizeof text, "%zu of %zu (%.1f %%)", part, whole,
@@ -124,15 +121,8 @@ std::size_t count(const std::vector<const Trial*>& trials, Predicate predicate) 
 }
 
 bool has_effect(const Trial& t) { return !t.answer.effects.empty(); }
-bool has_none(const Trial& t) { return t.answer.effects.empty(); }
-bool is_named_kind(const Trial& t) { return has_effect(t) && !is_outside(t); }
-bool is_foreign_kind(const Trial& t) { return has_effect(t) && is_outside(t); }
 bool is_of_the_robot(const Trial& t) { return !belongs_to_the_place(t); }
 bool worse_by_a_tenth(const Trial& t) { return t.after.position.rms > 1.1 * t.before.position.rms; }
-/// Beyond what a fresh drive can tell of the plain fit's error.
-bool worse_than_plain(const Trial& t) {
-  return t.after.position.rms > t.before.position.upper || t.after.heading.rms > t.before.heading.upper;
-}
 
 std::string line(const std::string& what, const std::string& result) {
   return "| " + what + " | " + result + " |\n";
@@ -158,9 +148,9 @@ std::string sigma_line(const std::vector<Trial>& trials, const std::string& what
 }
 
 std::string summary(const std::vector<Trial>& trials) {
-  const auto none = select(trials, {has_none});
-  const auto named = select(trials, {is_named_kind, is_detectable});
-  const auto foreign = select(trials, {is_foreign_kind, is_detectable});
+  const auto none = select(trials, {has_no_effect});
+  const auto named = select(trials, {is_of_the_catalogue, is_detectable});
+  const auto foreign = select(trials, {is_outside_the_catalogue, is_detectable});
   const auto of_robot = select(trials, {has_effect, is_detectable, is_of_the_robot});
   std::vector<double> seconds;
   seconds.reserve(trials.size());
@@ -238,6 +228,19 @@ std::string per_kind(const std::vector<Trial>& trials) {
 }
 
 }  // namespace
+
+bool has_no_effect(const Trial& trial) { return trial.answer.effects.empty(); }
+
+bool is_of_the_catalogue(const Trial& trial) { return has_effect(trial) && !is_outside(trial); }
+
+bool is_outside_the_catalogue(const Trial& trial) { return has_effect(trial) && is_outside(trial); }
+
+bool claims_anything(const Trial& trial) { return !trial.named.empty() || !trial.depends_on.empty(); }
+
+bool worse_than_plain(const Trial& trial) {
+  return trial.after.position.rms > trial.before.position.upper ||
+         trial.after.heading.rms > trial.before.heading.upper;
+}
 
 bool is_detectable(const Trial& trial) {
   if (trial.answer.effects.empty()) return false;

@@ -8,6 +8,15 @@
 
 namespace odomcalib::blind {
 
+inline constexpr double kSigmas = 3.0;  ///< stated deviations within which a length is right
+
+bool has_no_effect(const Trial& trial);
+bool is_of_the_catalogue(const Trial& trial);
+bool is_outside_the_catalogue(const Trial& trial);
+/// Something beyond the six base parameters is reported.
+bool claims_anything(const Trial& trial);
+/// Odometry is worse than by the plain fit, beyond what a fresh drive can tell of that one's error.
+bool worse_than_plain(const Trial& trial);
 /// The effect hurts enough to be seen: the plain fit's error on the fresh drive, or its held-out residual, is
 /// at least 1.3 times what it is without the effect.
 bool is_detectable(const Trial& trial);

@@ -10,6 +10,7 @@
 #include "tests/blind/ablation.hpp"
 #include "tests/blind/blind_table.hpp"
 #include "tests/blind/blind_trial.hpp"
+#include "tests/blind/paired_table.hpp"
 #include "tests/sim/effects/blind_cli.hpp"
 
 namespace {
@@ -51,14 +52,22 @@ int run_ablation(const Part& part) {
   return 0;
 }
 
-int print_table(const std::vector<std::string>& files) {
+std::vector<Trial> trials_of(const std::vector<std::string>& files) {
   std::vector<Trial> trials;
   for (const std::string& name : files) {
     std::ifstream file(name);
     for (std::string line; std::getline(file, line);)
       trials.push_back(odomcalib::blind::trial_from_json_line(line));
   }
-  std::fputs(odomcalib::blind::table(trials).c_str(), stdout);
+  return trials;
+}
+
+int print_table(const std::vector<std::string>& files, const std::vector<std::string>& others) {
+  const std::vector<Trial> trials = trials_of(files);
+  std::fputs((others.empty() ? odomcalib::blind::table(trials)
+                             : odomcalib::blind::paired_table(trials, trials_of(others)))
+                 .c_str(),
+             stdout);
   return trials.empty() ? 1 : 0;
 }
 
@@ -67,7 +76,7 @@ int print_table(const std::vector<std::string>& files) {
 int main(int argc, char** argv) try {
   CLI::App app{"Blind test: recordings with effects that the solver is not told about, scored"};
   Part part;
-  std::vector<std::string> files;
+  std::vector<std::string> files, others;
   std::string without_rule;
   bool ablation = false, rules = false;
   app.add_option("--seed", part.campaign, "of the campaign");
@@ -75,6 +84,7 @@ int main(int argc, char** argv) try {
   app.add_option("--count", part.count, "number of recordings");
   odomcalib::sim::add_blind_options(app, part.options);
   app.add_option("--table", files, "make the table of these files of lines instead");
+  app.add_option("--beside", others, "pair them with these files, of the same recordings by another version");
   // For tests/blind/ablate: an empty group keeps them out of the help.
   app.add_option("--without-rule", without_rule, "leave out this rule of the search")->group("");
   app.add_flag("--ablation", ablation, "leave out each rule of the search in turn")->group("");
@@ -82,7 +92,7 @@ int main(int argc, char** argv) try {
       ->group("");
   CLI11_PARSE(app, argc, argv);
   if (rules) return print_rules();
-  if (!files.empty()) return print_table(files);
+  if (!files.empty()) return print_table(files, others);
   return ablation ? run_ablation(part) : run(part, without_rule);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "error: %s\n", error.what());
