@@ -266,6 +266,7 @@ Document describe(const Calibration& calibration) {
                                    traces_section(data),
                                    detectable_section(data),
                                    untested_section(data),
+                                   meanings_section(calibration, data),
                                    path_section(data),
                                    residual_of(calibration.residual),
                                    methods_of(calibration),

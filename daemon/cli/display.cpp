@@ -16,6 +16,7 @@ Display display_of(const std::string& unit) {
   if (unit == "m/rad") return {1000.0 / kDegrees, "mm/deg", 3};
   if (unit == "rad/m") return {kDegrees, "deg/m", 3};
   if (unit == "rad/rad") return {100.0, "%", 3};
+  if (unit == "1") return {1.0, "", 6};
   return {1.0, unit, 6};
 }
 

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
+#include "calib/terms/parameter_meaning.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/report_figures.hpp"
 #include "daemon/cli/settings.hpp"
@@ -134,6 +137,21 @@ Section untested_section(const ReportData& data) {
   return section;
 }
 
+Section meanings_section(const Calibration& calibration, const ReportData& data) {
+  Section section{"What the parameters of these effects are", {}, {}};
+  std::set<std::pair<std::string, std::string>> shown;
+  for (const EffectResult& effect : calibration.effects)
+    for (const auto& [parameter, quantity] : effect.parameters) shown.emplace(effect.name, parameter);
+  for (const Detectable& effect : data.detectable) shown.emplace(effect.effect, effect.parameter);
+  for (const auto& row : calib::terms::parameter_meanings()) {
+    const std::string effect(row.effect), parameter(row.parameter);
+    if (shown.count({effect, parameter}) > 0)
+      section.table.rows.push_back({readable(effect) + ": " + readable(parameter), std::string(row.is)});
+  }
+  if (!section.table.rows.empty()) section.table.head = {"", "is"};
+  return section;
+}
+
 Section path_section(const ReportData& data) {
   Section section{kDriveTitle, {}, {}};
   for (const PathTrace& path : data.paths) {
@@ -234,6 +252,7 @@ Section reading_section() {
        "std / expected near 1 and a runs test within -2 to 2: the residual is noise. Larger: something is "
        "missing "
        "or the matches are worse than they say.",
+       "p of an effect: how probable so strong a trace of it is on a robot that does not have it.",
        "More: odomcalib-report(7)."},
       {}};
 }

@@ -16,6 +16,8 @@ Section drive_errors_section(const ReportData& data, bool intervals);
 Section traces_section(const ReportData& data);
 Section detectable_section(const ReportData& data);
 Section untested_section(const ReportData& data);
+/// Of the effects in the sections above.
+Section meanings_section(const Calibration& calibration, const ReportData& data);
 inline constexpr const char* kDriveTitle = "The drive";
 Section path_section(const ReportData& data);
 Section determination_section(const Calibration& calibration);
