@@ -18,8 +18,8 @@ h1.good{border-color:var(--good);color:var(--good)}h1.doubtful{border-color:var(
 h1.bad{border-color:var(--bad);color:var(--bad)}
 h2{margin:1.6em 0 .3em;font-size:1.15em}p{margin:.35em 0}
 table{border-collapse:collapse;margin:.5em 0;font-variant-numeric:tabular-nums}
-td,th{padding:.2em .7em;border-bottom:1px solid var(--rule);text-align:right;vertical-align:bottom;overflow-wrap:normal}
-td:first-child,th:first-child{text-align:left}
+td,th{padding:.2em .7em;border-bottom:1px solid var(--rule);text-align:left;vertical-align:baseline;overflow-wrap:normal}
+th{vertical-align:bottom}.n{text-align:right}
 figure{margin:1em 0;break-inside:avoid}figcaption{font-size:.92em}svg{display:block;width:100%;max-width:680px;height:auto}
 .k{margin:.2em 0}.k span{white-space:nowrap;margin-right:1.4em}.k svg{display:inline;width:1.5em;height:.7em;margin-right:.4em}
 svg text{font-size:13px;fill:var(--ink)}.m{text-anchor:middle}.e{text-anchor:end}
@@ -31,7 +31,7 @@ svg text{font-size:13px;fill:var(--ink)}.m{text-anchor:middle}.e{text-anchor:end
 .l{stroke-width:3}.d{stroke-width:6}.w,.w tbody,.w tr,.w td{display:block}.w .h{display:none}
 .w tr{padding:.4em 0;border-bottom:1px solid var(--rule)}.w td{border:0;padding:.05em 0;display:flex;gap:1em;overflow-wrap:anywhere}
 .w td:first-child{font-weight:600}.w td:empty{display:none}
-.w td[data-h]::before{content:attr(data-h);margin-right:auto;text-align:left}}
+.w td[data-h]{justify-content:space-between;text-align:right}.w td[data-h]::before{content:attr(data-h);flex:none;max-width:45%;text-align:left}}
 @media print{body{margin:0;max-width:none;padding:0;font-size:10.5pt}td,th{padding:.15em .45em}tr{break-inside:avoid}
 h2{break-after:avoid}figure>svg{max-width:140mm}}
 )";
@@ -69,19 +69,24 @@ bool is_wide(const Table& table) {
   return width > kNarrow;
 }
 
-std::string head_of(const std::vector<std::string>& head) {
+const char* alignment_of(const Table& table, std::size_t column) {
+  return is_of_numbers(table, column) ? " class=\"n\"" : "";
+}
+
+std::string head_of(const Table& table) {
   std::string out = "<tr class=\"h\">";
-  for (const auto& text : head) out += fmt::format("<th>{}</th>", escaped(text));
+  for (std::size_t k = 0; k < table.head.size(); ++k)
+    out += fmt::format("<th{}>{}</th>", alignment_of(table, k), escaped(table.head[k]));
   return out + "</tr>\n";
 }
 
 /// Each cell carries the head of its column, for where the table turns.
-std::string row_of(const std::vector<std::string>& row, const std::vector<std::string>& head) {
+std::string row_of(const Table& table, const std::vector<std::string>& row) {
   std::string out = "<tr>";
   for (std::size_t k = 0; k < row.size(); ++k) {
-    const bool is_named = k > 0 && k < head.size() && !head[k].empty();
-    out += is_named ? fmt::format("<td data-h=\"{}\">", escaped(head[k])) : "<td>";
-    out += escaped(row[k]) + "</td>";
+    const bool is_named = k > 0 && k < table.head.size() && !table.head[k].empty();
+    const std::string name = is_named ? fmt::format(" data-h=\"{}\"", escaped(table.head[k])) : "";
+    out += fmt::format("<td{}{}>{}</td>", alignment_of(table, k), name, escaped(row[k]));
   }
   return out + "</tr>\n";
 }
@@ -89,8 +94,8 @@ std::string row_of(const std::vector<std::string>& row, const std::vector<std::s
 std::string html_of(const Table& table) {
   if (table.rows.empty()) return "";
   std::string out = is_wide(table) ? "<table class=\"w\">\n" : "<table>\n";
-  if (!table.head.empty()) out += head_of(table.head);
-  for (const auto& row : table.rows) out += row_of(row, table.head);
+  if (!table.head.empty()) out += head_of(table);
+  for (const auto& row : table.rows) out += row_of(table, row);
   return out + "</table>\n";
 }
 

@@ -148,7 +148,6 @@ Section meanings_section(const Calibration& calibration, const ReportData& data)
     if (shown.count({effect, parameter}) > 0)
       section.table.rows.push_back({readable(effect) + ": " + readable(parameter), std::string(row.is)});
   }
-  if (!section.table.rows.empty()) section.table.head = {"", "is"};
   return section;
 }
 

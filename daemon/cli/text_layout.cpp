@@ -76,24 +76,11 @@ std::size_t widest(const Table& table, std::size_t column, Head head, Measure me
   return width;
 }
 
-/// At least half of what is there; what is absent ("-") counts for neither.
-bool of_numbers(const Table& table, std::size_t column) {
-  std::size_t numbers = 0, others = 0;
-  for (const auto& row : table.rows) {
-    const std::string cell = cell_of(row, column);
-    if (is_number(cell))
-      ++numbers;
-    else if (cell.find_first_not_of(" ->") != std::string::npos)
-      ++others;
-  }
-  return column > 0 && numbers > 0 && numbers >= others;
-}
-
 enum class Kind { words, label, numbers };
 
 Kind kind_of(const Table& table, std::size_t column) {
   if (column == 0) return Kind::label;
-  return of_numbers(table, column) ? Kind::numbers : Kind::words;
+  return is_of_numbers(table, column) ? Kind::numbers : Kind::words;
 }
 
 /// Takes from the widest columns of a kind what is more than their longest word, until all fit or no more can
@@ -148,8 +135,8 @@ std::string row_text(const Layout& layout, const std::vector<std::string>& row, 
       const std::size_t above = from_below ? height - cells[k].size() : 0;
       const std::string part = line >= above && line - above < cells[k].size() ? cells[k][line - above] : "";
       const std::string pad(layout.columns[k] - std::min(layout.columns[k], width_of(part)), ' ');
-      text +=
-          std::string(kIndent, ' ') + (of_numbers(*layout.table, layout.chosen[k]) ? pad + part : part + pad);
+      text += std::string(kIndent, ' ') +
+              (is_of_numbers(*layout.table, layout.chosen[k]) ? pad + part : part + pad);
     }
     text.erase(text.find_last_not_of(' ') + 1);
     out += text + "\n";
@@ -165,6 +152,18 @@ std::string block_text(const Layout& layout, bool legend) {
 }
 
 }  // namespace
+
+bool is_of_numbers(const Table& table, std::size_t column) {
+  std::size_t numbers = 0, others = 0;
+  for (const auto& row : table.rows) {
+    const std::string cell = cell_of(row, column);
+    if (is_number(cell))
+      ++numbers;
+    else if (cell.find_first_not_of(" ->") != std::string::npos)
+      ++others;
+  }
+  return column > 0 && numbers > 0 && numbers >= others;
+}
 
 std::string wrapped(const std::string& text, std::size_t width) {
   const std::size_t own = std::min(text.find_first_not_of(' '), text.size());

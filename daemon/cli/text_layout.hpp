@@ -13,6 +13,10 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// At least half of what is there; what is absent ("-") counts for neither. The first column says what a row
+/// is of: it never is.
+bool is_of_numbers(const Table& table, std::size_t column);
+
 /// No text is broken.
 inline constexpr std::size_t kAnyWidth = static_cast<std::size_t>(-1);
 
