@@ -20,13 +20,17 @@ struct Mistake {
   Change mend;
 };
 
+PoseSample as_given(PoseSample p) { return p; }
+
+PoseSample negated(PoseSample p) { return p.yaw = -p.yaw, p; }
+
 constexpr const char* kNegate = "negate yaw: it is counter-clockwise, x forward, y left";
 
 constexpr std::array kMistakes = {
     Mistake{"yaw looks like degrees", "multiply yaw by pi / 180",
             [](PoseSample p) { return p.yaw *= math::kPi / 180.0, p; }},
     Mistake{"yaw has the opposite sign of the frame that x and y are in (clockwise, or z down)", kNegate,
-            [](PoseSample p) { return p.yaw = -p.yaw, p; }},
+            negated},
     Mistake{"yaw is a compass heading (clockwise from y) beside x and y of a map, or x and y are exchanged",
             "write pi / 2 - yaw: yaw is counter-clockwise from x",
             [](PoseSample p) { return p.yaw = 0.5 * math::kPi - p.yaw, p; }},
@@ -40,37 +44,47 @@ double middle_heading(const PoseSample& a, const PoseSample& b) {
   return a.yaw + 0.5 * std::remainder(b.yaw - a.yaw, 2.0 * math::kPi);
 }
 
+struct Stride {
+  double x = 0.0, y = 0.0;  ///< way from one pose to the next
+  double heading = 0.0;     ///< in the middle of it
+};
+
+std::vector<Stride> strides_of(const std::vector<PoseSample>& steps, Change mend) {
+  std::vector<Stride> strides;
+  for (std::size_t k = 1; k < steps.size(); ++k) {
+    const PoseSample a = mend(steps[k - 1]), b = mend(steps[k]);
+    strides.push_back({b.x - a.x, b.y - a.y, middle_heading(a, b)});
+  }
+  return strides;
+}
+
 /// Share of the way that goes sideways, 0 to 1; about 0.64 when headings are random.
 double sideways(const std::vector<PoseSample>& steps, Change mend) {
   double across = 0.0, all = 0.0;
-  for (std::size_t k = 1; k < steps.size(); ++k) {
-    const PoseSample a = mend(steps[k - 1]), b = mend(steps[k]);
-    const double dx = b.x - a.x, dy = b.y - a.y, heading = middle_heading(a, b);
+  for (const auto& [dx, dy, heading] : strides_of(steps, mend)) {
     across += std::abs(dy * std::cos(heading) - dx * std::sin(heading));
     all += std::hypot(dx, dy);
   }
   return all > 0.0 ? across / all : 0.0;
 }
 
-/// How much the direction of the way, ahead or back, varies against `sign` times the heading: its circular
-/// variance (Mardia and Jupp, Directional Statistics, 2000, 2.3.1). What looks to the side by an angle that
-/// stays does not vary.
-double scatter(const std::vector<PoseSample>& steps, double sign) {
+/// How much the direction of the way, ahead or back, varies against the heading: its circular variance
+/// (Mardia and Jupp, Directional Statistics, 2000, 2.3.1). What looks to the side by an angle that stays does
+/// not vary.
+double scatter(const std::vector<PoseSample>& steps, Change mend) {
   std::complex<double> sum = 0.0;
   double all = 0.0;
-  for (std::size_t k = 1; k < steps.size(); ++k) {
-    const PoseSample &a = steps[k - 1], &b = steps[k];
-    const double length = std::hypot(b.x - a.x, b.y - a.y);
-    const double aside = std::atan2(b.y - a.y, b.x - a.x) - sign * middle_heading(a, b);
-    sum += std::polar(length, 2.0 * aside);
+  for (const auto& [dx, dy, heading] : strides_of(steps, mend)) {
+    const double length = std::hypot(dx, dy);
+    sum += std::polar(length, 2.0 * (std::atan2(dy, dx) - heading));
     all += length;
   }
   return all > 0.0 ? 1.0 - std::abs(sum) / all : 0.0;
 }
 
 bool turns_the_other_way(const std::vector<PoseSample>& steps) {
-  const double given = scatter(steps, 1.0);
-  return given > settings::kScatterAtLeast && given > settings::kScatterRatio * scatter(steps, -1.0);
+  const double given = scatter(steps, as_given);
+  return given > settings::kScatterAtLeast && given > settings::kScatterRatio * scatter(steps, negated);
 }
 
 /// Poses so far from each other that noise hardly bends the way; the unit of length may be any.
@@ -94,7 +108,7 @@ bool heading_stands(const std::vector<PoseSample>& poses) {
 }
 
 std::optional<Error> goes_sideways(const std::vector<PoseSample>& steps, const std::string& where) {
-  const double given = sideways(steps, [](PoseSample p) { return p; });
+  const double given = sideways(steps, as_given);
   if (given < settings::kSidewaysAtLeast) return std::nullopt;
   const auto wrong = [&](const std::string& what, const std::string& remedy) {
     return Error{
@@ -119,7 +133,7 @@ std::optional<Error> wrong_pose_frame(const Recording& recording) {
       ErrorCode::format,
       "yaw turns clockwise where the way through x and y turns counter-clockwise (yaw clockwise, or a "
       "frame with z down)",
-      recording.name, "negate yaw: it is counter-clockwise, x forward, y left"};
+      recording.name, kNegate};
 }
 
 }  // namespace odomcalib::calib::ingest
