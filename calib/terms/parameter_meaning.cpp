@@ -1,12 +1,11 @@
 #include "calib/terms/parameter_meaning.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace odomcalib::calib::terms {
 namespace {
 
-constexpr std::array<ParameterMeaning, 50> kMeanings = {{
+constexpr auto kMeanings = std::to_array<ParameterMeaning>({
     {"time_offset", "offset", "by which scans are stamped later than counts of the same moment"},
     {"time_offset", "smoothing", "of the counts: half the square of a filter's time constant"},
     {"clock_drift", "rate", "by which the two clocks drift apart"},
@@ -74,17 +73,10 @@ constexpr std::array<ParameterMeaning, 50> kMeanings = {{
      "share by which ranges ahead and behind are too long, and those at the sides too short"},
     {"lidar_tilt", "stretch_sin",
      "share by which ranges ahead left and behind right are too long, and the others too short"},
-}};
+});
 
 }  // namespace
 
 std::span<const ParameterMeaning> parameter_meanings() { return kMeanings; }
-
-std::string_view meaning_of(std::string_view effect, std::string_view parameter) {
-  const auto found = std::find_if(kMeanings.begin(), kMeanings.end(), [&](const ParameterMeaning& row) {
-    return row.effect == effect && row.parameter == parameter;
-  });
-  return found == kMeanings.end() ? std::string_view{} : found->is;
-}
 
 }  // namespace odomcalib::calib::terms

@@ -14,7 +14,4 @@ struct ParameterMeaning {
 /// Of every effect of the catalogues, in their order.
 std::span<const ParameterMeaning> parameter_meanings();
 
-/// Empty: an effect without a name, or of another version.
-std::string_view meaning_of(std::string_view effect, std::string_view parameter);
-
 }  // namespace odomcalib::calib::terms

@@ -36,11 +36,5 @@ TEST(ParameterMeaning, stands_in_the_table_for_each_parameter_of_the_catalogues_
   EXPECT_EQ(told, of_catalogues());
 }
 
-TEST(ParameterMeaning, is_empty_for_what_has_no_name) {
-  EXPECT_EQ(meaning_of("backlash", "left_play").find("angle"), 0U);
-  EXPECT_EQ(meaning_of("backlash", "kappa"), "");
-  EXPECT_EQ(meaning_of("smooth", "left_play"), "");
-}
-
 }  // namespace
 }  // namespace odomcalib::calib::terms
