@@ -69,33 +69,41 @@ bool is_wide(const Table& table) {
   return width > kNarrow;
 }
 
-const char* alignment_of(const Table& table, std::size_t column) {
-  return is_of_numbers(table, column) ? " class=\"n\"" : "";
+/// Of each column, the attribute that right-aligns its cells, or nothing.
+std::vector<const char*> alignments_of(const Table& table) {
+  std::size_t columns = table.head.size();
+  for (const auto& row : table.rows) columns = std::max(columns, row.size());
+  std::vector<const char*> alignments;
+  for (std::size_t k = 0; k < columns; ++k)
+    alignments.push_back(is_of_numbers(table, k) ? " class=\"n\"" : "");
+  return alignments;
 }
 
-std::string head_of(const Table& table) {
+std::string head_of(const std::vector<std::string>& head, const std::vector<const char*>& alignments) {
   std::string out = "<tr class=\"h\">";
-  for (std::size_t k = 0; k < table.head.size(); ++k)
-    out += fmt::format("<th{}>{}</th>", alignment_of(table, k), escaped(table.head[k]));
+  for (std::size_t k = 0; k < head.size(); ++k)
+    out += fmt::format("<th{}>{}</th>", alignments[k], escaped(head[k]));
   return out + "</tr>\n";
 }
 
 /// Each cell carries the head of its column, for where the table turns.
-std::string row_of(const Table& table, const std::vector<std::string>& row) {
+std::string row_of(const std::vector<std::string>& row, const std::vector<std::string>& head,
+                   const std::vector<const char*>& alignments) {
   std::string out = "<tr>";
   for (std::size_t k = 0; k < row.size(); ++k) {
-    const bool is_named = k > 0 && k < table.head.size() && !table.head[k].empty();
-    const std::string name = is_named ? fmt::format(" data-h=\"{}\"", escaped(table.head[k])) : "";
-    out += fmt::format("<td{}{}>{}</td>", alignment_of(table, k), name, escaped(row[k]));
+    const bool is_named = k > 0 && k < head.size() && !head[k].empty();
+    const std::string name = is_named ? fmt::format(" data-h=\"{}\"", escaped(head[k])) : "";
+    out += fmt::format("<td{}{}>{}</td>", alignments[k], name, escaped(row[k]));
   }
   return out + "</tr>\n";
 }
 
 std::string html_of(const Table& table) {
   if (table.rows.empty()) return "";
+  const auto alignments = alignments_of(table);
   std::string out = is_wide(table) ? "<table class=\"w\">\n" : "<table>\n";
-  if (!table.head.empty()) out += head_of(table);
-  for (const auto& row : table.rows) out += row_of(table, row);
+  if (!table.head.empty()) out += head_of(table.head, alignments);
+  for (const auto& row : table.rows) out += row_of(row, table.head, alignments);
   return out + "</table>\n";
 }
 

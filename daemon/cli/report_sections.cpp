@@ -241,17 +241,15 @@ Section settings_section(const Calibration& calibration) {
 
 Section reading_section() {
   constexpr const char* kBefore =
-      "Before: odometry with the nominal values. After: with the values of this file and its effects. Both "
-      "are "
-      "judged on parts of the recording that their values were not fitted to.";
+      "Before: odometry with the nominal values. After: with the values of this file and its effects. "
+      "Both are judged on parts of the recording that their values were not fitted to.";
   constexpr const char* kFloor =
-      "Noise floor: what the error would be if the model were perfect and only the noise of the reference "
-      "and of "
-      "the wheels remained. After cannot be much below it; well above it, something is still missing.";
+      "Noise floor: what the error would be if the model were perfect and only the noise of the "
+      "reference and of the wheels remained. After cannot be much below it; well above it, something is "
+      "still missing.";
   constexpr const char* kResidual =
-      "std / expected near 1 and a runs test within -2 to 2: the residual is noise. Larger: something is "
-      "missing "
-      "or the matches are worse than they say.";
+      "std / expected near 1 and a runs test within -2 to 2: the residual is noise. Larger: something "
+      "is missing or the matches are worse than they say.";
   constexpr const char* kProbability =
       "p of an effect: how probable so strong a trace of it is on a robot that does not have it.";
   return {
