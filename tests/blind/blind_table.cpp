@@ -61,11 +61,6 @@ const std::map<std::string, std::set<std::string>>& variables_of_names() {
   return kOf;
 }
 
-bool is_outside(const Trial& trial) {
-  return std::any_of(trial.answer.effects.begin(), trial.answer.effects.end(),
-                     [](const sim::BlindEffect& e) { return e.catalogue_name.empty(); });
-}
-
 bool mentions(const Trial& trial, const std::string& variable) {
   const auto same = same_variables().find(variable);
   if (same == same_variables().end()) return false;
@@ -199,7 +194,7 @@ std::string per_kind(const std::vector<Trial>& trials) {
     ++row.runs;
     if (is_detectable(t)) {
       ++row.hurting;
-      if (is_outside(t) ? flags_right_variable(t) : names_every_effect(t)) ++row.right;
+      if (is_outside_the_catalogue(t) ? flags_right_variable(t) : names_every_effect(t)) ++row.right;
     }
     row.before.push_back(ratio_before(t));
     row.after.push_back(ratio_after(t));
@@ -231,9 +226,12 @@ std::string per_kind(const std::vector<Trial>& trials) {
 
 bool has_no_effect(const Trial& trial) { return trial.answer.effects.empty(); }
 
-bool is_of_the_catalogue(const Trial& trial) { return has_effect(trial) && !is_outside(trial); }
+bool is_of_the_catalogue(const Trial& trial) { return has_effect(trial) && !is_outside_the_catalogue(trial); }
 
-bool is_outside_the_catalogue(const Trial& trial) { return has_effect(trial) && is_outside(trial); }
+bool is_outside_the_catalogue(const Trial& trial) {
+  return std::any_of(trial.answer.effects.begin(), trial.answer.effects.end(),
+                     [](const sim::BlindEffect& e) { return e.catalogue_name.empty(); });
+}
 
 bool claims_anything(const Trial& trial) { return !trial.named.empty() || !trial.depends_on.empty(); }
 
