@@ -30,7 +30,7 @@ namespace {
 constexpr int kAnswers = 3;  // descriptor of the solver: replies as on the control socket
 constexpr rlim_t kMiB = 1U << 20U;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(ODOMCALIB_SANITIZED)
 constexpr bool kMemoryLimited = false;  // their shadow of the memory counts as data
 #else
 constexpr bool kMemoryLimited = true;

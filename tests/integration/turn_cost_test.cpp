@@ -8,7 +8,7 @@ namespace odomcalib {
 namespace {
 
 // s. What the specification allows a turn; programs with sanitizers are slower.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(ODOMCALIB_SANITIZED)
 constexpr double kLongestTurn = 0.400;
 #else
 constexpr double kLongestTurn = 0.020;
