@@ -204,20 +204,16 @@ TEST(LidarCaptures, text_telegrams_of_a_sick_tim551) {
 
 /// Blocks of a pcapng file: the TCP payload of each Ethernet frame that comes from `port`, in order.
 std::string payloads(const std::string& file, unsigned port) {
-  const auto u32 = [&](std::size_t at) {
-    return static_cast<unsigned char>(file[at]) | static_cast<unsigned char>(file[at + 1]) << 8U |
-           static_cast<unsigned char>(file[at + 2]) << 16U |
-           static_cast<unsigned>(static_cast<unsigned char>(file[at + 3])) << 24U;
-  };
-  const auto u16 = [&](std::size_t at) {
-    return static_cast<unsigned>(static_cast<unsigned char>(file[at]) << 8U |
-                                 static_cast<unsigned char>(file[at + 1]));
+  const auto u8 = [&](std::size_t at) -> unsigned { return static_cast<unsigned char>(file[at]); };
+  const auto u16 = [&](std::size_t at) { return u8(at) << 8U | u8(at + 1); };  // of a frame: big endian
+  const auto u32 = [&](std::size_t at) {                                       // of the file: little endian
+    return u8(at) | u8(at + 1) << 8U | u8(at + 2) << 16U | u8(at + 3) << 24U;
   };
   std::string out;
   for (std::size_t at = 0; at + 12 <= file.size(); at += u32(at + 4)) {
     if (u32(at) != 6) continue;  // enhanced packet
-    const std::size_t ip = at + 28 + 14, tcp = ip + 4 * (static_cast<unsigned char>(file[ip]) & 15U);
-    const std::size_t data = tcp + 4 * (static_cast<unsigned char>(file[tcp + 12]) >> 4U);
+    const std::size_t ip = at + 28 + 14, tcp = ip + 4 * (u8(ip) & 15U);
+    const std::size_t data = tcp + 4 * (u8(tcp + 12) >> 4U);
     if (u16(ip - 2) == 0x0800 && file[ip + 9] == 6 && u16(tcp) == port)
       out += file.substr(data, ip + u16(ip + 2) - data);
   }
