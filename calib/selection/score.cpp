@@ -52,6 +52,7 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double scale) {
   Eigen::Index rank = 0;
   const auto& r = qr.matrixR();
   while (rank < columns.cols() && std::abs(r(rank, rank)) > std::sqrt(kGauge) * scale) ++rank;
+  if (rank == 0) return {columns.rows(), 0};
   return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), rank);
 }
 
@@ -59,6 +60,7 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double scale) {
 Eigen::MatrixXd block_scores(const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual,
                              const std::vector<Eigen::Index>& borders) {
   Eigen::MatrixXd scores(basis.cols(), static_cast<Eigen::Index>(borders.size()) - 1);
+  if (scores.size() == 0) return scores;
   for (std::size_t b = 0; b + 1 < borders.size(); ++b) {
     const Eigen::Index rows = borders[b + 1] - borders[b];
     scores.col(static_cast<Eigen::Index>(b)) =
@@ -236,6 +238,7 @@ std::vector<double> ScoreTable::correlations(std::size_t candidate,
 FoldFlags ScoreTable::selected_without(const std::vector<std::size_t>& candidates, double level) const {
   FoldFlags selected{};
   for_each_basis(candidates, [&](std::size_t position, const Eigen::MatrixXd& basis) {
+    if (basis.size() == 0) return;
     const std::size_t candidate = candidates[position];
     for (std::size_t fold = 0; fold < kFolds; ++fold) {
       Eigen::VectorXd score = Eigen::VectorXd::Zero(basis.cols());

@@ -20,6 +20,14 @@ using test::list_discarded;
 using test::read_ros;
 using test::small_log;
 
+#if defined(ODOMCALIB_SANITIZED)
+constexpr long kMoreMemory = 400;  // MiB; what was freed is kept for a while
+constexpr int kSlower = 10;
+#else
+constexpr long kMoreMemory = 0;
+constexpr int kSlower = 1;
+#endif
+
 /// Largest memory of this process so far, in MiB.
 long peak_memory() {
   rusage usage{};
@@ -87,7 +95,7 @@ TEST(HostileRos, bombs_in_chunks_cost_neither_memory_nor_the_rest_of_the_file) {
   EXPECT_EQ(discarded_like(result.value(), "chunk", "more than the limit of"), 20U);
   EXPECT_EQ(discarded_like(result.value(), "chunk", "compressed data is damaged"), 1U)
       << list_discarded(result.value());
-  EXPECT_LT(peak_memory() - before, 100) << "MiB";
+  EXPECT_LT(peak_memory() - before, 100 + kMoreMemory) << "MiB";
 }
 
 TEST(HostileRos, a_packed_recording_is_bounded_too) {
@@ -111,7 +119,7 @@ TEST(HostileRos, counts_beyond_the_message_are_damage_and_reserve_nothing) {
       }
     }
   }
-  EXPECT_LT(peak_memory() - before, 100) << "MiB";
+  EXPECT_LT(peak_memory() - before, 100 + kMoreMemory) << "MiB";
 }
 
 /// Every 32-bit number of a container set to the largest there is.
@@ -125,7 +133,7 @@ TEST(HostileRos, lengths_beyond_the_file_are_damage) {
       changed.replace(at, 4, 4, '\xFF');
       (void)read_ros(changed);
     }
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kSlower * std::chrono::seconds(60));
 }
 
 TEST(HostileRos, topics_without_end_are_bounded) {
@@ -183,7 +191,7 @@ void expect_answer(const std::string& bytes) {
   const auto begin = std::chrono::steady_clock::now();
   const auto result = read_ros(bytes);
   EXPECT_FALSE(result.ok());
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kSlower * std::chrono::seconds(20));
 }
 
 TEST(HostileRos, views_that_never_end_are_no_tables) {
@@ -228,7 +236,7 @@ TEST(HostileRos, trees_that_bite_their_tail_end) {
     if (result.ok()) {
       EXPECT_GE(discarded_like(result.value(), "file", ""), 1U);
     }
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, kSlower * std::chrono::seconds(20));
   }
   EXPECT_GT(changed, 0U) << "the drive is too small for an inner page";
 }
