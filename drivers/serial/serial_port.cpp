@@ -136,13 +136,21 @@ std::optional<LibSerial::BaudRate> table_rate(unsigned baud) {
 }
 
 /// libserial's destructor throws when the device has gone, which would end the program: such an object is
-/// left alone.
+/// left alone. Its descriptor is not, or a device that comes and goes would use them all up.
 void close_quietly(std::unique_ptr<LibSerial::SerialPort> port) {
+  if (!port->IsOpen()) return;
+  const int fd = port->GetFileDescriptor();
   try {
-    if (port->IsOpen()) port->Close();
+    port->Close();
   } catch (const std::exception&) {
     (void)port.release();  // NOLINT(bugprone-unused-return-value)
+    close(fd);
   }
+}
+
+Error no_serial_port(const std::string& path, const std::string& problem) {
+  return port_error(path, "cannot be set up as a serial port: " + problem,
+                    "check that it is a serial device: ls -l " + path);
 }
 
 /// Settings as libserial makes them. It puts the old ones back when it closes; ours are applied after that,
@@ -164,8 +172,7 @@ Result<termios> compose_settings(const std::string& path, std::optional<LibSeria
   }
   close_quietly(std::move(port));
   if (problem.empty()) return settings;
-  return port_error(path, "cannot be set up as a serial port: " + problem,
-                    "check that it is a serial device: ls -l " + path);
+  return no_serial_port(path, problem);
 }
 
 /// Raw bytes, one at least per read (0 then means end of file); closing must not drop DTR (a lidar's motor or
@@ -213,6 +220,7 @@ Result<std::unique_ptr<ByteStream>> open_serial(const std::string& path, unsigne
   auto file = std::make_unique<OpenFile>(path);
   const int fd = file->fd();
   if (fd < 0) return cannot_open(path, errno);
+  if (isatty(fd) == 0) return no_serial_port(path, std::strerror(errno));
   const auto rate = table_rate(baud);
   const auto settings = compose_settings(path, rate);
   if (!settings) return settings.error();

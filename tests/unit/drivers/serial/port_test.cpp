@@ -1,9 +1,12 @@
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <iterator>
 #include <thread>
 
 #include "drivers/can/transport.hpp"
@@ -125,6 +128,21 @@ TEST(Serial, a_port_in_use_or_absent_is_refused_and_can_be_opened_again_later) {
   EXPECT_NE(open_serial("/dev/does-not-exist", 115200).error().text().find("by-id"), std::string::npos);
   EXPECT_EQ(open_serial(pty.path, 0).error().code, ErrorCode::usage);
   EXPECT_FALSE(open_serial("/dev/null", 115200).ok());
+}
+
+std::ptrdiff_t open_descriptors() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+}
+
+/// The daemon tries again and again.
+TEST(Serial, what_is_no_serial_port_is_refused_and_leaves_no_descriptor_open) {
+  const auto before = open_descriptors();
+  for (int k = 0; k < 10; ++k) {
+    const auto port = open_serial("/dev/null", 115200);
+    ASSERT_FALSE(port.ok());
+    EXPECT_THAT(port.error().text(), ::testing::HasSubstr("cannot be set up as a serial port"));
+  }
+  EXPECT_EQ(open_descriptors(), before);
 }
 
 TEST(Serial, a_device_that_takes_nothing_does_not_block) {
