@@ -33,7 +33,7 @@ ordered_json move(double distance, double yaw, double distance_error, double yaw
 class Daemon {
  public:
   ordered_json straight{{"moves", {move(0.5, 0.0, 0.0005, 0.0005), move(0.5, 0.0, -0.0005, -0.0005)}}};
-  ordered_json spin{{"moves", {move(0.0, 0.5 * kTurn, 0.0, 0.0005)}}};
+  ordered_json spin{{"moves", ordered_json::array({move(0.0, 0.5 * kTurn, 0.0, 0.0005)})}};
   ordered_json written{{"before", {{"track_width", 0.4}}}, {"after", {{"track_width", 0.41}}}};
   std::map<std::string, Error> failures;
   std::vector<std::string> asked;
@@ -90,8 +90,8 @@ TEST(ProvenApply, what_is_better_stays) {
 TEST(ProvenApply, what_is_worse_in_one_thing_is_taken_back) {
   for (const auto spoil : {&DriveErrors::metre_length, &DriveErrors::metre_heading, &DriveErrors::turn}) {
     Daemon daemon;
-    daemon.straight["moves"] = {move(1.0, 0.0, 0.010, 0.010)};
-    daemon.spin["moves"] = {move(0.0, kTurn, 0.0, 0.010)};
+    daemon.straight["moves"] = ordered_json::array({move(1.0, 0.0, 0.010, 0.010)});
+    daemon.spin["moves"] = ordered_json::array({move(0.0, kTurn, 0.0, 0.010)});
     DriveErrors before = kOff;
     before.*spoil = 0.009;
     const ProvenApply applied = daemon.apply(before);
@@ -124,7 +124,7 @@ TEST(ProvenApply, a_proof_run_that_was_stopped_is_none) {
 
 TEST(ProvenApply, what_was_not_seen_to_return_is_in_doubt) {
   Daemon daemon;
-  daemon.spin["moves"] = {move(0.0, kTurn, 0.0, 0.5)};
+  daemon.spin["moves"] = ordered_json::array({move(0.0, kTurn, 0.0, 0.5)});
   daemon.failures["Discard"] = {ErrorCode::write_failed, "no answer", "bus", ""};
   const ProvenApply applied = daemon.apply(kOff);
   EXPECT_EQ(applied.end, End::in_doubt);
