@@ -94,7 +94,9 @@ TEST_F(SampleRecording, S0_08_exports_the_measured_motions_with_their_times) {
 
 TEST_F(SampleRecording, S1_09_states_how_far_lidar_and_wheels_err_side_by_side) {
   EXPECT_THAT(read("first.txt"), HasSubstr("reference std"));
-  for (const auto& axis : calibration()["picture"]["axes"]) {
+  const auto axes = calibration()["picture"]["axes"];
+  ASSERT_FALSE(axes.empty());
+  for (const auto& axis : axes) {
     EXPECT_GT(axis["reference_std"].get<double>(), 0.0) << axis;
     EXPECT_GT(axis["wheels_std"].get<double>(), 0.0) << axis;
   }
