@@ -40,6 +40,9 @@ std::string as_many_as_fit(const Calls& calls, const std::string& last) {
 class BurstInMotion : public ::testing::TestWithParam<Calls> {
  protected:
   void SetUp() override {
+#if defined(ODOMCALIB_SANITIZED)
+    GTEST_SKIP() << "instrumented programs do not keep the times of a motion";
+#endif
     fill_history();
     ASSERT_TRUE(wait_until([this] { return both_.ready(); }, 20.0)) << both_.status();
     mover_ = both_.run({"straight", "--yes", "--distance", "1.5"});

@@ -95,11 +95,12 @@ TEST_F(SampleRecording, S0_08_exports_the_measured_motions_with_their_times) {
 TEST_F(SampleRecording, S1_09_states_how_far_lidar_and_wheels_err_side_by_side) {
   EXPECT_THAT(read("first.txt"), HasSubstr("reference std"));
   const auto axes = calibration()["picture"]["axes"];
-  ASSERT_FALSE(axes.empty());
+  ASSERT_EQ(axes.size(), 3U);
   for (const auto& axis : axes) {
     EXPECT_GT(axis["reference_std"].get<double>(), 0.0) << axis;
-    EXPECT_GT(axis["wheels_std"].get<double>(), 0.0) << axis;
+    EXPECT_GE(axis["wheels_std"].get<double>(), 0.0) << axis;
   }
+  EXPECT_GT(axes[2]["wheels_std"].get<double>(), 0.0) << "what wheels and floor do shows in yaw first";
 }
 
 TEST_F(SampleRecording, S0_19_SD_06_draws_three_labelled_paths_in_one_frame) {
