@@ -21,8 +21,8 @@ using test::read_ros;
 using test::small_log;
 
 #if defined(ODOMCALIB_SANITIZED)
-constexpr long kMoreMemory = 400;  // MiB; what was freed is kept for a while
-constexpr int kSlower = 10;
+constexpr long kMoreMemory = 400;  // MiB; AddressSanitizer keeps 256 of what was freed
+constexpr int kSlower = 10;        // as in tests/CMakeLists.txt
 #else
 constexpr long kMoreMemory = 0;
 constexpr int kSlower = 1;
