@@ -14,9 +14,11 @@ namespace {
 
 using nlohmann::json;
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration takes none
 #define SKIP_WITHOUT_CAPTURES(folder)   \
   const auto folder = test::captures(); \
   if (folder.empty()) GTEST_SKIP() << "no captures: set ODOMCALIB_SHARED to the folder that holds captures/"
+// NOLINTEND(bugprone-macro-parentheses)
 
 std::vector<json> decoded(const std::string& driver, const std::filesystem::path& file) {
   const auto text = decode(driver, test::read_text(file), "", file.string());
@@ -204,7 +206,7 @@ TEST(LidarCaptures, text_telegrams_of_a_sick_tim551) {
 
 /// Blocks of a pcapng file: the TCP payload of each Ethernet frame that comes from `port`, in order.
 std::string payloads(const std::string& file, unsigned port) {
-  const auto u8 = [&](std::size_t at) -> unsigned { return static_cast<unsigned char>(file[at]); };
+  const auto u8 = [&](std::size_t at) -> std::size_t { return static_cast<unsigned char>(file[at]); };
   const auto u16 = [&](std::size_t at) { return u8(at) << 8U | u8(at + 1); };  // of a frame: big endian
   const auto u32 = [&](std::size_t at) {                                       // of the file: little endian
     return u8(at) | u8(at + 1) << 8U | u8(at + 2) << 16U | u8(at + 3) << 24U;
