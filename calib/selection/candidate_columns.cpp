@@ -40,12 +40,14 @@ class Tried {
         const estimation::FitResult& fit, measurement::Whitener whitener)
       : model_(*data.model),
         trajectory_(model_.trajectory(vehicle::as_span(fit.parameters), effects)),
-        sensitivity_(model_, trajectory_, estimation::intervals_of(data.pairs)),
+        sensitivity_(std::in_place, model_, trajectory_, estimation::intervals_of(data.pairs)),
         whitener_(std::move(whitener)) {}
 
-  /// Before smooth terms are tried: what each channel of each tick interval changes.
+  /// Before smooth terms are tried, and after effects: what each channel of each tick interval changes, which
+  /// is all that smooth terms need.
   void prepare_smooth_terms() {
-    responses_ = sensitivity_.by_steps({std::make_shared<Defects>()}, std::vector<double>(kChannels, 0.0));
+    responses_ = sensitivity_->by_steps({std::make_shared<Defects>()}, std::vector<double>(kChannels, 0.0));
+    sensitivity_.reset();
   }
 
   /// Functions stay for the next smooth term, which often differs in its channel only.
@@ -57,7 +59,7 @@ class Tried {
   }
 
   [[nodiscard]] Eigen::MatrixXd by_effects(const vehicle::EffectList& effects) const {
-    return whitened(sensitivity_.by_more(effects, vehicle::start_of(effects)));
+    return whitened(sensitivity_->by_more(effects, vehicle::start_of(effects)));
   }
 
  private:
@@ -93,8 +95,8 @@ class Tried {
 
   const vehicle::DriveModel& model_;
   vehicle::Trajectory trajectory_;
-  vehicle::Sensitivity sensitivity_;
-  std::vector<vehicle::StepResponse> responses_;  ///< one per channel
+  std::optional<vehicle::Sensitivity> sensitivity_;  ///< until smooth terms are prepared
+  std::vector<vehicle::StepResponse> responses_;     ///< one per channel
   measurement::Whitener whitener_;
   std::optional<terms::SmoothTerm> seen_;  ///< whose functions these are, without a mean
   Eigen::MatrixXd functions_;              ///< tick intervals x functions

@@ -133,13 +133,12 @@ class TwistDerivatives {
 
 /// One interval with all that does not depend on which parameters are wanted.
 struct Sensitivity::Path {
-  End begin, end;
   Eigen::Matrix<double, 3, 6> to_sensor;  ///< by base motion, then by mount
   std::size_t first = 0;                  ///< step whose twist matters
   std::vector<Eigen::Matrix3d> by_twist;  ///< base motion by the twist of each step from `first` on
   Eigen::Vector3d by_begin, by_end;       ///< base motion by the encoder times of the ends
 
-  Path(const Trajectory& along, const math::Pose& mount, const End& from, const End& to,
+  Path(const Trajectory& along, const math::Pose& mount, const End& begin, const End& end,
        const std::vector<Eigen::Matrix3d>& whole_steps);
   /// @param by_part base motion by the twist of the part of the step that lies before one of its ends
   void add(const End& at, const Eigen::Matrix3d& by_part);
@@ -149,9 +148,8 @@ struct Sensitivity::Path {
   }
 };
 
-Sensitivity::Path::Path(const Trajectory& along, const math::Pose& mount, const End& from, const End& to,
-                        const std::vector<Eigen::Matrix3d>& whole_steps)
-    : begin(from), end(to) {
+Sensitivity::Path::Path(const Trajectory& along, const math::Pose& mount, const End& begin, const End& end,
+                        const std::vector<Eigen::Matrix3d>& whole_steps) {
   const math::Pose &b = begin.pose, &e = end.pose;
   to_sensor = conjugate_derivative(between(b, e), mount);
   by_end = math::rotation_about_z(-b.yaw) * end.velocity;
