@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "calib/classical/missing_motion.hpp"
@@ -94,6 +95,8 @@ NormalSystem normal_system(const Eigen::MatrixXd& jacobian, const std::vector<bo
 
 /// Of the parameters, those of the effects behind those of the base.
 Eigen::MatrixXd prior_information(Eigen::Index parameters, const vehicle::EffectList& effects) {
+  if (parameters < vehicle::kBaseCount + static_cast<Eigen::Index>(vehicle::count_parameters(effects)))
+    throw std::invalid_argument("a fit needs a start of the base and of each effect");
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(parameters, parameters);
   Eigen::Index first = vehicle::kBaseCount;
   for (const auto& effect : effects) {

@@ -41,7 +41,7 @@ struct FitResult {
 /// Fits from `start`. Robustness: Student t weights (4 degrees of freedom), scale and correlation from the
 /// residuals. Covariance: the larger of the model's and of a cluster-robust estimate over blocks of the
 /// recording. Errors: empty (no pairs), refused (normal matrix singular; names the parameters that the motion
-/// does not determine).
+/// does not determine). Throws std::invalid_argument if `start` has fewer parameters than base and effects.
 Result<FitResult> fit_joint(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
                             const Eigen::VectorXd& start, const FitOptions& options = {});
 

@@ -41,7 +41,8 @@ double significance(double statistic, Eigen::Index degrees);
 /// again, and theirs are made again.
 class ScoreTable {
  public:
-  /// @param task, model, candidates must outlive the table, in the same order
+  /// @param task, model must outlive the table; candidates may get another shape meanwhile, which it does not
+  /// have scores of
   ScoreTable(const FitTask& task, const FittedModel& model, const std::vector<Candidate>& candidates);
 
   [[nodiscard]] const std::vector<Score>& scores() const { return scores_; }  ///< in the candidates' order
@@ -60,7 +61,7 @@ class ScoreTable {
 
   const FitTask& task_;
   const FittedModel& model_;
-  const std::vector<Candidate>& candidates_;
+  std::vector<Candidate> candidates_;
   Eigen::VectorXd residual_;
   double variance_ = 1.0;
   std::vector<Eigen::Index> borders_;          ///< first row of each block, and the end
