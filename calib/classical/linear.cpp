@@ -39,7 +39,7 @@ Error underdetermined(const Eigen::MatrixX3d& odometry) {
 Eigen::Matrix3d solution(const Eigen::MatrixX3d& odometry, const Eigen::MatrixX3d& observed,
                          LinearSolver solver) {
   if (solver == LinearSolver::svd)
-    return Eigen::JacobiSVD<Eigen::MatrixX3d>(odometry, Eigen::ComputeThinU | Eigen::ComputeThinV)
+    return Eigen::JacobiSVD<Eigen::MatrixXd>(odometry, Eigen::ComputeThinU | Eigen::ComputeThinV)
         .solve(observed);
   if (solver == LinearSolver::qr) return Eigen::HouseholderQR<Eigen::MatrixX3d>(odometry).solve(observed);
   const Eigen::Matrix3d normal = odometry.transpose() * odometry;
