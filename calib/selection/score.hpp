@@ -41,8 +41,8 @@ double significance(double statistic, Eigen::Index degrees);
 /// again, and theirs are made again.
 class ScoreTable {
  public:
-  /// @param task, model must outlive the table; candidates may get another shape meanwhile, which it does not
-  /// have scores of
+  /// @param task, model must outlive the table. It keeps the candidates: the search may give one another
+  /// shape meanwhile, which has no score.
   ScoreTable(const FitTask& task, const FittedModel& model, const std::vector<Candidate>& candidates);
 
   [[nodiscard]] const std::vector<Score>& scores() const { return scores_; }  ///< in the candidates' order

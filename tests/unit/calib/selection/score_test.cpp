@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/selection/folds.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
