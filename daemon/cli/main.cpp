@@ -10,6 +10,7 @@
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/interrupts.hpp"
 #include "daemon/cli/verbs.hpp"
+#include "daemon/config/large_pages.hpp"
 #include "daemon/config/near_miss.hpp"
 #include "odomcalib_version.hpp"
 
@@ -102,6 +103,7 @@ int run(int argc, char** argv) {
     return refuse(app, error, asked_mode(argc, argv));
   }
   session.json = mode_of(json);
+  if (session.takes_much_memory) odomcalib::ask_for_large_pages(argv);
   if (session.run) return session.run();
   return odomcalib::cli::show_status(session);
 }

@@ -113,6 +113,7 @@ void add_solve(CLI::App& app, Session& session) {
       ->check(finite(0.0, 0.5));
   verb->add_option("--note", options->note, "surface, load, tyres: kept in file and report");
   verb->callback([&session, options] {
+    session.takes_much_memory = true;
     session.run = [&session, options] { return solve_recordings(*options, session); };
   });
 }

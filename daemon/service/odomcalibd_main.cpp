@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/config/large_pages.hpp"
 #include "daemon/service/base_link.hpp"
 #include "daemon/service/disk_worker.hpp"
 #include "daemon/service/lidar_link.hpp"
@@ -198,9 +199,11 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : kUsage;
   }
   spdlog::set_pattern("%l: %v");
-  if (!recordings.empty())
+  if (!recordings.empty()) {
+    odomcalib::ask_for_large_pages(argv);
     return odomcalib::answer_with_solution(odomcalib::make_calibrator().solve, recordings, effects,
                                            solver.memory);
+  }
   catch_signals();
   return only_stop ? stop_only(config) : serve(config);
 }

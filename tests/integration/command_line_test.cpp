@@ -337,6 +337,20 @@ TEST_F(CommandLine, an_interrupted_solve_is_cancelled) {
   EXPECT_THAT(read("said"), HasSubstr("\"format\":\"odomcalib-error/1\""));
 }
 
+TEST_F(CommandLine, solve_has_large_pages_where_the_kernel_gives_them_on_request) {
+  std::string modes;
+  std::ifstream enabled("/sys/kernel/mm/transparent_hugepage/enabled");
+  std::getline(enabled, modes);
+  ASSERT_EQ(mkfifo((folder_ / "fifo").c_str(), 0600), 0);
+  const Process solve({ODOMCALIB_CTL, "solve", (folder_ / "fifo").string()}, folder_ / "said");
+  const auto process = fs::path("/proc") / std::to_string(solve.id());
+  const auto asked = [&] {
+    return read_file_bytes(process / "environ").value().find("glibc.malloc.hugetlb=1") != std::string::npos;
+  };
+  EXPECT_EQ(wait_until(asked, 1.0), modes.find("[madvise]") != std::string::npos) << modes;
+  EXPECT_EQ(read_file_bytes(process / "comm").value(), "odomcalibctl\n");
+}
+
 /// Gives the lease to everybody, and its calibration to whoever wants to drive.
 class CannedDaemon {
  public:
