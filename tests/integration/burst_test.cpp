@@ -95,11 +95,14 @@ TEST_P(BurstInMotion, ends_with_a_stop_that_is_obeyed_within_100_ms) {
 TEST_P(BurstInMotion, leaves_the_motion_alone) {
   ControlClient client(both_.folder() / "control");
   const std::string burst = as_many_as_fit(GetParam(), "");
+  const double begin = monotonic();
   ASSERT_EQ(client.put(burst), burst.size());
   std::size_t answers = 0;
   const auto all = burst.size() / GetParam().call.size();
   EXPECT_TRUE(wait_until([&] { return (answers += client.answers().size()) == all; }, 20.0)) << answers;
-  EXPECT_GT(both_.rim(), 0.15);
+  EXPECT_GT(both_.rim(), 0.15) << "the simulated robot stood still for " << both_.longest_pause(begin)
+                               << " s\n"
+                               << both_.output() << both_.status();
   expect_short_turns();
 }
 

@@ -194,6 +194,16 @@ double RobotAndDaemon::rim() {
   return speeds.empty() ? 0.0 : speeds.back().rim;
 }
 
+double RobotAndDaemon::longest_pause(double clock) {
+  double longest = 0.0, before = clock;
+  for (const WheelSpeed& speed : wheels_->read()) {
+    if (speed.clock <= clock) continue;
+    longest = std::max(longest, speed.clock - before);
+    before = speed.clock;
+  }
+  return longest;
+}
+
 std::optional<double> RobotAndDaemon::time_to_slow(double clock, double rim) {
   std::optional<double> time;
   const auto slow = [&] {

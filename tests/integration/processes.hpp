@@ -81,6 +81,8 @@ class RobotAndDaemon {
   /// From `clock` until the rim is slower than this, in simulated s. Waits for it.
   std::optional<double> time_to_slow(double clock, double rim);
   [[nodiscard]] double rim();  ///< m/s, now
+  /// s, the longest that the robot's process stood still since `clock`: a drive that sends no heartbeat.
+  [[nodiscard]] double longest_pause(double clock);
 
   std::unique_ptr<Process> robot, daemon;
 
