@@ -19,8 +19,8 @@ struct Session {
   bool legend = true;
   bool verbose = false;                           ///< everything instead of a summary
   std::string socket = "/run/odomcalib/control";  ///< of the daemon
-  bool takes_much_memory = false;                 ///< set by the verb that was parsed, as is
-  std::function<int()> run;
+  bool takes_much_memory = false;                 ///< whether the verb that was parsed does
+  std::function<int()> run;                       ///< set by the verb that was parsed
 };
 
 // Offline: need no daemon.
