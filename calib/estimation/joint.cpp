@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "calib/classical/missing_motion.hpp"
 #include "calib/estimation/settings.hpp"
@@ -82,13 +83,14 @@ struct NormalSystem {
   Eigen::MatrixXd matrix;    ///< of the pairs, without the prior
 };
 
-NormalSystem normal_system(const Eigen::MatrixXd& jacobian, const std::vector<bool>& fixed) {
+NormalSystem normal_system(Eigen::MatrixXd jacobian, const std::vector<bool>& fixed) {
   NormalSystem system;
   system.scale = jacobian.colwise().norm().transpose();
   for (Eigen::Index k = 0; k < system.scale.size(); ++k)
     system.scale(k) =
         !fixed[static_cast<std::size_t>(k)] && system.scale(k) > 0.0 ? 1.0 / system.scale(k) : 0.0;
-  system.jacobian = jacobian * system.scale.asDiagonal();
+  system.jacobian = std::move(jacobian);
+  for (Eigen::Index k = 0; k < system.scale.size(); ++k) system.jacobian.col(k) *= system.scale(k);
   system.matrix = system.jacobian.transpose() * system.jacobian;
   return system;
 }

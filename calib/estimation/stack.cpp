@@ -6,11 +6,17 @@
 namespace odomcalib::calib::estimation {
 namespace {
 
-measurement::PairState state_of(const vehicle::Trajectory& trajectory, const math::Pose& mount,
-                                const measurement::SensorPair& pair) {
-  return {trajectory.at(pair.interval.begin).yaw + mount.yaw,
-          sensor_velocity(trajectory, mount, pair.interval.begin),
-          sensor_velocity(trajectory, mount, pair.interval.end)};
+void add_states(const vehicle::Trajectory& trajectory, const math::Pose& mount,
+                const std::vector<measurement::SensorPair>& pairs,
+                std::vector<measurement::PairState>& states) {
+  const auto velocity = [&](double time) { return sensor_velocity(trajectory, mount, time); };
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const vehicle::Interval& interval = pairs[k].interval;
+    const bool goes_on = k > 0 && interval.begin == pairs[k - 1].interval.end;
+    states.push_back({trajectory.at(interval.begin).yaw + mount.yaw,
+                      goes_on ? states.back().end_velocity : velocity(interval.begin),
+                      velocity(interval.end)});
+  }
 }
 
 /// 3 n.
@@ -38,6 +44,7 @@ Stack make_stack(std::span<const measurement::FitData> data, const vehicle::Effe
   std::size_t total = 0;
   for (const measurement::FitData& d : data) total += d.pairs.size();
   stack.residual.resize(static_cast<Eigen::Index>(3 * total), 1);
+  stack.states.reserve(total);
   if (derivatives) stack.jacobian.resize(stack.residual.rows(), p.size());
   std::size_t row = 0;
   for (const measurement::FitData& d : data) {
@@ -51,9 +58,7 @@ Stack make_stack(std::span<const measurement::FitData> data, const vehicle::Effe
       stack.jacobian.middleRows(static_cast<Eigen::Index>(3 * row),
                                 static_cast<Eigen::Index>(3 * intervals.size())) =
           vehicle::Sensitivity(*d.model, trajectory, intervals).by_all();
-    const math::Pose mount = vehicle::to_base(vehicle::as_span(p)).mount;
-    for (const measurement::SensorPair& pair : d.pairs)
-      stack.states.push_back(state_of(trajectory, mount, pair));
+    add_states(trajectory, vehicle::to_base(vehicle::as_span(p)).mount, d.pairs, stack.states);
     row += d.pairs.size();
   }
   stack.first.push_back(row);
@@ -106,10 +111,7 @@ StackWhitener::StackWhitener(std::span<const measurement::FitData> data, const S
 Eigen::MatrixXd StackWhitener::operator()(Eigen::MatrixXd rows) const {
   for (std::size_t d = 0; d < whiteners_.size(); ++d) {
     const auto first = static_cast<Eigen::Index>(3 * first_[d]);
-    Eigen::MatrixXd block =
-        rows.middleRows(first, static_cast<Eigen::Index>(3 * (first_[d + 1] - first_[d])));
-    whiteners_[d].apply(block);
-    rows.middleRows(first, block.rows()) = block;
+    whiteners_[d].apply(rows.middleRows(first, static_cast<Eigen::Index>(3 * (first_[d + 1] - first_[d]))));
   }
   return rows;
 }

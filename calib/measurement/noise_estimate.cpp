@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "calib/math/median.hpp"
 #include "calib/measurement/settings.hpp"
@@ -132,26 +133,31 @@ void improve(const Columns& o, const Range& range, NoiseModel& noise) {
   if (misfit(o, noise) > best + settings::kNoisePresent) noise.*range.member = found;
 }
 
+/// Of a pair's errors in room axes.
+struct Scale {
+  Eigen::Vector3d deviation;  ///< without the jitter
+  Eigen::Vector3d spread;     ///< with it, in units of that
+};
+
+Scale scale_of(const Observation& o, std::size_t k, const NoiseModel& noise) {
+  const Eigen::Vector3d variance = base_covariance(o.pairs[k], o.states[k], noise).diagonal();
+  return {variance.cwiseSqrt(),
+          full_covariance(o.pairs[k], o.states[k], noise).diagonal().cwiseQuotient(variance).cwiseSqrt()};
+}
+
 std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseModel& noise) {
   std::array<double, 3> products{};
   std::array<double, 3> weights{};
-  const auto scaled = [&](std::size_t k, const Eigen::Vector3d& v) -> Eigen::Vector3d {
-    return v.cwiseQuotient(base_covariance(o.pairs[k], o.states[k], noise).diagonal().cwiseSqrt());
-  };
-  const auto spread = [&](std::size_t k) -> Eigen::Vector3d {
-    return full_covariance(o.pairs[k], o.states[k], noise)
-        .diagonal()
-        .cwiseQuotient(base_covariance(o.pairs[k], o.states[k], noise).diagonal())
-        .cwiseSqrt();
-  };
+  Scale scale = scale_of(o, 0, noise);
   for (std::size_t k = 1; k < o.pairs.size(); ++k) {
+    const Scale scale_before = std::exchange(scale, scale_of(o, k, noise));
     if (!o.pairs[k].follows_previous) continue;
-    const Eigen::Vector3d before = scaled(k - 1, o.residuals[k - 1]);
-    const Eigen::Vector3d here = scaled(k, o.residuals[k]);
-    const Eigen::Vector3d spread_before = spread(k - 1);
-    const Eigen::Vector3d spread_here = spread(k);
-    const Eigen::Vector3d jitter_before = noise.stamp_jitter * scaled(k - 1, o.states[k].begin_velocity);
-    const Eigen::Vector3d jitter_here = noise.stamp_jitter * scaled(k, o.states[k].begin_velocity);
+    const Eigen::Vector3d before = o.residuals[k - 1].cwiseQuotient(scale_before.deviation);
+    const Eigen::Vector3d here = o.residuals[k].cwiseQuotient(scale.deviation);
+    const Eigen::Vector3d &spread_before = scale_before.spread, &spread_here = scale.spread;
+    const Eigen::Vector3d& velocity = o.states[k].begin_velocity;
+    const Eigen::Vector3d jitter_before = noise.stamp_jitter * velocity.cwiseQuotient(scale_before.deviation);
+    const Eigen::Vector3d jitter_here = noise.stamp_jitter * velocity.cwiseQuotient(scale.deviation);
     for (Eigen::Index c = 0; c < 3; ++c) {
       const double weight = 1.0 / (spread_before(c) * spread_here(c));
       const double a =

@@ -48,7 +48,7 @@ class Whitener {
            std::span<const double> weights);
 
   /// Rows 3k..3k+2 (x, y, yaw of pair k in the sensor's frame) become uncorrelated with unit variance.
-  void apply(Eigen::MatrixXd& rows) const;
+  void apply(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
  private:
   std::vector<Eigen::Matrix3d> turn_;     ///< to room axes, times the root of the weight

@@ -5,6 +5,7 @@
 #include <complex>
 #include <stdexcept>
 
+#include "calib/math/last_value.hpp"
 #include "calib/vehicle/part_of_step.hpp"
 #include "calib/vehicle/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
@@ -112,8 +113,11 @@ std::vector<math::Pose> Trajectory::sensor_motions(std::span<const Interval> int
   const math::Pose mount = to_base(parameters_).mount;
   std::vector<math::Pose> motions;
   motions.reserve(intervals.size());
-  for (const Interval& interval : intervals)
-    motions.push_back(conjugate(between(at(interval.begin), at(interval.end)), mount));
+  math::LastValue pose([this](double time) { return at(time); });
+  for (const Interval& interval : intervals) {
+    const math::Pose begin = pose(interval.begin);
+    motions.push_back(conjugate(between(begin, pose(interval.end)), mount));
+  }
   return motions;
 }
 

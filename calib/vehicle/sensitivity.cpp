@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "calib/math/last_value.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/vehicle/part_of_step.hpp"
 #include "calib/vehicle/step_twist.hpp"
@@ -177,9 +178,11 @@ Sensitivity::Sensitivity(const DriveModel& model, const Trajectory& along,
   for (const math::Pose& w : along.twists()) whole_steps.push_back(exp_derivative(w));
   const math::Pose mount = to_base(along.parameters()).mount;
   paths_.reserve(intervals.size());
-  for (const Interval& i : intervals)
-    paths_.emplace_back(along, mount, end_at(model.track(), along, i.begin),
-                        end_at(model.track(), along, i.end), whole_steps);
+  math::LastValue end([&](double time) { return end_at(model.track(), along, time); });
+  for (const Interval& i : intervals) {
+    const End begin = end(i.begin);
+    paths_.emplace_back(along, mount, begin, end(i.end), whole_steps);
+  }
 }
 
 Sensitivity::~Sensitivity() = default;
