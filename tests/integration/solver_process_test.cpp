@@ -11,12 +11,13 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/integration/large_pages.hpp"
 #include "tests/sim/world/simulate.hpp"
 
 namespace odomcalib {
 namespace {
 
-class SolverOnItsOwn : public testing::Test {
+class SolverOnItsOwn : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string name = "/tmp/odomcalib-solver-XXXXXX";
@@ -52,6 +53,15 @@ TEST_F(SolverOnItsOwn, gives_the_very_calibration_that_the_same_solver_gives_her
   ASSERT_TRUE(here.ok());
   EXPECT_EQ(to_json(there.value()), to_json(here.value()));
   EXPECT_GT(std::set<std::string>(phases.begin(), phases.end()).size(), 1U) << "it tells how far it is";
+}
+
+TEST_F(SolverOnItsOwn, has_large_pages_where_the_kernel_gives_them_on_request) {
+  std::set<bool> asks;
+  const auto look = [&](const std::string&, double) {
+    for (const pid_t pid : children()) asks.insert(testing::asks_for_large_pages(pid));
+  };
+  ASSERT_TRUE(solve(look).ok());
+  EXPECT_EQ(asks, std::set{testing::kernel_gives_large_pages_on_request()});
 }
 
 TEST_F(SolverOnItsOwn, is_gone_as_soon_as_its_progress_report_throws) {
