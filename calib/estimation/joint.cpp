@@ -86,11 +86,12 @@ struct NormalSystem {
 NormalSystem normal_system(Eigen::MatrixXd jacobian, const std::vector<bool>& fixed) {
   NormalSystem system;
   system.scale = jacobian.colwise().norm().transpose();
-  for (Eigen::Index k = 0; k < system.scale.size(); ++k)
+  for (Eigen::Index k = 0; k < system.scale.size(); ++k) {
     system.scale(k) =
         !fixed[static_cast<std::size_t>(k)] && system.scale(k) > 0.0 ? 1.0 / system.scale(k) : 0.0;
+    jacobian.col(k) *= system.scale(k);
+  }
   system.jacobian = std::move(jacobian);
-  for (Eigen::Index k = 0; k < system.scale.size(); ++k) system.jacobian.col(k) *= system.scale(k);
   system.matrix = system.jacobian.transpose() * system.jacobian;
   return system;
 }

@@ -1,5 +1,6 @@
 #include "calib/estimation/stack.hpp"
 
+#include "calib/math/last_value.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/vehicle/sensitivity.hpp"
 
@@ -9,14 +10,11 @@ namespace {
 void add_states(const vehicle::Trajectory& trajectory, const math::Pose& mount,
                 const std::vector<measurement::SensorPair>& pairs,
                 std::vector<measurement::PairState>& states) {
-  const auto velocity = [&](double time) { return sensor_velocity(trajectory, mount, time); };
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const vehicle::Interval& interval = pairs[k].interval;
-    const bool goes_on = k > 0 && interval.begin == pairs[k - 1].interval.end;
-    states.push_back({trajectory.at(interval.begin).yaw + mount.yaw,
-                      goes_on ? states.back().end_velocity : velocity(interval.begin),
-                      velocity(interval.end)});
-  }
+  math::LastValue velocity([&](double time) { return sensor_velocity(trajectory, mount, time); },
+                           Eigen::Vector3d::Zero());
+  for (const measurement::SensorPair& pair : pairs)
+    states.push_back({trajectory.at(pair.interval.begin).yaw + mount.yaw, velocity(pair.interval.begin),
+                      velocity(pair.interval.end)});
 }
 
 /// 3 n.

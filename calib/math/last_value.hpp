@@ -11,10 +11,14 @@ namespace odomcalib::calib::math {
 template <typename Function>
 class LastValue {
  public:
-  explicit LastValue(Function function) : function_(std::move(function)) {}
+  using Value = std::invoke_result_t<Function&, double>;
+
+  /// @param unread held until the first call: GCC 12 warns of one that is not initialised, as Eigen's are
+  explicit LastValue(Function function, Value unread = {})
+      : function_(std::move(function)), value_(std::move(unread)) {}
 
   /// Good until the next call.
-  const auto& operator()(double at) {
+  const Value& operator()(double at) {
     if (at != at_) {
       value_ = function_(at);
       at_ = at;
@@ -25,7 +29,7 @@ class LastValue {
  private:
   Function function_;
   double at_ = std::numeric_limits<double>::quiet_NaN();  // equal to none
-  std::invoke_result_t<Function&, double> value_{};
+  Value value_;
 };
 
 }  // namespace odomcalib::calib::math

@@ -140,9 +140,10 @@ struct Scale {
 };
 
 Scale scale_of(const Observation& o, std::size_t k, const NoiseModel& noise) {
-  const Eigen::Vector3d variance = base_covariance(o.pairs[k], o.states[k], noise).diagonal();
+  const Eigen::Matrix3d base = base_covariance(o.pairs[k], o.states[k], noise);
+  const Eigen::Vector3d variance = base.diagonal();
   return {variance.cwiseSqrt(),
-          full_covariance(o.pairs[k], o.states[k], noise).diagonal().cwiseQuotient(variance).cwiseSqrt()};
+          with_jitter(base, o.states[k], noise).diagonal().cwiseQuotient(variance).cwiseSqrt()};
 }
 
 std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseModel& noise) {

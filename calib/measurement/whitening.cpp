@@ -15,6 +15,8 @@ Eigen::Matrix3d symmetric_root(const Eigen::Matrix3d& covariance) {
   return eigen.eigenvectors() * values.cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+/// Covariance without the jitter.
+/// @param turn to room axes
 Eigen::Matrix3d in_room(const SensorPair& pair, const Eigen::Matrix3d& turn, const NoiseModel& noise) {
   Eigen::Matrix3d covariance =
       noise.matcher_scale * noise.matcher_scale * (turn * pair.covariance * turn.transpose());
@@ -29,11 +31,6 @@ Eigen::Matrix3d jitter_covariance(const Eigen::Vector3d& velocity, const NoiseMo
   return noise.stamp_jitter * noise.stamp_jitter * velocity * velocity.transpose();
 }
 
-/// @param base covariance without the jitter
-Eigen::Matrix3d with_jitter(const Eigen::Matrix3d& base, const PairState& state, const NoiseModel& noise) {
-  return base + jitter_covariance(state.begin_velocity, noise) + jitter_covariance(state.end_velocity, noise);
-}
-
 /// @param root, previous_root symmetric roots of the base covariances of a pair and of the one before it
 Eigen::Matrix3d shared_covariance(const Eigen::Matrix3d& root, const Eigen::Matrix3d& previous_root,
                                   const PairState& state, const NoiseModel& noise) {
@@ -46,6 +43,10 @@ Eigen::Matrix3d shared_covariance(const Eigen::Matrix3d& root, const Eigen::Matr
 
 Eigen::Matrix3d base_covariance(const SensorPair& pair, const PairState& state, const NoiseModel& noise) {
   return in_room(pair, math::rotation_about_z(state.heading), noise);
+}
+
+Eigen::Matrix3d with_jitter(const Eigen::Matrix3d& base, const PairState& state, const NoiseModel& noise) {
+  return base + jitter_covariance(state.begin_velocity, noise) + jitter_covariance(state.end_velocity, noise);
 }
 
 Eigen::Matrix3d full_covariance(const SensorPair& pair, const PairState& state, const NoiseModel& noise) {

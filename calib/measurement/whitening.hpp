@@ -28,8 +28,9 @@ struct PairState {
   Eigen::Vector3d end_velocity = Eigen::Vector3d::Zero();
 };
 
-/// Covariance of one pair in room axes: without the jitter, and with it.
+/// Covariance of one pair in room axes: without the jitter, with it added to that, and with it.
 Eigen::Matrix3d base_covariance(const SensorPair& pair, const PairState& state, const NoiseModel& noise);
+Eigen::Matrix3d with_jitter(const Eigen::Matrix3d& base, const PairState& state, const NoiseModel& noise);
 Eigen::Matrix3d full_covariance(const SensorPair& pair, const PairState& state, const NoiseModel& noise);
 
 /// Covariance of a pair's error (rows) with that of the pair before it, in room axes; zero unless they share

@@ -42,9 +42,10 @@ Eigen::Matrix<double, 3, 6> conjugate_derivative(const math::Pose& base, const m
 struct End {
   std::size_t step = 0;
   PartOfStep::Weights<double> weights{};  ///< of the twist since the step's begin
-  Eigen::Matrix3d by_twist;               ///< of the motion since the step's begin, by that twist
+  /// Of the motion since the step's begin, by that twist.
+  Eigen::Matrix3d by_twist = Eigen::Matrix3d::Zero();
   math::Pose pose;
-  Eigen::Vector3d velocity;  ///< by encoder time, in room axes
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< by encoder time, in room axes
 };
 
 End end_at(const wheels::WheelTrack& track, const Trajectory& along, double sensor_time) {
