@@ -4,6 +4,7 @@
 #include <string>
 
 #include "calib/classical/settings.hpp"
+#include "calib/math/linear_solve.hpp"
 
 namespace odomcalib::calib::classical {
 namespace {
@@ -22,7 +23,7 @@ Eigen::MatrixX3d rows_of(std::span<const IncrementPair> samples, math::Pose Incr
   return rows;
 }
 
-Error underdetermined(const Eigen::MatrixX3d& odometry) {
+Error too_few_directions(const Eigen::MatrixX3d& odometry) {
   static constexpr const char* kNames[] = {"forward motion", "sideways motion (turn while driving)",
                                            "rotation"};
   std::string missing;
@@ -38,13 +39,12 @@ Error underdetermined(const Eigen::MatrixX3d& odometry) {
 
 Eigen::Matrix3d solution(const Eigen::MatrixX3d& odometry, const Eigen::MatrixX3d& observed,
                          LinearSolver solver) {
-  if (solver == LinearSolver::svd)
-    return Eigen::JacobiSVD<Eigen::MatrixXd>(odometry, Eigen::ComputeThinU | Eigen::ComputeThinV)
-        .solve(observed);
+  if (solver == LinearSolver::svd) return math::solve_least_squares(odometry, observed);
   if (solver == LinearSolver::qr) return Eigen::HouseholderQR<Eigen::MatrixX3d>(odometry).solve(observed);
   const Eigen::Matrix3d normal = odometry.transpose() * odometry;
-  if (solver == LinearSolver::ldlt) return normal.ldlt().solve(odometry.transpose() * observed);
-  return normal.inverse() * (odometry.transpose() * observed);
+  const Eigen::Matrix3d mixed = odometry.transpose() * observed;
+  if (solver == LinearSolver::ldlt) return math::solve_symmetric(normal, mixed);
+  return normal.inverse() * mixed;
 }
 
 }  // namespace
@@ -70,10 +70,10 @@ Result<LinearResult> solve_linear(std::span<const IncrementPair> samples, Linear
   const Eigen::MatrixX3d observed = rows_of(samples, &IncrementPair::observed);
   if (!odometry.allFinite() || !observed.allFinite())
     return Error{ErrorCode::refused, "an increment is not finite", "linear method", "check the recording"};
-  if (samples.size() < 3) return underdetermined(odometry);
-  const Eigen::JacobiSVD<Eigen::MatrixX3d> svd(odometry);
-  const double ratio = svd.singularValues()(2) / svd.singularValues()(0);
-  if (!(ratio > kColumnTolerance)) return underdetermined(odometry);
+  if (samples.size() < 3) return too_few_directions(odometry);
+  const Eigen::VectorXd singular = math::singular_values(odometry);
+  const double ratio = singular(2) / singular(0);
+  if (!(ratio > kColumnTolerance)) return too_few_directions(odometry);
   LinearResult result;
   result.condition = 1.0 / (ratio * ratio);
   const bool squares = solver == LinearSolver::ldlt || solver == LinearSolver::normal_equations;
@@ -104,10 +104,10 @@ std::optional<std::string> LinearSums::add(const IncrementPair& sample) {
 Result<LinearResult> LinearSums::solve() const {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(odometry_);
   const double ratio = eigen.eigenvalues()(0) / eigen.eigenvalues()(2);
-  if (count_ < 3 || !(ratio > kLeastOfSums)) return underdetermined(odometry_);
+  if (count_ < 3 || !(ratio > kLeastOfSums)) return too_few_directions(odometry_);
   LinearResult result;
   result.solver = LinearSolver::ldlt;
-  const Eigen::Matrix3d transposed = odometry_.ldlt().solve(mixed_);
+  const Eigen::Matrix3d transposed = math::solve_symmetric(odometry_, mixed_);
   result.matrix = transposed.transpose();
   result.condition = 1.0 / ratio;
   // |b - A x|^2 = b^T b - x^T A^T b at the solution, which rounding may take below zero.

@@ -12,6 +12,7 @@
 #include "calib/classical/closed_form.hpp"
 #include "calib/classical/length_factor.hpp"
 #include "calib/estimation/settings.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/significant.hpp"
 #include "calib/measurement/reference_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
@@ -58,7 +59,7 @@ double explained_rotation(const std::vector<WheelMotion>& motions) {
       normal += weight * turned * turned.transpose();
       right_side += weight * m.sensor_motion.yaw * turned;
     }
-    gains = normal.ldlt().solve(right_side);
+    gains = math::solve_symmetric(normal, right_side);
     misfit = all = 0.0;
     for (const WheelMotion& m : motions) {
       misfit += std::abs(m.sensor_motion.yaw - gains.dot(Eigen::Vector2d(m.left, m.right)));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "calib/estimation/settings.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
 
 namespace odomcalib::calib::estimation {
@@ -310,10 +311,8 @@ Eigen::MatrixXd prior_of(const Eigen::MatrixXd& of_parameters) {
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd deviations = covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd units = deviations.unaryExpr([](double d) { return d > 0.0 ? 1.0 / d : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(units.asDiagonal() * covariance *
-                                                             units.asDiagonal());
-  return deviations.asDiagonal() * eigen.eigenvectors() *
-         eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const math::Eigensystem eigen = math::eigensystem(units.asDiagonal() * covariance * units.asDiagonal());
+  return deviations.asDiagonal() * eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 /// Least squares with a prior that may be singular: what is fixed stays.

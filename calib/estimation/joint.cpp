@@ -12,6 +12,7 @@
 #include "calib/estimation/settings.hpp"
 #include "calib/estimation/stack.hpp"
 #include "calib/math/cluster_robust.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/measurement/dataset.hpp"
 #include "calib/measurement/noise_estimate.hpp"
 
@@ -131,11 +132,11 @@ std::optional<Error> check_rank(const NormalSystem& system, const Eigen::MatrixX
     if (!fixed[static_cast<std::size_t>(k)] && (k < vehicle::kBaseCount || system.scale(k) > 0.0))
       free.push_back(k);
   const Eigen::MatrixXd matrix = normal(free, free);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
-  if (eigen.eigenvalues()(0) > kMinRelativePivot) return std::nullopt;
+  const math::Eigensystem eigen = math::eigensystem(matrix);
+  if (eigen.values(0) > kMinRelativePivot) return std::nullopt;
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(system.scale.size());
   for (std::size_t i = 0; i < free.size(); ++i)
-    direction(free[i]) = eigen.eigenvectors()(static_cast<Eigen::Index>(i), 0);
+    direction(free[i]) = eigen.vectors(static_cast<Eigen::Index>(i), 0);
   return Error{ErrorCode::refused, "the motion does not determine: " + parameter_names(direction),
                "joint estimate", classical::record_more(measurement::wheel_motions(data, 0.0))};
 }
@@ -214,7 +215,7 @@ class Descent {
       Eigen::MatrixXd damped = linear.matrix;
       for (Eigen::Index k = 0; k < damped.rows(); ++k)
         damped(k, k) = system.scale(k) > 0.0 ? damped(k, k) + damping_ : 1.0;
-      const Eigen::VectorXd scaled_step = damped.ldlt().solve(right_side);
+      const Eigen::VectorXd scaled_step = math::solve_symmetric(damped, right_side);
       const double length = (system.jacobian * scaled_step).norm();
       const Eigen::VectorXd there = p_ + system.scale.asDiagonal() * scaled_step;
       const Eigen::VectorXd residual_there = stacked_residual(data_, effects_, there);
@@ -263,7 +264,7 @@ void set_covariance(std::span<const measurement::FitData> data, const Stack& sta
     if (!(system.scale(k) > 0.0)) matrix(k, k) = 1.0;
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
   const Eigen::MatrixXd inverse =
-      system.scale.asDiagonal() * matrix.ldlt().solve(identity) * system.scale.asDiagonal();
+      system.scale.asDiagonal() * math::solve_symmetric(matrix, identity) * system.scale.asDiagonal();
   const double variance = std::max(1.0, fit.whitened_residual.squaredNorm() /
                                             std::max(static_cast<double>(fit.whitened_residual.size()), 1.0));
   fit.covariance = robust_covariance(data, stack, fit, inverse).inflated(variance);

@@ -11,6 +11,7 @@
 #include "calib/ingest/gaps.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/math/cluster_robust.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/noise_estimate.hpp"
 #include "calib/measurement/scan_surfaces.hpp"
@@ -295,11 +296,10 @@ class Fitter {
     Eigen::MatrixXd scaled = system.scale.asDiagonal() * system.matrix * system.scale.asDiagonal();
     for (Eigen::Index k = 0; k < scaled.rows(); ++k)
       if (!(system.scale(k) > 0.0)) scaled(k, k) = 1.0;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-    if (!(eigen.eigenvalues()(0) > kMinPivot)) return std::nullopt;
-    return system.scale.asDiagonal() * eigen.eigenvectors() *
-           eigen.eigenvalues().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose() *
-           system.scale.asDiagonal();
+    const math::Eigensystem eigen = math::eigensystem(scaled);
+    if (!(eigen.values(0) > kMinPivot)) return std::nullopt;
+    return system.scale.asDiagonal() * eigen.vectors * eigen.values.cwiseInverse().asDiagonal() *
+           eigen.vectors.transpose() * system.scale.asDiagonal();
   }
 
   [[nodiscard]] Error undetermined() const {

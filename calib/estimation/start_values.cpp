@@ -9,6 +9,7 @@
 #include "calib/classical/closed_form.hpp"
 #include "calib/classical/sign_check.hpp"
 #include "calib/estimation/settings.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/terms/catalogue.hpp"
 
 namespace odomcalib::calib::estimation {
@@ -32,7 +33,7 @@ double rotation_misfit(std::span<const measurement::FitData> data, double delay)
       normal += weight * wheels * wheels.transpose();
       right_side += weight * m.sensor_motion.yaw * wheels;
     }
-    gains = normal.ldlt().solve(right_side);
+    gains = math::solve_symmetric(normal, right_side);
     for (const wheels::WheelMotion& m : motions)
       sum += std::abs(m.sensor_motion.yaw - gains.dot(Eigen::Vector2d(m.left, m.right)));
     misfit = sum / std::max(static_cast<double>(motions.size()), 1.0);

@@ -17,8 +17,6 @@ struct Reading {
   std::size_t count = 0;
 };
 
-std::string number(double value) { return math::significant(value, 6); }
-
 /// Different readings of some scans, by size.
 std::vector<Reading> readings_of(const std::vector<Scan>& scans, std::size_t from, std::size_t to) {
   const std::size_t per_part = settings::kScansLookedAt / settings::kPhantomParts;
@@ -68,11 +66,11 @@ void remove_readings(Recording& recording, double value) {
         ++count;
       }
   recording.discarded.push_back(
-      {"beam", "exactly " + number(value) + " m, which stands for no return", count});
+      {"beam", "exactly " + math::significant(value, 6) + " m, which stands for no return", count});
 }
 
 std::string remark_on(double value) {
-  return "many readings are exactly " + number(value) +
+  return "many readings are exactly " + math::significant(value, 6) +
          " m wherever the robot was: the lidar or its driver writes that number where nothing came back, or "
          "sees the robot itself; they are left out, and null says the same";
 }

@@ -24,7 +24,7 @@ constexpr std::array kTimeUnits = {Unit{"milliseconds", 1e-3}, Unit{"microsecond
 constexpr std::array kLengthUnits = {Unit{"millimetres", 1e-3}, Unit{"centimetres", 1e-2},
                                      Unit{"inches", 0.0254}, Unit{"kilometres", 1e3}};
 
-std::string number(double value) { return math::significant(value, 4); }
+std::string rounded(double value) { return math::significant(value, 4); }
 
 Error wrong(const Recording& recording, const std::string& what, const std::string& remedy) {
   return {ErrorCode::format, what, recording.name, remedy};
@@ -70,7 +70,7 @@ std::optional<Error> scans_too_fast(const Recording& recording) {
   if (interval >= settings::kFastestScans_s) return std::nullopt;
   const std::string unit = unit_of_interval(interval);
   return wrong(recording,
-               "scans come every " + number(1e3 * interval) + " ms, faster than any lidar turns" +
+               "scans come every " + rounded(1e3 * interval) + " ms, faster than any lidar turns" +
                    (unit.empty() ? "" : ": their times look like " + unit),
                "write times in seconds; where one turn is split into parts, join them");
 }
@@ -85,8 +85,8 @@ std::optional<Error> slow_beams(const Recording& recording) {
   if (sweep <= settings::kLongestSweep * interval) return std::nullopt;
   const bool is_unit = sweep > settings::kSweepInOtherUnit * interval;
   return wrong(recording,
-               "the beams of a scan take " + number(sweep) + " s, but scans come every " + number(interval) +
-                   " s: " +
+               "the beams of a scan take " + rounded(sweep) + " s, but scans come every " +
+                   rounded(interval) + " s: " +
                    (is_unit ? "time_increment or times are not in seconds"
                             : "the stamps of the scans run too slowly, or time_increment is too long"),
                is_unit ? "write time_increment as seconds from one beam to the next, or leave it out"
@@ -104,7 +104,7 @@ std::optional<Error> too_many_turns(const Recording& recording) {
   if (sweep <= settings::kMostTurns * kTurn) return std::nullopt;
   const bool degrees = sweep > settings::kTurnsInDegrees * kTurn;
   return wrong(recording,
-               "a scan covers " + number(sweep) + " rad, " + number(sweep / kTurn) + " turns" +
+               "a scan covers " + rounded(sweep) + " rad, " + rounded(sweep / kTurn) + " turns" +
                    (degrees ? ": its angles look like degrees" : ": its angles are stretched"),
                degrees ? "angle_min, angle_increment and angles must be in radians"
                        : "check angle_increment: it is the angle from one beam to the next, in radians, and "
@@ -128,7 +128,7 @@ std::optional<Error> spans_in_units(const Recording& recording) {
       if (std::abs(ratio * unit.size - 1.0) > settings::kSameSpan) continue;
       const std::string scans = by_poses ? "poses" : "scans";
       return wrong(recording,
-                   "ticks run over " + number(ticks) + ", " + scans + " over " + number(reference) +
+                   "ticks run over " + rounded(ticks) + ", " + scans + " over " + rounded(reference) +
                        " seconds: the times of the " + (of_ticks ? "ticks" : scans) + " look like " +
                        unit.name,
                    "write every \"t\" in seconds");
@@ -142,11 +142,11 @@ std::optional<Error> wrong_lidar_pose(const Recording& recording) {
   const auto& [x, y, yaw] = *recording.robot.lidar_pose;
   if (std::hypot(x, y) > settings::kFarthestLidar_m)
     return wrong(recording,
-                 "lidar_pose puts the lidar " + number(std::hypot(x, y)) + " m from the middle of the axle",
+                 "lidar_pose puts the lidar " + rounded(std::hypot(x, y)) + " m from the middle of the axle",
                  "write x and y of lidar_pose in metres");
   if (std::abs(yaw) > 2.0 * math::kPi)
     return wrong(recording,
-                 "lidar_pose turns the lidar by " + number(yaw) + " rad: its yaw looks like degrees",
+                 "lidar_pose turns the lidar by " + rounded(yaw) + " rad: its yaw looks like degrees",
                  "write the yaw of lidar_pose in radians");
   return std::nullopt;
 }
@@ -174,10 +174,10 @@ std::optional<Error> wrong_ranges(const Recording& recording) {
   if (median == 0.0 || (!far && median >= settings::kNearestMedian_m)) return std::nullopt;
   const Unit& unit = likeliest_length(median);
   return wrong(recording,
-               "half of the ranges are " + std::string(far ? "above " : "below ") + number(median) +
+               "half of the ranges are " + std::string(far ? "above " : "below ") + rounded(median) +
                    ", which no 2D lidar sees in metres: they look like " + unit.name + " (" +
-                   number(median * unit.size) + " m)",
-               "multiply ranges, range_min and range_max by " + number(unit.size));
+                   rounded(median * unit.size) + " m)",
+               "multiply ranges, range_min and range_max by " + rounded(unit.size));
 }
 
 using Rule = std::optional<Error> (*)(const Recording&);

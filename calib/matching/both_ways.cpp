@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/matching/settings.hpp"
+#include "calib/math/linear_solve.hpp"
 
 namespace odomcalib::calib::matching {
 namespace {
@@ -30,7 +31,7 @@ void take_mean(MatchResult& result, const MatchResult& back) {
   const Eigen::Matrix3d sum = result.information + information_of_inverse(back.motion, back.information);
   result.motion = mean(result.motion, there);
   result.information = sum / (1.0 + settings::kBothWaysCorrelation);
-  result.covariance = result.information.ldlt().solve(Eigen::Matrix3d::Identity());
+  result.covariance = math::inverse_symmetric(result.information);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "calib/matching/joint_lines.hpp"
 #include "calib/matching/observability.hpp"
 #include "calib/matching/settings.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/tukey.hpp"
 #include "calib/math/vector2.hpp"
@@ -166,7 +167,7 @@ void conclude(MatchResult& result, const Linearised& system, double scale, std::
   else
     result.status = converged ? MatchStatus::ok : MatchStatus::not_converged;
   if (result.eigenvalue_ratio > 0.0)
-    result.covariance = system.information.ldlt().solve(Eigen::Matrix3d::Identity()) * variance;
+    result.covariance = math::inverse_symmetric(system.information) * variance;
 }
 
 }  // namespace
@@ -227,8 +228,8 @@ bool iterate(const MatchReference& reference, const Surface& scan, const MatchOp
   const double variance = match.scale * match.scale;
   const Eigen::Matrix3d information = match.system.information + variance * match.prior.information;
   const Eigen::Matrix3d damped = information + 1e-9 * information.trace() * Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d step =
-      damped.ldlt().solve(match.system.gradient + variance * match.prior.gradient(match.motion));
+  const Eigen::Vector3d gradient = match.system.gradient + variance * match.prior.gradient(match.motion);
+  const Eigen::Vector3d step = math::solve_symmetric(damped, gradient);
   if (!step.allFinite()) return false;
   // Late, correspondences that flip to and fro are averaged.
   const double length = i < settings::kDampedFrom ? 1.0 : 0.5;

@@ -16,8 +16,8 @@ struct Pairs {
   double squares = 0.0;  ///< m^2
 };
 
-Pairs correspond(const NearestTree& reference, std::span<const Eigen::Vector2d> scan, const math::Pose& pose,
-                 double max_distance) {
+Pairs nearest_pairs(const NearestTree& reference, std::span<const Eigen::Vector2d> scan,
+                    const math::Pose& pose, double max_distance) {
   const math::Frame frame(pose);
   Pairs pairs;
   for (const Eigen::Vector2d& p : scan) {
@@ -65,7 +65,7 @@ IcpResult match_point_to_point(const NearestTree& reference, std::span<const Eig
     return result;
   bool still = false;
   for (int i = 0; i < options.max_iterations && !still; ++i) {
-    const Pairs pairs = correspond(reference, scan, result.motion, options.max_distance);
+    const Pairs pairs = nearest_pairs(reference, scan, result.motion, options.max_distance);
     result.overlap = static_cast<double>(pairs.from.size()) / static_cast<double>(scan.size());
     if (pairs.from.size() < settings::kFewestIcpPoints) return result;
     result.rms = std::sqrt(pairs.squares / static_cast<double>(pairs.from.size()));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/matching/observability.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/tukey.hpp"
 #include "calib/math/vector2.hpp"
@@ -45,7 +46,7 @@ bool is_apart(const math::Pose& a, const math::Pose& b) {
 }
 
 /// One step, `share` of it taken; its whole length in sigmas.
-double improve(const std::vector<RangeTerm>& terms, double share, Place& place) {
+double improve_place(const std::vector<RangeTerm>& terms, double share, Place& place) {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   place.information.setZero();
   place.inliers = 0;
@@ -58,7 +59,7 @@ double improve(const std::vector<RangeTerm>& terms, double share, Place& place) 
   }
   const Eigen::Matrix3d damped =
       place.information + 1e-9 * (place.information.trace() + 1.0) * Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d step = damped.ldlt().solve(gradient);
+  const Eigen::Vector3d step = math::solve_symmetric(damped, gradient);
   place.pose.x -= share * step(0);
   place.pose.y -= share * step(1);
   place.pose.yaw -= share * step(2);
@@ -110,7 +111,7 @@ Place place_scan(const WallMap& map, const std::vector<Beam>& beams, const math:
     if (terms.size() < settings::kFewestInliers) return place;
     place.scale = robust_scale(terms);
     // Beams next to the end of a wall may strike it and miss it in turn; half steps settle between.
-    const double step = improve(terms, i < settings::kWholeSteps ? 1.0 : 0.5, place);
+    const double step = improve_place(terms, i < settings::kWholeSteps ? 1.0 : 0.5, place);
     place.converged = gate <= last && step < settings::kPlaceSettled * place.scale;
   }
   return place;

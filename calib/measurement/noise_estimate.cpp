@@ -98,7 +98,7 @@ constexpr std::array<Range, 4> kRanges = {
      {&NoiseModel::matcher_scale, settings::kLeastMatcherScale, settings::kMostMatcherScale, false}}};
 
 /// Golden-section search on the logarithm, and zero where that is as good.
-void improve(const Columns& o, const Range& range, NoiseModel& noise) {
+void improve_noise(const Columns& o, const Range& range, NoiseModel& noise) {
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
   double a = std::log(range.low);
   double b = std::log(range.high);
@@ -210,7 +210,7 @@ NoiseModel estimate_noise(std::span<const SensorPair> pairs, std::span<const Pai
   begin_at_spread(o, noise);
   const Columns columns = columns_of(o);
   for (int sweep = 0; sweep < settings::kNoiseSweeps; ++sweep)
-    for (const Range& range : kRanges) improve(columns, range, noise);
+    for (const Range& range : kRanges) improve_noise(columns, range, noise);
   noise.correlation = neighbour_correlation(o, noise);
   return noise;
 }

@@ -13,7 +13,9 @@
 namespace odomcalib::calib::measurement {
 namespace {
 
-math::Pose pose_of(const PoseSample& sample) { return {sample.x, sample.y, math::wrap_angle(sample.yaw)}; }
+math::Pose wrapped_pose_of(const PoseSample& sample) {
+  return {sample.x, sample.y, math::wrap_angle(sample.yaw)};
+}
 
 /// What each motion from one pose to the next has beyond that of the wheels; the step before a gap is left
 /// out.
@@ -22,7 +24,7 @@ std::vector<Eigen::Vector3d> steps_beyond_wheels(std::span<const PoseSample> pos
   std::vector<Eigen::Vector3d> steps;
   for (std::size_t k = 1; k < poses.size(); ++k) {
     if (poses[k].t - poses[k - 1].t > ingest::settings::kMaxGap_s) continue;
-    steps.push_back(math::difference(between(pose_of(poses[k - 1]), pose_of(poses[k])),
+    steps.push_back(math::difference(between(wrapped_pose_of(poses[k - 1]), wrapped_pose_of(poses[k])),
                                      between(wheels(poses[k - 1].t), wheels(poses[k].t))));
   }
   return steps;
@@ -49,7 +51,7 @@ std::vector<PlacedScan> single_places(std::span<const PoseSample> poses, const E
   std::vector<PlacedScan> places;
   places.reserve(poses.size());
   for (const PoseSample& sample : poses) {
-    math::Pose pose = pose_of(sample);
+    math::Pose pose = wrapped_pose_of(sample);
     if (!places.empty()) {
       const double before = places.back().pose.yaw;
       pose.yaw = before + math::wrap_angle(pose.yaw - before);

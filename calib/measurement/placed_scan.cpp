@@ -9,9 +9,9 @@
 namespace odomcalib::calib::measurement {
 namespace {
 
-using Place = std::span<const PlacedScan>::iterator;
+using PlaceIterator = std::span<const PlacedScan>::iterator;
 
-Place first_since(std::span<const PlacedScan> places, double time) {
+PlaceIterator first_since(std::span<const PlacedScan> places, double time) {
   return std::lower_bound(places.begin(), places.end(), time,
                           [](const PlacedScan& scan, double t) { return scan.time < t; });
 }
@@ -72,7 +72,7 @@ PlacedScan mean_of(std::span<const PlacedScan> places, double time, const PathOf
 
 std::optional<PlacedScan> mean_place(std::span<const PlacedScan> places, double time,
                                      const PathOfWheels& wheels, double reach) {
-  const Place first = first_since(places, time - reach), last = first_since(places, time + reach);
+  const PlaceIterator first = first_since(places, time - reach), last = first_since(places, time + reach);
   if (last - first < settings::kFewestOfMean) return std::nullopt;
   return mean_of({first, last}, time, wheels);
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "calib/matching/point_to_line.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/measurement/settings.hpp"
 #include "calib/measurement/sweep_motion.hpp"
 
@@ -160,7 +161,7 @@ class Mapper {
         ++path_.lost;
         continue;
       }
-      const Eigen::Matrix3d covariance = place.information.ldlt().solve(Eigen::Matrix3d::Identity());
+      const Eigen::Matrix3d covariance = math::inverse_symmetric(place.information);
       path_.scans.push_back({time(k), place.pose, place.scale * place.scale * covariance});
     }
   }

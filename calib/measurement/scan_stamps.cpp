@@ -9,8 +9,9 @@ namespace odomcalib::calib::measurement {
 namespace {
 
 /// The same intervals with each end moved as the scan's stamp was.
-std::vector<vehicle::Interval> moved(const std::vector<SensorPair>& pairs, const std::vector<double>& given,
-                                     const std::vector<double>& even) {
+std::vector<vehicle::Interval> moving_intervals(const std::vector<SensorPair>& pairs,
+                                                const std::vector<double>& given,
+                                                const std::vector<double>& even) {
   const auto moved_time = [&](double time) {
     const auto after = std::upper_bound(given.begin(), given.end(), time) - given.begin();
     const auto scan = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - 1, 0));
@@ -43,7 +44,7 @@ std::optional<ingest::EvenStamps> even_scans(const Recording& recording, const F
   for (const SensorPair& pair : data.pairs) intervals.push_back(pair.interval);
   const vehicle::Trajectory odometry = data.model->trajectory(vehicle::as_span(parameters), effects);
   const auto by_given = odometry.sensor_motions(intervals);
-  const auto by_even = odometry.sensor_motions(moved(data.pairs, given, even->t));
+  const auto by_even = odometry.sensor_motions(moving_intervals(data.pairs, given, even->t));
   ingest::StampContest contest;
   for (std::size_t k = 0; k < data.pairs.size(); ++k) {
     const Eigen::Vector3d a = error_of(data.pairs[k], by_given[k]), b = error_of(data.pairs[k], by_even[k]);

@@ -12,7 +12,7 @@
 namespace odomcalib::calib::measurement {
 namespace {
 
-matching::LineSums moved(const matching::LineSums& sums, const math::Frame& frame) {
+matching::LineSums moved_sums(const matching::LineSums& sums, const math::Frame& frame) {
   const Eigen::Matrix2d turn = frame.rotation();
   const Eigen::Vector2d &at = frame.origin(), first = turn * sums.first;
   matching::LineSums out = sums;
@@ -29,7 +29,7 @@ MapWall in_map(const matching::Wall& wall, const math::Frame& frame) {
   out.normal = frame.rotate(wall.line.normal);
   out.low = wall.low;
   out.high = wall.high;
-  out.sums = moved(wall.sums, frame);
+  out.sums = moved_sums(wall.sums, frame);
   if (out.normal.dot(frame.origin() - out.centre) > 0.0) return out;
   out.normal = -out.normal;
   std::swap(out.low, out.high);

@@ -144,8 +144,8 @@ std::map<std::string, std::string> extensions(const Findings& found, const Smoot
   return members;
 }
 
-std::vector<std::string> remarks(const Findings& found, const SmoothTerms& smooths, const Outliers& outliers,
-                                 const estimation::GyroWitness& gyros) {
+std::vector<std::string> remarks_in(const Findings& found, const SmoothTerms& smooths,
+                                    const Outliers& outliers, const estimation::GyroWitness& gyros) {
   std::vector<std::string> sentences = found.remarks;
   if (outliers) sentences.push_back(to_text(*outliers));
   for (const std::string& remark : remarks_on(found.fit.dataset.recordings.stamps()))
@@ -253,7 +253,7 @@ Calibration calibrated(const Findings& found) {
     store_homogeneity(*together.homogeneity, found.fit.dataset.recordings.view(), calibration);
 
   const GateResult gate = judge(
-      calibration, footing(found, base, data, together.apart, remarks(found, smooths, outliers, gyros)));
+      calibration, footing(found, base, data, together.apart, remarks_in(found, smooths, outliers, gyros)));
   calibration.verdict = gate.verdict;
   calibration.reasons = gate.reasons;
   return calibration;

@@ -22,7 +22,8 @@ double value_of(const selection::Homogeneity& found, std::size_t recording, Eige
   return found.own[recording] ? found.own[recording]->value(parameter) : 0.0;
 }
 
-std::string amount(const selection::Homogeneity& found, Eigen::Index parameter, double difference) {
+std::string amount_of_difference(const selection::Homogeneity& found, Eigen::Index parameter,
+                                 double difference) {
   if (parameter == vehicle::kMountYaw)
     return math::significant(std::abs(difference) * 180.0 / math::kPi, 3) + " degrees";
   if (!is_length(parameter)) return math::significant(1e3 * std::abs(difference), 3) + " mm";
@@ -73,7 +74,7 @@ std::optional<Apart> recordings_apart(const selection::Homogeneity& found,
   const std::string what =
       "the recordings do not agree on one robot: in " + recordings[found.recording].name + " " +
       base_quantity_names()[static_cast<std::size_t>(found.parameter)] + " is " +
-      amount(found, found.parameter, difference) + (difference > 0.0 ? " larger" : " smaller") +
+      amount_of_difference(found, found.parameter, difference) + (difference > 0.0 ? " larger" : " smaller") +
       " than in the " + (recordings.size() > 2 ? "others" : "other") + ", " +
       math::significant(std::abs(found.sigmas(row, found.parameter)), 3) + " deviations";
   if (any_too_far(found))

@@ -16,7 +16,7 @@ double deviation(const Eigen::MatrixXd& covariance, Eigen::Index k) {
   return std::sqrt(covariance(k, k)) * (k < 2 ? kRadiusToDiameter : 1.0);
 }
 
-MethodResult refusal(const std::string& name, const Error& error) {
+MethodResult refused_method(const std::string& name, const Error& error) {
   MethodResult result;
   result.name = name;
   result.refused = error.remedy.empty() ? error.what : error.what + "; " + error.remedy;
@@ -26,7 +26,7 @@ MethodResult refusal(const std::string& name, const Error& error) {
 MethodResult straight_method(std::span<const wheels::WheelMotion> samples,
                              const wheels::BaseParameters& nominal) {
   const auto ratio = classical::straight_ratio(samples, nominal);
-  if (!ratio) return refusal("straight", ratio.error());
+  if (!ratio) return refused_method("straight", ratio.error());
   const classical::Ratio& r = ratio.value();
   MethodResult result;
   result.name = "straight";
@@ -48,7 +48,7 @@ MethodResult spin_method(std::span<const wheels::WheelMotion> samples,
     corrected.right_radius *= straight.value().value;
   }
   const auto ratio = classical::spin_ratio(samples, corrected);
-  if (!ratio) return refusal("spin", ratio.error());
+  if (!ratio) return refused_method("spin", ratio.error());
   const classical::Ratio& r = ratio.value();
   MethodResult result;
   result.name = "spin";
@@ -80,7 +80,7 @@ MethodResult linear_method(std::span<const wheels::WheelMotion> samples,
                            const wheels::BaseParameters& nominal, const std::vector<std::size_t>* inliers,
                            Calibration& calibration) {
   const auto solved = solve_linear(base_increments(samples, nominal, inliers));
-  if (!solved) return refusal("linear", solved.error());
+  if (!solved) return refused_method("linear", solved.error());
   const classical::LinearResult& linear = solved.value();
   LinearCorrection correction;
   for (std::size_t i = 0; i < 3; ++i)
@@ -149,7 +149,7 @@ std::vector<MethodResult> classical_methods(const measurement::Dataset& dataset,
   methods.push_back(
       linear_method(samples, dataset.nominal, closed ? &closed.value().inliers : nullptr, calibration));
   if (!closed) {
-    methods.push_back(refusal("joint_closed_form", closed.error()));
+    methods.push_back(refused_method("joint_closed_form", closed.error()));
     return methods;
   }
   MethodResult joint;

@@ -20,20 +20,20 @@ HeldOutGain compared_on_held_out(const FitTask& task, const FittedModel& before,
 namespace {
 
 /// Both models over the same windows.
-struct Comparison {
+struct GainComparison {
   WindowErrors without, with;
 };
 
 /// Too few of a kind say nothing.
 /// @param measured pairs that windows may cross
-std::optional<Comparison> compared(WindowKind kind, const FitTask& task, const FittedModel& before,
-                                   const FittedModel& after, const std::vector<bool>& measured) {
+std::optional<GainComparison> compared(WindowKind kind, const FitTask& task, const FittedModel& before,
+                                       const FittedModel& after, const std::vector<bool>& measured) {
   const auto windows = find_windows(kind, task.data, folds_of(task.data), before.fit, measured);
   if (windows.size() < settings::kFewestWindows) return std::nullopt;
   const auto error_of = [&](const FittedModel& model) {
     return window_errors(task.data, windows, model.effects, model.fit, task.fixed(model.effects));
   };
-  return Comparison{error_of(before), error_of(after)};
+  return GainComparison{error_of(before), error_of(after)};
 }
 
 /// Errors over ten seconds, after only where the other folds point to the candidate.

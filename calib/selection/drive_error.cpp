@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kOpenLoopPosition = "open_loop_10s_position";
 
-constexpr unsigned kSeed = 20010823;
+constexpr unsigned kDriveErrorSeed = 20010823;
 
 /// Predicted minus measured motion of each evaluation window, in the base's frame at its begin.
 std::vector<math::Pose> errors_of(std::span<const measurement::FitData> data,
@@ -74,7 +74,7 @@ Bounded bounded(Part part, const std::vector<EvaluationWindow>& windows,
     total += one;
   }
   if (by_block.size() < settings::kFewestBlocks) return of_few(total.root(), by_block.size());
-  const math::BootstrapInterval interval = bootstrap_root(by_block, kSeed);
+  const math::BootstrapInterval interval = bootstrap_root(by_block, kDriveErrorSeed);
   return {total.root(), interval.lower, interval.upper};
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 
+#include "calib/math/linear_solve.hpp"
 #include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
@@ -45,7 +46,8 @@ Eigen::VectorXd without_fold(const estimation::FitResult& fit, const std::vector
   }
   const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  return fit.parameters + scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * gradient);
+  const Eigen::VectorXd right_side = scale.asDiagonal() * gradient;
+  return fit.parameters + scale.asDiagonal() * math::solve_symmetric(scaled, right_side);
 }
 
 }  // namespace odomcalib::calib::selection

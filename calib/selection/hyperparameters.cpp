@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/math/linear_solve.hpp"
 #include "calib/selection/cross_validation.hpp"
 #include "calib/selection/plausibility.hpp"
 #include "calib/selection/settings.hpp"
@@ -183,7 +184,8 @@ double effective_parameters(const estimation::FitResult& fit) {
   Eigen::MatrixXd scaled = scale.asDiagonal() * all * scale.asDiagonal();
   for (Eigen::Index k = 0; k < scale.size(); ++k)
     if (scale(k) == 0.0) scaled(k, k) = 1.0;
-  return scaled.ldlt().solve(scale.asDiagonal() * data * scale.asDiagonal()).trace();
+  const Eigen::MatrixXd scaled_data = scale.asDiagonal() * data * scale.asDiagonal();
+  return math::solve_symmetric(scaled, scaled_data).trace();
 }
 
 double schwarz(const estimation::FitResult& fit) {

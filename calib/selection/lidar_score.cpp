@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/selection/score.hpp"
@@ -13,7 +14,7 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr unsigned kSeed = 20210602;
+constexpr unsigned kLidarFlipSeed = 20210602;
 
 /// How much farther from the first scan's line the shift puts a point, m.
 double pushed(const terms::BeamShift& shift, const Eigen::Vector2d& beam, double range,
@@ -88,13 +89,13 @@ Eigen::MatrixXd visible(const Eigen::MatrixXd& gram, double raw) {
   if (gram.size() == 0) return gram;
   const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const math::Eigensystem eigen = math::eigensystem(scaled);
   Eigen::MatrixXd basis(gram.rows(), 0);
   for (Eigen::Index k = 0; k < gram.rows(); ++k) {
-    const double value = eigen.eigenvalues()(k);
+    const double value = eigen.values(k);
     if (value < raw) continue;
     basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
-    basis.col(basis.cols() - 1) = scale.asDiagonal() * eigen.eigenvectors().col(k) / std::sqrt(value);
+    basis.col(basis.cols() - 1) = scale.asDiagonal() * eigen.vectors.col(k) / std::sqrt(value);
   }
   return basis;
 }
@@ -137,7 +138,7 @@ Eigen::MatrixXd project(const std::vector<PairScore>& pairs, const PairScore& to
 class SignFlips {
  public:
   SignFlips(const std::vector<Eigen::MatrixXd>& scores, std::size_t pairs) {
-    std::mt19937 engine(kSeed);
+    std::mt19937 engine(kLidarFlipSeed);
     std::vector<double> sums(scores.size(), 0.0);
     std::vector<Eigen::VectorXd> draws;
     for (int draw = 0; draw < settings::kSignDraws; ++draw) {
@@ -187,7 +188,8 @@ bool is_decisive(const LidarScores::Score& score, std::size_t family) {
 }
 
 /// What one pair's distances would gain by these values.
-double gain(const PairScore& pair, const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& values) {
+double gain_of_columns(const PairScore& pair, const std::vector<Eigen::Index>& columns,
+                       const Eigen::VectorXd& values) {
   return 2.0 * values.dot(pair.gradient(columns)) - values.dot(part(pair.gram, columns, columns) * values);
 }
 
@@ -236,7 +238,7 @@ double LidarScores::variance(const std::vector<Eigen::Index>& taken) const {
   const Eigen::VectorXd values = solved(pairs_, taken, kFolds);
   double squares = 0.0, points = 0.0;
   for (const PairScore& pair : pairs_) {
-    squares += pair.squares - gain(pair, taken, values);
+    squares += pair.squares - gain_of_columns(pair, taken, values);
     points += static_cast<double>(pair.points);
   }
   return squares / std::max(points, 1.0);
@@ -290,7 +292,8 @@ LidarScores::HeldOut LidarScores::held_out(const std::vector<std::size_t>& accep
     const Eigen::VectorXd few = solved(pairs_, few_columns, fold), all = solved(pairs_, all_columns, fold);
     for (std::size_t g = 0; g < pairs_.size(); ++g) {
       if (g * kFolds / pairs_.size() != fold) continue;
-      const double without = gain(pairs_[g], few_columns, few), with = gain(pairs_[g], all_columns, all);
+      const double without = gain_of_columns(pairs_[g], few_columns, few),
+                   with = gain_of_columns(pairs_[g], all_columns, all);
       before += pairs_[g].squares - without;
       after += pairs_[g].squares - with;
       points += static_cast<double>(pairs_[g].points);

@@ -42,10 +42,10 @@ bool is_superfluous(const terms::LidarFinding& finding) {
   return finding.effect->is_named();
 }
 
-class Trace {
+class LidarTrace {
  public:
-  Trace(const std::vector<measurement::HeadingPair>& pairs,
-        const std::vector<terms::LidarEffectPtr>& candidates)
+  LidarTrace(const std::vector<measurement::HeadingPair>& pairs,
+             const std::vector<terms::LidarEffectPtr>& candidates)
       : scores_(pairs, candidates), refused_(candidates.size(), false) {}
 
   std::vector<terms::LidarFinding> run() {
@@ -176,13 +176,13 @@ std::vector<terms::LidarFinding> trace_lidar(const std::vector<measurement::Head
   if (auto sector = terms::make_sector_error(bearings_in(pairs))) candidates.push_back(std::move(sector));
   if (ranges_are_judged)
     std::erase_if(candidates, [](const terms::LidarEffectPtr& effect) { return effect->is_judged_in_map(); });
-  return Trace(pairs, candidates).run();
+  return LidarTrace(pairs, candidates).run();
 }
 
 std::vector<terms::LidarFinding> fit_lidar(const std::vector<measurement::HeadingPair>& pairs,
                                            const std::vector<terms::LidarEffectPtr>& effects) {
   if (pairs.empty()) return {};
-  return Trace(pairs, effects).fit_all();
+  return LidarTrace(pairs, effects).fit_all();
 }
 
 }  // namespace odomcalib::calib::selection

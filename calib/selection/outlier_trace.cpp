@@ -18,7 +18,7 @@ namespace odomcalib::calib::selection {
 namespace {
 
 constexpr std::size_t kBins = settings::kPlaceSlices * settings::kPlaceSlices;
-constexpr unsigned kSeed = 5;
+constexpr unsigned kOutlierSeed = 5;
 
 /// Events and pairs by bin of one covariate.
 struct Binned {
@@ -58,8 +58,8 @@ double value_in(vehicle::Covariate covariate, const vehicle::DriveModel& model,
   return sum / static_cast<double>(context.size());
 }
 
-std::vector<double> values_of(vehicle::Covariate covariate, std::span<const measurement::FitData> data,
-                              bool of_y = false) {
+std::vector<double> covariate_values(vehicle::Covariate covariate, std::span<const measurement::FitData> data,
+                                     bool of_y = false) {
   std::vector<double> values;
   for (const measurement::FitData& d : data)
     for (const vehicle::Interval& interval : estimation::intervals_of(d.pairs))
@@ -68,10 +68,10 @@ std::vector<double> values_of(vehicle::Covariate covariate, std::span<const meas
 }
 
 Binned binned(vehicle::Covariate covariate, std::span<const measurement::FitData> data) {
-  Binned out{covariate, {}, values_of(covariate, data)};
+  Binned out{covariate, {}, covariate_values(covariate, data)};
   out.bin = sliced(out.value, covariate == vehicle::Covariate::position ? settings::kPlaceSlices : kBins);
   if (covariate != vehicle::Covariate::position) return out;
-  const auto across = sliced(values_of(covariate, data, true), settings::kPlaceSlices);
+  const auto across = sliced(covariate_values(covariate, data, true), settings::kPlaceSlices);
   for (std::size_t k = 0; k < across.size(); ++k)
     out.bin[k] = settings::kPlaceSlices * out.bin[k] + across[k];
   return out;
@@ -105,7 +105,7 @@ Counts counted(const Binned& covariate, const std::vector<std::size_t>& pairs) {
 }
 
 /// -2 log likelihood ratio of one rate of events for all bins against one for each, less its expectation.
-double gain(const Counts& events, const Counts& pairs) {
+double gain_of_counts(const Counts& events, const Counts& pairs) {
   double of_bins = 0.0;
   double used = 0.0;
   for (std::size_t b = 0; b < kBins; ++b) {
@@ -152,13 +152,13 @@ class Tracer {
   [[nodiscard]] std::vector<double> gains_of(const std::vector<std::size_t>& events) const {
     std::vector<double> gains;
     for (std::size_t v = 0; v < covariates_.size(); ++v)
-      gains.push_back(gain(counted(covariates_[v], events), pairs_[v]));
+      gains.push_back(gain_of_counts(counted(covariates_[v], events), pairs_[v]));
     return gains;
   }
 
   /// That events strewn over the pairs at random gain as much by any covariate.
   double chance_of(double best) {
-    std::mt19937 engine(kSeed);
+    std::mt19937 engine(kOutlierSeed);
     int as_good = 0;
     std::vector<std::size_t> strewn(events_.size());
     for (int draw = 0; draw < settings::kOutlierDraws; ++draw) {

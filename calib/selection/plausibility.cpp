@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/significant.hpp"
 #include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
@@ -119,7 +120,7 @@ bool is_superfluous(const vehicle::Effect& effect, std::size_t first, const esti
     if (parameters[k].is_size()) sizes.push_back(static_cast<Eigen::Index>(first + k));
   const Eigen::VectorXd value = fit.parameters(sizes);
   const Eigen::MatrixXd covariance = fit.covariance(sizes, sizes);
-  const double wald = value.dot(covariance.ldlt().solve(value));
+  const double wald = value.dot(math::solve_symmetric(covariance, value));
   return chi_squared_tail(wald, sizes.size()) > settings::kNeededLevel;
 }
 

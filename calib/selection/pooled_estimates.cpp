@@ -5,6 +5,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 
+#include "calib/math/linear_solve.hpp"
+
 namespace odomcalib::calib::selection {
 namespace {
 
@@ -23,7 +25,7 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
-  return scale.asDiagonal() * scaled.ldlt().solve(identity) * scale.asDiagonal();
+  return scale.asDiagonal() * math::solve_symmetric(scaled, identity) * scale.asDiagonal();
 }
 
 }  // namespace

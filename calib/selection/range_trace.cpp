@@ -59,12 +59,12 @@ Misfit misfit_of(const Adjusted& state, const std::vector<measurement::Beam>& be
   return misfit;
 }
 
-struct CrossValidation {
+struct RangeGain {
   double before = 0.0, after = 0.0;  ///< m, RMS of the readings against the map
   double z = 0.0;                    ///< mean gain per scan in its standard deviations
 };
 
-CrossValidation prove(const Adjusted& before, const Adjusted& after, const measurement::PlacedBeams& others) {
+RangeGain prove(const Adjusted& before, const Adjusted& after, const measurement::PlacedBeams& others) {
   Misfit all_before, all_after;
   double sum = 0.0, squares = 0.0, count = 0.0;
   for (std::size_t k = 0; k < others.beams.size(); ++k) {
@@ -85,9 +85,8 @@ CrossValidation prove(const Adjusted& before, const Adjusted& after, const measu
           sum / count / std::sqrt(std::max(variance, std::numeric_limits<double>::min()) / count)};
 }
 
-terms::LidarFinding finding_of(terms::LidarEffectPtr effect, double p_value,
-                               const CrossValidation& validation, const Eigen::VectorXd& values,
-                               const Eigen::VectorXd& deviations) {
+terms::LidarFinding range_finding(terms::LidarEffectPtr effect, double p_value, const RangeGain& validation,
+                                  const Eigen::VectorXd& values, const Eigen::VectorXd& deviations) {
   return {std::move(effect),
           {values.begin(), values.end()},
           {deviations.begin(), deviations.end()},
@@ -101,9 +100,9 @@ double deviation_of_offset(const measurement::RangeEvidence& left) {
   return std::hypot(left.offset_alone_deviation, left.values(0) - left.offset_alone);
 }
 
-class Trace {
+class RangeTracing {
  public:
-  Trace(Adjusted state, const measurement::PlacedBeams& used, const measurement::PlacedBeams& others)
+  RangeTracing(Adjusted state, const measurement::PlacedBeams& used, const measurement::PlacedBeams& others)
       : state_(std::move(state)), used_(used), others_(others) {}
 
   measurement::RangeTrace run() {
@@ -128,8 +127,8 @@ class Trace {
     if (std::abs(value) < settings::kClearRangeError * deviation) return {};
     const auto validation = advance(std::move(better));
     if (!validation) return {};
-    return {finding_of(terms::make_range_bias(), p_value, *validation, Eigen::VectorXd::Constant(1, value),
-                       Eigen::VectorXd::Constant(1, deviation))};
+    return {range_finding(terms::make_range_bias(), p_value, *validation, Eigen::VectorXd::Constant(1, value),
+                          Eigen::VectorXd::Constant(1, deviation))};
   }
 
   /// None where next to nothing is left once the map has settled: what was gained then is the map's.
@@ -140,14 +139,14 @@ class Trace {
     const auto validation = advance(std::move(better));
     if (!validation) return {};
     const measurement::RangeErrorTerms deviations = state_.evidence.covariance.diagonal().cwiseSqrt();
-    return {finding_of(terms::make_incidence_error(), p_value, *validation,
-                       state_.options.range_error.tail<measurement::kRangeCoefficients - 1>(),
-                       deviations.tail<measurement::kRangeCoefficients - 1>())};
+    return {range_finding(terms::make_incidence_error(), p_value, *validation,
+                          state_.options.range_error.tail<measurement::kRangeCoefficients - 1>(),
+                          deviations.tail<measurement::kRangeCoefficients - 1>())};
   }
 
   /// To a state that scans that were not used confirm.
-  std::optional<CrossValidation> advance(Adjusted better) {
-    const CrossValidation validation = prove(state_, better, others_);
+  std::optional<RangeGain> advance(Adjusted better) {
+    const RangeGain validation = prove(state_, better, others_);
     if (validation.z < settings::kHeldOutZ) return std::nullopt;
     state_ = std::move(better);
     return validation;
@@ -165,7 +164,7 @@ measurement::RangeTrace trace_ranges(const measurement::RangeEvidence& evidence,
                                      const measurement::PlacedBeams& others,
                                      const measurement::PlaceOptions& options,
                                      const measurement::WallMap& map) {
-  return Trace({map, options, evidence}, used, others).run();
+  return RangeTracing({map, options, evidence}, used, others).run();
 }
 
 }  // namespace odomcalib::calib::selection

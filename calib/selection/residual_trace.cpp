@@ -132,7 +132,7 @@ std::array<double, kCovariates.size()> covariates_of(const vehicle::DriveModel& 
   return values;
 }
 
-std::array<double, 3> difference(const math::Pose& a, const math::Pose& b) {
+std::array<double, 3> components_between(const math::Pose& a, const math::Pose& b) {
   return {a.x - b.x, a.y - b.y, math::wrap_angle(a.yaw - b.yaw)};
 }
 
@@ -150,8 +150,8 @@ Samples samples_of(std::span<const measurement::FitData> data, const vehicle::Ef
       const math::Pose measured = conjugate(d.pairs[k].motion, back);
       const math::Pose with_effect = conjugate(full[k], back);
       samples.motion.push_back(measured);
-      samples.after.push_back(difference(measured, with_effect));
-      samples.pattern.push_back(difference(with_effect, conjugate(plain[k], back)));
+      samples.after.push_back(components_between(measured, with_effect));
+      samples.pattern.push_back(components_between(with_effect, conjugate(plain[k], back)));
       samples.covariates.push_back(covariates_of(*d.model, intervals[k]));
     }
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/math/linear_solve.hpp"
 #include "calib/selection/candidate_columns.hpp"
 #include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
@@ -89,7 +90,7 @@ struct WaveSums {
 
   /// Chi-squared with two degrees of freedom in noise.
   [[nodiscard]] double statistic(double variance) const {
-    return score.dot(gram.ldlt().solve(score)) / variance;
+    return score.dot(math::solve_symmetric(gram, score)) / variance;
   }
 };
 

@@ -8,13 +8,14 @@
 #include <map>
 #include <random>
 
+#include "calib/math/linear_solve.hpp"
 #include "calib/selection/candidate_columns.hpp"
 #include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr unsigned kSeed = 20210601;
+constexpr unsigned kFlipSeed = 20210601;
 constexpr double kGauge = 1e-6;  ///< share of a signature that counts as fully absorbed
 constexpr double kRidge = 1e-9;
 
@@ -48,12 +49,7 @@ Blocks blocks_of(std::span<const measurement::FitData> data) {
 /// @param scale size of the columns before it
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double scale) {
   if (!(scale > 0.0)) return {columns.rows(), 0};
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-  Eigen::Index rank = 0;
-  const auto& r = qr.matrixR();
-  while (rank < columns.cols() && std::abs(r(rank, rank)) > std::sqrt(kGauge) * scale) ++rank;
-  if (rank == 0) return {columns.rows(), 0};
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), rank);
+  return math::orthonormal_basis(columns, std::sqrt(kGauge) * scale);
 }
 
 /// Sums of rows within blocks: column b holds basis^T r of block b.
@@ -71,7 +67,7 @@ Eigen::MatrixXd block_scores(const Eigen::MatrixXd& basis, const Eigen::VectorXd
 
 /// One draw of signs a column.
 Eigen::MatrixXd draws_of_signs(Eigen::Index blocks) {
-  std::mt19937 engine(kSeed);
+  std::mt19937 engine(kFlipSeed);
   Eigen::MatrixXd signs(blocks, settings::kSignDraws);
   for (Eigen::Index draw = 0; draw < signs.cols(); ++draw)
     for (Eigen::Index b = 0; b < blocks; ++b) signs(b, draw) = (engine() & 1U) != 0U ? 1.0 : -1.0;
@@ -230,7 +226,7 @@ std::vector<double> ScoreTable::correlations(std::size_t candidate,
   for_each_basis(others, [&](std::size_t position, const Eigen::MatrixXd& basis) {
     const Eigen::MatrixXd overlap = own.transpose() * basis;
     if (overlap.size() == 0) return;
-    found[position] = std::min(Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues()(0), 1.0);
+    found[position] = std::min(math::singular_values(overlap)(0), 1.0);
   });
   return found;
 }
@@ -249,7 +245,7 @@ FoldFlags ScoreTable::selected_without(const std::vector<std::size_t>& candidate
         score += block_scores_[candidate].col(static_cast<Eigen::Index>(b));
         gram.noalias() += rows.transpose() * rows;
       }
-      const double statistic = score.dot(gram.ldlt().solve(score)) / variance_;
+      const double statistic = score.dot(math::solve_symmetric(gram, score)) / variance_;
       selected[fold] |= family_p_value(statistic, scores_[candidate].degrees) <= level;
     }
   });

@@ -13,7 +13,7 @@
 namespace odomcalib::calib::selection {
 namespace {
 
-constexpr unsigned kSeed = 19960612;
+constexpr unsigned kWindowSeed = 19960612;
 
 double rms(const std::vector<double>& values) {
   double sum = 0.0;
@@ -90,7 +90,7 @@ Improvement compare(const WindowErrors& before, const WindowErrors& after) {
   const std::size_t count = std::min(before.position.size(), after.position.size());
   for (std::size_t k = 0; k < count; ++k)
     by_block[before.block[k]] += {combined_square(after, k), combined_square(before, k)};
-  const math::BootstrapInterval interval = bootstrap_root(by_block, kSeed);
+  const math::BootstrapInterval interval = bootstrap_root(by_block, kWindowSeed);
   return {total_of(by_block).root(), interval.upper, interval.lower};
 }
 
@@ -130,7 +130,7 @@ HeldOutGain held_out_gain(std::span<const measurement::FitData> data, const esti
   }
   HeldOutGain gain;
   for (const double b : blocks) gain.total += b;
-  gain.lower = math::bootstrap(blocks, kSeed, [](double sum) { return sum; }).lower;
+  gain.lower = math::bootstrap(blocks, kWindowSeed, [](double sum) { return sum; }).lower;
   return gain;
 }
 

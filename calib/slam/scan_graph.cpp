@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/slam/odometry_correction.hpp"
 #include "calib/slam/optimize.hpp"
@@ -19,7 +20,7 @@ std::array<double, 6> information_of(const Eigen::Matrix3d& covariance) {
                                                 settings::kMotionFloor_m * settings::kMotionFloor_m,
                                                 settings::kMotionFloor_rad * settings::kMotionFloor_rad)
                                     .asDiagonal();
-  const Eigen::Matrix3d i = (covariance + floor).ldlt().solve(Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d i = math::inverse_symmetric(covariance + floor);
   return {i(0, 0), i(0, 1), i(0, 2), i(1, 1), i(1, 2), i(2, 2)};
 }
 
@@ -131,7 +132,7 @@ class Builder {
     matching::MatchOptions match;
     match.range_noise = options_.loop.range_noise;
     match.min_overlap = settings::kNeighbourOverlap;
-    match.guess_information = odometry_covariance().ldlt().solve(Eigen::Matrix3d::Identity());
+    match.guess_information = math::inverse_symmetric(odometry_covariance());
     const matching::MatchResult found = match_point_to_line(*references_[k - 1], surface(k), guess, match);
     if (found.is_usable()) return {{true, "", found.motion, found.covariance, found.overlap}};
     if (found.status == matching::MatchStatus::degenerate)
@@ -150,7 +151,7 @@ class Builder {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scans);
     const Eigen::Matrix3d known = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
                                   eigen.eigenvectors().transpose();
-    return (known + odometry).ldlt().solve(Eigen::Matrix3d::Identity());
+    return math::inverse_symmetric(known + odometry);
   }
 
   /// Half width of the search: what may have gone wrong since the map last closed. Errors of steps are

@@ -52,7 +52,7 @@ const Quantity* find(const QuantityList& list, const std::string& name) {
   return nullptr;
 }
 
-std::string cell_of(const Quantity* quantity) {
+std::string quantity_cell(const Quantity* quantity) {
   if (quantity == nullptr) return "-";
   const Display show = display_of(quantity->unit);
   return number(quantity->value * show.factor, show.digits);
@@ -79,7 +79,7 @@ Section methods_of(const Calibration& calibration) {
       if (method.refused) continue;
       const Quantity* quantity = find(method.parameters, name);
       const std::string sigmas = sigmas_of(quantity, &last);
-      row.push_back(cell_of(quantity) + (sigmas == "-" ? "" : " (" + sigmas + ")"));
+      row.push_back(quantity_cell(quantity) + (sigmas == "-" ? "" : " (" + sigmas + ")"));
     }
     section.table.rows.push_back(row);
   }

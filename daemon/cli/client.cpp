@@ -19,7 +19,7 @@ namespace odomcalib::cli {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
+using RenewalClock = std::chrono::steady_clock;
 
 volatile sig_atomic_t signalled = 0;
 
@@ -50,7 +50,7 @@ class Hurry {
 
 // With its time: a daemon that reads late knows when it was sent.
 ordered_json renewal_of(const std::string& lease) {
-  const std::chrono::duration<double> now = Clock::now().time_since_epoch();
+  const std::chrono::duration<double> now = RenewalClock::now().time_since_epoch();
   return {{"lease", lease}, {"sent", now.count()}};
 }
 
@@ -138,8 +138,8 @@ Result<std::optional<control::Reply>> Client::receive(int timeout_ms) {
 
 Result<std::string> Client::call(const std::string& method, ordered_json parameters, int timeout_ms) {
   if (auto sent = send(method, std::move(parameters)); !sent) return sent.error();
-  const auto until = Clock::now() + std::chrono::milliseconds(timeout_ms);
-  while (Clock::now() < until) {
+  const auto until = RenewalClock::now() + std::chrono::milliseconds(timeout_ms);
+  while (RenewalClock::now() < until) {
     const auto reply = receive(50);
     if (!reply) return reply.error();
     if (reply.value()) return value_of(*reply.value());
@@ -165,10 +165,10 @@ Result<std::string> call_with_lease(const std::string& socket, const std::string
   const auto lease = ordered_json::parse(given.value(), nullptr, false).value("lease", std::string());
   parameters["lease"] = lease;
   if (auto sent = worker.send(method, std::move(parameters), true); !sent) return sent.error();
-  auto next = Clock::now();
+  auto next = RenewalClock::now();
   while (signalled == 0 || interrupted != WhenInterrupted::stop) {
-    if (Clock::now() >= next) {
-      next = Clock::now() + settings::kRenewal;
+    if (RenewalClock::now() >= next) {
+      next = RenewalClock::now() + settings::kRenewal;
       if (auto sent = keeper.value().send("Renew", renewal_of(lease)); !sent) return sent.error();
     }
     (void)keeper.value().receive(0);

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "proto/angles.hpp"
 
 namespace odomcalib::cli {
 
 Display display_of(const std::string& unit) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   if (unit == "m") return {1000.0, "mm", 3};
   if (unit == "rad") return {kDegrees, "deg", 3};
   if (unit == "s") return {1000.0, "ms", 3};

@@ -117,8 +117,8 @@ std::string provenance(const Calibration& calibration, const std::string& what) 
   return text;
 }
 
-Result<std::string> text_of(const Calibration& calibration, const Dimensions& dimensions,
-                            const std::string& what, const std::string& where) {
+Result<std::string> configuration_text(const Calibration& calibration, const Dimensions& dimensions,
+                                       const std::string& what, const std::string& where) {
   if (what == "toml") return robot_toml(calibration, dimensions);
   if (what == "diff_drive") return diff_drive_yaml(dimensions);
   if (what == "urdf") return urdf(calibration, where);
@@ -166,7 +166,7 @@ Result<std::string> configuration(const Calibration& calibration, const std::str
   if (calibration.verdict == Verdict::refused) return refusal_of(calibration, where);
   const auto dimensions = dimensions_of(calibration, where);
   if (!dimensions) return dimensions.error();
-  const auto text = text_of(calibration, dimensions.value(), what, where);
+  const auto text = configuration_text(calibration, dimensions.value(), what, where);
   if (!text) return text.error();
   std::string head = provenance(calibration, what);
   for (const std::string& sentence : not_held(calibration, what)) head += commented(what, sentence);

@@ -11,7 +11,7 @@ namespace odomcalib::cli {
 namespace {
 
 constexpr double kSize = 1000.0;  // of the longer side, in units of the picture
-constexpr double kMargin = 20.0;
+constexpr double kPictureMargin = 20.0;
 constexpr double kLegend = 30.0;  // height of the line of text below
 
 /// From metres, y up, to the picture, y down.
@@ -37,12 +37,17 @@ class Frame {
     const double side = std::max(right_ - left_, top_ - bottom_);
     return side > 0.0 ? kSize / side : 1.0;
   }
-  [[nodiscard]] double width() const { return (right_ - left_) * scale() + 2.0 * kMargin; }
-  [[nodiscard]] double height() const { return (top_ - bottom_) * scale() + 2.0 * kMargin; }
-  [[nodiscard]] double x(const GraphVertex& vertex) const { return kMargin + (vertex.x - left_) * scale(); }
-  [[nodiscard]] double y(const GraphVertex& vertex) const { return kMargin + (top_ - vertex.y) * scale(); }
+  [[nodiscard]] double width() const { return (right_ - left_) * scale() + 2.0 * kPictureMargin; }
+  [[nodiscard]] double height() const { return (top_ - bottom_) * scale() + 2.0 * kPictureMargin; }
+  [[nodiscard]] double x(const GraphVertex& vertex) const {
+    return kPictureMargin + (vertex.x - left_) * scale();
+  }
+  [[nodiscard]] double y(const GraphVertex& vertex) const {
+    return kPictureMargin + (top_ - vertex.y) * scale();
+  }
   [[nodiscard]] Eigen::Vector2d at(const Eigen::Vector2d& position) const {
-    return {kMargin + (position.x() - left_) * scale(), kMargin + (top_ - position.y()) * scale()};
+    return {kPictureMargin + (position.x() - left_) * scale(),
+            kPictureMargin + (top_ - position.y()) * scale()};
   }
 
  private:
@@ -121,7 +126,7 @@ std::string legend(const Frame& frame) {
       "<text x=\"{:.0f}\" y=\"{:.0f}\" font-family=\"sans-serif\" font-size=\"14\">"
       "<tspan fill=\"#888\">before</tspan> <tspan fill=\"#2166ac\">after</tspan> "
       "<tspan fill=\"#e08214\">loops</tspan> 1 m = {:.3g} px</text>\n",
-      kMargin, frame.height() + 0.5 * kLegend, frame.scale());
+      kPictureMargin, frame.height() + 0.5 * kLegend, frame.scale());
 }
 
 }  // namespace

@@ -5,10 +5,10 @@
 namespace odomcalib::cli {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using RunClock = std::chrono::steady_clock;
 
-std::int64_t microseconds_since(Clock::time_point begin) {
-  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - begin).count();
+std::int64_t microseconds_since(RunClock::time_point begin) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(RunClock::now() - begin).count();
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ GraphRun run_graph(PoseGraph graph, const calib::slam::GraphOptions& options,
   for (const GraphVertex& vertex : graph.vertices)
     if (vertex.fixed) run.fixed.push_back(vertex.id);
   run.before = graph;
-  const auto begin = Clock::now();
+  const auto begin = RunClock::now();
   run.summary = calib::slam::optimize_graph(
       graph, options, [&run, &observer, begin](const calib::slam::GraphIteration& iteration) {
         run.iterations.push_back({iteration, microseconds_since(begin)});

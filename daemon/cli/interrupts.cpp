@@ -21,7 +21,7 @@ volatile sig_atomic_t finish = 0;
 
 // Outputs are written whole or not at all, so the program may end anywhere. Nothing here but what a signal
 // handler may call.
-void on_signal(int /*number*/) {
+void on_interrupt(int /*number*/) {
   (void)!write(STDERR_FILENO, kTold.data(), kTold.size());
   if (prints_json != 0) (void)!write(STDOUT_FILENO, kObject.data(), kObject.size());
   _exit(kCancelled);
@@ -38,7 +38,7 @@ void end_when_interrupted(JsonMode json) {
     sigaction(number, nullptr, &before);
     if (before.sa_handler == SIG_IGN) continue;
     struct sigaction action {};
-    action.sa_handler = on_signal;
+    action.sa_handler = on_interrupt;
     sigaction(number, &action, nullptr);
   }
 }

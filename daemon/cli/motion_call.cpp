@@ -7,18 +7,16 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <iostream>
-#include <numbers>
 #include <utility>
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/plan_document.hpp"
+#include "proto/angles.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// What a person should know before it moves.
 struct Prospect {

@@ -21,7 +21,7 @@ namespace odomcalib::cli {
 namespace {
 
 /// 0: it does not say.
-std::size_t columns_of(int terminal) {
+std::size_t terminal_columns(int terminal) {
   winsize size{};
   return ioctl(terminal, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
@@ -89,7 +89,7 @@ int after_flush(int status) {
 
 std::size_t text_columns() {
   std::size_t columns = wanted_columns();
-  if (columns == 0) columns = columns_of(STDOUT_FILENO);
+  if (columns == 0) columns = terminal_columns(STDOUT_FILENO);
   return columns == 0 ? settings::kTextColumns : std::max(columns, settings::kFewestColumns);
 }
 
@@ -130,7 +130,7 @@ void ProgressLine::replace(const std::string& text) {
   // A terminal that takes nothing now (Ctrl-S, a slow line) must not hold up whoever keeps a motion alive.
   pollfd terminal{STDERR_FILENO, POLLOUT, 0};
   if (poll(&terminal, 1, 0) != 1 || (terminal.revents & POLLOUT) == 0) return;
-  const std::size_t columns = columns_of(STDERR_FILENO);
+  const std::size_t columns = terminal_columns(STDERR_FILENO);
   std::cerr << "\r\x1b[K" << (columns > 1 ? text.substr(0, columns - 1) : text) << std::flush;
   shown_ = true;
 }

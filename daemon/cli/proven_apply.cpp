@@ -12,6 +12,7 @@
 
 #include "daemon/cli/output.hpp"
 #include "daemon/cli/settings.hpp"
+#include "proto/angles.hpp"
 #include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
@@ -20,7 +21,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct Judged {
   const char* name;
@@ -40,12 +40,12 @@ constexpr std::array kJudgeds = {
            kDegrees, "deg"}};
 
 /// A failed write has left the old values, as far as the daemon could see to it and say so.
-bool is_settled(const Error& failed) {
+bool is_final(const Error& failed) {
   return failed.code != ErrorCode::write_unknown && failed.code != ErrorCode::not_running &&
          failed.code != ErrorCode::io;
 }
 
-Error unseen() {
+Error unseen_drive() {
   return {ErrorCode::refused, "the lidar did not recognise the place after every move", "comparison",
           "drive where it sees walls on all sides, not along a corridor"};
 }
@@ -73,10 +73,10 @@ Result<std::vector<Move>> moves_of(const RunMethod& run, const char* method, con
   std::vector<Move> moves;
   for (const auto& body : driven.value().value("moves", ordered_json::array())) {
     const auto move = move_of(body);
-    if (!move) return unseen();
+    if (!move) return unseen_drive();
     moves.push_back(*move);
   }
-  if (moves.empty()) return unseen();
+  if (moves.empty()) return unseen_drive();
   return moves;
 }
 
@@ -120,7 +120,7 @@ Error not_taken_back(const Error& why, const Error& failed) {
 
 ProvenApply not_applied(ProvenApply applied, const Error& why) {
   applied.error = why;
-  if (!is_settled(why)) applied.end = ProvenApply::End::in_doubt;
+  if (!is_final(why)) applied.end = ProvenApply::End::in_doubt;
   return applied;
 }
 
@@ -139,7 +139,7 @@ ProvenApply store(const RunMethod& run, const RunMethod& always, ProvenApply app
   const auto stored = run("Store", ordered_json::object());
   applied.end = stored ? ProvenApply::End::stored : ProvenApply::End::taken_back;
   if (stored) return applied;
-  const bool begun = stored.error().code == ErrorCode::write_failed || !is_settled(stored.error());
+  const bool begun = stored.error().code == ErrorCode::write_failed || !is_final(stored.error());
   return begun ? not_applied(std::move(applied), stored.error())
                : take_back(always, std::move(applied), not_proven(stored.error()));
 }

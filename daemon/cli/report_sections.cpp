@@ -58,7 +58,7 @@ std::string dependence_of(const ResidualTrace& trace) {
   return fmt::format("the {} residual depends on {}", trace.residual, trace.variable);
 }
 
-std::optional<double> value_of(const Calibration& calibration, const std::string& name) {
+std::optional<double> parameter_value(const Calibration& calibration, const std::string& name) {
   return calibration.parameter(name);
 }
 
@@ -66,9 +66,9 @@ std::optional<double> value_of(const Calibration& calibration, const std::string
 
 std::vector<std::string> effect_in_words(const Calibration& calibration) {
   const auto& robot = calibration.robot;
-  const auto left = value_of(calibration, "left_wheel_diameter");
-  const auto right = value_of(calibration, "right_wheel_diameter");
-  const auto track = value_of(calibration, "track_width");
+  const auto left = parameter_value(calibration, "left_wheel_diameter");
+  const auto right = parameter_value(calibration, "right_wheel_diameter");
+  const auto track = parameter_value(calibration, "track_width");
   if (!left || !right || !track || !(robot.left_wheel_diameter > 0.0) ||
       !(robot.right_wheel_diameter > 0.0) || !(robot.track_width > 0.0))
     return {};

@@ -14,7 +14,7 @@
 namespace odomcalib::cli {
 namespace {
 
-struct Options {
+struct ConvertOptions {
   std::string recording, out;
   RecordingOptions reading;
 };
@@ -38,7 +38,7 @@ void print_summary(const Recording& recording, const std::string& out) {
     print_line(fmt::format("  not used: {} {}: {}", one.count, one.what, one.reason));
 }
 
-int convert_recording(const Options& options, const Session& session) {
+int convert_recording(const ConvertOptions& options, const Session& session) {
   if (const auto files = check_outputs({{"--out", options.out}}, {{"the recording", options.recording},
                                                                   {"--robot", options.reading.robot_file}});
       !files)
@@ -66,7 +66,7 @@ int convert_recording(const Options& options, const Session& session) {
 
 void add_convert(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("convert", "Write any recording as JSON Lines");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertOptions>();
   verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
   verb->add_option("--out", options->out, "file to write: .jsonl, or .jsonl.gz to pack it")->required();
   add_reading_options(*verb, options->reading);

@@ -11,11 +11,11 @@
 namespace odomcalib::cli {
 namespace {
 
-struct Options {
+struct DecodeOptions {
   std::string driver, file, profiles = kProfileFolder;
 };
 
-int decode_file(const Options& options, const Session& session) {
+int decode_file(const DecodeOptions& options, const Session& session) {
   const auto bytes = read_file_bytes(options.file);
   if (!bytes) return report_error(bytes.error(), session.json);
   const auto lines = [&] {
@@ -31,7 +31,7 @@ int decode_file(const Options& options, const Session& session) {
 
 void add_decode(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("decode", "Bytes of a device, or a candump log, as JSON Lines");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DecodeOptions>();
   verb->add_option("DRIVER", options->driver,
                    "a lidar type (ld06, rplidar, ydlidar:x4, hokuyo, sick, xv11, ...), "
                    "or a controller: PROTOCOL:PROFILE (canopen:zlac8015d, agilex, vesc, ...)")

@@ -15,19 +15,19 @@
 namespace odomcalib::cli {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string calibration, what = "parameters", out;
 };
 
 // The text of another program's format is one value of the JSON object.
-void print(const std::string& what, const std::string& text, const Session& session) {
+void print_export(const std::string& what, const std::string& text, const Session& session) {
   if (session.json == JsonMode::off)
     std::cout << text;
   else
     print_document("export", {{"what", what}, {"text", text}}, session.json);
 }
 
-int export_calibration(const Options& options, const Session& session) {
+int export_calibration(const ExportOptions& options, const Session& session) {
   if (const auto files = check_outputs({{"--out", options.out}}, {{"the calibration", options.calibration}});
       !files)
     return report_error(files.error(), session.json);
@@ -42,7 +42,7 @@ int export_calibration(const Options& options, const Session& session) {
   if (configuration)
     for (const std::string& sentence : not_held(calibration.value(), options.what)) warn(sentence);
   if (options.out.empty()) {
-    print(options.what, text.value(), session);
+    print_export(options.what, text.value(), session);
     return kDone;
   }
   if (auto written = write_output(options.out, text.value()); !written)
@@ -54,7 +54,7 @@ int export_calibration(const Options& options, const Session& session) {
 
 void add_export(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("export", "A calibration file for other programs: CSV, TOML, ros2_control");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   verb->add_option("CALIBRATION", options->calibration)->required();
   verb->add_option(
           "--what", options->what,

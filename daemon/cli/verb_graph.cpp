@@ -20,7 +20,7 @@
 namespace odomcalib::cli {
 namespace {
 
-struct Options {
+struct OptimizeOptions {
   std::vector<std::string> files;
   std::string out, picture;
   calib::slam::GraphOptions solver;
@@ -39,21 +39,21 @@ struct BuildOptions {
 };
 
 template <typename... Described>
-void print(const Session& session, const std::string& document, const Described&... described) {
+void print_graph(const Session& session, const std::string& document, const Described&... described) {
   if (session.json == JsonMode::off)
     print_text(describe(described...), session.legend);
   else
     print_document(document, to_json(described...), session.json);
 }
 
-Result<void> write_results(const Options& options, const GraphRun& run) {
+Result<void> write_graph(const OptimizeOptions& options, const GraphRun& run) {
   if (!options.out.empty())
     if (auto written = write_output(options.out, to_g2o(run.after)); !written) return written;
   if (!options.picture.empty()) return write_output(options.picture, graph_picture(run.before, run.after));
   return {};
 }
 
-int optimize(const Options& options, const Session& session) {
+int optimize(const OptimizeOptions& options, const Session& session) {
   if (const auto files = check_outputs({{"--out", options.out}, {"--svg", options.picture}},
                                        named("the graph", options.files));
       !files)
@@ -70,13 +70,12 @@ int optimize(const Options& options, const Session& session) {
     return report_error({ErrorCode::refused, state_name(run.summary.state) + ": " + run.summary.reason,
                          options.files.front(), "nothing was written"},
                         session.json);
-  if (auto written = write_results(options, run); !written)
-    return report_error(written.error(), session.json);
-  print(session, "graph-optimize", run);
+  if (auto written = write_graph(options, run); !written) return report_error(written.error(), session.json);
+  print_graph(session, "graph-optimize", run);
   return kDone;
 }
 
-int tell(const Options& options, const Session& session) {
+int tell(const OptimizeOptions& options, const Session& session) {
   auto graph = read_files(options.files);
   if (!graph) return report_error(graph.error(), session.json);
   if (!graph.value().has_positions) {
@@ -87,11 +86,11 @@ int tell(const Options& options, const Session& session) {
       anchored.vertices[v].fixed = graph.value().vertices[v].fixed;
     graph = std::move(anchored);
   }
-  print(session, "graph-info", graph.value(), calib::slam::inspect_graph(graph.value()));
+  print_graph(session, "graph-info", graph.value(), calib::slam::inspect_graph(graph.value()));
   return kDone;
 }
 
-Result<void> write_results(const BuildOptions& options, const calib::slam::RecordingMap& map) {
+Result<void> write_graph(const BuildOptions& options, const calib::slam::RecordingMap& map) {
   if (!options.out.empty())
     if (auto written = write_output(options.out, to_g2o(map.made.graph)); !written) return written;
   if (options.picture.empty()) return {};
@@ -112,9 +111,9 @@ int build(const BuildOptions& options, const Session& session) {
     return calib::slam::map_recording(recordings.value().front(), options.graph);
   }();
   if (!map) return report_error(map.error(), session.json);
-  if (auto written = write_results(options, map.value()); !written)
+  if (auto written = write_graph(options, map.value()); !written)
     return report_error(written.error(), session.json);
-  print(session, "graph-build", map.value());
+  print_graph(session, "graph-build", map.value());
   return kDone;
 }
 
@@ -132,7 +131,7 @@ void add_choice(CLI::App& verb, const std::string& option, Choice& chosen,
 
 void add_optimize(CLI::App& parent, Session& session) {
   auto* verb = parent.add_subcommand("optimize", "Move the vertices to where they agree best with the edges");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<OptimizeOptions>();
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
   verb->add_option("--out", options->out, "g2o file to write");
   verb->add_option("--svg", options->picture, "picture to write: trajectory before and after, loops");
@@ -147,7 +146,7 @@ void add_optimize(CLI::App& parent, Session& session) {
 
 void add_info(CLI::App& parent, Session& session) {
   auto* verb = parent.add_subcommand("info", "What a pose graph holds, and how well it fits its edges");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<OptimizeOptions>();
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
   verb->callback(
       [&session, options] { session.run = [&session, options] { return tell(*options, session); }; });

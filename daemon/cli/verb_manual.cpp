@@ -8,7 +8,6 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <numbers>
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
@@ -19,6 +18,7 @@
 #include "daemon/cli/plan_document.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "daemon/routines/settings.hpp"
+#include "proto/angles.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib::cli {
@@ -26,9 +26,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-struct Options {
+struct ManualOptions {
   Consent consent;
   double distance = 1.0, turns = 1.0;
   std::string direction = "both";
@@ -45,7 +43,9 @@ struct Motion {
   std::string question;  ///< empty: nothing is asked after it
 };
 
-bool asks(const Options& options) { return options.measured.size() == 1 && options.measured[0] == "ask"; }
+bool asks(const ManualOptions& options) {
+  return options.measured.size() == 1 && options.measured[0] == "ask";
+}
 
 /// @param unit of what is typed, in SI
 Result<double> number_of(const std::string& text, double unit) {
@@ -58,7 +58,7 @@ Result<double> number_of(const std::string& text, double unit) {
   return value * unit;
 }
 
-Result<std::vector<double>> measured_values(const Options& options, double unit) {
+Result<std::vector<double>> measured_values(const ManualOptions& options, double unit) {
   std::vector<double> values;
   if (asks(options)) return values;
   for (const auto& text : options.measured) {
@@ -80,7 +80,7 @@ Result<double> asked(const std::string& question, double unit) {
 }
 
 /// Motions of one repetition.
-std::vector<Motion> straight_motions(const Options& options) {
+std::vector<Motion> straight_motions(const ManualOptions& options) {
   ordered_json there = {{"distance", options.distance}};
   if (options.square) there["square"] = true;
   if (!options.one_way && !asks(options)) return {{"Straight", there, ""}};
@@ -92,7 +92,7 @@ std::vector<Motion> straight_motions(const Options& options) {
   return motions;
 }
 
-std::vector<Motion> spin_motions(const Options& options) {
+std::vector<Motion> spin_motions(const ManualOptions& options) {
   const auto motion = [&](const std::string& direction) {
     return Motion{"Spin",
                   {{"turns", options.turns}, {"direction", direction}},
@@ -111,13 +111,13 @@ struct Outcome {
 };
 
 /// Consent is asked for once, and then for every motion of the repetitions given.
-Result<ordered_json> move(const Session& session, Options& options, const Motion& motion) {
+Result<ordered_json> move(const Session& session, ManualOptions& options, const Motion& motion) {
   auto result = run_method(session, options.consent, motion.method, motion.parameters);
   if (result) options.consent.yes = true;
   return result;
 }
 
-Result<Outcome> drive(const Session& session, Options options, const std::vector<Motion>& motions,
+Result<Outcome> drive(const Session& session, ManualOptions options, const std::vector<Motion>& motions,
                       double unit, std::vector<double> measured, const Propose& propose) {
   Outcome outcome;
   for (int round = 0; round < options.repeat && !(outcome.proposal && outcome.proposal->settled); ++round) {
@@ -162,7 +162,7 @@ std::string describe_move(const ordered_json& move) {
                             move["error"]["yaw"].get<double>() * kDegrees);
 }
 
-void print(const Session& session, const Outcome& outcome) {
+void print_outcome(const Session& session, const Outcome& outcome) {
   const auto& [driven, proposal, plan] = outcome;
   if (!plan.is_null()) {
     session.json == JsonMode::off ? print_text(describe_plan(plan), session.legend)
@@ -184,9 +184,9 @@ void print(const Session& session, const Outcome& outcome) {
   std::cout << wrapped_command("Next: " + next_command(*proposal), text_columns());
 }
 
-int finish(const Session& session, const Options& options, const Result<Outcome>& outcome) {
+int finish_manual(const Session& session, const ManualOptions& options, const Result<Outcome>& outcome) {
   if (!outcome) return report_error(outcome.error(), session.json);
-  print(session, outcome.value());
+  print_outcome(session, outcome.value());
   if (options.out.empty() || !outcome.value().proposal) return kDone;
   const auto text = to_json(calibration_of(*outcome.value().proposal, outcome.value().driven));
   if (auto written = write_output(options.out, text); !written)
@@ -195,23 +195,24 @@ int finish(const Session& session, const Options& options, const Result<Outcome>
 }
 
 /// Drives, or with --of looks again at what was driven before.
-int run(const Session& session, const Options& options, const std::vector<Motion>& motions, double unit,
+int run(const Session& session, const ManualOptions& options, const std::vector<Motion>& motions, double unit,
         const Propose& propose) {
   if (const auto files = check_outputs({{"--out", options.out}}, {{"--of", options.of}}); !files)
     return report_error(files.error(), session.json);
   auto measured = measured_values(options, unit);
   if (!measured) return report_error(measured.error(), session.json);
   if (options.of.empty())
-    return finish(session, options,
-                  drive(session, options, motions, unit, std::move(measured).value(), propose));
+    return finish_manual(session, options,
+                         drive(session, options, motions, unit, std::move(measured).value(), propose));
   auto driven = read_moves(options.of);
   if (!driven) return report_error(driven.error(), session.json);
   auto proposal = propose(driven.value(), measured.value());
   if (!proposal) return report_error(proposal.error(), session.json);
-  return finish(session, options, Outcome{std::move(driven).value(), std::move(proposal).value(), nullptr});
+  return finish_manual(session, options,
+                       Outcome{std::move(driven).value(), std::move(proposal).value(), nullptr});
 }
 
-int straight(const Session& session, const Options& options) {
+int straight(const Session& session, const ManualOptions& options) {
   if (options.square && (!options.measured.empty() || options.one_way))
     return report_error({ErrorCode::usage, "a square is measured by the lidar, and ends where it began",
                          "--square", "leave --measured and --one-way out"},
@@ -237,12 +238,12 @@ void warn_of_order(const Session& session) {
         "first, apply, then spin");
 }
 
-int spin(const Session& session, const Options& options) {
+int spin(const Session& session, const ManualOptions& options) {
   if (options.of.empty()) warn_of_order(session);
   return run(session, options, spin_motions(options), 1.0 / kDegrees, spin_proposal);
 }
 
-void add_common(CLI::App& verb, const std::shared_ptr<Options>& options) {
+void add_common(CLI::App& verb, const std::shared_ptr<ManualOptions>& options) {
   add_consent(verb, options->consent);
   verb.add_option("--repeat", options->repeat, "times at most; fewer when more would not make it better")
       ->check(CLI::Range(1, routines::settings::kMostRepeats))
@@ -254,7 +255,7 @@ void add_common(CLI::App& verb, const std::shared_ptr<Options>& options) {
 }  // namespace
 
 void add_manual(CLI::App& app, Session& session) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ManualOptions>();
   auto* line =
       app.add_subcommand("straight", "Drive straight and back, and propose corrected wheel diameters");
   line->add_option("--distance", options->distance,

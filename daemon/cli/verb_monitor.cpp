@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct MonitorOptions {
   double duration = 0.0;
 };
 
@@ -58,7 +58,7 @@ Result<void> watch_state(Client& client, std::string& last, const Session& sessi
   return {};
 }
 
-int watch(Client& events, Client& questions, const Options& options, const Session& session) {
+int watch(Client& events, Client& questions, const MonitorOptions& options, const Session& session) {
   using Clock = std::chrono::steady_clock;
   if (auto sent = events.send("Monitor", ordered_json::object(), true); !sent)
     return report_error(sent.error(), session.json);
@@ -84,7 +84,7 @@ int watch(Client& events, Client& questions, const Options& options, const Sessi
   return kDone;
 }
 
-int monitor(const Options& options, const Session& session) {
+int monitor(const MonitorOptions& options, const Session& session) {
   finish_when_interrupted();
   auto events = Client::connect(session.socket);
   if (!events) return report_error(events.error(), session.json);
@@ -97,7 +97,7 @@ int monitor(const Options& options, const Session& session) {
 
 void add_monitor(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("monitor", "Events of the daemon as they happen, until Ctrl-C");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MonitorOptions>();
   verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C")->check(finite(0.0, 86400.0));
   verb->callback(
       [&session, options] { session.run = [&session, options] { return monitor(*options, session); }; });

@@ -30,7 +30,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct MotionOptions {
   Consent consent;
   std::string file, id;
   bool quick = false, one_drive = false, nudge = false, apply = false;
@@ -59,7 +59,8 @@ struct Solved {
 };
 
 // Drives, records and solves.
-Result<Solved> drive_and_solve(const Session& session, const Options& options, const ordered_json& wanted) {
+Result<Solved> drive_and_solve(const Session& session, const MotionOptions& options,
+                               const ordered_json& wanted) {
   const auto result = run_method(session, options.consent, "Calibrate", {{"options", wanted}});
   if (!result) return result.error();
   const std::string text = result.value().value("calibration", ordered_json::object()).dump();
@@ -70,7 +71,7 @@ Result<Solved> drive_and_solve(const Session& session, const Options& options, c
 
 // One more motion where the first drive leaves a question open. What it does not improve does not replace
 // anything.
-Solved second_drive(const Session& session, const Options& options, Solved first) {
+Solved second_drive(const Session& session, const MotionOptions& options, Solved first) {
   const auto next = first.body.value("next", ordered_json());
   if (options.one_drive || !next.is_object()) return first;
   const std::string manoeuvre = next.value("manoeuvre", "");
@@ -97,7 +98,7 @@ int report_lost(Error error, const Solved& solved) {
 
 // What --apply needs beside a calibration: a controller whose odometry shows what was written, and its errors
 // before.
-Result<std::optional<DriveErrors>> before_apply(const Session& session, const Options& options,
+Result<std::optional<DriveErrors>> before_apply(const Session& session, const MotionOptions& options,
                                                 const RunMethod& run) {
   if (!options.apply) return std::optional<DriveErrors>();
   auto client = Client::connect(session.socket);
@@ -139,7 +140,7 @@ void print_calibration(const Session& session, Calibration calibration,
   if (applied) print_text(describe(*applied), session.legend);
 }
 
-int calibrate(const Session& session, const Options& options) {
+int calibrate(const Session& session, const MotionOptions& options) {
   // After two minutes of driving it would be too late to find out.
   if (const auto files = check_outputs({{"--out", options.file}}, {}); !files)
     return report_error(files.error(), session.json);
@@ -170,7 +171,7 @@ int calibrate(const Session& session, const Options& options) {
   return best.calibration.verdict == Verdict::refused ? kRefused : kDone;
 }
 
-int apply(const Session& session, const Options& options) {
+int apply(const Session& session, const MotionOptions& options) {
   const auto bytes = read_file_bytes(options.file);
   if (!bytes) return report_error(bytes.error(), session.json);
   auto body = ordered_json::parse(bytes.value(), nullptr, false);
@@ -182,7 +183,7 @@ int apply(const Session& session, const Options& options) {
 }
 
 // A wire in the wrong place is a failure, one that could not be determined is none.
-int check(const Session& session, const Options& options) {
+int check(const Session& session, const MotionOptions& options) {
   if (!options.nudge) return show_checks(session);
   const auto result = run_method(session, options.consent, "Check", {{"nudge", true}});
   if (!result || options.consent.dry_run) return print_result(session, "plan", result);
@@ -210,21 +211,21 @@ Result<ordered_json> parsed_values(const std::vector<std::string>& assignments) 
   return values;
 }
 
-int set_parameters(const Session& session, const Options& options) {
+int set_parameters(const Session& session, const MotionOptions& options) {
   const auto values = parsed_values(options.assignments);
   if (!values) return report_error(values.error(), session.json);
   return print_result(session, "write-back",
                       run_method(session, options.consent, "SetParameters", {{"values", values.value()}}));
 }
 
-int rollback(const Session& session, const Options& options) {
+int rollback(const Session& session, const MotionOptions& options) {
   ordered_json parameters = ordered_json::object();
   if (!options.id.empty()) parameters["id"] = options.id;
   return print_result(session, "write-back", run_method(session, options.consent, "Rollback", parameters));
 }
 
 template <typename Action>
-CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<Options>& options,
+CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<MotionOptions>& options,
                      const char* verb, const char* help, Action action) {
   auto* added = app.add_subcommand(verb, help);
   add_consent(*added, options->consent);
@@ -237,7 +238,7 @@ CLI::App* add_action(CLI::App& app, Session& session, const std::shared_ptr<Opti
 }  // namespace
 
 void add_motions(CLI::App& app, Session& session) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MotionOptions>();
   add_action(app, session, options, "check", "Whether everything needed for a calibration is there", check)
       ->add_flag("--nudge", options->nudge,
                  "move by 5 cm and 15 degrees and back: are wheels, counts and lidar wired as configured?");

@@ -23,7 +23,7 @@
 namespace odomcalib::cli {
 namespace {
 
-struct Options {
+struct PredictOptions {
   std::string recording, calibration, trajectory;
   std::vector<double> noise;
   RecordingOptions reading;
@@ -34,7 +34,7 @@ struct Predicted {
   double track_width = 0.0;  ///< m
 };
 
-Result<Calibration> chosen_calibration(const Options& options, const RobotDescription& robot) {
+Result<Calibration> chosen_calibration(const PredictOptions& options, const RobotDescription& robot) {
   if (options.calibration == "nominal") return calib::odometry::nominal_calibration(robot);
   auto calibration = read_finite_calibration(options.calibration);
   if (!calibration) return calibration;
@@ -71,7 +71,7 @@ std::string to_tum(const std::vector<PoseSample>& poses) {
   return text;
 }
 
-Result<Predicted> predicted(const Options& options) {
+Result<Predicted> predicted(const PredictOptions& options) {
   const auto recordings = read_recordings({options.recording}, options.reading);
   if (!recordings) return recordings.error();
   const Recording& recording = recordings.value().front();
@@ -108,7 +108,7 @@ void print_end(const std::vector<PoseSample>& poses, const std::optional<std::ar
                            (*deviation)[0], (*deviation)[1], (*deviation)[2]));
 }
 
-int predict_trajectory(const Options& options, const Session& session) {
+int predict_trajectory(const PredictOptions& options, const Session& session) {
   const std::string calibration = options.calibration == "nominal" ? "" : options.calibration;
   if (const auto files =
           check_outputs({{"--trajectory", options.trajectory}}, {{"the recording", options.recording},
@@ -129,7 +129,7 @@ int predict_trajectory(const Options& options, const Session& session) {
 
 void add_predict(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("predict", "Dead reckoning from the ticks of a recording");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PredictOptions>();
   verb->add_option("RECORDING", options->recording)->required();
   verb->add_option("--calibration", options->calibration, "calibration file, or \"nominal\"")->required();
   verb->add_option("--trajectory", options->trajectory, "file to write, TUM format")->required();

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct RecordOptions {
   std::string name = "record";
   double duration = 0.0;
 };
@@ -50,7 +50,7 @@ Result<std::string> await_path(Client& client, const std::string& socket) {
   }
 }
 
-int record(const Options& options, const Session& session) {
+int record(const RecordOptions& options, const Session& session) {
   finish_when_interrupted();
   auto client = Client::connect(session.socket);
   if (!client) return report_error(client.error(), session.json);
@@ -70,7 +70,7 @@ int record(const Options& options, const Session& session) {
 
 void add_record(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("record", "Record without moving the robot, until Ctrl-C or for a time");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RecordOptions>();
   verb->add_option("NAME", options->name, "beginning of the file's name")->capture_default_str();
   verb->add_option("--duration", options->duration, "s, 0: until Ctrl-C or stop")->check(finite(0.0, 3600.0));
   verb->callback(

@@ -14,11 +14,11 @@
 namespace odomcalib::cli {
 namespace {
 
-struct Options {
+struct ReportOptions {
   std::string calibration, html;
 };
 
-int show_report(const Options& options, const Session& session) {
+int show_report(const ReportOptions& options, const Session& session) {
   if (const auto files =
           check_outputs({{"--html", options.html}}, {{"the calibration", options.calibration}});
       !files)
@@ -39,7 +39,7 @@ int show_report(const Options& options, const Session& session) {
 
 void add_report(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("report", "A calibration file as text, JSON or HTML");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportOptions>();
   verb->add_option("CALIBRATION", options->calibration)->required();
   verb->add_option("--html,--out", options->html, "HTML page to write");
   verb->callback(

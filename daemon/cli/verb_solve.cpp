@@ -23,7 +23,7 @@
 namespace odomcalib::cli {
 namespace {
 
-struct Options {
+struct SolveArguments {
   std::vector<std::string> recordings;
   std::vector<std::string> effects{"auto"};
   std::string scale, out, report, pairs, note;
@@ -32,7 +32,7 @@ struct Options {
   bool same_robot = false;
 };
 
-Result<void> write_results(const Options& options, const calib::Solution& solution) {
+Result<void> write_results(const SolveArguments& options, const calib::Solution& solution) {
   const Calibration& calibration = solution.calibration;
   if (!options.pairs.empty())
     if (auto written = write_output(options.pairs, pairs_csv(solution.pairs, options.recordings)); !written)
@@ -44,7 +44,7 @@ Result<void> write_results(const Options& options, const calib::Solution& soluti
 }
 
 // What a reader of the file must know to repeat the run.
-std::string settings_of(const Options& options) {
+std::string settings_of(const SolveArguments& options) {
   nlohmann::ordered_json settings = {{"version", kVersion}, {"effects", options.effects}};
   if (!options.scale.empty()) settings["scale"] = options.scale;
   const calib::classical::ClosedFormOptions usual;
@@ -54,14 +54,14 @@ std::string settings_of(const Options& options) {
   return settings.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-Result<void> check_files(const Options& options) {
+Result<void> check_files(const SolveArguments& options) {
   auto inputs = named("a recording", options.recordings);
   inputs.push_back({"--robot", options.reading.robot_file});
   return check_outputs({{"--out", options.out}, {"--report", options.report}, {"--pairs", options.pairs}},
                        inputs);
 }
 
-int solve_recordings(const Options& options, const Session& session) {
+int solve_recordings(const SolveArguments& options, const Session& session) {
   if (const auto wrong = calib::terms::wrong_effects(options.effects))
     return report_error(*wrong, session.json);
   if (const auto files = check_files(options); !files) return report_error(files.error(), session.json);
@@ -93,7 +93,7 @@ int solve_recordings(const Options& options, const Session& session) {
 
 void add_solve(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("solve", "Calibrate from recordings of one robot");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SolveArguments>();
   verb->add_option("RECORDING", options->recordings,
                    "JSON Lines, LCM log, ROS bag, rosbag2, MCAP, CARMEN log, tuple file")
       ->required();

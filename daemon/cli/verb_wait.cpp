@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct WaitOptions {
   std::string until = "ready";
   double timeout = settings::kUsualWait_s;
 };
@@ -77,12 +77,12 @@ bool silent(const Error& error) {
   return error.code == ErrorCode::not_running || error.code == ErrorCode::timeout;
 }
 
-Error too_late(const Options& options, const std::string& missing) {
+Error too_late(const WaitOptions& options, const std::string& missing) {
   return {ErrorCode::timeout, fmt::format("not {} after {:g} s: {}", options.until, options.timeout, missing),
           "odomcalibd", "odomcalibctl check"};
 }
 
-int wait_for(const Session& session, const Options& options) {
+int wait_for(const Session& session, const WaitOptions& options) {
   const Deadline deadline(options.timeout);
   bool answered = false;
   std::string said;
@@ -110,7 +110,7 @@ int wait_for(const Session& session, const Options& options) {
 }  // namespace
 
 void add_wait(CLI::App& app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WaitOptions>();
   auto* wait = app.add_subcommand("wait", "Wait until the daemon is ready for a motion, or idle");
   wait->add_option("--until", options->until,
                    "ready: nothing that check looks at fails, and nothing runs; idle: nothing runs")

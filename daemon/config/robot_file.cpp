@@ -11,7 +11,7 @@ namespace {
 
 namespace settings = config::settings;
 
-constexpr const char* kManual = "odomcalib-robot.toml(5)";
+constexpr const char* kRobotManual = "odomcalib-robot.toml(5)";
 
 struct Translation {
   const char* foreign;  ///< key of other programs and data sheets
@@ -80,18 +80,18 @@ Result<RobotDescription> robot_from(Result<TomlReader> document, const std::stri
   if (states_nothing(robot))
     return Error{
         ErrorCode::empty, "states nothing about the robot", where,
-        std::string("write wheel_diameter, track_width, ticks_per_rev or lidar_pose; see ") + kManual};
+        std::string("write wheel_diameter, track_width, ticks_per_rev or lidar_pose; see ") + kRobotManual};
   return robot;
 }
 
 }  // namespace
 
 Result<RobotDescription> read_robot_file(const std::filesystem::path& path) {
-  return robot_from(TomlReader::read(path, kManual), path.string());
+  return robot_from(TomlReader::read(path, kRobotManual), path.string());
 }
 
 Result<RobotDescription> parse_robot_file(const std::string& text, const std::string& where) {
-  return robot_from(TomlReader::parse(text, where, kManual), where);
+  return robot_from(TomlReader::parse(text, where, kRobotManual), where);
 }
 
 RobotDescription overlaid(RobotDescription base, const RobotDescription& over) {

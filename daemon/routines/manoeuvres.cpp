@@ -8,8 +8,6 @@
 namespace odomcalib::routines {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Three speeds over 1:3, forward and backward.
 void straights(Builder& build) {
   for (const double speed : {0.3, 0.1, 0.2}) {
@@ -27,19 +25,19 @@ void slow_straights(Builder& build) {
 }
 
 void turns(Builder& build, double track_width) {
-  build.both_spins(2.0 * kPi, 0.6);
-  build.both_spins(kPi, 0.3);
-  build.both_spins(0.5 * kPi, 0.15);
-  build.four_arcs(0.5 * track_width, 0.5 * kPi, 0.5);
+  build.both_spins(2.0 * std::numbers::pi, 0.6);
+  build.both_spins(std::numbers::pi, 0.3);
+  build.both_spins(0.5 * std::numbers::pi, 0.15);
+  build.four_arcs(0.5 * track_width, 0.5 * std::numbers::pi, 0.5);
 }
 
 /// Equal wheel speeds in turns of different radius, and one radius at two speeds.
 void arcs(Builder& build) {
   const double tight = 0.3 * build.scale;
   const double wide = 0.6 * build.scale;
-  build.four_arcs(tight, 0.4 * kPi, 0.12 / tight);
-  build.four_arcs(tight, 0.4 * kPi, 0.6);
-  build.four_arcs(wide, 0.35 * kPi, 0.3 / wide);
+  build.four_arcs(tight, 0.4 * std::numbers::pi, 0.12 / tight);
+  build.four_arcs(tight, 0.4 * std::numbers::pi, 0.6);
+  build.four_arcs(wide, 0.35 * std::numbers::pi, 0.3 / wide);
 }
 
 /// Starts and stops at low and at high speed, forward and backward, and in turns.
@@ -48,8 +46,8 @@ void accelerations(Builder& build) {
     build.out_and_back(0.4 * build.half, speed);
     build.out_and_back(-0.4 * build.half, speed);
   }
-  build.both_spins(0.5 * kPi, 0.6);
-  build.both_spins(0.3 * kPi, 0.2);
+  build.both_spins(0.5 * std::numbers::pi, 0.6);
+  build.both_spins(0.3 * std::numbers::pi, 0.2);
   vary_rests(build.moves);
   vary_pushes(build.moves);
 }
@@ -59,11 +57,11 @@ void reversals(Builder& build) {
   for (const double speed : {0.1, 0.3}) {
     build.out_and_back(0.25 * build.half, speed);
     build.out_and_back(-0.25 * build.half, speed);
-    build.both_spins(0.25 * kPi, 2.0 * speed);
+    build.both_spins(0.25 * std::numbers::pi, 2.0 * speed);
     build.out_and_back(0.25 * build.half, speed);
-    build.both_spins(0.25 * kPi, 2.0 * speed);
+    build.both_spins(0.25 * std::numbers::pi, 2.0 * speed);
   }
-  build.four_arcs(0.3 * build.scale, 0.3 * kPi, 0.5);
+  build.four_arcs(0.3 * build.scale, 0.3 * std::numbers::pi, 0.5);
 }
 
 }  // namespace
@@ -76,13 +74,13 @@ Builder builder_for(const PatternOptions& options) {
 
 void straights_on_four_headings(Builder& build) {
   const double d = 0.8 * build.half;
-  build.face(0.5 * kPi);
+  build.face(0.5 * std::numbers::pi);
   build.out_and_back(d, 0.28);
   build.out_and_back(-0.5 * d, 0.13);
-  build.face(kPi);
+  build.face(std::numbers::pi);
   build.out_and_back(d, 0.17);
   build.out_and_back(-d, 0.25);
-  build.face(-0.5 * kPi);
+  build.face(-0.5 * std::numbers::pi);
   build.out_and_back(d, 0.1, 0.3);
   build.face(0.0);
 }

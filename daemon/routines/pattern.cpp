@@ -10,8 +10,6 @@
 namespace odomcalib::routines {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// With the straights on four headings these are seven speeds.
 void slow_and_fast_straights(Builder& build) {
   build.out_and_back(0.5 * build.half, 0.1);
@@ -20,23 +18,23 @@ void slow_and_fast_straights(Builder& build) {
 }
 
 void all_spins(Builder& build) {
-  build.both_spins(2.0 * kPi, 0.6);
-  build.both_spins(0.5 * kPi, 0.3);
-  build.both_spins(0.3 * kPi, 0.15);
+  build.both_spins(2.0 * std::numbers::pi, 0.6);
+  build.both_spins(0.5 * std::numbers::pi, 0.3);
+  build.both_spins(0.3 * std::numbers::pi, 0.15);
 }
 
 void all_arcs(Builder& build) {
   const double tight = 0.3 * build.scale;
   const double wide = 0.7 * build.scale;
-  build.four_arcs(tight, 0.6 * kPi, 0.12 / tight);
-  build.four_arcs(tight, 0.6 * kPi, 0.6);
-  build.four_arcs(wide, 0.3 * kPi, 0.15 / wide);
-  build.four_arcs(wide, 0.45 * kPi, 0.3 / wide);
+  build.four_arcs(tight, 0.6 * std::numbers::pi, 0.12 / tight);
+  build.four_arcs(tight, 0.6 * std::numbers::pi, 0.6);
+  build.four_arcs(wide, 0.3 * std::numbers::pi, 0.15 / wide);
+  build.four_arcs(wide, 0.45 * std::numbers::pi, 0.3 / wide);
 }
 
 void single_wheel_turns(Builder& build, double track_width) {
   const double radius = 0.5 * track_width;
-  build.four_arcs(radius, 0.75 * kPi, 0.5);
+  build.four_arcs(radius, 0.75 * std::numbers::pi, 0.5);
 }
 
 /// A law of speed is known where the robot drove: every speed of either wheel is passed, slowly (the
@@ -46,7 +44,7 @@ void slow_ramps(Builder& build) {
   build.moves.push_back(straight(-0.5 * way, 0.2, settings::kShortRest_s));
   const std::size_t first = build.moves.size();
   build.out_and_back(way, 0.3);
-  build.both_spins(1.5 * kPi, 0.6);
+  build.both_spins(1.5 * std::numbers::pi, 0.6);
   for (std::size_t k = first; k < build.moves.size(); ++k)
     build.moves[k].haste =
         build.moves[k].direction.w == 0.0 ? settings::kStraightHaste : settings::kSpinHaste;
@@ -70,12 +68,12 @@ void full_pattern(Builder& build, double track_width) {
 
 void quick_pattern(Builder& build, double track_width) {
   build.out_and_back(-0.6 * build.half, 0.3);
-  build.face(0.5 * kPi);
+  build.face(0.5 * std::numbers::pi);
   build.out_and_back(0.6 * build.half, 0.15);
   build.face(0.0);
-  build.both_spins(kPi, 0.5);
-  build.four_arcs(0.4 * build.scale, 0.4 * kPi, 0.5);
-  build.four_arcs(0.5 * track_width, 0.4 * kPi, 0.5);
+  build.both_spins(std::numbers::pi, 0.5);
+  build.four_arcs(0.4 * build.scale, 0.4 * std::numbers::pi, 0.5);
+  build.four_arcs(0.5 * track_width, 0.4 * std::numbers::pi, 0.5);
   build.face(0.0);
 }
 

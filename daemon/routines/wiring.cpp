@@ -10,8 +10,6 @@
 namespace odomcalib::routines {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Where a wire is wrong: at the motor, at the counter, or at both alike, as when the sides were mixed up in
 /// the profile.
 enum class Part { none, both, counter, motor };
@@ -79,8 +77,8 @@ bool sight_fits(const Nudge& nudge, const NudgeMove& move, const Signs& real, co
   if (sign_of(move.seen->yaw / turn) != (h.mirrored ? -left : left)) return false;
   if (ahead == 0.0) return true;  // what it moved aside by depends on where it is mounted
   if (sign_of(std::hypot(move.seen->x, move.seen->y) / rim) != 1.0) return false;
-  const double yaw = nudge.lidar_yaw + 0.5 * kPi * h.quarters;
-  return std::abs(wrapped(yaw_from(*move.seen, ahead, h.mirrored) - yaw)) <= 0.25 * kPi;
+  const double yaw = nudge.lidar_yaw + 0.5 * std::numbers::pi * h.quarters;
+  return std::abs(wrapped(yaw_from(*move.seen, ahead, h.mirrored) - yaw)) <= 0.25 * std::numbers::pi;
 }
 
 bool explains(const Nudge& nudge, const Hypothesis& h) {

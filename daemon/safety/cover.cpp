@@ -11,6 +11,7 @@
 
 #include "daemon/routines/runner.hpp"
 #include "daemon/safety/settings.hpp"
+#include "proto/angles.hpp"
 
 namespace odomcalib::safety {
 namespace {
@@ -20,7 +21,6 @@ using routines::Pose;
 using routines::Twist;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 // Readings below the least range of the sensor count too: its own mount is that near.
 bool ends_on_robot(const Point& eye, double direction, double range, const Footprint& footprint) {

@@ -4,16 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "daemon/safety/settings.hpp"
+#include "proto/angles.hpp"
 
 namespace odomcalib::safety {
-namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 Envelope Envelope::of(const routines::Preview& preview) {
   return {std::max(settings::kLeastReach_m, settings::kReachAllowed * preview.reach),

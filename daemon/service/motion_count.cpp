@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "calib/classical/settings.hpp"
 #include "calib/measurement/settings.hpp"
 #include "daemon/service/dead_reckoning.hpp"
+#include "proto/angles.hpp"
 
 namespace odomcalib {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 void count(MotionCount::Kind& kind, double amount) {
   ++kind.stretches;

@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "daemon/routines/wiring.hpp"
 #include "daemon/service/leg_report.hpp"
 #include "daemon/service/status_report.hpp"
+#include "proto/angles.hpp"
 
 namespace odomcalib {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Motion of the lidar in its own axes: as if it sat in the middle of the base.
 std::optional<routines::Pose> seen_by(const Calibrator& calibrator, const Leg& leg) {

@@ -181,9 +181,9 @@ bool answer(const std::string& frame) {
   return true;
 }
 
-Result<Calibration> solved(const Calibrator::Solve& solve,
-                           const std::vector<std::filesystem::path>& recordings,
-                           const std::vector<std::string>& effects, std::uint32_t memory) {
+Result<Calibration> solved_alone(const Calibrator::Solve& solve,
+                                 const std::vector<std::filesystem::path>& recordings,
+                                 const std::vector<std::string>& effects, std::uint32_t memory) {
   const auto tell = [](const std::string& phase, double fraction) {
     (void)answer(
         control::encode_reply(nlohmann::json{{"phase", phase}, {"fraction", fraction}}.dump(), true));
@@ -216,7 +216,7 @@ Calibrator::Solve solve_in_process(const SolverProcess& process) {
 int answer_with_solution(const Calibrator::Solve& solve, const std::vector<std::filesystem::path>& recordings,
                          const std::vector<std::string>& effects, std::uint32_t memory) {
   limit_own_means(memory);
-  const auto solution = solved(solve, recordings, effects, memory);
+  const auto solution = solved_alone(solve, recordings, effects, memory);
   if (!solution) return answer(control::encode_error(solution.error())) ? 0 : 1;
   const nlohmann::json parameters{{"calibration", to_json(solution.value())}};
   return answer(control::encode_reply(parameters.dump())) ? 0 : 1;

@@ -9,7 +9,7 @@ namespace odomcalib {
 namespace {
 
 using Geometry = std::array<double, 3>;  // left diameter, right diameter, track width
-constexpr std::array kNames = {"left_wheel_diameter", "right_wheel_diameter", "track_width"};
+constexpr std::array kDimensionNames = {"left_wheel_diameter", "right_wheel_diameter", "track_width"};
 
 /// The two values of the controller's grid around the wanted one, or the wanted one where it has no step.
 std::vector<double> candidates(double wanted, const drivers::StoredParameter* held) {
@@ -38,12 +38,12 @@ RoundedParameters round_together(const std::map<std::string, double>& wanted,
                                  const std::vector<drivers::StoredParameter>& held) {
   std::array<std::vector<double>, 3> choices;
   Geometry exact{};
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    const auto found = wanted.find(kNames[i]);
+  for (std::size_t i = 0; i < kDimensionNames.size(); ++i) {
+    const auto found = wanted.find(kDimensionNames[i]);
     const bool complete = found != wanted.end() && found->second > 0.0;
     if (!complete) return {wanted, {}};
-    const auto stored =
-        std::find_if(held.begin(), held.end(), [&](const auto& h) { return h.quantity == kNames[i]; });
+    const auto stored = std::find_if(held.begin(), held.end(),
+                                     [&](const auto& h) { return h.quantity == kDimensionNames[i]; });
     exact[i] = found->second;
     choices[i] = candidates(exact[i], stored == held.end() ? nullptr : &*stored);
   }

@@ -16,7 +16,7 @@ namespace {
 using namespace can;
 
 constexpr std::uint32_t kErrorFlag = 0x20000000;
-constexpr std::uint32_t kMaxExtended = 0x1FFFFFFF;
+constexpr std::uint32_t kMaxLoggedId = 0x1FFFFFFF;
 
 /// The text up to the separator, which is consumed too; nullopt when there is none.
 std::optional<std::string_view> cut(std::string_view& text, char separator) {
@@ -41,7 +41,7 @@ bool read_id(std::string_view text, CanFrame& frame) {
   frame.error = text.size() == 8 && (*id & kErrorFlag) != 0;
   frame.extended = text.size() == 8 && !frame.error;
   frame.id = *id & ~(frame.error ? kErrorFlag : 0U);
-  return frame.id <= (text.size() == 8 ? kMaxExtended : 0x7FFU);
+  return frame.id <= (text.size() == 8 ? kMaxLoggedId : 0x7FFU);
 }
 
 bool read_remote(std::string_view text, CanFrame& frame) {
@@ -54,7 +54,7 @@ bool read_remote(std::string_view text, CanFrame& frame) {
   return true;
 }
 
-bool read_data(std::string_view text, CanFrame& frame) {
+bool read_logged_data(std::string_view text, CanFrame& frame) {
   if (const std::size_t raw_dlc = text.find('_'); raw_dlc != std::string_view::npos)
     text = text.substr(0, raw_dlc);
   while (!text.empty()) {
@@ -113,7 +113,7 @@ std::string_view foreign_log(std::string_view text) {
 }
 
 /// "(time) interface id##flags data"
-bool is_fd(std::string_view line) {
+bool is_fd_line(std::string_view line) {
   const std::size_t id = line.find('#');
   return id != std::string_view::npos && id + 1 < line.size() && line[id + 1] == '#';
 }
@@ -135,7 +135,7 @@ std::optional<CanFrame> parse_candump_line(std::string_view line) {
   if (!interface || interface->empty() || !id || !read_id(*id, frame)) return std::nullopt;
   if (!line.empty() && line[0] == '#') return std::nullopt;  // CAN FD
   const bool remote = !line.empty() && line[0] == 'R';
-  if (!(remote ? read_remote(line, frame) : read_data(line, frame))) return std::nullopt;
+  if (!(remote ? read_remote(line, frame) : read_logged_data(line, frame))) return std::nullopt;
   return frame;
 }
 
@@ -171,9 +171,9 @@ std::optional<CanFrame> CandumpReader::next() {
     }
     if (whole) {
       skipped_ += size;
-      if (is_fd(line)) ++fd_frame_;
+      if (is_fd_line(line)) ++fd_frame_;
       if (is_screen_line(line)) ++screen_line_;
-      if (!line.empty() && line != "\r" && !is_fd(line)) ++bad_line_;
+      if (!line.empty() && line != "\r" && !is_fd_line(line)) ++bad_line_;
     } else {
       buffered_ = size;  // cut off in the middle of a line
       if (is_screen_line(line)) ++screen_line_;

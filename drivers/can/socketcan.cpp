@@ -212,7 +212,7 @@ class SocketCan final : public CanTransport {
 };
 
 /// Kernel stamps and the loss counter are wanted, but their absence is no reason to fail.
-void set_options(int fd) {
+void set_can_options(int fd) {
   const can_err_mask_t errors = CAN_ERR_MASK;
   setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors);
   const int stamps = SOF_TIMESTAMPING_RX_SOFTWARE | SOF_TIMESTAMPING_SOFTWARE;
@@ -253,7 +253,7 @@ Result<std::unique_ptr<CanTransport>> open_socketcan(const std::string& interfac
   if (fd < 0)
     return bus_error(interface, std::string("cannot make a CAN socket: ") + std::strerror(errno), "");
   auto transport = std::make_unique<SocketCan>(fd, interface);
-  set_options(fd);
+  set_can_options(fd);
   if (auto problem = bind_to(fd, interface)) return *problem;
   return std::unique_ptr<CanTransport>(std::move(transport));
 }

@@ -31,7 +31,7 @@ std::string data_text(const CanFrame& frame) {
 }
 
 /// Modes, positions, speeds and torques of CiA 402; packed halves (:03 of some drives) are left as they are.
-bool is_signed(const ObjectAddress& object) {
+bool is_signed_object(const ObjectAddress& object) {
   constexpr std::array<std::uint16_t, 8> kSigned = {0x6060, 0x6061, 0x6063, 0x6064,
                                                     0x606C, 0x6077, 0x607A, 0x60FF};
   return object.sub <= 2 && std::find(kSigned.begin(), kSigned.end(), object.index) != kSigned.end();
@@ -228,8 +228,9 @@ class CanopenLog {
     if (pdo.transmit) pair_counts(frame, mapped);
     for (const canopen::PdoEntry& entry : pdo.entries)
       if (const auto value = canopen::unpack(pdo, frame, entry.object); value && entry.bits > 0) {
-        line["values"][canopen::to_text(entry.object)] =
-            is_signed(entry.object) ? sign_extend(*value, entry.bits) : static_cast<std::int64_t>(*value);
+        line["values"][canopen::to_text(entry.object)] = is_signed_object(entry.object)
+                                                             ? sign_extend(*value, entry.bits)
+                                                             : static_cast<std::int64_t>(*value);
         if (entry.object.index == 0x6041) line["states"] = states_of(*value, entry.bits);
       }
     return line;

@@ -77,7 +77,7 @@ class TcpStream final : public ByteStream {
 };
 
 /// No delay for the short requests; a dead peer is noticed even while nothing is sent.
-void set_options(int fd) {
+void set_tcp_options(int fd) {
   const int on = 1;
   setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof(on));
@@ -103,7 +103,7 @@ Result<std::unique_ptr<ByteStream>> open_tcp(const std::string& address) {
     if (fd >= 0) ::close(fd);
     return net_error(address, std::string("cannot connect: ") + std::strerror(cause));
   }
-  set_options(fd);
+  set_tcp_options(fd);
   return std::unique_ptr<ByteStream>(std::make_unique<TcpStream>(address, fd));
 }
 

@@ -15,10 +15,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormat = "odomcalib-calibration/1";
-constexpr std::array<std::string_view, 12> kMembers{
+constexpr std::array<std::string_view, 12> kCalibrationMembers{
     "format",  "verdict", "reasons",     "robot",    "parameters", "covariance", "linear_correction",
     "methods", "effects", "unexplained", "residual", "data"};
-constexpr int kDeepest = 64;
+constexpr int kDeepestCalibration = 64;
 
 /// One JSON value and its path. Wrong types are noted once, in `problem`, and read as empty values.
 class Node {
@@ -77,14 +77,14 @@ class Node {
   std::string* problem_;
 };
 
-std::vector<double> numbers(const Node& node) {
+std::vector<double> read_numbers(const Node& node) {
   std::vector<double> out;
   node.each([&](const Node& element) { out.push_back(element.number()); });
   return out;
 }
 
 std::array<double, 3> triple(const Node& node) {
-  const auto values = numbers(node);
+  const auto values = read_numbers(node);
   std::array<double, 3> out{};
   if (!node.is_null() && node.expect(values.size() == 3, "three numbers"))
     std::copy(values.begin(), values.end(), out.begin());
@@ -97,7 +97,7 @@ std::vector<std::string> texts(const Node& node) {
   return out;
 }
 
-QuantityList quantities(const Node& node) {
+QuantityList read_quantities(const Node& node) {
   QuantityList out;
   node.each_member([&](const std::string& name, const Node& value) {
     out.emplace_back(name, Quantity{value["value"].number(), value["std"].optional_number().value_or(-1.0),
@@ -106,7 +106,7 @@ QuantityList quantities(const Node& node) {
   return out;
 }
 
-RobotDescription robot(const Node& node) {
+RobotDescription read_robot(const Node& node) {
   RobotDescription out;
   out.left_wheel_diameter = node["left_wheel_diameter"].optional_number().value_or(0.0);
   out.right_wheel_diameter = node["right_wheel_diameter"].optional_number().value_or(0.0);
@@ -118,7 +118,7 @@ RobotDescription robot(const Node& node) {
   return out;
 }
 
-std::optional<LinearCorrection> linear_correction(const Node& node) {
+std::optional<LinearCorrection> read_linear_correction(const Node& node) {
   if (node.is_null()) return std::nullopt;
   LinearCorrection out;
   std::size_t row = 0;
@@ -132,13 +132,13 @@ std::optional<LinearCorrection> linear_correction(const Node& node) {
   return out;
 }
 
-std::vector<MethodResult> methods(const Node& node) {
+std::vector<MethodResult> read_methods(const Node& node) {
   std::vector<MethodResult> out;
   node.each_member([&](const std::string& name, const Node& value) {
     MethodResult result;
     result.name = name;
     if (!value["refused"].is_null()) result.refused = value["refused"].text();
-    result.parameters = quantities(value["parameters"]);
+    result.parameters = read_quantities(value["parameters"]);
     result.rms = triple(value["rms"]);
     result.used = value["used"].count();
     result.discarded = value["discarded"].count();
@@ -147,12 +147,12 @@ std::vector<MethodResult> methods(const Node& node) {
   return out;
 }
 
-std::vector<EffectResult> effects(const Node& node) {
+std::vector<EffectResult> read_effects(const Node& node) {
   std::vector<EffectResult> out;
   node.each([&](const Node& value) {
     EffectResult effect;
     effect.name = value["name"].text();
-    effect.parameters = quantities(value["parameters"]);
+    effect.parameters = read_quantities(value["parameters"]);
     const auto evidence = value["evidence"];
     effect.evidence = {evidence["p_value"].number(), evidence["held_out_before"].optional_number(),
                        evidence["held_out_after"].optional_number()};
@@ -163,19 +163,19 @@ std::vector<EffectResult> effects(const Node& node) {
   return out;
 }
 
-std::optional<Unexplained> unexplained(const Node& node) {
+std::optional<Unexplained> read_unexplained(const Node& node) {
   if (node.is_null()) return std::nullopt;
   return Unexplained{texts(node["depends_on"]), node["p_value"].number(), node["share"].number()};
 }
 
-std::optional<std::array<double, 3>> by_axis(const Node& node) {
+std::optional<std::array<double, 3>> read_by_axis(const Node& node) {
   if (node.is_null()) return std::nullopt;
   return std::array<double, 3>{node["x"].number(), node["y"].number(), node["yaw"].number()};
 }
 
-ResidualReport residual(const Node& node) {
-  return {node["held_out"].flag(true), by_axis(node["before"]), by_axis(node["after"]),
-          by_axis(node["noise_floor"])};
+ResidualReport read_residual(const Node& node) {
+  return {node["held_out"].flag(true), read_by_axis(node["before"]), read_by_axis(node["after"]),
+          read_by_axis(node["noise_floor"])};
 }
 
 Verdict verdict(const Node& node) {
@@ -186,19 +186,19 @@ Verdict verdict(const Node& node) {
   return Verdict::refused;
 }
 
-std::vector<std::pair<std::string, std::size_t>> counts(const Node& node) {
+std::vector<std::pair<std::string, std::size_t>> read_counts(const Node& node) {
   std::vector<std::pair<std::string, std::size_t>> out;
   node.each_member(
       [&](const std::string& name, const Node& value) { out.emplace_back(name, value.count()); });
   return out;
 }
 
-std::vector<DataUse> data(const Node& node) {
+std::vector<DataUse> read_data_uses(const Node& node) {
   std::vector<DataUse> out;
   node.each([&](const Node& value) {
     out.push_back({value["file"].text(), value["sha256"].text(), value["begin"].optional_number(),
-                   value["duration"].optional_number().value_or(0.0), counts(value["counts"]),
-                   counts(value["discarded"]), texts(value["choices"])});
+                   value["duration"].optional_number().value_or(0.0), read_counts(value["counts"]),
+                   read_counts(value["discarded"]), texts(value["choices"])});
   });
   return out;
 }
@@ -206,16 +206,16 @@ std::vector<DataUse> data(const Node& node) {
 std::map<std::string, std::string> extensions(const Json& json) {
   std::map<std::string, std::string> out;
   for (const auto& [name, value] : json.items())
-    if (std::find(kMembers.begin(), kMembers.end(), name) == kMembers.end())
+    if (std::find(kCalibrationMembers.begin(), kCalibrationMembers.end(), name) == kCalibrationMembers.end())
       out[name] = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   return out;
 }
 
 /// Refuses deep nesting while parsing, before it costs memory.
-Json parse(const std::string& text) {
+Json parse_calibration(const std::string& text) {
   bool too_deep = false;
   const auto guard = [&](int depth, Json::parse_event_t, Json&) {
-    too_deep = too_deep || depth > kDeepest;
+    too_deep = too_deep || depth > kDeepestCalibration;
     return !too_deep;
   };
   auto json = Json::parse(text, guard, false);
@@ -225,18 +225,18 @@ Json parse(const std::string& text) {
 Calibration calibration(const Json& json, std::string& problem) {
   const Node root(json, "", problem);
   Calibration out;
-  out.robot = robot(root["robot"]);
-  out.parameters = quantities(root["parameters"]);
+  out.robot = read_robot(root["robot"]);
+  out.parameters = read_quantities(root["parameters"]);
   out.covariance_order = texts(root["covariance"]["order"]);
-  root["covariance"]["matrix"].each([&](const Node& row) { out.covariance.push_back(numbers(row)); });
-  out.linear_correction = linear_correction(root["linear_correction"]);
-  out.methods = methods(root["methods"]);
-  out.effects = effects(root["effects"]);
-  out.unexplained = unexplained(root["unexplained"]);
-  out.residual = residual(root["residual"]);
+  root["covariance"]["matrix"].each([&](const Node& row) { out.covariance.push_back(read_numbers(row)); });
+  out.linear_correction = read_linear_correction(root["linear_correction"]);
+  out.methods = read_methods(root["methods"]);
+  out.effects = read_effects(root["effects"]);
+  out.unexplained = read_unexplained(root["unexplained"]);
+  out.residual = read_residual(root["residual"]);
   out.verdict = verdict(root["verdict"]);
   out.reasons = texts(root["reasons"]);
-  out.data = data(root["data"]);
+  out.data = read_data_uses(root["data"]);
   out.extensions = extensions(json);
   return out;
 }
@@ -253,7 +253,7 @@ bool covariance_fits(const Calibration& calibration) {
 }  // namespace
 
 Result<Calibration> calibration_from_json(const std::string& text, const std::string& where) {
-  return calibration_from(parse(text), where);
+  return calibration_from(parse_calibration(text), where);
 }
 
 Result<Calibration> calibration_from(const Json& json, const std::string& where) {

@@ -12,7 +12,7 @@ constexpr const char* kErrorsMember = "drive_errors";
 constexpr const char* kDetectableMember = "detectable";
 
 /// Six significant digits: more than a picture shows, and the file stays small.
-Json number(double value) {
+Json rounded_number(double value) {
   if (!std::isfinite(value)) return nullptr;
   if (value == 0.0) return 0.0;
   const double scale = std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(value))));
@@ -21,7 +21,8 @@ Json number(double value) {
 
 Json bounded(const std::optional<Bounded>& figure) {
   if (!figure) return nullptr;
-  return {{"value", number(figure->value)}, {"interval", {number(figure->low), number(figure->high)}}};
+  return {{"value", rounded_number(figure->value)},
+          {"interval", {rounded_number(figure->low), rounded_number(figure->high)}}};
 }
 
 Json to_json(const DriveError& error) {
@@ -31,13 +32,13 @@ Json to_json(const DriveError& error) {
           {"before", bounded(error.before)},
           {"geometry", bounded(error.geometry)},
           {"after", bounded(error.after)},
-          {"noise_floor", error.noise_floor ? number(*error.noise_floor) : Json(nullptr)}};
+          {"noise_floor", error.noise_floor ? rounded_number(*error.noise_floor) : Json(nullptr)}};
 }
 
 template <typename... Numbers>
 Json row(Numbers... values) {
   Json out = Json::array();
-  (out.push_back(number(values)), ...);
+  (out.push_back(rounded_number(values)), ...);
   return out;
 }
 
@@ -47,7 +48,7 @@ Json to_json(const ResidualTrace& trace) {
            {"variable_unit", trace.variable_unit},
            {"residual", trace.residual},
            {"residual_unit", trace.residual_unit},
-           {"explained", number(trace.explained)},
+           {"explained", rounded_number(trace.explained)},
            {"points", Json::array()},
            {"bins", Json::array()}};
   for (const auto& p : trace.points) out["points"].push_back(row(p.variable, p.before, p.after));
@@ -60,8 +61,8 @@ Json to_json(const Detectable& effect) {
   return {{"effect", effect.effect},
           {"parameter", effect.parameter},
           {"unit", effect.unit},
-          {"smallest", effect.smallest ? number(*effect.smallest) : Json(nullptr)},
-          {"typical", number(effect.typical)},
+          {"smallest", effect.smallest ? rounded_number(*effect.smallest) : Json(nullptr)},
+          {"typical", rounded_number(effect.typical)},
           {"motion", effect.motion}};
 }
 
@@ -74,14 +75,14 @@ Json to_json(const PathTrace& path) {
 Json to_json(const ResidualAxis& axis) {
   return {{"name", axis.name},
           {"unit", axis.unit},
-          {"mean", number(axis.mean)},
-          {"std", number(axis.std)},
-          {"normalised", number(axis.normalised)},
-          {"autocorrelation", number(axis.autocorrelation)},
-          {"runs", number(axis.runs)},
+          {"mean", rounded_number(axis.mean)},
+          {"std", rounded_number(axis.std)},
+          {"normalised", rounded_number(axis.normalised)},
+          {"autocorrelation", rounded_number(axis.autocorrelation)},
+          {"runs", rounded_number(axis.runs)},
           {"histogram", axis.histogram},
-          {"reference_std", number(axis.reference_std)},
-          {"wheels_std", number(axis.wheels_std)}};
+          {"reference_std", rounded_number(axis.reference_std)},
+          {"wheels_std", rounded_number(axis.wheels_std)}};
 }
 
 Json to_json(const ResidualSample& sample) {
@@ -211,7 +212,7 @@ void store_report_data(const ReportData& data, Calibration& calibration) {
   Json left_out = Json::object();
   for (const auto& [name, values] : data.left_out) {
     left_out[name] = Json::array();
-    for (const double value : values) left_out[name].push_back(number(value));
+    for (const double value : values) left_out[name].push_back(rounded_number(value));
   }
   calibration.extensions[kErrorsMember] = list(data.drive_errors).dump();
   if (!data.detectable.empty()) calibration.extensions[kDetectableMember] = list(data.detectable).dump();

@@ -42,7 +42,7 @@ std::string_view next_word(std::string_view& line) {
 }
 
 template <typename Number>
-bool parse(std::string_view word, Number& number) {
+bool parse_number(std::string_view word, Number& number) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), number);
   return code == std::errc() && end == word.data() + word.size();
@@ -145,8 +145,8 @@ Result<void> Reader::read_known(const Tag& tag, std::string_view name, std::stri
     if (word.empty())
       return error(expected + ", this line ends after " + std::to_string(i), "is the file cut off?");
     const std::size_t k = i - std::min(i, tag.ids);
-    const bool good =
-        i < tag.ids ? parse(word, ids.at(i)) : parse(word, numbers.at(k)) && std::isfinite(numbers.at(k));
+    const bool good = i < tag.ids ? parse_number(word, ids.at(i))
+                                  : parse_number(word, numbers.at(k)) && std::isfinite(numbers.at(k));
     if (!good)
       return error("\"" + std::string(word.substr(0, 40)) + "\" is no " +
                        (i < tag.ids ? "vertex number" : "finite number"),
@@ -197,7 +197,7 @@ Result<void> Reader::add_fixes(std::string_view rest) {
   std::size_t count = 0;
   for (auto word = next_word(rest); !word.empty(); word = next_word(rest), ++count) {
     Reference fix;
-    if (!parse(word, fix.ids[0]))
+    if (!parse_number(word, fix.ids[0]))
       return error("\"" + std::string(word.substr(0, 40)) + "\" is no vertex number",
                    "correct or remove the line");
     fix.where = where();

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kLongestNumber = 32;  // shortest form of a double has at most 24 characters
 
 template <typename Number>
-void append(std::string& text, Number number) {
+void append_number(std::string& text, Number number) {
   std::array<char, kLongestNumber> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
   text += ' ';
@@ -29,10 +29,10 @@ double heading(double yaw) {
 void append_vertex(std::string& text, const GraphVertex& vertex) {
   const bool pose = vertex.kind == VertexKind::pose;
   text += pose ? "VERTEX_SE2" : "VERTEX_XY";
-  append(text, vertex.id);
-  append(text, vertex.x);
-  append(text, vertex.y);
-  if (pose) append(text, heading(vertex.yaw));
+  append_number(text, vertex.id);
+  append_number(text, vertex.x);
+  append_number(text, vertex.y);
+  if (pose) append_number(text, heading(vertex.yaw));
   text += '\n';
 }
 
@@ -40,14 +40,14 @@ void append_edge(std::string& text, const PoseGraph& graph, const GraphEdge& edg
   const auto& [xx, xy, xt, yy, yt, tt] = edge.information;
   const bool pose = graph.vertices[edge.to].kind == VertexKind::pose;
   text += pose ? "EDGE_SE2" : "EDGE_SE2_XY";
-  append(text, graph.vertices[edge.from].id);
-  append(text, graph.vertices[edge.to].id);
-  append(text, edge.motion[0]);
-  append(text, edge.motion[1]);
+  append_number(text, graph.vertices[edge.from].id);
+  append_number(text, graph.vertices[edge.to].id);
+  append_number(text, edge.motion[0]);
+  append_number(text, edge.motion[1]);
   if (pose)
-    for (const double number : {heading(edge.motion[2]), xx, xy, xt, yy, yt, tt}) append(text, number);
+    for (const double number : {heading(edge.motion[2]), xx, xy, xt, yy, yt, tt}) append_number(text, number);
   else
-    for (const double number : {xx, xy, yy}) append(text, number);
+    for (const double number : {xx, xy, yy}) append_number(text, number);
   text += '\n';
 }
 
@@ -59,7 +59,7 @@ std::string to_g2o(const PoseGraph& graph) {
   for (const GraphVertex& vertex : graph.vertices) {
     if (!vertex.fixed) continue;
     text += "FIX";
-    append(text, vertex.id);
+    append_number(text, vertex.id);
     text += '\n';
   }
   for (const GraphEdge& edge : graph.edges) append_edge(text, graph, edge);

@@ -13,9 +13,9 @@
 namespace odomcalib {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kAssumedInterval = 0.2;  // s between scans of a log without time stamps
-constexpr std::size_t kMostBeams = 100'000;
+constexpr std::size_t kMostCarmenBeams = 100'000;
 constexpr double kFarthest = 1e4;  // m
 
 /// The words of one line; a word that is missing or no number reads as NaN.
@@ -31,9 +31,9 @@ class Words {
   }
   double number() {
     const auto text = word();
-    double value = kNone;
+    double value = kNoNumber;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size() ? value : kNone;
+    return error == std::errc() && end == text.data() + text.size() ? value : kNoNumber;
   }
   std::size_t count(std::size_t most) {
     const double value = number();
@@ -52,7 +52,7 @@ class Words {
 bool finite(const std::array<double, 3>& pose) { return std::isfinite(pose[0] + pose[1] + pose[2]); }
 
 struct Odometry {
-  double t = kNone;
+  double t = kNoNumber;
   std::array<double, 3> pose{};
 };
 
@@ -73,8 +73,8 @@ void set_half_circle(Scan& scan) {
 
 /// "nan" and beyond any lidar: no reading.
 bool read_ranges(Words& words, std::vector<float>& ranges) {
-  const std::size_t beams = words.count(kMostBeams);
-  if (beams == 0 || beams > kMostBeams) return false;
+  const std::size_t beams = words.count(kMostCarmenBeams);
+  if (beams == 0 || beams > kMostCarmenBeams) return false;
   ranges.reserve(beams);
   for (std::size_t i = 0; i < beams; ++i) {
     const auto text = words.word();
@@ -133,8 +133,8 @@ bool read_robotlaser(Words& words, Log& log) {
   words.number();  // accuracy
   words.number();  // remission mode
   if (!read_ranges(words, scan.ranges)) return false;
-  const std::size_t remissions = words.count(kMostBeams);
-  if (remissions > kMostBeams) return false;
+  const std::size_t remissions = words.count(kMostCarmenBeams);
+  if (remissions > kMostCarmenBeams) return false;
   for (std::size_t i = 0; i < remissions; ++i) words.word();
   const auto laser = words.triple();
   const auto robot = words.triple();
@@ -167,7 +167,7 @@ bool is_other_line(std::string_view word) {
          std::find(kOther.begin(), kOther.end(), word) != kOther.end();
 }
 
-void read_line(std::string_view line, bool last, Log& log, RecordingBuilder& builder) {
+void read_carmen_line(std::string_view line, bool last, Log& log, RecordingBuilder& builder) {
   Words words(line);
   const auto name = words.word();
   bool good = true;
@@ -206,9 +206,9 @@ void shift_times(Log& log) {
 }
 
 /// Wheel counts whose odometry, with the nominal values, is the one in the log.
-class Counts {
+class CarmenCounts {
  public:
-  explicit Counts(const RobotDescription& robot) : robot_(robot) {}
+  explicit CarmenCounts(const RobotDescription& robot) : robot_(robot) {}
 
   TickSample at(const Odometry& odometry) {
     if (started_) add(last_, odometry.pose);
@@ -236,7 +236,7 @@ class Counts {
 };
 
 void add_counts(const Log& log, const RobotDescription& robot, RecordingBuilder& builder) {
-  Counts counts(robot);
+  CarmenCounts counts(robot);
   const auto& odometry = log.odometry.size() > 1 ? log.odometry : log.scan_odometry;
   for (const auto& sample : odometry) builder.add_ticks(counts.at(sample));
 }
@@ -260,7 +260,7 @@ void read_carmen(std::string_view text, const RobotDescription* robot, Recording
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     const bool last = end == std::string_view::npos;
-    read_line(text.substr(0, end), last, log, builder);
+    read_carmen_line(text.substr(0, end), last, log, builder);
     text.remove_prefix(last ? text.size() : end + 1);
   }
   if (log.scans.empty()) return;

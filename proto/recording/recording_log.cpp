@@ -27,9 +27,9 @@ struct RecordingLog::State {
 namespace {
 
 constexpr std::size_t kEventHeader = 28;
-constexpr std::size_t kLongestChannel = 63;
+constexpr std::size_t kLongestLcmChannel = 63;
 
-Error io_error(const std::string& what, const std::filesystem::path& path) {
+Error log_error(const std::string& what, const std::filesystem::path& path) {
   return {ErrorCode::io, what + ": " + std::generic_category().message(errno), path.string(),
           "check free space and permissions"};
 }
@@ -44,18 +44,18 @@ RecordingLog& RecordingLog::operator=(RecordingLog&&) noexcept = default;
 Result<RecordingLog> RecordingLog::create(const std::filesystem::path& path,
                                           const std::string& channel_prefix) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  if (fd < 0) return io_error("cannot create the recording", path);
+  if (fd < 0) return log_error("cannot create the recording", path);
   ::close(fd);
   auto state = std::make_unique<State>();
   state->log.reset(lcm_eventlog_create(path.c_str(), "w"));
-  if (!state->log) return io_error("cannot open the recording", path);
+  if (!state->log) return log_error("cannot open the recording", path);
   state->path = path;
   state->prefix = channel_prefix;
   return RecordingLog(std::move(state));
 }
 
 Result<void> RecordingLog::write(std::int64_t utime, const std::string& channel, std::string_view message) {
-  if (channel.empty() || channel.size() > kLongestChannel)
+  if (channel.empty() || channel.size() > kLongestLcmChannel)
     return Error{ErrorCode::usage, "channel \"" + channel + "\" has not 1 to 63 characters",
                  state_->path.string(), "shorten channel_prefix or the sensor's name"};
   std::string name = channel;  // the C interface takes pointers to what it does not change
@@ -67,7 +67,8 @@ Result<void> RecordingLog::write(std::int64_t utime, const std::string& channel,
   event.datalen = static_cast<std::int32_t>(data.size());
   event.channel = name.data();
   event.data = data.data();
-  if (lcm_eventlog_write_event(state_->log.get(), &event) != 0) return io_error("cannot write", state_->path);
+  if (lcm_eventlog_write_event(state_->log.get(), &event) != 0)
+    return log_error("cannot write", state_->path);
   ++state_->events;
   state_->bytes += kEventHeader + name.size() + data.size();
   return {};
@@ -108,8 +109,8 @@ Result<void> RecordingLog::json(std::int64_t utime, const std::string& channel, 
 
 Result<void> RecordingLog::flush(bool to_disk) {
   std::FILE* file = state_->log->f;
-  if (std::fflush(file) != 0) return io_error("cannot write", state_->path);
-  if (to_disk && ::fsync(::fileno(file)) != 0) return io_error("cannot sync", state_->path);
+  if (std::fflush(file) != 0) return log_error("cannot write", state_->path);
+  if (to_disk && ::fsync(::fileno(file)) != 0) return log_error("cannot sync", state_->path);
   return {};
 }
 
@@ -125,7 +126,7 @@ std::string scan_channel(const std::string& prefix, const std::string& sensor) {
     const char upper = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
     out += (upper >= 'A' && upper <= 'Z') || (upper >= '0' && upper <= '9') ? upper : '_';
   }
-  return out.substr(0, kLongestChannel);
+  return out.substr(0, kLongestLcmChannel);
 }
 
 namespace {
@@ -135,7 +136,7 @@ messages::Stamp stamp_of(double t) {
   return {ns / 1000, ns};
 }
 
-Result<void> write_all(const Recording& recording, RecordingLog& log) {
+Result<void> write_samples(const Recording& recording, RecordingLog& log) {
   const std::int64_t start = recording.ticks.empty() ? 0 : stamp_of(recording.ticks.front().t).utime;
   if (auto done = log.robot(start, recording.robot); !done) return done;
   messages::Origin origin;
@@ -163,7 +164,7 @@ Result<void> write_recording_log(const Recording& recording, const std::filesyst
                  "keep the tuple file"};
   auto log = RecordingLog::create(path);
   if (!log) return log.error();
-  return write_all(recording, log.value());
+  return write_samples(recording, log.value());
 }
 
 }  // namespace odomcalib

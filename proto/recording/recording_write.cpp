@@ -18,7 +18,7 @@ void append_shortest(std::string& out, Number value) {
   out.append(text.data(), end);
 }
 
-void append(std::string& out, double value) {
+void append_value(std::string& out, double value) {
   if (std::isfinite(value))
     append_shortest(out, value);
   else
@@ -26,7 +26,7 @@ void append(std::string& out, double value) {
 }
 
 /// A reader takes the text as double and rounds to float: where that is not the same float, write all digits.
-void append(std::string& out, float value) {
+void append_value(std::string& out, float value) {
   if (!std::isfinite(value)) {
     out += "null";
     return;
@@ -49,7 +49,7 @@ void append_member(std::string& out, const char* name, Number value) {
   if constexpr (std::is_integral_v<Number>)
     append_shortest(out, value);
   else
-    append(out, value);
+    append_value(out, value);
 }
 
 void append_text(std::string& out, const char* name, const std::string& value) {
@@ -69,7 +69,7 @@ void append_array(std::string& out, const char* name, const std::vector<float>& 
     if (values[i] == 0.0F && zero == Zero::null)
       out += "null";
     else
-      append(out, values[i]);
+      append_value(out, values[i]);
   }
   out += ']';
 }
@@ -87,11 +87,11 @@ void append_robot(std::string& out, const RobotDescription& robot) {
   if (robot.lidar_pose) {
     const auto& pose = *robot.lidar_pose;
     out += ",\"lidar_pose\":[";
-    append(out, pose[0]);
+    append_value(out, pose[0]);
     out += ',';
-    append(out, pose[1]);
+    append_value(out, pose[1]);
     out += ',';
-    append(out, pose[2]);
+    append_value(out, pose[2]);
     out += ']';
   }
   append_text(out, "robot_id", robot.robot_id);

@@ -17,7 +17,7 @@ using Slot = std::variant<std::monostate, Scalar, Array, Text>;
 
 // Names of DESIGN 4.2, of Censi's raw logs (readings, theta, ray_dt, stamps as [s, us]) and of his tuple
 // files.
-constexpr std::array<std::pair<std::string_view, Slot>, 39> kMembers{{
+constexpr std::array<std::pair<std::string_view, Slot>, 39> kLineMembers{{
     {"type", Text::type},
     {"t", Scalar::t},
     {"left", Scalar::left},
@@ -60,7 +60,7 @@ constexpr std::array<std::pair<std::string_view, Slot>, 39> kMembers{{
 }};
 
 Slot find_member(std::string_view name) {
-  for (const auto& [member, slot] : kMembers)
+  for (const auto& [member, slot] : kLineMembers)
     if (member == name) return slot;
   return {};
 }

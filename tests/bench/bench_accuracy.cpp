@@ -8,7 +8,7 @@
 #include "tests/integration/accuracy_runs.hpp"
 
 int main(int argc, char** argv) {
-  using namespace odomcalib::testing;
+  using namespace odomcalib::test_support;
   const unsigned long runs = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 50;
   const unsigned long first = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1;
   const std::string effects = argc > 3 ? argv[3] : "auto";

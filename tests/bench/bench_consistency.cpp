@@ -63,10 +63,10 @@ struct Errors {
   void add(const calib::ScanMatch& match, const sim::Pose& motion) {
     ++pairs;
     if (!match.ok()) return;
-    const Eigen::Vector3d error = testing::error_of(match, {motion.x, motion.y, motion.yaw});
+    const Eigen::Vector3d error = test_support::error_of(match, {motion.x, motion.y, motion.yaw});
     if (error.head<2>().norm() > 0.05 || std::abs(error(2)) > kDegrees) return;
     ++right;
-    const double squared = testing::normalised_squared(match, error);
+    const double squared = test_support::normalised_squared(match, error);
     way += error.head<2>().squaredNorm();
     yaw += error(2) * error(2);
     normalised += squared;

@@ -49,9 +49,9 @@ Case random_case(std::mt19937& engine, unsigned seed, const Pose& farthest, doub
   const Pose a{uniform(engine), uniform(engine), calib::math::kPi * uniform(engine)};
   const Pose motion{farthest.x * uniform(engine), farthest.y * uniform(engine),
                     farthest.yaw * uniform(engine)};
-  const auto reference = points_of(testing::scan_from(testing::kRoom, a, 0.02, seed), 2);
-  auto points =
-      points_of(testing::scan_from(testing::kRoom, calib::math::compose(a, motion), 0.02, seed + kCases), 10);
+  const auto reference = points_of(test_support::scan_from(test_support::kRoom, a, 0.02, seed), 2);
+  auto points = points_of(
+      test_support::scan_from(test_support::kRoom, calib::math::compose(a, motion), 0.02, seed + kCases), 10);
   return {motion, calib::matching::LikelihoodField(reference, {.cell = cell}), std::move(points)};
 }
 
@@ -121,9 +121,9 @@ bool compare_nearest(int beams) {
   double tree_time = 0.0, order_time = 0.0, queries = 0.0;
   bool same = true;
   for (unsigned seed = 1; seed <= kScans; ++seed) {
-    const auto points = points_of(testing::scan_from(testing::kRoom, {}, 0.01, seed, beams), 1);
-    const auto others =
-        points_of(testing::scan_from(testing::kRoom, {0.05, 0.0, 0.05}, 0.01, seed + kScans, beams), 1);
+    const auto points = points_of(test_support::scan_from(test_support::kRoom, {}, 0.01, seed, beams), 1);
+    const auto others = points_of(
+        test_support::scan_from(test_support::kRoom, {0.05, 0.0, 0.05}, 0.01, seed + kScans, beams), 1);
     std::vector<double> by_tree, by_order;
     by_tree.reserve(others.size());
     by_order.reserve(others.size());

@@ -76,26 +76,26 @@ Motion match_lines(const Points& reference, const Points& scan) {
   return std::array<double, 3>{pose(0), pose(1), pose(2)};
 }
 
-Motion match_with_odomcalib(const testing::ScanPair& pair) {
+Motion match_with_odomcalib(const test_support::ScanPair& pair) {
   const calib::ScanMatch match = calib::match_scans(pair.reference, pair.scan, {});
   if (!match.ok()) return std::nullopt;
   return match.pose;
 }
 
-using Matcher = std::function<Motion(const testing::ScanPair&)>;
+using Matcher = std::function<Motion(const test_support::ScanPair&)>;
 
 Matcher of_points(Motion (*match)(const Points&, const Points&)) {
-  return [match](const testing::ScanPair& pair) {
+  return [match](const test_support::ScanPair& pair) {
     return match(points_of(pair.reference), points_of(pair.scan));
   };
 }
 
-void measure(const char* name, const char* version, const std::vector<testing::ScanPair>& pairs,
+void measure(const char* name, const char* version, const std::vector<test_support::ScanPair>& pairs,
              const Matcher& match) {
   std::vector<double> times;
   double errors = 0.0, bounds = 0.0;
   std::size_t right = 0;
-  for (const testing::ScanPair& pair : pairs) {
+  for (const test_support::ScanPair& pair : pairs) {
     (void)match(pair);  // the caches as a stream of scans has them
     const double begin = cpu_ms();
     const Motion motion = match(pair);
@@ -126,7 +126,7 @@ void measure(const char* name, const char* version, const std::vector<testing::S
 
 int main(int argc, char** argv) {
   using namespace odomcalib;
-  auto pairs = argc > 1 ? testing::read_scan_pairs(argv[1]) : std::vector<testing::ScanPair>{};
+  auto pairs = argc > 1 ? test_support::read_scan_pairs(argv[1]) : std::vector<test_support::ScanPair>{};
   if (pairs.empty()) return std::fprintf(stderr, "usage: bench_pairs FILE.smp.gz [PAIRS]\n"), 2;
   if (argc > 2) pairs.resize(std::min<std::size_t>(pairs.size(), std::strtoul(argv[2], nullptr, 10)));
   bench::measure("odomcalib", "", pairs, bench::match_with_odomcalib);

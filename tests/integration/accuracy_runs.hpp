@@ -13,7 +13,7 @@
 #include "tests/sim/world/ray_bound.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 /// RMS error over the bound that is asked for.
 inline constexpr double kRatioBar = 1.3;
@@ -138,4 +138,4 @@ class AccuracyTable {
   std::array<double, sim::kLearned> means_{}, squares_{}, relative_{}, bounds_{}, sigmas_{}, inside_{};
 };
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

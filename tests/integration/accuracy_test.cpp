@@ -11,19 +11,19 @@
 #include "tests/sim/world/rooms.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib {
+namespace odomcalib::accuracy_test {
 namespace {
 
 /// Pooled over the six parameters: with this many runs the RMS of one parameter alone scatters by a sixth.
 /// The bench (bench_accuracy) has the table for fifty runs.
 TEST(Accuracy, twenty_robots_near_the_bound_of_their_range_readings_with_honest_deviations) {
   constexpr std::uint64_t kFirstSeed = 1, kRuns = 20;
-  testing::AccuracyTable table;
+  test_support::AccuracyTable table;
   for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kRuns; ++seed)
-    EXPECT_EQ(table.add(testing::four_minutes(seed), "auto"), "") << "seed " << seed;
+    EXPECT_EQ(table.add(test_support::four_minutes(seed), "auto"), "") << "seed " << seed;
   table.print();
   EXPECT_EQ(table.runs(), kRuns);
-  EXPECT_LT(table.pooled_ratio(), testing::kRatioBar);
+  EXPECT_LT(table.pooled_ratio(), test_support::kRatioBar);
   EXPECT_GT(table.pooled_ratio(), 0.7) << "better than the bound allows: the bound is wrong";
   for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(table.relative_rms(k), 3e-4) << "length " << k;
   // 95 % of 120 truths, give or take what parameters of one run that err together allow.
@@ -61,7 +61,7 @@ TEST_P(OtherMachines, are_calibrated_as_honestly) {
   ASSERT_EQ(result.verdict, Verdict::accepted) << result.reasons[0];
   EXPECT_TRUE(result.effects.empty()) << result.effects.front().name;
   EXPECT_FALSE(result.unexplained) << result.unexplained->depends_on.front();
-  for (const double sigma : testing::length_errors_in_sigmas(result, run.truth))
+  for (const double sigma : test_support::length_errors_in_sigmas(result, run.truth))
     EXPECT_LT(std::abs(sigma), 3.5);
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_LT(result.parameters[k].second.std, 6e-4 * result.parameters[k].second.value);
@@ -106,7 +106,7 @@ Solved solved(const Injected& injected, sim::SimulationConfig config, const sim:
 
 void expect_wheels_right(const Solved& solved) {
   ASSERT_NE(solved.result.verdict, Verdict::refused) << solved.result.reasons[0];
-  for (const double sigma : testing::length_errors_in_sigmas(solved.result, solved.truth))
+  for (const double sigma : test_support::length_errors_in_sigmas(solved.result, solved.truth))
     EXPECT_LT(std::abs(sigma), 4.0);
 }
 
@@ -115,8 +115,9 @@ void expect_found(const Injected& injected, const std::vector<sim::Manoeuvre>& m
   config.duration = std::min(290.0, sim::total_duration(manoeuvres));
   const Solved drive = solved(injected, config, sim::follow(config.nominal, manoeuvres));
   expect_wheels_right(drive);
-  EXPECT_TRUE(testing::is_told(drive.result, injected.name)) << testing::told(drive.result);
-  EXPECT_LE(drive.result.effects.size(), 1U) << "more than what is there: " << testing::told(drive.result);
+  EXPECT_TRUE(test_support::is_told(drive.result, injected.name)) << test_support::told(drive.result);
+  EXPECT_LE(drive.result.effects.size(), 1U)
+      << "more than what is there: " << test_support::told(drive.result);
 }
 
 class NamesTheEffect : public ::testing::TestWithParam<Injected> {};
@@ -154,9 +155,9 @@ TEST_P(LoneEffect, gets_its_name_and_no_second_effect_for_the_rest) {
   config.duration = sim::total_duration(pattern);
   const Solved drive = solved(lone.injected, config, sim::follow(config.nominal, pattern), lone.seed);
   expect_wheels_right(drive);
-  EXPECT_TRUE(testing::is_told(drive.result, lone.injected.name)) << testing::told(drive.result);
-  EXPECT_EQ(drive.result.effects.size(), 1U) << testing::told(drive.result);
-  EXPECT_FALSE(drive.result.unexplained) << testing::told(drive.result);
+  EXPECT_TRUE(test_support::is_told(drive.result, lone.injected.name)) << test_support::told(drive.result);
+  EXPECT_EQ(drive.result.effects.size(), 1U) << test_support::told(drive.result);
+  EXPECT_FALSE(drive.result.unexplained) << test_support::told(drive.result);
 }
 
 INSTANTIATE_TEST_SUITE_P(Simulated, LoneEffect,
@@ -215,9 +216,9 @@ TEST(RoundRoom, is_no_effect) {
     const sim::SimulatedRun run =
         sim::simulate_recording(config, sim::follow(config.nominal, sim::guided_pattern()));
     const Calibration result = calib::solve({&run.recording, 1}, {});
-    EXPECT_TRUE(result.effects.empty()) << testing::told(result);
-    EXPECT_FALSE(result.unexplained) << testing::told(result);
-    for (const double error : testing::length_errors_in_sigmas(result, config.truth))
+    EXPECT_TRUE(result.effects.empty()) << test_support::told(result);
+    EXPECT_FALSE(result.unexplained) << test_support::told(result);
+    for (const double error : test_support::length_errors_in_sigmas(result, config.truth))
       EXPECT_LT(std::abs(error), 3.0);
   }
 }
@@ -228,7 +229,7 @@ TEST(Seldom, a_wheel_that_sticks_after_few_stops_is_corrected) {
   const sim::BlindCase drawn = sim::make_blind_case(381161, 82, without_newest_kinds());
   ASSERT_EQ(drawn.answer.effects.front().name, "sticky_start");
   const Calibration result = calib::solve({&drawn.run.recording, 1}, {});
-  EXPECT_TRUE(testing::is_told(result, "since_stop")) << testing::told(result);
+  EXPECT_TRUE(test_support::is_told(result, "since_stop")) << test_support::told(result);
   const auto curves = result.extensions.find("curves");
   ASSERT_NE(curves, result.extensions.end());
   EXPECT_NE(curves->second.find("since_stop"), std::string::npos);
@@ -241,11 +242,11 @@ TEST(Dip, is_no_threshold) {
   const sim::BlindCase drawn = sim::make_blind_case(391152, 2, options);
   ASSERT_EQ(drawn.answer.effects.front().name, "resonance");
   const Calibration result = calib::solve({&drawn.run.recording, 1}, {});
-  EXPECT_TRUE(result.effects.empty()) << testing::told(result);
-  EXPECT_TRUE(testing::is_told(result, "right_speed")) << testing::told(result);
+  EXPECT_TRUE(result.effects.empty()) << test_support::told(result);
+  EXPECT_TRUE(test_support::is_told(result, "right_speed")) << test_support::told(result);
   const double diameter = drawn.answer.truth.right_diameter;
   EXPECT_NEAR(result.parameters[1].second.value, diameter, 0.02 * diameter);
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::accuracy_test

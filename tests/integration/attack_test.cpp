@@ -11,7 +11,7 @@
 #include "tests/integration/processes.hpp"
 #include "tests/unit/daemon/service/control_client.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support::attack_test {
 namespace {
 
 using nlohmann::json;
@@ -131,4 +131,4 @@ TEST(AttackedWhileWriting, by_a_disk_that_takes_two_seconds_commits_and_the_driv
 }
 
 }  // namespace
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support::attack_test

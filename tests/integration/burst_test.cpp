@@ -8,7 +8,7 @@
 #include "tests/integration/processes.hpp"
 #include "tests/unit/daemon/service/control_client.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support::burst_test {
 namespace {
 
 using nlohmann::json;
@@ -132,4 +132,4 @@ TEST(BurstAtRest, of_the_longest_calls_delays_other_clients_by_a_few_turns) {
 }
 
 }  // namespace
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support::burst_test

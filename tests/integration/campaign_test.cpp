@@ -10,7 +10,7 @@
 #include "tests/integration/whole_loop.hpp"
 #include "tests/sim/world/disturbance.hpp"
 
-namespace odomcalib {
+namespace odomcalib::campaign_test {
 namespace {
 
 using Raw = std::array<std::uint32_t, 3>;
@@ -242,4 +242,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, BadCampaign, testing::ValuesIn(kBad),
                          [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::campaign_test

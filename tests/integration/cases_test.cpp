@@ -12,7 +12,7 @@
 #include "proto/calibration/report_data.hpp"
 #include "proto/recording/recording.hpp"
 
-namespace odomcalib {
+namespace odomcalib::cases_test {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -157,4 +157,4 @@ TEST_F(Cases, a_real_drive_after_which_a_full_turn_is_off_says_so) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::cases_test

@@ -19,7 +19,7 @@
 #include "tests/integration/large_pages.hpp"
 #include "tests/integration/processes.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support::command_line_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -490,4 +490,4 @@ TEST_F(DaemonUsage, a_configuration_that_cannot_work_ends_with_2_and_names_file_
 }
 
 }  // namespace
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support::command_line_test

@@ -4,7 +4,7 @@
 
 #include "tests/integration/service_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::contract_test {
 namespace {
 
 struct Line {
@@ -195,4 +195,4 @@ TEST_F(ReadOnlyState, F35_the_service_runs_says_so_and_neither_moves_nor_writes)
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::contract_test

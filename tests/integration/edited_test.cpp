@@ -12,7 +12,7 @@
 #include "tests/integration/accuracy_runs.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib {
+namespace odomcalib::edited_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -179,13 +179,13 @@ TEST_P(Edited, is_told_and_keeps_the_wheels_right) {
     EXPECT_EQ(result.reasons.size(), GetParam().remark.empty() ? 0U : 1U);
     for (const std::string& reason : result.reasons)
       EXPECT_NE(reason.find(GetParam().remark), std::string::npos) << reason;
-    EXPECT_TRUE(result.effects.empty()) << testing::told(result);
-    EXPECT_FALSE(result.unexplained) << testing::told(result);
+    EXPECT_TRUE(result.effects.empty()) << test_support::told(result);
+    EXPECT_FALSE(result.unexplained) << test_support::told(result);
   } else {
-    EXPECT_TRUE(testing::is_told(result, GetParam().told)) << testing::told(result);
+    EXPECT_TRUE(test_support::is_told(result, GetParam().told)) << test_support::told(result);
   }
-  for (const double sigma : testing::length_errors_in_sigmas(result, plain_run().truth))
-    EXPECT_LT(std::abs(sigma), 4.0) << testing::told(result);
+  for (const double sigma : test_support::length_errors_in_sigmas(result, plain_run().truth))
+    EXPECT_LT(std::abs(sigma), 4.0) << test_support::told(result);
 }
 
 /// Of fifty turns a second every fifth is sent.
@@ -245,4 +245,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& edited) { return edited.param.name; });
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::edited_test

@@ -7,7 +7,7 @@
 
 #include "tests/integration/service_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::endurance_test {
 namespace {
 
 /// What a process may leak.
@@ -137,4 +137,4 @@ TEST_F(Endurance, of_motion_after_motion_adds_nothing) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::endurance_test

@@ -26,7 +26,7 @@ int sync_or_fail(long call, int fd) {
 extern "C" int fdatasync(int fd) { return sync_or_fail(SYS_fdatasync, fd); }
 extern "C" int fsync(int fd) { return sync_or_fail(SYS_fsync, fd); }
 
-namespace odomcalib {
+namespace odomcalib::failing_disk_test {
 namespace {
 
 using Raw = std::array<std::uint32_t, 3>;
@@ -101,4 +101,4 @@ TEST_P(OnFailingDisk, the_next_start_finds_nothing_undecided) {
 INSTANTIATE_TEST_SUITE_P(Service, OnFailingDisk, testing::Range(1, 13));
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::failing_disk_test

@@ -8,7 +8,7 @@
 #include "tests/integration/fault_loop.hpp"
 #include "tests/integration/stopping_faults.hpp"
 
-namespace odomcalib {
+namespace odomcalib::fault_test {
 namespace {
 
 using sim::make_frame;
@@ -294,4 +294,4 @@ TEST_F(ParameterFault, F11_answers_for_another_object_are_counted_and_not_believ
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::fault_test

@@ -2,7 +2,7 @@
 // the client is told why.
 #include "tests/integration/service_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::gate_test {
 namespace {
 
 class Gate : public ServiceLoop {
@@ -221,4 +221,4 @@ TEST_F(CountedDown, a_motion_begins_three_seconds_after_it_was_asked_for) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::gate_test

@@ -8,7 +8,7 @@
 #include "calib/solve.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib {
+namespace odomcalib::gyro_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -75,4 +75,4 @@ TEST(Gyro, S2_40_with_a_reversed_sign_is_named_and_left_out) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::gyro_test

@@ -9,7 +9,7 @@
 #include "tests/integration/fault_loop.hpp"
 #include "tests/integration/stopping_faults.hpp"
 
-namespace odomcalib {
+namespace odomcalib::injection_test {
 namespace {
 
 constexpr double kReaction = 0.100;  // s from detection to zero speed on the bus
@@ -151,4 +151,4 @@ TEST_F(Injection, of_a_fault_at_any_moment_ends_with_zero_speed_on_the_bus_withi
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::injection_test

@@ -13,7 +13,7 @@
 #include "proto/file_bytes.hpp"
 #include "tests/integration/processes.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support::kill_test {
 namespace {
 
 using nlohmann::json;
@@ -127,4 +127,4 @@ const Deaths kDeaths[] = {
 INSTANTIATE_TEST_SUITE_P(Processes, KillAfterRecord, ::testing::ValuesIn(kDeaths));
 
 }  // namespace
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support::kill_test

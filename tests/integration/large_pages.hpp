@@ -8,7 +8,7 @@
 
 #include "proto/file_bytes.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 inline bool kernel_gives_large_pages_on_request() {
   const auto modes = read_file_bytes("/sys/kernel/mm/transparent_hugepage/enabled");
@@ -22,4 +22,4 @@ inline bool asks_for_large_pages(pid_t process) {
   return environment.ok() && environment.value().find("glibc.malloc.hugetlb=1") != std::string::npos;
 }
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

@@ -9,7 +9,7 @@
 
 #include "tests/integration/processes.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support::lengths_test {
 namespace {
 
 using nlohmann::json;
@@ -81,4 +81,4 @@ TEST_F(LengthsInRealTime, S1_05_three_repetitions_applied_make_a_metre_right_to_
 }
 
 }  // namespace
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support::lengths_test

@@ -1,7 +1,7 @@
 // The whole loop in virtual time: drive, solve, write back, power cycle, drive again: the error went down.
 #include "tests/integration/whole_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::loop_test {
 namespace {
 
 TEST_F(WholeLoop, SX_02_calibrated_values_are_true_stored_and_make_the_odometry_better) {
@@ -34,4 +34,4 @@ TEST_F(WholeLoop, SX_02_calibrated_values_are_true_stored_and_make_the_odometry_
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::loop_test

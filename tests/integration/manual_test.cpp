@@ -6,7 +6,7 @@
 #include "daemon/cli/manual_moves.hpp"
 #include "tests/integration/service_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::manual_test {
 namespace {
 
 class Manual : public ServiceLoop {
@@ -166,4 +166,4 @@ TEST_P(Squares, S1_07_driven_both_ways_give_E_d_and_E_b_within_three_deviations)
 INSTANTIATE_TEST_SUITE_P(Robots, Squares, testing::Range<std::uint64_t>(1, 21));
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::manual_test

@@ -14,7 +14,7 @@
 #include "proto/calibration/scale.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib {
+namespace odomcalib::metre_test {
 namespace {
 
 constexpr unsigned kSeed = 61000;
@@ -114,4 +114,4 @@ TEST(Metre, of_a_stated_scale_changes_lengths_and_no_ratio) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::metre_test

@@ -16,7 +16,7 @@
 #include "proto/recording/recording.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib {
+namespace odomcalib::mistakes_test {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -477,4 +477,4 @@ INSTANTIATE_TEST_SUITE_P(ByHand, WrongFiles, ::testing::ValuesIn(wrong_files()),
                          [](const auto& file) { return file.param.name; });
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::mistakes_test

@@ -7,7 +7,7 @@
 #include "tests/integration/service_loop.hpp"
 #include "tests/sim/wires/fault_commands.hpp"
 
-namespace odomcalib {
+namespace odomcalib::nudge_test {
 namespace {
 
 constexpr double kQuarter = 0.5 * std::numbers::pi;
@@ -118,4 +118,4 @@ TEST_F(Nudged, stops_when_the_lease_lapses) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::nudge_test

@@ -14,7 +14,7 @@
 #include "calib/solve.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib {
+namespace odomcalib::one_robot_test {
 namespace {
 
 constexpr double kDuration = 110.0;  // s
@@ -203,4 +203,4 @@ TEST(OneRobotCampaign, names_the_recording_with_another_tyre) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::one_robot_test

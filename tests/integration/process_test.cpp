@@ -7,7 +7,7 @@
 
 #include "tests/integration/processes.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support::process_test {
 namespace {
 
 using nlohmann::json;
@@ -115,4 +115,4 @@ TEST_P(ClientSignal, stops_the_robot_within_250_ms_and_ends_the_client_as_cancel
 INSTANTIATE_TEST_SUITE_P(Processes, ClientSignal, ::testing::Values(SIGINT, SIGHUP, SIGTERM, SIGTSTP));
 
 }  // namespace
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support::process_test

@@ -16,7 +16,7 @@
 
 #include "daemon/cli/client.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 namespace {
 
 constexpr double kRest = 0.005;   // m/s
@@ -237,4 +237,4 @@ std::optional<double> RobotAndDaemon::time_to_rest(double clock) {
   return *rest - begin;
 }
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 /// s of the monotonic clock, the one in the wheel log of odomcalib-sim.
 double monotonic();
@@ -97,4 +97,4 @@ class RobotAndDaemon {
   int clients_ = 0;
 };
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

@@ -5,7 +5,7 @@
 #include "daemon/writeback/journal.hpp"
 #include "tests/integration/service_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::proof_test {
 namespace {
 
 using Raw = std::array<std::uint32_t, 3>;
@@ -179,4 +179,4 @@ TEST_F(ServiceProof, nothing_is_stored_where_nothing_waits) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::proof_test

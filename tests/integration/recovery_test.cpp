@@ -7,7 +7,7 @@
 #include "proto/file_bytes.hpp"
 #include "tests/integration/service_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::recovery_test {
 namespace {
 
 using Values = std::map<std::string, double>;
@@ -351,4 +351,4 @@ TEST_F(Applied, rollback_to_the_values_of_another_controller_is_refused_by_name)
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::recovery_test

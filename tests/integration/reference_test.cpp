@@ -9,7 +9,7 @@
 #include "tests/sim/effects/effect.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib {
+namespace odomcalib::reference_test {
 namespace {
 
 constexpr unsigned kSeed = 2611;
@@ -118,4 +118,4 @@ TEST(Reference, scans_without_beam_times_of_a_head_that_turns_are_skewed) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::reference_test

@@ -10,7 +10,7 @@
 
 #include "proto/file_bytes.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support::sample_recording_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -143,4 +143,4 @@ TEST_F(SampleRecording, S3_18_SD_09_tells_six_values_with_deviations_of_their_ow
 }
 
 }  // namespace
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support::sample_recording_test

@@ -11,7 +11,7 @@
 #include "calib/wheels/wheel_track.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::scan_path_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 2718;
@@ -104,4 +104,4 @@ TEST_F(ScanPaths, the_motion_in_a_sweep_is_that_of_dead_reckoning) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::scan_path_test

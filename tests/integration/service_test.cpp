@@ -16,7 +16,7 @@
 #include "proto/wire/event_log.hpp"
 #include "tests/integration/service_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::service_test {
 namespace {
 
 TEST_F(ServiceLoop, straight_goes_out_and_back_and_leaves_a_recording) {
@@ -700,4 +700,4 @@ TEST_F(PickyCalibrator, an_unknown_effect_is_refused_before_the_drive) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::service_test

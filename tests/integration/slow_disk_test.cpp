@@ -5,7 +5,7 @@
 #include "daemon/writeback/journal.hpp"
 #include "tests/integration/service_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::slow_disk_test {
 namespace {
 
 using Raw = std::array<std::uint32_t, 3>;
@@ -138,4 +138,4 @@ TEST_F(OnSlowDisk, a_drive_that_loses_its_power_while_the_disk_is_busy_ends_old_
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::slow_disk_test

@@ -14,7 +14,7 @@
 #include "tests/integration/large_pages.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib {
+namespace odomcalib::solver_process_test {
 namespace {
 
 class SolverOnItsOwn : public ::testing::Test {
@@ -58,10 +58,10 @@ TEST_F(SolverOnItsOwn, gives_the_very_calibration_that_the_same_solver_gives_her
 TEST_F(SolverOnItsOwn, has_large_pages_where_the_kernel_gives_them_on_request) {
   std::set<bool> asks;
   const auto look = [&](const std::string&, double) {
-    for (const pid_t pid : children()) asks.insert(testing::asks_for_large_pages(pid));
+    for (const pid_t pid : children()) asks.insert(test_support::asks_for_large_pages(pid));
   };
   ASSERT_TRUE(solve(look).ok());
-  EXPECT_EQ(asks, std::set{testing::kernel_gives_large_pages_on_request()});
+  EXPECT_EQ(asks, std::set{test_support::kernel_gives_large_pages_on_request()});
 }
 
 TEST_F(SolverOnItsOwn, is_gone_as_soon_as_its_progress_report_throws) {
@@ -106,4 +106,4 @@ TEST(SolverProcess, that_cannot_be_started_is_an_error) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::solver_process_test

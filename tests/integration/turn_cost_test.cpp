@@ -4,7 +4,7 @@
 
 #include "tests/integration/whole_loop.hpp"
 
-namespace odomcalib {
+namespace odomcalib::turn_cost_test {
 namespace {
 
 // s. What the specification allows a turn; programs with sanitizers are slower.
@@ -133,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, CallAtRest, testing::ValuesIn(kAsked),
                          [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::turn_cost_test

@@ -14,7 +14,7 @@
 
 #include "tests/integration/processes.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support::watchdog_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,4 +81,4 @@ TEST_F(Watchdog, is_fed_by_the_loop_and_by_nothing_else) {
 }
 
 }  // namespace
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support::watchdog_test

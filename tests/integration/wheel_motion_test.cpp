@@ -13,7 +13,7 @@
 #include "tests/sim/world/rooms.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib {
+namespace odomcalib::wheel_motion_test {
 namespace {
 
 // Of the standard deviations: what the way of telling may move a value by. Angles on the encoder's grid give
@@ -123,7 +123,7 @@ TEST_P(WheelMotionSolve, lengths_are_off_by_no_more_than_is_stated) {
     const Recording told = retold(run.recording, GetParam().as);
     const Calibration result = calib::solve({&told, 1}, {.effects = {"none"}});
     ASSERT_NE(result.verdict, Verdict::refused) << "seed " << seed << ": " << reasons(result);
-    for (const double sigma : testing::length_errors_in_sigmas(result, run.truth)) {
+    for (const double sigma : test_support::length_errors_in_sigmas(result, run.truth)) {
       std::printf("%s, seed %d: %.2f sigma\n", name_of(GetParam().as), static_cast<int>(seed), sigma);
       EXPECT_LT(std::abs(sigma), kHonest) << "seed " << seed;
     }
@@ -142,7 +142,7 @@ TEST(WheelSpeedSolve, speeds_of_the_interval_before_are_a_delay_that_is_found) {
   ASSERT_EQ(result.effects.size(), 1U);
   EXPECT_EQ(result.effects.front().name, "time_offset");
   EXPECT_NEAR(result.effects.front().parameters.front().second.value, -interval, 0.05 * interval);
-  for (const double sigma : testing::length_errors_in_sigmas(result, run.truth))
+  for (const double sigma : test_support::length_errors_in_sigmas(result, run.truth))
     EXPECT_LT(std::abs(sigma), kHonest);
 }
 
@@ -153,4 +153,4 @@ INSTANTIATE_TEST_SUITE_P(Forms, WheelMotionSolve,
                          [](const auto& test) { return std::string(name_of(test.param.as)); });
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::wheel_motion_test

@@ -14,7 +14,7 @@
 #include "drivers/can/transport.hpp"
 #include "tests/integration/processes.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 namespace {
 
 using drivers::ControllerState;
@@ -174,4 +174,4 @@ TEST_F(CanopenPeer, is_enabled_and_driven_by_process_data_and_its_counts_come_ba
 }
 
 }  // namespace
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

@@ -22,8 +22,8 @@ namespace odomcalib::vm {
 /// Runs `ip` with these arguments. @return its exit status
 int ip(const std::string& arguments);
 
-using testing::monotonic;
-using testing::wait_until;
+using test_support::monotonic;
+using test_support::wait_until;
 
 /// The two cards of the virtual machine, on one bus at 500 kbit/s. @return whether they exist
 bool cards_up();

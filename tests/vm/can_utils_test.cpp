@@ -17,7 +17,7 @@ namespace odomcalib::vm {
 namespace {
 
 using drivers::CanFrame;
-using testing::Process;
+using test_support::Process;
 
 const char* const kOutput = "/tmp/tool.log";
 

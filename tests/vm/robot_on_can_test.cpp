@@ -13,9 +13,9 @@ namespace odomcalib::vm {
 namespace {
 
 using nlohmann::json;
-using testing::CanWiring;
-using testing::Process;
-using testing::RobotAndDaemon;
+using test_support::CanWiring;
+using test_support::Process;
+using test_support::RobotAndDaemon;
 
 constexpr double kPause = 0.1;     // s between questions: each costs an emulated processor much
 constexpr double kToRest = 0.500;  // s: 100 ms to notice, 100 ms to command, the drive's own 200 ms, its ramp

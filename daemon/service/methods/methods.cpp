@@ -73,7 +73,7 @@ Outcome outcome_of(const Method& method, Context& context, const Call& call) {
   return begin(method, context, std::get<Request>(read));
 }
 
-std::unique_ptr<Task> reply_with(Outcome outcome, const Caller& caller, Outbox& outbox) {
+std::unique_ptr<Task> settle_outcome(Outcome outcome, const Caller& caller, Outbox& outbox) {
   if (const auto* answer = std::get_if<Answer>(&outcome)) outbox.answer(caller, answer->parameters);
   if (const auto* error = std::get_if<Error>(&outcome)) outbox.refuse(caller, *error);
   if (const auto* wrong = std::get_if<WrongParameter>(&outcome)) outbox.refuse_parameter(caller, wrong->name);
@@ -88,13 +88,13 @@ std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming)
   const Caller caller{incoming.client, incoming.call.more, incoming.call.oneway};
   const Method& method = method_of(incoming.call.name(), incoming.call.parameters);
   if (auto refused = not_now(method, context, incoming.stopped_since))
-    return reply_with(*refused, caller, outbox);
+    return settle_outcome(*refused, caller, outbox);
   if (method.handle == nullptr) {
     outbox.refuse_method(caller, incoming.call.method);
     return nullptr;
   }
   const Call call{caller, incoming.call.parameters, incoming.arrived, incoming.stopped_since};
-  return reply_with(outcome_of(method, context, call), caller, outbox);
+  return settle_outcome(outcome_of(method, context, call), caller, outbox);
 }
 
 }  // namespace odomcalib

@@ -12,7 +12,7 @@
 namespace odomcalib {
 namespace {
 
-Error forbidden(ErrorCode code, const std::string& what, const std::string& remedy) {
+Error write_forbidden(ErrorCode code, const std::string& what, const std::string& remedy) {
   return {code, what, "motion", remedy};
 }
 
@@ -83,23 +83,24 @@ std::optional<Error> Drive::geometry_forbidden() const {
   const auto held = controller().capabilities();
   const bool readable = std::any_of(held.begin(), held.end(), [](const auto& one) { return one.readable; });
   if (readable && !values_known)
-    return forbidden(ErrorCode::device, "the controller's values were not read yet",
-                     "wait two seconds; if it stays, check the bus");
+    return write_forbidden(ErrorCode::device, "the controller's values were not read yet",
+                           "wait two seconds; if it stays, check the bus");
   const RobotDescription expected = nominal(), all = robot();
   if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
-    return forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
-                     "state robot.wheel_diameter and robot.track_width in the configuration");
+    return write_forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",
+                           "state robot.wheel_diameter and robot.track_width in the configuration");
   const std::array<std::tuple<const char*, double, double>, 3> values{
       {{"left_wheel_diameter", all.left_wheel_diameter, expected.left_wheel_diameter},
        {"right_wheel_diameter", all.right_wheel_diameter, expected.right_wheel_diameter},
        {"track_width", all.track_width, expected.track_width}}};
   for (const auto& [name, value, wanted] : values)
     if (wanted > 0.0 && std::abs(value / wanted - 1.0) > service::settings::kPlausibleLength)
-      return forbidden(ErrorCode::refused,
-                       fmt::format("the controller holds {} = {:.4f} m, the configuration says {:.4f} m",
-                                   name, value, wanted),
-                       "measure the robot; correct robot.* in the configuration or the profile, or the "
-                       "controller's value");
+      return write_forbidden(
+          ErrorCode::refused,
+          fmt::format("the controller holds {} = {:.4f} m, the configuration says {:.4f} m", name, value,
+                      wanted),
+          "measure the robot; correct robot.* in the configuration or the profile, or the "
+          "controller's value");
   return std::nullopt;
 }
 

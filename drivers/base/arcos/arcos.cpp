@@ -19,7 +19,7 @@ constexpr std::size_t kFraming = 5;  // bytes around a packet's data
 constexpr unsigned kMotorsEnabled = 0x0001, kEmergencyFlag = 0x0020;
 
 /// A text ended by zero; foreign: only what prints is kept.
-std::string text_of(ByteReader& reader) {
+std::string read_text(ByteReader& reader) {
   std::string out;
   while (reader.left() > 0) {
     const std::uint8_t c = reader.u8();
@@ -70,7 +70,7 @@ void Arcos::on_sync(Bytes data) {
     return send_command(static_cast<std::uint8_t>(phase_));
   }
   identity_ = Identity{};
-  for (const char* separator : {"", " ", " "}) identity_->name += separator + text_of(reader);
+  for (const char* separator : {"", " ", " "}) identity_->name += separator + read_text(reader);
   phase_ = Phase::open;
   open();
 }
@@ -129,9 +129,9 @@ void Arcos::on_status(Bytes data, double t) {
 
 void Arcos::on_configuration(Bytes data, double t) {
   ByteReader reader(data);
-  const std::string type = text_of(reader), subtype = text_of(reader), serial = text_of(reader);
+  const std::string type = read_text(reader), subtype = read_text(reader), serial = read_text(reader);
   reader.take(1 + 5 * 2);
-  const std::string name = text_of(reader);
+  const std::string name = read_text(reader);
   reader.take(3 + 2 + 2 + 1 + 2);  // three bytes, gripper, front sonar, rear sonar, low battery
   const double rev_count = reader.u16();
   const double watchdog_ms = reader.u16();

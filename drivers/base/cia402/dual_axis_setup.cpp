@@ -17,7 +17,7 @@ using canopen::NumberType;
 using canopen::SdoStep;
 constexpr std::uint8_t kNmtStart = 0x01;
 constexpr std::uint8_t kNmtPreOperational = 0x80;
-constexpr std::uint8_t kOperational = 0x05;
+constexpr std::uint8_t kOperationalState = 0x05;
 constexpr NumberType kU16{2, false};
 constexpr NumberType kU32{4, false};
 constexpr NumberType kI16{2, true};
@@ -169,7 +169,7 @@ void DualAxis::note_safety_objects() {
 }
 
 void DualAxis::check_started() {
-  const bool running = node_state_ == kOperational && positions_at_ && status_at_;
+  const bool running = node_state_ == kOperationalState && positions_at_ && status_at_;
   if (running) {
     phase_ = Phase::ready;
     phase_since_ = now_;

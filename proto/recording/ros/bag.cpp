@@ -9,9 +9,9 @@ namespace odomcalib::ros {
 namespace {
 
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kNanoseconds = 1'000'000'000;
 
-enum Op : std::uint8_t {
+enum BagOp : std::uint8_t {
   kMessage = 2,
   kBagHeader = 3,
   kIndex = 4,
@@ -46,7 +46,7 @@ class Fields {
   std::string_view bytes_;
 };
 
-struct Record {
+struct BagRecord {
   Fields header{{}};
   std::string_view data;
   std::optional<std::uint8_t> op;
@@ -54,8 +54,8 @@ struct Record {
 };
 
 /// The next record; of one that is cut off in its data, what is there.
-Record next_record(ByteReader& reader) {
-  Record record;
+BagRecord next_bag_record(ByteReader& reader) {
+  BagRecord record;
   record.header = Fields(reader.take(reader.little_endian<std::uint32_t>()));
   const std::size_t size = reader.little_endian<std::uint32_t>();
   if (!reader.ok()) return record;
@@ -65,7 +65,7 @@ Record next_record(ByteReader& reader) {
   return record;
 }
 
-std::optional<Packing> packing_named(std::string_view name) {
+std::optional<Packing> bag_packing(std::string_view name) {
   if (name == "none" || name.empty()) return Packing::none;
   if (name == "bz2") return Packing::bz2;
   if (name == "lz4") return Packing::lz4;
@@ -79,7 +79,7 @@ class BagReader {
   std::optional<Error> read(std::string_view bytes, const std::string& where) {
     ByteReader reader(bytes.substr(kMagic.size()));
     while (!reader.at_end()) {
-      const Record record = next_record(reader);
+      const BagRecord record = next_bag_record(reader);
       if (record.op == kBagHeader && !record.header.text("encryptor").empty())
         return Error{ErrorCode::format, "is an encrypted bag", where,
                      "decrypt it: rosbag decompress, on a machine that has the key"};
@@ -100,8 +100,8 @@ class BagReader {
   }
 
  private:
-  void read_chunk(const Record& chunk) {
-    const auto packing = packing_named(chunk.header.text("compression"));
+  void read_chunk(const BagRecord& chunk) {
+    const auto packing = bag_packing(chunk.header.text("compression"));
     const auto size = chunk.header.number<std::uint32_t>("size");
     if (!packing || !size) return collector_.discard("chunk", "packed in a way that is not known");
     if (*packing == Packing::none) return read_records(chunk.data);
@@ -114,18 +114,18 @@ class BagReader {
   void read_records(std::string_view bytes) {
     ByteReader reader(bytes);
     while (!reader.at_end()) {
-      const Record record = next_record(reader);
+      const BagRecord record = next_bag_record(reader);
       if (!record.whole || !record.op) return collector_.discard("chunk", "cut off or damaged");
       read_record(record);
     }
   }
 
-  void read_record(const Record& record) {
+  void read_record(const BagRecord& record) {
     if (record.op == kConnection) read_connection(record);
     if (record.op == kMessage) read_message(record);
   }
 
-  void read_connection(const Record& record) {
+  void read_connection(const BagRecord& record) {
     const auto id = record.header.number<std::uint32_t>("conn");
     if (!id) return collector_.discard("connection", "without a number");
     const Fields about(record.data);
@@ -136,13 +136,13 @@ class BagReader {
     topics_[*id] = topic;
   }
 
-  void read_message(const Record& record) {
+  void read_message(const BagRecord& record) {
     const auto id = record.header.number<std::uint32_t>("conn");
     const auto time = record.header.number<std::uint64_t>("time");  // seconds, then nanoseconds
     const auto topic = id ? topics_.find(*id) : topics_.end();
     if (topic == topics_.end() || !time) return collector_.discard("message", "without a topic or a time");
-    const auto received =
-        static_cast<std::int64_t>(*time & 0xFFFFFFFFU) * kSecond + static_cast<std::int64_t>(*time >> 32U);
+    const auto received = static_cast<std::int64_t>(*time & 0xFFFFFFFFU) * kNanoseconds +
+                          static_cast<std::int64_t>(*time >> 32U);
     collector_.message(topic->second, received, record.data);
   }
 

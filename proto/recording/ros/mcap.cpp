@@ -12,17 +12,17 @@ namespace {
 
 constexpr std::size_t kMagicSize = 8;
 
-enum Op : std::uint8_t { kSchema = 3, kChannel = 4, kMessage = 5, kChunk = 6, kDataEnd = 15 };
+enum McapOp : std::uint8_t { kSchema = 3, kChannel = 4, kMessage = 5, kChunk = 6, kDataEnd = 15 };
 
-struct Record {
+struct McapRecord {
   std::uint8_t op = 0;
   std::string_view content;
   bool whole = false;
 };
 
 /// The next record; of one that is cut off, what is there.
-Record next_record(ByteReader& reader) {
-  Record record;
+McapRecord next_mcap_record(ByteReader& reader) {
+  McapRecord record;
   record.op = reader.little_endian<std::uint8_t>();
   const auto size = reader.little_endian<std::uint64_t>();
   if (!reader.ok()) return record;
@@ -35,7 +35,7 @@ std::string text(ByteReader& reader) {
   return std::string(reader.take(reader.little_endian<std::uint32_t>()));
 }
 
-std::optional<Packing> packing_named(const std::string& name) {
+std::optional<Packing> mcap_packing(const std::string& name) {
   if (name.empty()) return Packing::none;
   if (name == "lz4") return Packing::lz4;
   if (name == "zstd") return Packing::zstd;
@@ -53,7 +53,7 @@ class McapReader {
   void read(std::string_view bytes) {
     ByteReader reader(bytes.substr(kMagicSize));
     while (!reader.at_end()) {
-      const Record record = next_record(reader);
+      const McapRecord record = next_mcap_record(reader);
       if (record.op == kChunk)
         read_chunk(record);
       else if (record.whole)
@@ -65,14 +65,14 @@ class McapReader {
   }
 
  private:
-  void read_chunk(const Record& record) {
+  void read_chunk(const McapRecord& record) {
     ByteReader chunk(record.content);
     chunk.take(16);  // times of the first and the last message
     const auto size = chunk.little_endian<std::uint64_t>();
     const auto crc = chunk.little_endian<std::uint32_t>();
     const std::string name = text(chunk);
     const auto packed_size = chunk.little_endian<std::uint64_t>();
-    const auto packing = packing_named(name);
+    const auto packing = mcap_packing(name);
     if (!chunk.ok() || !packing) return collector_.discard("chunk", "packed in a way that is not known");
     const bool cut = packed_size > chunk.left();
     const auto packed =
@@ -89,13 +89,13 @@ class McapReader {
     if (crc != 0 && crc != crc_of(bytes)) return collector_.discard("chunk", "wrong checksum");
     ByteReader reader(bytes);
     while (!reader.at_end()) {
-      const Record record = next_record(reader);
+      const McapRecord record = next_mcap_record(reader);
       if (!record.whole) return collector_.discard("chunk", "cut off or damaged");
       read_record(record);
     }
   }
 
-  void read_record(const Record& record) {
+  void read_record(const McapRecord& record) {
     ByteReader reader(record.content);
     if (record.op == kSchema) read_schema(reader);
     if (record.op == kChannel) read_channel(reader);

@@ -11,7 +11,7 @@ namespace {
 // recording may be out of order. Topics whose differences lie farther apart are stamped by clocks that do not
 // know each other.
 constexpr std::int64_t kClocksApart_ns = 1'000'000'000;
-constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+constexpr std::int64_t kStampSecond = 1'000'000'000;  // ns
 
 enum class Part { scan, wheels, wheel_speeds, odometry, gyro, pose };
 constexpr std::array<const char*, 6> kParts{"scan", "wheels", "wheel_speeds", "odometry", "gyro", "pose"};
@@ -357,14 +357,14 @@ class Clock {
     const std::int64_t time = time_ns(one.stamp_ns, one.received_ns);
     std::int64_t since = 0;
     if (__builtin_sub_overflow(time, start_, &since)) return std::nan("");
-    const std::int64_t seconds = since / kSecond, rest = since % kSecond;
+    const std::int64_t seconds = since / kStampSecond, rest = since % kStampSecond;
     return static_cast<double>(seconds) + 1e-9 * static_cast<double>(rest);
   }
 
  private:
   void set_start(const Topic& topic) {
     each_time(topic, [&](std::int64_t stamp, std::int64_t received) {
-      if (start_ == 0) start_ = time_ns(stamp, received) / kSecond * kSecond;
+      if (start_ == 0) start_ = time_ns(stamp, received) / kStampSecond * kStampSecond;
     });
   }
 
@@ -375,8 +375,8 @@ class Clock {
 
 // ---- into the builder
 
-void add_joints(RecordingBuilder& builder, const Topic& topic, const Joints& joints, const Clock& clock,
-                bool speeds) {
+void add_joint_samples(RecordingBuilder& builder, const Topic& topic, const Joints& joints,
+                       const Clock& clock, bool speeds) {
   const auto at = places(topic, joints);
   std::size_t without = 0;
   for (const auto& one : topic.joints) {
@@ -407,11 +407,11 @@ void add_wheels(RecordingBuilder& builder, Chosen& chosen, const Clock& clock) {
   if (const Topic* topic = chosen[Part::wheels]) {
     const bool positions = has_positions(*topic, chosen.joints);
     tell(*topic, positions ? "wheels" : "wheel_speeds, there are no angles");
-    add_joints(builder, *topic, chosen.joints, clock, !positions);
+    add_joint_samples(builder, *topic, chosen.joints, clock, !positions);
   }
   if (const Topic* topic = chosen[Part::wheel_speeds]) {
     tell(*topic, "wheel_speeds");
-    add_joints(builder, *topic, chosen.joints, clock, true);
+    add_joint_samples(builder, *topic, chosen.joints, clock, true);
   }
 }
 

@@ -24,7 +24,9 @@ double tyre_slip(double acceleration, double at_one) {
   return sign(acceleration) * std::tan(std::asin(used) / kShape) / stiffness;
 }
 
-double forward(const StepMotion& motion) { return 0.5 * (motion.travel[kLeft] + motion.travel[kRight]); }
+double travel_forward(const StepMotion& motion) {
+  return 0.5 * (motion.travel[kLeft] + motion.travel[kRight]);
+}
 
 /// Each tyre slips as much as its share of the acceleration asks for.
 class TractionSlip : public Effect {
@@ -77,7 +79,7 @@ class SidewallTwist : public Effect {
   SidewallTwist(double most, Random& /*random*/) : Effect("sidewall_twist", most) {}
   void on_step(const StepView& view, StepMotion& motion) override {
     if (size_ <= 0.0) return;
-    const double path = std::abs(forward(motion));
+    const double path = std::abs(travel_forward(motion));
     if (std::abs(view.rate[kLeft]) < kRest && std::abs(view.rate[kRight]) < kRest) {
       const double back = twist_ * (1.0 - std::exp(-view.dt / kTime));
       motion.yaw -= back;
@@ -102,7 +104,7 @@ class CorneringCreep : public Effect {
  public:
   CorneringCreep(double angle_at_one, Random& /*random*/) : Effect("cornering_creep", angle_at_one) {}
   void on_step(const StepView& view, StepMotion& motion) override {
-    const double path = std::abs(forward(motion));
+    const double path = std::abs(travel_forward(motion));
     const double wanted = std::atan(tyre_slip(view.speed * view.yaw_rate, size_));
     angle_ += (wanted - angle_) * (1.0 - std::exp(-path / kRelaxation));
     motion.side -= std::tan(angle_) * path;
@@ -170,13 +172,13 @@ class CasterSwing : public Effect {
  public:
   CasterSwing(double push, Random& random) : Effect("caster_swing", push), bias_(0.002 * any_sign(random)) {}
   void on_step(const StepView& view, StepMotion& motion) override {
-    const double along = forward(motion) / view.dt, across = -kBehind * view.yaw_rate;
+    const double along = travel_forward(motion) / view.dt, across = -kBehind * view.yaw_rate;
     // No sideways slip of the caster wheel, which trails from the pivot in direction `angle_`.
     const double swing = (along * std::sin(angle_) - across * std::cos(angle_)) / kTrail - view.yaw_rate;
     angle_ += (swing + bias_ * std::abs(along) / kTrail) * view.dt;
     if (std::abs(along) < 1e-9) return;
     const double rolls_along = std::atan2(-across, -along);
-    motion.yaw += size_ * std::sin(angle_ - rolls_along) * std::abs(forward(motion)) / kTrail;
+    motion.yaw += size_ * std::sin(angle_ - rolls_along) * std::abs(travel_forward(motion)) / kTrail;
   }
 
  private:
@@ -186,7 +188,7 @@ class CasterSwing : public Effect {
 };
 
 template <typename Kind>
-auto maker() {
+auto contact_maker() {
   return [](double size, Random& random) -> std::shared_ptr<Disturbance> {
     return std::make_shared<Kind>(size, random);
   };
@@ -202,28 +204,40 @@ std::vector<EffectKind> contact_effects() {
        "1 at 1 m/s^2",
        0.015,
        0.06,
-       maker<TractionSlip>()},
-      {"brake_skid", "acceleration_slip", {"acceleration"}, "1 at 1 m/s^2", 0.02, 0.1, maker<BrakeSkid>()},
-      {"grabbing_brake", "", {"acceleration"}, "1 at 1 m/s^2", 0.02, 0.1, maker<GrabbingBrake>()},
-      {"sidewall_twist", "stop_settling", {"stops"}, "rad", 0.002, 0.01, maker<SidewallTwist>()},
+       contact_maker<TractionSlip>()},
+      {"brake_skid",
+       "acceleration_slip",
+       {"acceleration"},
+       "1 at 1 m/s^2",
+       0.02,
+       0.1,
+       contact_maker<BrakeSkid>()},
+      {"grabbing_brake", "", {"acceleration"}, "1 at 1 m/s^2", 0.02, 0.1, contact_maker<GrabbingBrake>()},
+      {"sidewall_twist", "stop_settling", {"stops"}, "rad", 0.002, 0.01, contact_maker<SidewallTwist>()},
       {"cornering_creep",
        "lateral_slip",
        {"speed*yaw_rate"},
        "rad at 1 m/s^2",
        0.03,
        0.12,
-       maker<CorneringCreep>()},
+       contact_maker<CorneringCreep>()},
       {"patch_scrub",
        "track_depends_on_motion",
        {"yaw_rate", "speed"},
        "1",
        0.005,
        0.03,
-       maker<PatchScrub>()},
-      {"turn_drag", "turn_direction_asymmetry", {"yaw_rate"}, "1", 0.004, 0.02, maker<TurnDrag>()},
-      {"spin_walk", "", {"yaw_rate"}, "m/rad", 0.001, 0.005, maker<SpinWalk>()},
-      {"turn_memory", "", {"previous_turn"}, "1", 0.003, 0.012, maker<TurnMemory>()},
-      {"caster_swing", "caster_kick", {"distance_since_reversal"}, "rad", 0.004, 0.02, maker<CasterSwing>()},
+       contact_maker<PatchScrub>()},
+      {"turn_drag", "turn_direction_asymmetry", {"yaw_rate"}, "1", 0.004, 0.02, contact_maker<TurnDrag>()},
+      {"spin_walk", "", {"yaw_rate"}, "m/rad", 0.001, 0.005, contact_maker<SpinWalk>()},
+      {"turn_memory", "", {"previous_turn"}, "1", 0.003, 0.012, contact_maker<TurnMemory>()},
+      {"caster_swing",
+       "caster_kick",
+       {"distance_since_reversal"},
+       "rad",
+       0.004,
+       0.02,
+       contact_maker<CasterSwing>()},
   };
 }
 

@@ -115,7 +115,7 @@ class LooseWheel : public Effect {
 };
 
 template <typename Kind>
-auto maker() {
+auto drive_train_maker() {
   return [](double size, Random& random) -> std::shared_ptr<Disturbance> {
     return std::make_shared<Kind>(size, random);
   };
@@ -125,18 +125,30 @@ auto maker() {
 
 std::vector<EffectKind> drive_train_effects() {
   return {
-      {"gear_play", "backlash", {"reversal"}, "rad", 0.015, 0.06, maker<GearPlay>()},
+      {"gear_play", "backlash", {"reversal"}, "rad", 0.015, 0.06, drive_train_maker<GearPlay>()},
       {"encoder_disc_off_centre",
        "wheel_eccentricity",
        {"wheel_phase"},
        "1",
        0.01,
        0.03,
-       maker<EncoderDiscOffCentre>()},
-      {"encoder_interpolation", "", {"wheel_phase"}, "rad", 0.01, 0.03, maker<EncoderInterpolation>()},
-      {"missed_counts", "tick_loss", {"wheel_speed"}, "1", 0.005, 0.03, maker<MissedCounts>()},
-      {"encoder_filter", "encoder_lag", {"acceleration"}, "s", 0.015, 0.08, maker<EncoderFilter>()},
-      {"loose_wheel", "", {"acceleration", "history"}, "1", 0.005, 0.02, maker<LooseWheel>()},
+       drive_train_maker<EncoderDiscOffCentre>()},
+      {"encoder_interpolation",
+       "",
+       {"wheel_phase"},
+       "rad",
+       0.01,
+       0.03,
+       drive_train_maker<EncoderInterpolation>()},
+      {"missed_counts", "tick_loss", {"wheel_speed"}, "1", 0.005, 0.03, drive_train_maker<MissedCounts>()},
+      {"encoder_filter",
+       "encoder_lag",
+       {"acceleration"},
+       "s",
+       0.015,
+       0.08,
+       drive_train_maker<EncoderFilter>()},
+      {"loose_wheel", "", {"acceleration", "history"}, "1", 0.005, 0.02, drive_train_maker<LooseWheel>()},
   };
 }
 

@@ -87,7 +87,7 @@ class CablePull : public Effect {
 };
 
 template <typename Kind>
-auto maker() {
+auto floor_maker() {
   return [](double size, Random& random) -> std::shared_ptr<Disturbance> {
     return std::make_shared<Kind>(size, random);
   };
@@ -97,11 +97,11 @@ auto maker() {
 
 std::vector<EffectKind> floor_effects() {
   return {
-      {"tilted_floor", "floor_slope", {"heading"}, "1", 0.004, 0.015, maker<TiltedFloor>()},
-      {"carpet_nap", "carpet", {"heading"}, "1", 0.005, 0.03, maker<CarpetNap>()},
-      {"floor_tiles", "", {"position"}, "1", 0.02, 0.06, maker<FloorTiles>()},
-      {"rug", "", {"position"}, "1", 0.005, 0.02, maker<Rug>()},
-      {"cable_pull", "", {"heading"}, "rad/m", 0.02, 0.08, maker<CablePull>()},
+      {"tilted_floor", "floor_slope", {"heading"}, "1", 0.004, 0.015, floor_maker<TiltedFloor>()},
+      {"carpet_nap", "carpet", {"heading"}, "1", 0.005, 0.03, floor_maker<CarpetNap>()},
+      {"floor_tiles", "", {"position"}, "1", 0.02, 0.06, floor_maker<FloorTiles>()},
+      {"rug", "", {"position"}, "1", 0.005, 0.02, floor_maker<Rug>()},
+      {"cable_pull", "", {"heading"}, "rad/m", 0.02, 0.08, floor_maker<CablePull>()},
   };
 }
 

@@ -79,7 +79,7 @@ class LeaningHead : public Effect {
 };
 
 template <typename Kind>
-auto maker() {
+auto lidar_maker() {
   return [](double size, Random& random) -> std::shared_ptr<Disturbance> {
     return std::make_shared<Kind>(size, random);
   };
@@ -89,11 +89,11 @@ auto maker() {
 
 std::vector<EffectKind> lidar_effects() {
   return {
-      {"mast_flex", "", {"yaw_acceleration"}, "rad at 1 rad/s^2", 0.004, 0.02, maker<MastFlex>()},
-      {"head_disc_off_centre", "", {"bearing"}, "1", 0.01, 0.05, maker<HeadDiscOffCentre>()},
-      {"cover_glass", "range_bias", {"range"}, "m", 0.01, 0.04, maker<CoverGlass>()},
-      {"leaning_head", "lidar_tilt", {"bearing"}, "rad", 0.06, 0.12, maker<LeaningHead>()},
-      {"slanted_echo", "", {"incidence"}, "m at 45 deg and 4 m", 0.005, 0.03, maker<SlantedEcho>()},
+      {"mast_flex", "", {"yaw_acceleration"}, "rad at 1 rad/s^2", 0.004, 0.02, lidar_maker<MastFlex>()},
+      {"head_disc_off_centre", "", {"bearing"}, "1", 0.01, 0.05, lidar_maker<HeadDiscOffCentre>()},
+      {"cover_glass", "range_bias", {"range"}, "m", 0.01, 0.04, lidar_maker<CoverGlass>()},
+      {"leaning_head", "lidar_tilt", {"bearing"}, "rad", 0.06, 0.12, lidar_maker<LeaningHead>()},
+      {"slanted_echo", "", {"incidence"}, "m at 45 deg and 4 m", 0.005, 0.03, lidar_maker<SlantedEcho>()},
   };
 }
 

@@ -50,7 +50,7 @@ class CrystalDrift : public Effect {
 };
 
 template <typename Kind>
-auto maker() {
+auto time_maker() {
   return [](double size, Random& random) -> std::shared_ptr<Disturbance> {
     return std::make_shared<Kind>(size, random);
   };
@@ -60,9 +60,15 @@ auto maker() {
 
 std::vector<EffectKind> time_effects() {
   return {
-      {"sweep_queue", "time_offset", {"acceleration"}, "s", 0.01, 0.08, maker<SweepQueue>()},
-      {"count_queue", "time_offset", {"acceleration"}, "s", 0.01, 0.06, maker<CountQueue>()},
-      {"crystal_drift", "clock_drift", {"time", "acceleration"}, "s/s", 0.0001, 0.001, maker<CrystalDrift>()},
+      {"sweep_queue", "time_offset", {"acceleration"}, "s", 0.01, 0.08, time_maker<SweepQueue>()},
+      {"count_queue", "time_offset", {"acceleration"}, "s", 0.01, 0.06, time_maker<CountQueue>()},
+      {"crystal_drift",
+       "clock_drift",
+       {"time", "acceleration"},
+       "s/s",
+       0.0001,
+       0.001,
+       time_maker<CrystalDrift>()},
   };
 }
 

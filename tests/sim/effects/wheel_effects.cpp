@@ -9,8 +9,6 @@ namespace odomcalib::sim {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// A circle that turns about a point beside its centre: the floor is met at the distance of the rim in that
 /// direction.
 class OffCentreWheel : public Effect {
@@ -33,13 +31,13 @@ class FlatSpot : public Effect {
   FlatSpot(double half_angle, Random& random)
       : Effect("flat_spot", half_angle), side_(any_side(random)), phase_(any_angle(random)) {}
   void on_step(const StepView& view, StepMotion& motion) override {
-    const double from_middle = std::remainder(view.angle[side_] + phase_, 2.0 * kPi);
+    const double from_middle = std::remainder(view.angle[side_] + phase_, 2.0 * std::numbers::pi);
     if (std::abs(from_middle) < size_) motion.travel[side_] *= std::cos(size_) / std::cos(from_middle);
   }
   /// Mean of the above over the turn.
   [[nodiscard]] double roundness(std::size_t side) const override {
     const double flat = std::cos(size_) * std::asinh(std::tan(size_));
-    return side == side_ ? 1.0 - (size_ - flat) / kPi : 1.0;
+    return side == side_ ? 1.0 - (size_ - flat) / std::numbers::pi : 1.0;
   }
 
  private:
@@ -124,7 +122,7 @@ class AirConditioner : public Effect {
   AirConditioner(double swing, Random& random)
       : Effect("air_conditioner", swing), period_(uniform(random, 45.0, 100.0)), phase_(any_angle(random)) {}
   void on_step(const StepView& view, StepMotion& motion) override {
-    const double cycle = std::remainder(view.t / period_ + phase_ / (2.0 * kPi), 1.0);
+    const double cycle = std::remainder(view.t / period_ + phase_ / (2.0 * std::numbers::pi), 1.0);
     const double swing = 1.0 - 4.0 * std::abs(cycle);  // triangle between -1 and 1
     for (double& travel : motion.travel) travel *= 1.0 + size_ * swing;
   }
@@ -168,7 +166,7 @@ class StickyStart : public Effect {
 };
 
 template <typename Kind>
-auto maker() {
+auto wheel_maker() {
   return [](double size, Random& random) -> std::shared_ptr<Disturbance> {
     return std::make_shared<Kind>(size, random);
   };
@@ -178,15 +176,21 @@ auto maker() {
 
 std::vector<EffectKind> wheel_effects() {
   return {
-      {"off_centre_wheel", "wheel_eccentricity", {"wheel_phase"}, "1", 0.005, 0.02, maker<OffCentreWheel>()},
-      {"flat_spot", "", {"wheel_phase"}, "rad", 0.3, 0.55, maker<FlatSpot>()},
-      {"rim_growth", "speed_dependent_radius", {"wheel_speed"}, "1", 0.004, 0.02, maker<RimGrowth>()},
-      {"resonance", "", {"wheel_speed"}, "1", 0.01, 0.04, maker<Resonance>()},
-      {"tread_lay", "direction_dependent_diameter", {"direction"}, "1", 0.003, 0.01, maker<TreadLay>()},
-      {"tyre_warming", "drift_with_time", {"time"}, "1", 0.004, 0.015, maker<TyreWarming>()},
-      {"air_conditioner", "", {"time"}, "1", 0.003, 0.012, maker<AirConditioner>()},
-      {"payload_shift", "", {"time"}, "1", 0.003, 0.012, maker<PayloadShift>()},
-      {"sticky_start", "", {"distance_since_stop"}, "1", 0.05, 0.3, maker<StickyStart>()},
+      {"off_centre_wheel",
+       "wheel_eccentricity",
+       {"wheel_phase"},
+       "1",
+       0.005,
+       0.02,
+       wheel_maker<OffCentreWheel>()},
+      {"flat_spot", "", {"wheel_phase"}, "rad", 0.3, 0.55, wheel_maker<FlatSpot>()},
+      {"rim_growth", "speed_dependent_radius", {"wheel_speed"}, "1", 0.004, 0.02, wheel_maker<RimGrowth>()},
+      {"resonance", "", {"wheel_speed"}, "1", 0.01, 0.04, wheel_maker<Resonance>()},
+      {"tread_lay", "direction_dependent_diameter", {"direction"}, "1", 0.003, 0.01, wheel_maker<TreadLay>()},
+      {"tyre_warming", "drift_with_time", {"time"}, "1", 0.004, 0.015, wheel_maker<TyreWarming>()},
+      {"air_conditioner", "", {"time"}, "1", 0.003, 0.012, wheel_maker<AirConditioner>()},
+      {"payload_shift", "", {"time"}, "1", 0.003, 0.012, wheel_maker<PayloadShift>()},
+      {"sticky_start", "", {"distance_since_stop"}, "1", 0.05, 0.3, wheel_maker<StickyStart>()},
   };
 }
 

@@ -16,7 +16,7 @@
 namespace odomcalib::sim {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 /// Little-endian, as all three formats are.
 template <typename Number>
@@ -36,7 +36,7 @@ std::string field(const std::string& name, const std::string& value) { return si
 std::string record(const std::string& header, const std::string& data) { return sized(header) + sized(data); }
 
 std::string bag_time(std::int64_t ns) {
-  return raw(static_cast<std::uint32_t>(ns / kSecond)) + raw(static_cast<std::uint32_t>(ns % kSecond));
+  return raw(static_cast<std::uint32_t>(ns / kSecond_ns)) + raw(static_cast<std::uint32_t>(ns % kSecond_ns));
 }
 
 std::string op(char code) { return field("op", std::string(1, code)); }

@@ -3,11 +3,12 @@
 #include <bit>
 #include <cstring>
 
+#include "tests/sim/world/disturbance.hpp"
+
 namespace odomcalib::sim {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr std::size_t kLeft = 0, kRight = 1;
 
 Frame frame_of(std::uint32_t id, bool extended, std::uint8_t length) {
   Frame frame;

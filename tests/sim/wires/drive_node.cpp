@@ -9,9 +9,8 @@ namespace odomcalib::sim {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kRatedSpeed = 200.0 * 2.0 * kPi / 60.0;  // rad/s, what the ramp times refer to
-constexpr double kAtRest = 0.02;                          // rad/s
+constexpr double kRatedSpeed = 200.0 * 2.0 * std::numbers::pi / 60.0;  // rad/s, what the ramp times refer to
+constexpr double kAtRest = 0.02;                                       // rad/s
 constexpr std::uint16_t kHeartbeatLost = 0x8130, kRpdoTimeout = 0x8250;
 constexpr std::uint8_t kCommunicationError = 0x11;
 
@@ -248,7 +247,7 @@ MotorOrder DriveNode::order() const {
     const auto target =
         static_cast<std::int32_t>(dictionary_.value({0x60FF, static_cast<std::uint8_t>(side + 1)}));
     const std::size_t motor = faults.swap_motors ? 1 - side : side;
-    const double rate = std::clamp(0.01 * target * 2.0 * kPi / 60.0, -kRatedSpeed, kRatedSpeed);
+    const double rate = std::clamp(0.01 * target * 2.0 * std::numbers::pi / 60.0, -kRatedSpeed, kRatedSpeed);
     order.rate[motor] = faults.motor_inverted[motor] ? -rate : rate;
   }
   return order;

@@ -7,7 +7,7 @@ namespace odomcalib::sim {
 namespace {
 
 constexpr std::uint8_t kCobId = 1, kType = 2, kInhibit = 3, kTimer = 5;
-constexpr std::uint32_t kInvalid = 0x80000000U;
+constexpr std::uint32_t kPdoInvalid = 0x80000000U;
 
 struct MappedObject {
   ObjectKey key;
@@ -63,7 +63,7 @@ void Pdo::add_mapping(const PdoDefaults& defaults) {
 AbortCode Pdo::check_cob_id(std::uint32_t value) const {
   if (!configurable_()) return abort_code::kState;
   const std::uint32_t wanted = value & 0x7FFU;
-  if (valid() && (value & kInvalid) == 0 && wanted != id()) return abort_code::kState;
+  if (valid() && (value & kPdoInvalid) == 0 && wanted != id()) return abort_code::kState;
   return (value & 0x3FFFF800U) != 0 || restricted(wanted) ? abort_code::kRange : abort_code::kNone;
 }
 
@@ -98,7 +98,7 @@ std::uint32_t Pdo::parameter(std::uint8_t sub) const { return dictionary_.value(
 
 std::uint32_t Pdo::mapped_count() const { return dictionary_.value({mapping_, 0}); }
 
-bool Pdo::valid() const { return (parameter(kCobId) & kInvalid) == 0; }
+bool Pdo::valid() const { return (parameter(kCobId) & kPdoInvalid) == 0; }
 
 std::uint32_t Pdo::id() const { return parameter(kCobId) & 0x7FFU; }
 

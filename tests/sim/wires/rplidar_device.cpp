@@ -7,7 +7,7 @@ namespace odomcalib::sim {
 
 namespace {
 
-std::string with_checksum(const std::string& body) {
+std::string rplidar_frame(const std::string& body) {
   unsigned sum = 0;
   for (const char c : body) sum ^= static_cast<unsigned char>(c);
   return std::string{static_cast<char>(0xA0 | (sum & 0xF)), static_cast<char>(0x50 | (sum >> 4))} + body;
@@ -100,7 +100,7 @@ void RplidarDevice::pack(double t) {
   } else if (samples_.size() == (data_ == Data::express ? 32U : 40U)) {
     const unsigned start = static_cast<unsigned>(samples_.front().clockwise * 64.0) | (first_ ? 0x8000U : 0U);
     first_ = false;
-    send(with_checksum(little(start, 2) + (data_ == Data::express ? express_capsule() : dense_capsule())), t);
+    send(rplidar_frame(little(start, 2) + (data_ == Data::express ? express_capsule() : dense_capsule())), t);
     samples_.clear();
   }
 }

@@ -6,7 +6,7 @@
 namespace odomcalib::sim {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 
 /// Low byte first.
 void put(std::string& out, std::int64_t value, int bytes) {
@@ -56,7 +56,7 @@ void ArduinoBoard::execute(double now) {
   } else if (command == "m") {
     double left = 0.0, right = 0.0;
     words >> left >> right;
-    wheels_.rate = {left * 30.0 / 8384.0 * kTwoPi, right * 30.0 / 8384.0 * kTwoPi};
+    wheels_.rate = {left * 30.0 / 8384.0 * kTurn_rad, right * 30.0 / 8384.0 * kTurn_rad};
     moved_at_ = now;
     answer << "OK";
   } else {
@@ -116,7 +116,7 @@ void PioneerBase::execute(const std::string& data, double now) {
   if (!open_) return;
   if (command == 4) enabled_ = argument != 0;
   if (command == 11) speed_ = 1e-3 * argument;
-  if (command == 21) turn_ = argument * kTwoPi / 360.0;
+  if (command == 21) turn_ = argument * kTurn_rad / 360.0;
   if (command == 55 || command == 29) speed_ = turn_ = 0.0;
   if (command == 19) encoders_ = argument == 2;
   if (command == 18) send_configuration();

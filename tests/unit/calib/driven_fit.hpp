@@ -10,7 +10,7 @@
 #include "calib/selection/clocks.hpp"
 #include "tests/unit/calib/driven_recording.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 inline calib::measurement::Dataset rough_dataset(std::span<const Recording> recordings) {
   auto opened = calib::measurement::open_dataset(calib::ingest::Recordings(recordings));
@@ -28,4 +28,4 @@ inline calib::estimation::Fit settled_fit(std::span<const Recording> recordings)
   return fit_anew(rough_dataset(recordings), request, silent_settling());
 }
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

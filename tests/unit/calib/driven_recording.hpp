@@ -8,7 +8,7 @@
 #include "calib/math/se2.hpp"
 #include "proto/recording/recording.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 inline constexpr unsigned kDriveSeed = 20;
 inline constexpr double kLeftRadius = 0.0755, kRightRadius = 0.0745, kTrackWidth = 0.41;  // m
@@ -47,4 +47,4 @@ inline Recording driven_recording(const calib::math::Pose& marker, double turnin
   return recording;
 }
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

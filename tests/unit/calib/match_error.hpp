@@ -7,7 +7,7 @@
 
 #include "calib/match.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 /// @param motion true x, y (m) and yaw (rad)
 inline Eigen::Vector3d error_of(const calib::ScanMatch& match, const Eigen::Vector3d& motion) {
@@ -24,4 +24,4 @@ inline double normalised_squared(const calib::ScanMatch& match, const Eigen::Vec
   return error.dot(covariance.inverse() * error);
 }
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

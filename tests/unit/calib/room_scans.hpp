@@ -9,7 +9,7 @@
 #include "calib/math/se2.hpp"
 #include "proto/measurements.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 struct RoomWall {
   double x1, y1, x2, y2;
@@ -53,4 +53,4 @@ inline Scan scan_from(const std::vector<RoomWall>& walls, const calib::math::Pos
   return scan;
 }
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

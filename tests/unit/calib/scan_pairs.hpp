@@ -13,7 +13,7 @@
 #include "proto/file_bytes.hpp"
 #include "proto/measurements.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 struct ScanPair {
   Scan reference, scan;
@@ -74,4 +74,4 @@ inline std::vector<ScanPair> read_scan_pairs(const std::filesystem::path& path) 
   return pairs;
 }
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 inline std::filesystem::path shared_data(const std::string& name) {
   const char* root = std::getenv("ODOMCALIB_SHARED");
@@ -26,9 +26,9 @@ inline std::vector<std::filesystem::path> shared_files(const std::string& folder
   return files;
 }
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support
 
-#define ODOMCALIB_NEEDS_SHARED(name)                                            \
-  if (!std::filesystem::exists(odomcalib::testing::shared_data(name)))          \
-  GTEST_SKIP() << "REAL DATA ABSENT: " << odomcalib::testing::shared_data(name) \
+#define ODOMCALIB_NEEDS_SHARED(name)                                                 \
+  if (!std::filesystem::exists(odomcalib::test_support::shared_data(name)))          \
+  GTEST_SKIP() << "REAL DATA ABSENT: " << odomcalib::test_support::shared_data(name) \
                << " not found; set ODOMCALIB_SHARED"

@@ -9,11 +9,11 @@
 #include "tests/unit/calib/room_scans.hpp"
 #include "tests/unit/calib/shared_data.hpp"
 
-namespace odomcalib::calib {
+namespace odomcalib::calib::solve_test {
 namespace {
 
-using odomcalib::testing::shared_data;
-using odomcalib::testing::shared_files;
+using odomcalib::test_support::shared_data;
+using odomcalib::test_support::shared_files;
 
 Recording load(const std::filesystem::path& path) {
   auto recording = read_recording(path);
@@ -59,8 +59,8 @@ TEST(Solve, S1_14_a_corridor_is_refused_as_a_place_that_scans_cannot_tell) {
     recording.ticks.push_back({0.02 * k, counts, counts, 0});
   }
   for (unsigned k = 0; k < 300; ++k) {
-    recording.scans.push_back(odomcalib::testing::scan_from(odomcalib::testing::kCorridor,
-                                                            {kSpeed * 0.1 * k, 0.0, 0.0}, 0.01, k, 360));
+    recording.scans.push_back(odomcalib::test_support::scan_from(odomcalib::test_support::kCorridor,
+                                                                 {kSpeed * 0.1 * k, 0.0, 0.0}, 0.01, k, 360));
     recording.scans.back().t = 0.1 * k;
   }
   const Calibration result = solve({&recording, 1}, {});
@@ -221,4 +221,4 @@ TEST(Predict, odometry_sample_by_sample_equals_the_batch) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib
+}  // namespace odomcalib::calib::solve_test

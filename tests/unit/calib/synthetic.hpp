@@ -7,7 +7,7 @@
 
 #include "calib/wheels/wheel_motion.hpp"
 
-namespace odomcalib::testing {
+namespace odomcalib::test_support {
 
 /// Sensor motion for wheel rotations, written out: circle about the instantaneous centre of rotation.
 inline calib::math::Pose sensor_motion_by_hand(const calib::wheels::BaseParameters& p, double left,
@@ -45,4 +45,4 @@ inline std::vector<calib::wheels::WheelMotion> random_motions(const calib::wheel
   return motions;
 }
 
-}  // namespace odomcalib::testing
+}  // namespace odomcalib::test_support

@@ -9,7 +9,7 @@
 
 #include <fstream>
 
-namespace odomcalib {
+namespace odomcalib::file_bytes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +92,4 @@ TEST_F(Output, of_the_program_itself_replaces_a_link) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::file_bytes_test

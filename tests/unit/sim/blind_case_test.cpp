@@ -6,7 +6,7 @@
 
 #include "tests/sim/effects/effect.hpp"
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::blind_case_test {
 namespace {
 
 TEST(BlindCase, same_draw_same_case_and_other_number_other_case) {
@@ -87,4 +87,4 @@ TEST(BlindCase, the_proof_has_the_same_robot_and_other_data) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::blind_case_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::body_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -145,4 +145,4 @@ TEST(Body, effects_move_the_base_and_the_encoder_independently) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::body_test

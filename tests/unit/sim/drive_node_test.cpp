@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::drive_node_test {
 namespace {
 
 class Drive : public testing::Test {
@@ -292,4 +292,4 @@ TEST_F(Drive, commands_to_another_node_are_not_obeyed) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::drive_node_test

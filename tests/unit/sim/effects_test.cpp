@@ -11,7 +11,7 @@
 #include "tests/sim/world/rooms.hpp"
 #include "tests/sim/world/simulate.hpp"
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::effects_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -259,4 +259,4 @@ TEST(SweepQueue, delays_by_its_size_on_average) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::effects_test

@@ -6,7 +6,7 @@
 
 #include "tests/sim/world/rooms.hpp"
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::ld06_stream_test {
 namespace {
 
 /// The packet printed in the manufacturer's data sheet.
@@ -111,4 +111,4 @@ TEST_F(Stream, after_a_power_cycle_speed_and_angles_are_invalid_for_a_fifth_of_a
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::ld06_stream_test

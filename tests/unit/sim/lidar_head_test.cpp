@@ -7,7 +7,7 @@
 
 #include "tests/sim/world/rooms.hpp"
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::lidar_head_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -134,4 +134,4 @@ TEST(LidarHead, loses_echoes_at_grazing_incidence_and_out_of_range_only) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::lidar_head_test

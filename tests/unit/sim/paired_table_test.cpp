@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace odomcalib::blind {
+namespace odomcalib::blind::paired_table_test {
 namespace {
 
 /// A robot whose wheel is off its centre.
@@ -40,4 +40,4 @@ TEST(PairedTable, calls_an_uneven_split_improbable_and_an_even_one_not) {
 }
 
 }  // namespace
-}  // namespace odomcalib::blind
+}  // namespace odomcalib::blind::paired_table_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::ray_bound_test {
 namespace {
 
 SimulationConfig short_config(double range_noise, double slip) {
@@ -46,4 +46,4 @@ TEST(RayBound, slip_alone_limits_the_diameters) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::ray_bound_test

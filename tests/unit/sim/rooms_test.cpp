@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::rooms_test {
 namespace {
 
 TEST(Rooms, every_random_room_is_closed_and_leaves_the_start_free) {
@@ -34,4 +34,4 @@ TEST(Rooms, same_seed_same_room) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::rooms_test

@@ -3,7 +3,7 @@
 
 #include "tests/sim/wires/drive_node.hpp"
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::sdo_test {
 namespace {
 
 class Sdo : public testing::Test {
@@ -119,4 +119,4 @@ TEST_F(Sdo, a_stopped_node_does_not_answer) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::sdo_test

@@ -18,7 +18,7 @@
 #include "tests/sim/wires/fault_commands.hpp"
 #include "tests/sim/wires/truth_json.hpp"
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::sim_robot_test {
 namespace {
 
 /// One end of a wire as a program sees it.
@@ -288,4 +288,4 @@ TEST(SimRobot, runs_much_faster_than_real_time) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::sim_robot_test

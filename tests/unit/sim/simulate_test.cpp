@@ -9,7 +9,7 @@
 
 #include "tests/sim/world/rooms.hpp"
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::simulate_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -211,4 +211,4 @@ TEST(Simulate, four_minutes_take_less_than_three_seconds) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::simulate_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace odomcalib::sim {
+namespace odomcalib::sim::slcan_adapter_test {
 namespace {
 
 SlcanAdapter opened() {
@@ -84,4 +84,4 @@ TEST(SlcanAdapter, stamps_count_milliseconds_of_the_minute) {
 }
 
 }  // namespace
-}  // namespace odomcalib::sim
+}  // namespace odomcalib::sim::slcan_adapter_test

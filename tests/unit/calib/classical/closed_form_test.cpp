@@ -9,11 +9,11 @@
 #include "tests/unit/calib/shared_data.hpp"
 #include "tests/unit/calib/synthetic.hpp"
 
-namespace odomcalib::calib::classical {
+namespace odomcalib::calib::classical::closed_form_test {
 namespace {
 
-using odomcalib::testing::random_motions;
-using odomcalib::testing::shared_data;
+using odomcalib::test_support::random_motions;
+using odomcalib::test_support::shared_data;
 
 constexpr unsigned kSeed = 1;
 const wheels::BaseParameters kTruth{0.0752, 0.0748, 0.405, {0.11, -0.02, 0.4}};
@@ -98,7 +98,7 @@ std::vector<wheels::WheelMotion> one_motion(double proportion, double yaw_noise)
   std::normal_distribution<double> gauss(0.0, yaw_noise);
   for (wheels::WheelMotion& m : motions) {
     m.right = proportion * m.left * kTruth.left_radius / kTruth.right_radius;
-    m.sensor_motion = odomcalib::testing::sensor_motion_by_hand(kTruth, m.left, m.right);
+    m.sensor_motion = odomcalib::test_support::sensor_motion_by_hand(kTruth, m.left, m.right);
     m.sensor_motion.yaw += gauss(engine);
   }
   return motions;
@@ -161,7 +161,7 @@ TEST(ClosedForm, SD_13_a_drive_backwards_calibrates_as_one_forwards) {
   for (wheels::WheelMotion& m : motions) {
     m.left = -std::abs(m.left);
     m.right = -std::abs(m.right);
-    m.sensor_motion = odomcalib::testing::sensor_motion_by_hand(kTruth, m.left, m.right);
+    m.sensor_motion = odomcalib::test_support::sensor_motion_by_hand(kTruth, m.left, m.right);
   }
   const auto result = solve_closed_form(motions, {0, 0.01});
   ASSERT_TRUE(result.ok()) << result.error().text();
@@ -222,4 +222,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace odomcalib::calib::classical
+}  // namespace odomcalib::calib::classical::closed_form_test

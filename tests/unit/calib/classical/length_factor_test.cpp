@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-namespace odomcalib::calib::classical {
+namespace odomcalib::calib::classical::length_factor_test {
 namespace {
 
 const RobotDescription kRobot{0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
@@ -57,4 +57,4 @@ TEST(LengthFactor, names_the_track_alone_and_one_wheel_alone) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::classical
+}  // namespace odomcalib::calib::classical::length_factor_test

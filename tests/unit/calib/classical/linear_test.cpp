@@ -12,7 +12,7 @@
 #include "proto/recording/recording.hpp"
 #include "tests/unit/calib/shared_data.hpp"
 
-namespace odomcalib::calib::classical {
+namespace odomcalib::calib::classical::linear_test {
 namespace {
 
 std::vector<IncrementPair> generic_pairs(const Eigen::Matrix3d& x, std::size_t count) {
@@ -218,7 +218,7 @@ TEST_P(LinearOnCensiTuples, S1_08_agrees_to_the_printed_digits) {
   ODOMCALIB_NEEDS_SHARED("khepera-censi");
   RobotDescription unknown;
   const auto recording =
-      read_recording(odomcalib::testing::shared_data("khepera-censi") / expected.file, &unknown);
+      read_recording(odomcalib::test_support::shared_data("khepera-censi") / expected.file, &unknown);
   ASSERT_TRUE(recording.ok()) << recording.error().text();
   std::vector<wheels::WheelMotion> samples;
   for (const IncrementSample& s : recording.value().increments)
@@ -259,4 +259,4 @@ INSTANTIATE_TEST_SUITE_P(Khepera, LinearOnCensiTuples,
                                                    0.0018, 0.118, -10.92, 0.996, 7.3e5, 5.1e-3}));
 
 }  // namespace
-}  // namespace odomcalib::calib::classical
+}  // namespace odomcalib::calib::classical::linear_test

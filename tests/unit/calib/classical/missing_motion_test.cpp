@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace odomcalib::calib::classical {
+namespace odomcalib::calib::classical::missing_motion_test {
 namespace {
 
 using Motions = std::vector<wheels::WheelMotion>;
@@ -23,4 +23,4 @@ TEST(MissingMotion, is_none_where_lines_and_turns_or_two_arcs_were_driven) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::classical
+}  // namespace odomcalib::calib::classical::missing_motion_test

@@ -8,10 +8,10 @@
 #include "calib/classical/manual.hpp"
 #include "tests/unit/calib/synthetic.hpp"
 
-namespace odomcalib::calib::classical {
+namespace odomcalib::calib::classical::rest_to_rest_test {
 namespace {
 
-using odomcalib::testing::sensor_motion_by_hand;
+using odomcalib::test_support::sensor_motion_by_hand;
 
 const wheels::BaseParameters kNominal{0.075, 0.075, 0.4, {}};
 const wheels::BaseParameters kTruth{0.0764, 0.0759, 0.409, {}};
@@ -211,4 +211,4 @@ TEST(Squares, what_does_not_end_near_its_start_is_refused) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::classical
+}  // namespace odomcalib::calib::classical::rest_to_rest_test

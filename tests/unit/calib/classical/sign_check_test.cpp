@@ -8,10 +8,10 @@
 
 #include "tests/unit/calib/synthetic.hpp"
 
-namespace odomcalib::calib::classical {
+namespace odomcalib::calib::classical::sign_check_test {
 namespace {
 
-using odomcalib::testing::random_motions;
+using odomcalib::test_support::random_motions;
 
 struct Faults {
   bool exchanged = false, left = false, right = false, mirrored = false;
@@ -127,4 +127,4 @@ TEST(SignCheck, leaves_four_times_the_counts_to_the_gate) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::classical
+}  // namespace odomcalib::calib::classical::sign_check_test

@@ -5,13 +5,13 @@
 
 #include "tests/unit/calib/driven_fit.hpp"
 
-namespace odomcalib::calib::estimation {
+namespace odomcalib::calib::estimation::fit_test {
 namespace {
 
-using odomcalib::testing::driven_recording;
-using odomcalib::testing::rough_dataset;
-using odomcalib::testing::settled_fit;
-using odomcalib::testing::silent_settling;
+using odomcalib::test_support::driven_recording;
+using odomcalib::test_support::rough_dataset;
+using odomcalib::test_support::settled_fit;
+using odomcalib::test_support::silent_settling;
 
 TEST(Fit, settles_on_the_truth_without_a_clock_that_is_idle) {
   const Recording recording = driven_recording({});
@@ -19,8 +19,8 @@ TEST(Fit, settles_on_the_truth_without_a_clock_that_is_idle) {
   ASSERT_FALSE(fit.failure) << fit.failure->text();
   EXPECT_TRUE(fit.model.effects.empty());
   EXPECT_EQ(fit.model.parameters, fit.result.parameters);
-  EXPECT_NEAR(fit.model.parameters(vehicle::kLeftRadius), testing::kLeftRadius, 5e-5);
-  EXPECT_NEAR(fit.model.parameters(vehicle::kTrackWidth), testing::kTrackWidth, 1e-3);
+  EXPECT_NEAR(fit.model.parameters(vehicle::kLeftRadius), test_support::kLeftRadius, 5e-5);
+  EXPECT_NEAR(fit.model.parameters(vehicle::kTrackWidth), test_support::kTrackWidth, 1e-3);
 }
 
 TEST(Fit, settles_with_a_clock_that_is_late) {
@@ -44,4 +44,4 @@ TEST(Fit, that_fails_says_why_and_keeps_its_pairs) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::estimation
+}  // namespace odomcalib::calib::estimation::fit_test

@@ -8,7 +8,7 @@
 #include "calib/vehicle/step_context.hpp"
 #include "tests/unit/calib/estimation/driven_wheels.hpp"
 
-namespace odomcalib::calib::estimation {
+namespace odomcalib::calib::estimation::gyro_witness_test {
 namespace {
 
 constexpr double kDegree = math::kPi / 180.0;
@@ -163,4 +163,4 @@ TEST(GyroWitness, without_one_or_with_few_samples_the_fit_stands) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::estimation
+}  // namespace odomcalib::calib::estimation::gyro_witness_test

@@ -11,7 +11,7 @@
 #include "calib/vehicle/step_context.hpp"
 #include "tests/unit/calib/estimation/driven_wheels.hpp"
 
-namespace odomcalib::calib::estimation {
+namespace odomcalib::calib::estimation::joint_test {
 namespace {
 
 constexpr unsigned kSeed = 3;
@@ -151,4 +151,4 @@ TEST(Joint, no_pairs_is_an_error_of_its_own) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::estimation
+}  // namespace odomcalib::calib::estimation::joint_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace odomcalib::calib::estimation {
+namespace odomcalib::calib::estimation::path_fit_test {
 namespace {
 
 const wheels::BaseParameters kTruth{0.0752, 0.0748, 0.405, {0.11, -0.02, 0.4}};
@@ -120,4 +120,4 @@ TEST(PathFit, a_handful_of_places_is_refused) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::estimation
+}  // namespace odomcalib::calib::estimation::path_fit_test

@@ -8,7 +8,7 @@
 #include "calib/terms/catalogue.hpp"
 #include "calib/vehicle/step_context.hpp"
 
-namespace odomcalib::calib::estimation {
+namespace odomcalib::calib::estimation::start_values_test {
 namespace {
 
 const wheels::BaseParameters kBase{0.075, 0.074, 0.4, {0.1, 0.02, 0.3}};
@@ -69,4 +69,4 @@ TEST(SearchClock, leaves_to_the_fit_what_it_can_find_itself_and_believes_no_half
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::estimation
+}  // namespace odomcalib::calib::estimation::start_values_test

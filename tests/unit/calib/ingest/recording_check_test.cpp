@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-namespace odomcalib::calib::ingest {
+namespace odomcalib::calib::ingest::recording_check_test {
 namespace {
 
 Recording sound() {
@@ -134,4 +134,4 @@ TEST(RecordingCheckPasses, what_is_unusual_but_sound) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::ingest
+}  // namespace odomcalib::calib::ingest::recording_check_test

@@ -10,7 +10,7 @@
 #include "calib/ingest/sweeps.hpp"
 #include "calib/math/se2.hpp"
 
-namespace odomcalib::calib::ingest {
+namespace odomcalib::calib::ingest::recordings_test {
 namespace {
 
 constexpr unsigned kSeed = 7;
@@ -104,4 +104,4 @@ TEST(Sweeps, a_stamp_in_the_middle_moves_by_half_a_scan) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::ingest
+}  // namespace odomcalib::calib::ingest::recordings_test

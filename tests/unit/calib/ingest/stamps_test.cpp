@@ -12,7 +12,7 @@
 #include "calib/measurement/scan_stamps.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::ingest {
+namespace odomcalib::calib::ingest::stamps_test {
 namespace {
 
 constexpr double kPeriod = 0.02;  // s
@@ -222,4 +222,4 @@ TEST(StampReport, remarks_on_what_a_driver_could_mend) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::ingest
+}  // namespace odomcalib::calib::ingest::stamps_test

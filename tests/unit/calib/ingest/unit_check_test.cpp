@@ -11,7 +11,7 @@
 #include "calib/ingest/phantom_return.hpp"
 #include "calib/ingest/pose_frame.hpp"
 
-namespace odomcalib::calib::ingest {
+namespace odomcalib::calib::ingest::unit_check_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -145,4 +145,4 @@ TEST(UnitOfInterval, names_the_one_unit_that_fits) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::ingest
+}  // namespace odomcalib::calib::ingest::unit_check_test

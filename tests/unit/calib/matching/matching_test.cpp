@@ -12,15 +12,15 @@
 #include "tests/unit/calib/match_error.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
-namespace odomcalib::calib::matching {
+namespace odomcalib::calib::matching::matching_test {
 namespace {
 
-using testing::kCorridor;
-using testing::kHall;
-using testing::kRoom;
-using testing::ray_distance;
-using testing::RoomWall;
-using testing::scan_from;
+using test_support::kCorridor;
+using test_support::kHall;
+using test_support::kRoom;
+using test_support::ray_distance;
+using test_support::RoomWall;
+using test_support::scan_from;
 
 TEST(Matching, S2_04_recovers_a_known_motion_from_noise_free_scans) {
   const math::Pose a{0.2, -0.1, 0.1};
@@ -55,7 +55,8 @@ TEST(Matching, S2_02_brute_force_needs_no_guess_and_a_climb_needs_one_nearby) {
 }
 
 double normalised_error_squared(const ScanMatch& match, const math::Pose& motion) {
-  return testing::normalised_squared(match, testing::error_of(match, {motion.x, motion.y, motion.yaw}));
+  return test_support::normalised_squared(match,
+                                          test_support::error_of(match, {motion.x, motion.y, motion.yaw}));
 }
 
 TEST(Matching, S2_40_errors_agree_with_the_reported_covariance) {
@@ -148,7 +149,7 @@ TEST(Matching, a_wall_at_the_end_of_the_reach_holds_nobody_back) {
   const BeamMotion at_rest = [](double) { return math::Pose{}; };
   const math::Pose motion{0.15, 0.0, 0.0};
   const auto seen = [&](const math::Pose& from, unsigned seed, double reach) {
-    Scan scan = scan_from(testing::kHall, from, kNoise, seed);
+    Scan scan = scan_from(test_support::kHall, from, kNoise, seed);
     for (float& range : scan.ranges)
       if (static_cast<double>(range) > kReach) range = 0.0F;
     scan.range_max = reach;
@@ -377,4 +378,4 @@ TEST(Surface, estimates_the_range_noise_of_few_beams) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::matching
+}  // namespace odomcalib::calib::matching::matching_test

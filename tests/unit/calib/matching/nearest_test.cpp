@@ -7,7 +7,7 @@
 #include "calib/matching/bearing_order.hpp"
 #include "calib/matching/point_to_point.hpp"
 
-namespace odomcalib::calib::matching {
+namespace odomcalib::calib::matching::nearest_test {
 namespace {
 
 std::vector<Eigen::Vector2d> random_points(std::size_t count, unsigned seed) {
@@ -79,4 +79,4 @@ TEST(PointToPoint, S2_04_failure_is_no_success) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::matching
+}  // namespace odomcalib::calib::matching::nearest_test

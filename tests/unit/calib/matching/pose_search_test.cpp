@@ -8,11 +8,11 @@
 #include "calib/matching/surface.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
-namespace odomcalib::calib::matching {
+namespace odomcalib::calib::matching::pose_search_test {
 namespace {
 
-using testing::kRoom;
-using testing::scan_from;
+using test_support::kRoom;
+using test_support::scan_from;
 
 std::vector<Eigen::Vector2d> points_of(const Scan& scan, std::size_t stride) {
   std::vector<Eigen::Vector2d> points;
@@ -141,4 +141,4 @@ TEST(PoseSearch, nothing_to_match_scores_nothing) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::matching
+}  // namespace odomcalib::calib::matching::pose_search_test

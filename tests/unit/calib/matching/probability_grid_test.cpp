@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace odomcalib::calib::matching {
+namespace odomcalib::calib::matching::probability_grid_test {
 namespace {
 
 const std::vector<Eigen::Vector2d> kBeam = {{2.02, 0.02}};
@@ -50,4 +50,4 @@ TEST(ProbabilityGrid, the_sensor_may_stand_anywhere_and_beams_may_leave_the_map)
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::matching
+}  // namespace odomcalib::calib::matching::probability_grid_test

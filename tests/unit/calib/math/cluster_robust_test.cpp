@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace odomcalib::calib::math {
+namespace odomcalib::calib::math::cluster_robust_test {
 namespace {
 
 constexpr int kSamples = 2000;  ///< one a second
@@ -63,4 +63,4 @@ TEST(ClusterRobust, nothing_measured_leaves_the_model) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::math
+}  // namespace odomcalib::calib::math::cluster_robust_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace odomcalib::calib::math {
+namespace odomcalib::calib::math::last_value_test {
 namespace {
 
 TEST(LastValue, computes_once_what_is_asked_for_twice_in_a_row) {
@@ -21,4 +21,4 @@ TEST(LastValue, computes_once_what_is_asked_for_twice_in_a_row) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::math
+}  // namespace odomcalib::calib::math::last_value_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace odomcalib::calib::math {
+namespace odomcalib::calib::math::se2_test {
 namespace {
 
 constexpr unsigned kSeed = 20130421;
@@ -130,4 +130,4 @@ TEST_F(Se2, wraps_into_the_half_open_interval) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::math
+}  // namespace odomcalib::calib::math::se2_test

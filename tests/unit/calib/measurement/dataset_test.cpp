@@ -6,11 +6,11 @@
 #include "calib/measurement/placement.hpp"
 #include "tests/unit/calib/driven_fit.hpp"
 
-namespace odomcalib::calib::measurement {
+namespace odomcalib::calib::measurement::dataset_test {
 namespace {
 
-using odomcalib::testing::driven_recording;
-using odomcalib::testing::rough_dataset;
+using odomcalib::test_support::driven_recording;
+using odomcalib::test_support::rough_dataset;
 
 TEST(Dataset, measured_anew_leaves_the_old_one_as_it_is) {
   const Recording recording = driven_recording({});
@@ -59,4 +59,4 @@ TEST(Placement, is_of_the_recordings_that_were_placed_and_of_no_others) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::measurement
+}  // namespace odomcalib::calib::measurement::dataset_test

@@ -7,11 +7,11 @@
 #include "calib/measurement/adjust.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
-namespace odomcalib::calib::measurement {
+namespace odomcalib::calib::measurement::map_test {
 namespace {
 
-using testing::kRoom;
-using testing::scan_from;
+using test_support::kRoom;
+using test_support::scan_from;
 
 constexpr double kNoise = 0.01;
 const matching::BeamMotion kAtRest = [](double) { return math::Pose{}; };
@@ -150,7 +150,7 @@ TEST(PlaceScan, walls_where_noise_decides_whether_they_are_seen_say_nothing) {
 
 TEST(PlaceScan, a_scan_of_another_room_finds_no_place) {
   const WallMap map = map_of_room();
-  const std::vector<testing::RoomWall> other = {
+  const std::vector<test_support::RoomWall> other = {
       {-1, -1.3, 1.6, -0.9}, {1.6, -0.9, 1.1, 1.8}, {1.1, 1.8, -1, -1.3}};
   const Place place =
       place_scan(map, make_beams(scan_from(other, {}, kNoise, 1), kAtRest), {}, {kNoise, 0.15});
@@ -159,10 +159,10 @@ TEST(PlaceScan, a_scan_of_another_room_finds_no_place) {
 
 TEST(PlaceScan, along_a_corridor_the_place_is_not_usable) {
   WallMap map;
-  const Scan scan = scan_from(testing::kCorridor, {}, kNoise, 1);
+  const Scan scan = scan_from(test_support::kCorridor, {}, kNoise, 1);
   map.insert(walls_of(scan), {});
   EXPECT_FALSE(place_scan(map, make_beams(scan, kAtRest), {}, {kNoise, 0.15}).is_usable());
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::measurement
+}  // namespace odomcalib::calib::measurement::map_test

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-namespace odomcalib::calib::measurement {
+namespace odomcalib::calib::measurement::noise_test {
 namespace {
 
 constexpr unsigned kSeed = 11;
@@ -121,4 +121,4 @@ TEST(Whitener, equals_the_dense_inverse_root) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::measurement
+}  // namespace odomcalib::calib::measurement::noise_test

@@ -9,7 +9,7 @@
 #include "calib/measurement/dataset.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
-namespace odomcalib::calib::measurement {
+namespace odomcalib::calib::measurement::pair_builder_test {
 namespace {
 
 constexpr double kScanPeriod = 0.2;  // s
@@ -28,7 +28,8 @@ Recording turning_recording(const std::vector<double>& turns) {
   };
   for (std::size_t k = 0; k <= turns.size(); ++k) {
     const double t = kScanPeriod * static_cast<double>(k);
-    recording.scans.push_back(testing::scan_from(testing::kRoom, {0.5, 0.3, yaw}, 0.005, 40 + unsigned(k)));
+    recording.scans.push_back(
+        test_support::scan_from(test_support::kRoom, {0.5, 0.3, yaw}, 0.005, 40 + unsigned(k)));
     recording.scans.back().t = t;
     for (int i = 0; i < kTicksPerScan; ++i) {
       tick(t + kScanPeriod * i / kTicksPerScan);
@@ -50,7 +51,7 @@ PairSet pairs_of(const Recording& recording) {
 TEST(PairBuilder, SD_04_a_failed_match_yields_no_pair_and_all_others_have_times_of_their_own) {
   Recording recording = turning_recording(std::vector<double>(8, 0.4));
   ASSERT_EQ(pairs_of(recording).pairs.size(), 8U);
-  Scan elsewhere = testing::scan_from(testing::kHall, {0.5, 0.3, 1.2}, 0.005, 7);
+  Scan elsewhere = test_support::scan_from(test_support::kHall, {0.5, 0.3, 1.2}, 0.005, 7);
   elsewhere.t = recording.scans[3].t;
   recording.scans[3] = elsewhere;
   const PairSet set = pairs_of(recording);
@@ -100,4 +101,4 @@ TEST(PairBuilder, S3_07_tuples_and_poses_obey_the_same_limit) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::measurement
+}  // namespace odomcalib::calib::measurement::pair_builder_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace odomcalib::calib::measurement {
+namespace odomcalib::calib::measurement::placed_pairs_test {
 namespace {
 
 constexpr unsigned kSeed = 90125;
@@ -74,4 +74,4 @@ TEST(PlacedPairs, without_places_there_is_nothing_to_say) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::measurement
+}  // namespace odomcalib::calib::measurement::placed_pairs_test

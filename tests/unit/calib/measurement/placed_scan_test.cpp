@@ -9,7 +9,7 @@
 
 #include "calib/measurement/placed_poses.hpp"
 
-namespace odomcalib::calib::measurement {
+namespace odomcalib::calib::measurement::placed_scan_test {
 namespace {
 
 constexpr unsigned kSeed = 2112;
@@ -138,4 +138,4 @@ TEST(PlacedPoses, a_gap_is_no_noise_and_few_are_none) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::measurement
+}  // namespace odomcalib::calib::measurement::placed_scan_test

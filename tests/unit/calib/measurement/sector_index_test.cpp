@@ -7,7 +7,7 @@
 
 #include "calib/measurement/wall_map.hpp"
 
-namespace odomcalib::calib::measurement {
+namespace odomcalib::calib::measurement::sector_index_test {
 namespace {
 
 constexpr double kReach = 0.15, kShade = 0.1;  // m
@@ -76,4 +76,4 @@ TEST(SectorIndex, of_no_walls_is_empty) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::measurement
+}  // namespace odomcalib::calib::measurement::sector_index_test

@@ -9,7 +9,7 @@
 #include "tests/unit/calib/scan_pairs.hpp"
 #include "tests/unit/calib/shared_data.hpp"
 
-namespace odomcalib::calib::measurement {
+namespace odomcalib::calib::measurement::simulated_pairs_test {
 namespace {
 
 struct Score {
@@ -18,7 +18,7 @@ struct Score {
   [[nodiscard]] double ratio() const { return std::sqrt(squares / bound_squares); }
 };
 
-void add(Score& score, const testing::ScanPair& pair, const ScanMatch& match) {
+void add(Score& score, const test_support::ScanPair& pair, const ScanMatch& match) {
   constexpr double kChiSquare99 = 11.345;  // three degrees of freedom
   ++score.pairs;
   if (!match.ok()) return;
@@ -38,7 +38,7 @@ void add(Score& score, const testing::ScanPair& pair, const ScanMatch& match) {
 constexpr double kOwnNoise = 0.01;  // m, of the ranges as they are
 
 /// Ranges with so much noise altogether; the bound grows with it.
-void make_noisy(testing::ScanPair& pair, double noise, std::mt19937& random) {
+void make_noisy(test_support::ScanPair& pair, double noise, std::mt19937& random) {
   std::normal_distribution<double> further(0.0, std::sqrt(noise * noise - kOwnNoise * kOwnNoise));
   for (Scan* scan : {&pair.reference, &pair.scan})
     for (float& range : scan->ranges)
@@ -49,11 +49,11 @@ void make_noisy(testing::ScanPair& pair, double noise, std::mt19937& random) {
 Score score_of(const std::string& name, double noise) {
   constexpr std::size_t kPairs = 40;
   constexpr unsigned kSeed = 5;
-  auto pairs = testing::read_scan_pairs(testing::shared_data("scanmatch") / (name + ".smp.gz"));
+  auto pairs = test_support::read_scan_pairs(test_support::shared_data("scanmatch") / (name + ".smp.gz"));
   pairs.resize(std::min(pairs.size(), kPairs));
   std::mt19937 random(kSeed);
   Score score;
-  for (testing::ScanPair& pair : pairs) {
+  for (test_support::ScanPair& pair : pairs) {
     if (noise > kOwnNoise) make_noisy(pair, noise, random);
     add(score, pair, match_scans(pair.reference, pair.scan, pair.guess));
   }
@@ -89,4 +89,4 @@ TEST(SimulatedPairs, a_motion_of_a_metre_and_45_degrees_is_found_without_a_guess
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::measurement
+}  // namespace odomcalib::calib::measurement::simulated_pairs_test

@@ -10,7 +10,7 @@
 #include "calib/selection/selection_json.hpp"
 #include "calib/terms/catalogue.hpp"
 
-namespace odomcalib::calib::odometry {
+namespace odomcalib::calib::odometry::odometry_test {
 namespace {
 
 const RobotDescription kRobot{0.15, 0.15, 0.4, 16384.0, std::nullopt, "", ""};
@@ -311,4 +311,4 @@ TEST(NextTest, what_no_motion_separates_asks_for_no_motion) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::odometry
+}  // namespace odomcalib::calib::odometry::odometry_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace odomcalib::calib::report {
+namespace odomcalib::calib::report::gate_test {
 namespace {
 
 /// All as it should be.
@@ -178,4 +178,4 @@ TEST(Gate, warns_of_a_fit_that_has_not_settled) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::report
+}  // namespace odomcalib::calib::report::gate_test

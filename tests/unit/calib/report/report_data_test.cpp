@@ -14,7 +14,7 @@
 #include "calib/vehicle/step_context.hpp"
 #include "tests/unit/calib/driven_fit.hpp"
 
-namespace odomcalib::calib::report {
+namespace odomcalib::calib::report::report_data_test {
 namespace {
 
 constexpr double kTick = 0.02;  // s
@@ -262,9 +262,9 @@ TEST(Trace, is_not_shown_of_an_effect_that_is_too_small_to_be_told) {
 
 /// A drive whose wheels slip at random, by so much a sample, m.
 Recording slipping_recording(double slip) {
-  Recording recording = testing::driven_recording({});
-  std::mt19937 random(testing::kDriveSeed);
-  std::normal_distribution<double> error(0.0, slip / testing::kLeftRadius / (2.0 * math::kPi) * 65536.0);
+  Recording recording = test_support::driven_recording({});
+  std::mt19937 random(test_support::kDriveSeed);
+  std::normal_distribution<double> error(0.0, slip / test_support::kLeftRadius / (2.0 * math::kPi) * 65536.0);
   double left = 0.0, right = 0.0;
   for (TickSample& tick : recording.ticks) {
     tick.left += std::llround(left += error(random));
@@ -274,7 +274,7 @@ Recording slipping_recording(double slip) {
 }
 
 ReportData report_of(const Recording& recording) {
-  estimation::Fit fit = testing::settled_fit({&recording, 1});
+  estimation::Fit fit = test_support::settled_fit({&recording, 1});
   EXPECT_FALSE(fit.failure);
   selection::SearchResult found;
   found.model = {fit.model.effects, fit.result};
@@ -294,8 +294,8 @@ TEST(ReportData, S1_09_states_the_error_of_the_reference_beside_that_of_the_whee
 }
 
 TEST(SamplePairs, S0_08_hold_both_motions_of_the_base_over_the_same_time) {
-  const Recording recording = testing::driven_recording({});
-  const estimation::Fit fit = testing::settled_fit({&recording, 1});
+  const Recording recording = test_support::driven_recording({});
+  const estimation::Fit fit = test_support::settled_fit({&recording, 1});
   ASSERT_FALSE(fit.failure);
   const auto samples = sample_pairs(fit.dataset, fit.model.effects, fit.result);
   ASSERT_EQ(samples.size(), fit.dataset.data.front().pairs.size());
@@ -313,8 +313,8 @@ TEST(SamplePairs, S0_08_hold_both_motions_of_the_base_over_the_same_time) {
 }
 
 TEST(ClassicalMethods, S3_11_rounds_and_shares_of_the_closed_form_are_those_asked_for) {
-  const Recording recording = testing::driven_recording({});
-  const measurement::Dataset dataset = testing::rough_dataset({&recording, 1});
+  const Recording recording = test_support::driven_recording({});
+  const measurement::Dataset dataset = test_support::rough_dataset({&recording, 1});
   const auto discarded = [&](const classical::ClosedFormOptions& cuts) {
     Calibration calibration;
     return classical_methods(dataset, 0.0, cuts, calibration).back().discarded;
@@ -372,4 +372,4 @@ TEST(ReportData, members_of_another_shape_are_as_good_as_absent) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::report
+}  // namespace odomcalib::calib::report::report_data_test

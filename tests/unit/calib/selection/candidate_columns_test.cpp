@@ -7,7 +7,7 @@
 #include "calib/terms/smooth_term_on_drives.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::candidate_columns_test {
 namespace {
 
 TEST(CandidateColumns, of_a_smooth_term_do_not_depend_on_those_before_it) {
@@ -42,4 +42,4 @@ TEST(CandidateColumns, smooth_terms_have_the_same_mean_together_and_alone) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::candidate_columns_test

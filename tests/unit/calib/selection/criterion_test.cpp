@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::criterion_test {
 namespace {
 
 HeldOut held_out(const std::array<double, 3>& rms, const std::array<double, 3>& bounded) {
@@ -120,4 +120,4 @@ TEST(Criterion, what_knows_better_must_confirm) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::criterion_test

@@ -8,7 +8,7 @@
 #include "calib/terms/catalogue.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::detectable_test {
 namespace {
 
 FittedModel plain_fit(const measurement::FitData& data) {
@@ -89,4 +89,4 @@ TEST(Detectable, says_of_a_lazy_drive_what_it_is_no_test_of) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::detectable_test

@@ -18,7 +18,7 @@
 #include "calib/terms/smooth_term_on_drives.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::event_test {
 namespace {
 
 constexpr double kDuration = 240.0;  // s, of the drives
@@ -219,4 +219,4 @@ TEST(UnhelpfulSmooths, are_those_that_leave_more_than_half_of_the_error) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::event_test

@@ -9,13 +9,13 @@
 #include "calib/terms/catalogue.hpp"
 #include "tests/unit/calib/driven_fit.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::fit_stages_test {
 namespace {
 
-using odomcalib::testing::driven_recording;
-using odomcalib::testing::rough_dataset;
-using odomcalib::testing::settled_fit;
-using odomcalib::testing::silent_settling;
+using odomcalib::test_support::driven_recording;
+using odomcalib::test_support::rough_dataset;
+using odomcalib::test_support::settled_fit;
+using odomcalib::test_support::silent_settling;
 using vehicle::ClockPart;
 
 TEST(MountReference, a_marker_beside_the_axle_gets_its_place) {
@@ -99,4 +99,4 @@ TEST(FitStages, that_do_not_apply_hand_on_the_fit_as_it_is) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::fit_stages_test

@@ -8,7 +8,7 @@
 #include "calib/terms/smooth_term_on_drives.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::free_term_test {
 namespace {
 
 struct FreeTermCase {
@@ -66,4 +66,4 @@ TEST_P(FreeTerms, are_found_as_what_they_are) {
 INSTANTIATE_TEST_SUITE_P(SmoothTerm, FreeTerms, testing::ValuesIn(free_term_cases()));
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::free_term_test

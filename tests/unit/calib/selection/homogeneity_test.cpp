@@ -6,7 +6,7 @@
 
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::homogeneity_test {
 namespace {
 
 constexpr int kPairs = 240;  // of half a second
@@ -99,4 +99,4 @@ TEST(Homogeneity, is_not_asked_of_one_recording) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::homogeneity_test

@@ -6,7 +6,7 @@
 #include "calib/selection/outlier_trace.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::outlier_trace_test {
 namespace {
 
 /// What is known of the outliers when these pairs are wrong by 20 mrad.
@@ -122,4 +122,4 @@ TEST(OutlierCause, nothing_is_said_without_a_map) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::outlier_trace_test

@@ -8,10 +8,10 @@
 #include "calib/terms/lidar_smooth_term.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::range_trace_test {
 namespace {
 
-using testing::kRoom;
+using test_support::kRoom;
 
 constexpr double kNoise = 0.01;
 const matching::BeamMotion kAtRest = [](double) { return math::Pose{}; };
@@ -22,11 +22,11 @@ using RangeError = std::function<double(double range, double tangent_of_incidenc
 /// The tangent of the incidence is the change of the range with the angle, over the range.
 Scan wrong_scan(const math::Pose& pose, unsigned seed, const RangeError& error) {
   constexpr double kStep = 1e-6;
-  Scan scan = testing::scan_from(kRoom, pose, kNoise, seed);
+  Scan scan = test_support::scan_from(kRoom, pose, kNoise, seed);
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     if (scan.ranges[i] <= 0.0F) continue;
     const auto range_at = [&](double step) {
-      return testing::ray_distance(kRoom, pose.x, pose.y, pose.yaw + scan.angle(i) + step);
+      return test_support::ray_distance(kRoom, pose.x, pose.y, pose.yaw + scan.angle(i) + step);
     };
     const double range = range_at(0.0);
     const double tangent = std::abs(range_at(kStep) - range_at(-kStep)) / (2.0 * kStep * range);
@@ -84,10 +84,10 @@ Traced traced(const RangeError& error) {
 using Aside = std::function<double(double angle)>;
 
 Scan askew_scan(const math::Pose& pose, unsigned seed, const Aside& aside) {
-  Scan scan = testing::scan_from(kRoom, pose, kNoise, seed);
+  Scan scan = test_support::scan_from(kRoom, pose, kNoise, seed);
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const auto range_at = [&](double angle) {
-      return testing::ray_distance(kRoom, pose.x, pose.y, pose.yaw + angle);
+      return test_support::ray_distance(kRoom, pose.x, pose.y, pose.yaw + angle);
     };
     const double angle = scan.angle(i);
     if (scan.ranges[i] > 0.0F)
@@ -167,4 +167,4 @@ TEST(RangeTrace, no_scans_are_no_evidence) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::range_trace_test

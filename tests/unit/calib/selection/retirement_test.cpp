@@ -7,7 +7,7 @@
 #include "calib/terms/catalogue.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::retirement_test {
 namespace {
 
 /// A scrub that is plain, and one wheel that rolls a little shorter backwards: too little for Schwarz's
@@ -51,4 +51,4 @@ TEST_F(BackwardElimination, takes_out_what_is_not_worth_its_parameters_any_more)
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::retirement_test

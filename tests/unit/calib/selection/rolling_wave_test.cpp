@@ -7,7 +7,7 @@
 #include "calib/terms/smooth_term_effect.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::rolling_wave_test {
 namespace {
 
 /// A type of its own: other tests print smooth terms without this.
@@ -106,4 +106,4 @@ TEST(RollingWave, may_be_one_of_time_that_comes_too_often_to_be_tried_one_by_one
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::rolling_wave_test

@@ -6,7 +6,7 @@
 #include "calib/terms/catalogue.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::score_test {
 namespace {
 
 Candidate named(const std::string& name) { return {terms::find_effect(name), std::nullopt, name}; }
@@ -33,4 +33,4 @@ TEST(ScoreTable, is_of_the_candidates_as_they_were_when_it_was_made) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::score_test

@@ -16,7 +16,7 @@
 #include "calib/vehicle/step_context.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection {
+namespace odomcalib::calib::selection::selection_test {
 namespace {
 
 TEST(Selection, adds_nothing_when_nothing_is_missing) {
@@ -503,4 +503,4 @@ TEST(Selection, several_recordings_share_no_zero_of_time_heading_or_phase) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection
+}  // namespace odomcalib::calib::selection::selection_test

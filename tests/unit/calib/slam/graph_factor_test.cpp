@@ -4,7 +4,7 @@
 #include "calib/slam/normal_equations.hpp"
 #include "tests/unit/calib/slam/graph_support.hpp"
 
-namespace odomcalib::calib::slam {
+namespace odomcalib::calib::slam::graph_factor_test {
 namespace {
 
 constexpr unsigned kSeed = 20100301;
@@ -64,8 +64,8 @@ TEST_F(GraphFactor, S2_14_S2_29_S2_30_S2_31_derivatives_match_central_difference
     const Placement at{random_pose(), random_pose()};
     const GraphEdge edge = random_edge();
     const EdgeJacobians J = edge_jacobians(edge, at);
-    const Eigen::Matrix3d from = testing::numeric_jacobian(edge, at, 0);
-    const Eigen::Matrix3d to = testing::numeric_jacobian(edge, at, 1);
+    const Eigen::Matrix3d from = test_support::numeric_jacobian(edge, at, 0);
+    const Eigen::Matrix3d to = test_support::numeric_jacobian(edge, at, 1);
     ASSERT_LT((J.from - from).norm(), 1e-6 * from.norm()) << "seed " << kSeed << " edge " << i;
     ASSERT_LT((J.to - to).norm(), 1e-6 * to.norm()) << "seed " << kSeed << " edge " << i;
   }
@@ -81,7 +81,7 @@ TEST_F(GraphFactor, S2_11_chi2_is_the_sum_over_all_entries) {
 }
 
 TEST_F(GraphFactor, S2_15_sparse_sums_equal_a_dense_reference) {
-  auto world = testing::WorldMaker({.poses = 40, .anisotropic = true, .points = 3}, kSeed).make();
+  auto world = test_support::WorldMaker({.poses = 40, .anisotropic = true, .points = 3}, kSeed).make();
   Placement at = world.truth;
   for (math::Pose& pose : at)
     pose = compose(pose, math::Pose{0.1 * position_(engine_), 0.1 * position_(engine_), 0.1});
@@ -92,7 +92,7 @@ TEST_F(GraphFactor, S2_15_sparse_sums_equal_a_dense_reference) {
   const Placement moved = equations.move(at, equations.solve());
 
   // The dense one over the same unknowns: neither the fixed vertex nor the headings of points.
-  const auto dense = testing::dense_system(world.graph, at, testing::numeric_jacobian);
+  const auto dense = test_support::dense_system(world.graph, at, test_support::numeric_jacobian);
   std::vector<Eigen::Index> rows;
   for (std::size_t v = 1; v < at.size(); ++v)
     for (Eigen::Index k = 0; k < (world.graph.vertices[v].kind == VertexKind::pose ? 3 : 2); ++k)
@@ -110,7 +110,7 @@ TEST_F(GraphFactor, S2_15_sparse_sums_equal_a_dense_reference) {
 }
 
 TEST_F(GraphFactor, S2_16_one_step_on_a_quadratic_problem_lands_on_the_optimum) {
-  auto graph = testing::graph_of("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 0 1 2 0 0 3 0 0 1 0 1\n");
+  auto graph = test_support::graph_of("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 0 1 2 0 0 3 0 0 1 0 1\n");
   graph.vertices[0].fixed = true;
   NormalEquations equations(graph, elimination_places(2, links_of(graph)), Freedom::poses);
   equations.linearize({{}, {-7.0, 0.0, 0.0}});
@@ -132,4 +132,4 @@ TEST_F(GraphFactor, S2_20_the_matrix_of_a_chain_stays_sparse) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::slam
+}  // namespace odomcalib::calib::slam::graph_factor_test

@@ -8,10 +8,10 @@
 #include "calib/slam/robust_weights.hpp"
 #include "tests/unit/calib/slam/graph_support.hpp"
 
-namespace odomcalib::calib::slam {
+namespace odomcalib::calib::slam::graph_optimize_test {
 namespace {
 
-using testing::graph_of;
+using test_support::graph_of;
 
 /// A step along x in an otherwise rigid plane.
 std::string along_x(int from, int to, double metres, double weight = 1.0) {
@@ -80,7 +80,7 @@ TEST(GraphOptimize, S2_09_encoder_edges_that_weigh_ten) {
 
 TEST(GraphOptimize, S2_10_exact_measurements_give_back_the_truth) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    auto world = testing::WorldMaker({.anisotropic = true, .points = 10, .noise = 0.0}, seed).make();
+    auto world = test_support::WorldMaker({.anisotropic = true, .points = 10, .noise = 0.0}, seed).make();
     world.graph.has_positions = false;
     const auto summary = optimize_graph(world.graph, {.tolerance = 1e-14});
     ASSERT_EQ(summary.state, GraphState::converged) << summary.reason;
@@ -93,7 +93,7 @@ TEST(GraphOptimize, S2_13_chi2_is_what_its_degrees_of_freedom_say) {
   double chi2_sum = 0.0;
   double freedom_sum = 0.0;
   for (unsigned seed = 1; seed <= kRuns; ++seed) {
-    auto world = testing::WorldMaker({.poses = 60, .heading_sigma = 0.002}, seed).make();
+    auto world = test_support::WorldMaker({.poses = 60, .heading_sigma = 0.002}, seed).make();
     const auto summary = optimize_graph(world.graph);
     ASSERT_TRUE(summary.is_usable()) << "seed " << seed;
     chi2_sum += summary.chi2_after;
@@ -104,7 +104,7 @@ TEST(GraphOptimize, S2_13_chi2_is_what_its_degrees_of_freedom_say) {
 }
 
 TEST(GraphOptimize, S2_17_levenberg_marquardt_never_climbs_and_all_methods_agree) {
-  const auto world = testing::WorldMaker({.heading_sigma = 0.03}, 17).make();
+  const auto world = test_support::WorldMaker({.heading_sigma = 0.03}, 17).make();
   std::vector<double> ends;
   for (const auto method :
        {GraphMethod::automatic, GraphMethod::gauss_newton, GraphMethod::levenberg_marquardt}) {
@@ -160,7 +160,7 @@ TEST(GraphOptimize, S2_18_the_default_start_escapes_a_false_minimum) {
 }
 
 TEST(GraphOptimize, S2_19_whole_turns_in_headings_change_nothing) {
-  const auto world = testing::WorldMaker({}, 19).make();
+  const auto world = test_support::WorldMaker({}, 19).make();
   PoseGraph plain = world.graph;
   PoseGraph turned = placed(world.graph, world.truth);
   for (std::size_t v = 1; v < turned.vertices.size(); ++v)
@@ -172,7 +172,7 @@ TEST(GraphOptimize, S2_19_whole_turns_in_headings_change_nothing) {
 }
 
 TEST(GraphOptimize, S2_32_an_identity_on_one_vertex_gives_the_poses_of_a_fixed_one) {
-  const auto world = testing::WorldMaker({.poses = 40}, 32).make();
+  const auto world = test_support::WorldMaker({.poses = 40}, 32).make();
   PoseGraph fixed = world.graph;
   ASSERT_EQ(optimize_graph(fixed, {.tolerance = 1e-20}).state, GraphState::converged);
   // The noise of differences would push the first vertex, which nothing but the identity holds.
@@ -183,7 +183,7 @@ TEST(GraphOptimize, S2_32_an_identity_on_one_vertex_gives_the_poses_of_a_fixed_o
   // Dense Gauss-Newton with the identity added to the first block, as the reference code does.
   Placement at = world.truth;
   for (int i = 0; i < 15; ++i) {
-    auto dense = testing::dense_system(world.graph, at, analytic);
+    auto dense = test_support::dense_system(world.graph, at, analytic);
     dense.H.topLeftCorner<3, 3>() += Eigen::Matrix3d::Identity();
     const Eigen::VectorXd step = dense.H.ldlt().solve(dense.b);
     for (std::size_t v = 0; v < at.size(); ++v) {
@@ -204,7 +204,7 @@ TEST(GraphOptimize, S2_32_refuses_without_an_anchor) {
 }
 
 TEST(GraphOptimize, S2_33_headings_come_out_wrapped) {
-  auto world = testing::WorldMaker({}, 33).make();
+  auto world = test_support::WorldMaker({}, 33).make();
   optimize_graph(world.graph);
   for (const GraphVertex& vertex : world.graph.vertices) {
     EXPECT_GT(vertex.yaw, -math::kPi);
@@ -214,7 +214,7 @@ TEST(GraphOptimize, S2_33_headings_come_out_wrapped) {
 
 TEST(GraphOptimize, anisotropic_information_neither_crawls_nor_traps) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
-    auto world = testing::WorldMaker({.heading_sigma = 0.02, .anisotropic = true}, seed).make();
+    auto world = test_support::WorldMaker({.heading_sigma = 0.02, .anisotropic = true}, seed).make();
     PoseGraph from_truth = placed(world.graph, world.truth);
     const auto best = optimize_graph(from_truth, {.start = GraphStart::file});
     world.graph.has_positions = false;
@@ -236,7 +236,7 @@ double mean_distance(const PoseGraph& a, const PoseGraph& b) {
 TEST(RobustWeights, edges_that_are_off_by_far_more_than_they_say_hardly_count) {
   double plain_distance = 0.0, robust_distance = 0.0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    PoseGraph sound = testing::WorldMaker({.poses = 200}, seed).make().graph;
+    PoseGraph sound = test_support::WorldMaker({.poses = 200}, seed).make().graph;
     PoseGraph plain = sound;
     for (std::size_t e = 0, loop = 0; e < plain.edges.size(); ++e)
       if (plain.edges[e].to != plain.edges[e].from + 1 && loop++ % 10 == 0) plain.edges[e].motion[1] += 0.5;
@@ -252,7 +252,7 @@ TEST(RobustWeights, edges_that_are_off_by_far_more_than_they_say_hardly_count) {
 }
 
 TEST(RobustWeights, settling_again_moves_nothing_and_what_cannot_be_settled_stays) {
-  PoseGraph graph = testing::WorldMaker({.poses = 100}, 3).make().graph;
+  PoseGraph graph = test_support::WorldMaker({.poses = 100}, 3).make().graph;
   ASSERT_TRUE(optimize_graph(graph).is_usable() && settle_robustly(graph));
   PoseGraph again = graph;
   ASSERT_TRUE(optimize_graph(again).is_usable());
@@ -267,7 +267,7 @@ TEST(RobustWeights, settling_again_moves_nothing_and_what_cannot_be_settled_stay
 }
 
 TEST(GraphOptimize, the_same_input_gives_the_same_bits) {
-  const auto world = testing::WorldMaker({.anisotropic = true}, 3).make();
+  const auto world = test_support::WorldMaker({.anisotropic = true}, 3).make();
   PoseGraph first = world.graph;
   PoseGraph second = world.graph;
   optimize_graph(first);
@@ -340,9 +340,9 @@ PoseGraph scattered(PoseGraph graph, unsigned seed) {
 
 TEST(GraphOptimize, S2_18_random_worlds_end_at_one_chi2_from_every_start) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
-    const testing::WorldOptions options{
+    const test_support::WorldOptions options{
         .poses = 300, .anisotropic = seed % 2 == 0, .points = seed % 3 == 0 ? 20 : 0};
-    const PoseGraph graph = scattered(testing::WorldMaker(options, seed).make().graph, seed);
+    const PoseGraph graph = scattered(test_support::WorldMaker(options, seed).make().graph, seed);
     PoseGraph first = graph;
     const GraphSummary best = optimize_graph(first);
     ASSERT_TRUE(best.is_usable()) << "seed " << seed << ": " << best.reason;
@@ -388,7 +388,7 @@ TEST(GraphOptimize, numbers_beyond_reckoning_are_refused) {
 }
 
 TEST(GraphOptimize, says_when_the_iterations_run_out) {
-  auto world = testing::WorldMaker({}, 8).make();
+  auto world = test_support::WorldMaker({}, 8).make();
   const auto before = to_g2o(world.graph);
   const auto summary = optimize_graph(
       world.graph, {.start = GraphStart::odometry, .method = GraphMethod::gauss_newton, .max_iterations = 1});
@@ -397,4 +397,4 @@ TEST(GraphOptimize, says_when_the_iterations_run_out) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::slam
+}  // namespace odomcalib::calib::slam::graph_optimize_test

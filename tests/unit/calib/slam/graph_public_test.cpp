@@ -8,7 +8,7 @@
 #include "calib/slam/optimize.hpp"
 #include "tests/unit/calib/shared_data.hpp"
 
-namespace odomcalib::calib::slam {
+namespace odomcalib::calib::slam::graph_public_test {
 namespace {
 
 struct Known {
@@ -20,7 +20,7 @@ struct Known {
 void PrintTo(const Known& known, std::ostream* out) { *out << known.name; }
 
 std::filesystem::path path_of(const std::string& name) {
-  return odomcalib::testing::shared_data("posegraph/" + name + ".g2o.gz");
+  return odomcalib::test_support::shared_data("posegraph/" + name + ".g2o.gz");
 }
 
 PoseGraph graph_of(const std::string& name) {
@@ -113,4 +113,4 @@ TEST(PublicGraphs, S2_37_killian_in_the_old_order) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::slam
+}  // namespace odomcalib::calib::slam::graph_public_test

@@ -8,7 +8,7 @@
 #include "calib/slam/edge_error.hpp"
 #include "proto/recording/pose_graph.hpp"
 
-namespace odomcalib::calib::slam::testing {
+namespace odomcalib::calib::slam::test_support {
 
 inline PoseGraph graph_of(const std::string& text) {
   auto graph = read_pose_graph_text(text, "test");
@@ -153,4 +153,4 @@ DenseSystem dense_system(const PoseGraph& graph, const Placement& at, Jacobian j
   return system;
 }
 
-}  // namespace odomcalib::calib::slam::testing
+}  // namespace odomcalib::calib::slam::test_support

@@ -12,14 +12,14 @@
 #include "calib/wheels/wheel_motion.hpp"
 #include "tests/unit/calib/room_scans.hpp"
 
-namespace odomcalib::calib::slam {
+namespace odomcalib::calib::slam::recording_map_test {
 namespace {
 
 constexpr double kTick = 2e-4, kTrack = 0.4;  // m of travel, m: of the true robot
 constexpr double kInterval = 0.05, kSpeed = 0.5, kTurnRate = 0.5;
 
 /// A block with corridors about it, a niche at two of the corners.
-const std::vector<testing::RoomWall> kBlock = {
+const std::vector<test_support::RoomWall> kBlock = {
     {-5, -4, 5, -4},      {5, -4, 5, 4},          {5, 4, -5, 4},    {-5, 4, -5, -4},
     {-3, -2, 3, -2},      {3, -2, 3, 2},          {3, 2, -3, 2},    {-3, 2, -3, -2},
     {-5, -3, -4.6, -3},   {-4.6, -3, -4.6, -2.2}, {4, -4, 4, -3.7}, {4, -3.7, 4.8, -3.7},
@@ -60,8 +60,8 @@ class Driver {
     const double t = kInterval * count_;
     drive_.recording.ticks.push_back({t, std::llround(left_ / kTick), std::llround(right_ / kTick), 0});
     if (count_ % 5 != 0) return;
-    Scan scan = testing::scan_from(kBlock, compose(base_, math::Pose{0.1, 0.0, 0.0}), 0.01,
-                                   static_cast<unsigned>(count_) + 1);
+    Scan scan = test_support::scan_from(kBlock, compose(base_, math::Pose{0.1, 0.0, 0.0}), 0.01,
+                                        static_cast<unsigned>(count_) + 1);
     scan.t = t;
     drive_.recording.scans.push_back(scan);
     drive_.truth.push_back(base_);
@@ -176,4 +176,4 @@ TEST(RecordingMap, what_is_missing_is_named) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::slam
+}  // namespace odomcalib::calib::slam::recording_map_test

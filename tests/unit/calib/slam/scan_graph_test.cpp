@@ -14,7 +14,7 @@
 #include "tests/unit/calib/room_scans.hpp"
 #include "tests/unit/calib/shared_data.hpp"
 
-namespace odomcalib::calib::slam {
+namespace odomcalib::calib::slam::scan_graph_test {
 namespace {
 
 const matching::BeamMotion kAtRest = [](double) { return math::Pose{}; };
@@ -69,14 +69,14 @@ TEST(OdometryCorrection, with_nothing_learnt_odometry_stands) {
 
 /// A ring of corridors about a block, with a niche that differs at each corner and two rooms that are the
 /// same.
-std::vector<testing::RoomWall> floor_plan() {
-  std::vector<testing::RoomWall> walls = {{-5, -4, 5, -4},        {5, -4, 5, 4},          {5, 4, -5, 4},
-                                          {-5, 4, -5, -4},        {-3, -2, 3, -2},        {3, -2, 3, 2},
-                                          {3, 2, -3, 2},          {-3, 2, -3, -2},        {-5, -3, -4.6, -3},
-                                          {-4.6, -3, -4.6, -2.2}, {-4.6, -2.2, -5, -2.2}, {4, -4, 4, -3.7},
-                                          {4, -3.7, 4.8, -3.7}};
+std::vector<test_support::RoomWall> floor_plan() {
+  std::vector<test_support::RoomWall> walls = {
+      {-5, -4, 5, -4},     {5, -4, 5, 4},          {5, 4, -5, 4},          {-5, 4, -5, -4},
+      {-3, -2, 3, -2},     {3, -2, 3, 2},          {3, 2, -3, 2},          {-3, 2, -3, -2},
+      {-5, -3, -4.6, -3},  {-4.6, -3, -4.6, -2.2}, {-4.6, -2.2, -5, -2.2}, {4, -4, 4, -3.7},
+      {4, -3.7, 4.8, -3.7}};
   for (const double x : {-1.5, 1.5})  // the same twice: what tempts to a false loop
-    for (const auto& w : {testing::RoomWall{x - 0.3, 4, x - 0.3, 3.6},
+    for (const auto& w : {test_support::RoomWall{x - 0.3, 4, x - 0.3, 3.6},
                           {x - 0.3, 3.6, x + 0.3, 3.6},
                           {x + 0.3, 3.6, x + 0.3, 4}})
       walls.push_back(w);
@@ -115,8 +115,8 @@ Tour make_tour(unsigned seed) {
       }
       tour.truth.push_back(pose);
       tour.odometry.push_back(believed);
-      const auto scan =
-          testing::scan_from(walls, pose, kNoise, seed * 1000 + static_cast<unsigned>(tour.truth.size()));
+      const auto scan = test_support::scan_from(walls, pose, kNoise,
+                                                seed * 1000 + static_cast<unsigned>(tour.truth.size()));
       tour.surfaces.push_back(matching::make_surface(scan, kAtRest, kNoise));
     }
   }
@@ -165,7 +165,7 @@ struct Log {
 
 Log read_intel() {
   Log log;
-  const auto bytes = read_file_bytes(testing::shared_data("scanmatch/intel.jsonl.gz"));
+  const auto bytes = read_file_bytes(test_support::shared_data("scanmatch/intel.jsonl.gz"));
   if (!bytes) return log;
   std::istringstream in(gunzip(bytes.value()).bytes);
   std::string line;
@@ -205,7 +205,7 @@ TEST(ScanGraph, S2_24_the_intel_lab_closes_and_agrees_with_the_relations_checked
   std::size_t pairs = 0;
   double farthest = 0.0;
   std::istringstream relations(
-      read_file_bytes(testing::shared_data("scanmatch/intel.relations.txt")).value());
+      read_file_bytes(test_support::shared_data("scanmatch/intel.relations.txt")).value());
   for (std::string line; std::getline(relations, line);) {
     std::istringstream fields(line);
     std::size_t i = 0, j = 0;
@@ -238,4 +238,4 @@ TEST(ScanGraph, S2_24_the_intel_lab_closes_and_agrees_with_the_relations_checked
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::slam
+}  // namespace odomcalib::calib::slam::scan_graph_test

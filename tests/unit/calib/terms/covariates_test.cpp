@@ -12,7 +12,7 @@
 #include "calib/vehicle/step_context.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::terms {
+namespace odomcalib::calib::terms::covariates_test {
 namespace {
 
 using vehicle::StepContext;
@@ -64,4 +64,4 @@ TEST(Covariates, of_a_term_are_those_that_it_states) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::terms
+}  // namespace odomcalib::calib::terms::covariates_test

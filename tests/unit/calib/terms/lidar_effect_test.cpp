@@ -11,7 +11,7 @@
 #include "calib/selection/range_scale.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 
-namespace odomcalib::calib::terms {
+namespace odomcalib::calib::terms::lidar_effect_test {
 namespace {
 
 /// Bearings of a lidar that sees 270 degrees.
@@ -278,4 +278,4 @@ TEST(LidarEffect, of_none_is_found_in_noise) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::terms
+}  // namespace odomcalib::calib::terms::lidar_effect_test

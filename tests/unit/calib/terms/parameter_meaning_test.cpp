@@ -10,7 +10,7 @@
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/lidar_effect.hpp"
 
-namespace odomcalib::calib::terms {
+namespace odomcalib::calib::terms::parameter_meaning_test {
 namespace {
 
 using Names = std::set<std::pair<std::string, std::string>>;
@@ -37,4 +37,4 @@ TEST(ParameterMeaning, stands_in_the_table_for_each_parameter_of_the_catalogues_
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::terms
+}  // namespace odomcalib::calib::terms::parameter_meaning_test

@@ -15,7 +15,7 @@
 #include "calib/terms/smooth_term_on_drives.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::terms {
+namespace odomcalib::calib::terms::smooth_term_test {
 namespace {
 
 TEST(SmoothTerm, is_zero_at_rest_but_on_the_turn_path) {
@@ -317,4 +317,4 @@ TEST(SmoothTerm, of_an_event_takes_the_middle_of_what_is_open) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::terms
+}  // namespace odomcalib::calib::terms::smooth_term_test

@@ -9,7 +9,7 @@
 #include "calib/vehicle/sensitivity.hpp"
 #include "tests/unit/calib/synthetic.hpp"
 
-namespace odomcalib::calib::vehicle {
+namespace odomcalib::calib::vehicle::model_test {
 namespace {
 
 const wheels::BaseParameters kBase{0.075, 0.074, 0.4, {0.1, 0.02, 0.3}};
@@ -43,8 +43,8 @@ TEST(DriveModel, predicts_the_circle_about_the_centre_of_rotation) {
   const DriveModel model(track, make_context(track, kBase));
   const std::vector<Interval> intervals = {{0.0, 2.0}, {0.5, 1.0}};
   const auto motions = model.predict(as_span(to_vector(kBase)), {}, intervals);
-  const math::Pose whole = odomcalib::testing::sensor_motion_by_hand(kBase, 3.0, 5.0);
-  const math::Pose quarter = odomcalib::testing::sensor_motion_by_hand(kBase, 0.75, 1.25);
+  const math::Pose whole = odomcalib::test_support::sensor_motion_by_hand(kBase, 3.0, 5.0);
+  const math::Pose quarter = odomcalib::test_support::sensor_motion_by_hand(kBase, 0.75, 1.25);
   EXPECT_NEAR(motions[0].x, whole.x, 1e-12);
   EXPECT_NEAR(motions[0].y, whole.y, 1e-12);
   EXPECT_NEAR(motions[0].yaw, whole.yaw, 1e-12);
@@ -228,4 +228,4 @@ TEST(WheelTrack, does_not_cover_a_change_of_segment) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::vehicle
+}  // namespace odomcalib::calib::vehicle::model_test

@@ -8,7 +8,7 @@
 #include "calib/vehicle/drive_model.hpp"
 #include "calib/vehicle/step_context.hpp"
 
-namespace odomcalib::calib::vehicle {
+namespace odomcalib::calib::vehicle::step_context_test {
 namespace {
 
 constexpr double kPeriod = 0.01;  // s
@@ -299,4 +299,4 @@ TEST(StepContext, tells_stops_of_different_lengths_however_the_robot_comes_to_re
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::vehicle
+}  // namespace odomcalib::calib::vehicle::step_context_test

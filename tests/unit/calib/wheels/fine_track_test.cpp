@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace odomcalib::calib::wheels {
+namespace odomcalib::calib::wheels::fine_track_test {
 namespace {
 
 /// Stands for 1 s, speeds up at 8 rad/s^2 for 1 s, goes on, slows down, stands.
@@ -106,4 +106,4 @@ TEST(FineTrack, few_samples_stay_as_they_are) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::wheels
+}  // namespace odomcalib::calib::wheels::fine_track_test

@@ -14,7 +14,7 @@
 #include "daemon/cli/parameter_tables.hpp"
 #include "proto/calibration/report_data.hpp"
 
-namespace odomcalib::cli {
+namespace odomcalib::cli::document_test {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -231,4 +231,4 @@ TEST(WriteBack, a_dry_run_says_what_would_be_written_in_place_of_what) {
 }
 
 }  // namespace
-}  // namespace odomcalib::cli
+}  // namespace odomcalib::cli::document_test

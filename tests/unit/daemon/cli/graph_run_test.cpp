@@ -9,7 +9,7 @@
 
 #include "daemon/cli/graph_picture.hpp"
 
-namespace odomcalib::cli {
+namespace odomcalib::cli::graph_run_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -93,4 +93,4 @@ TEST(GraphRun, one_point_in_space_can_be_drawn) {
 }
 
 }  // namespace
-}  // namespace odomcalib::cli
+}  // namespace odomcalib::cli::graph_run_test

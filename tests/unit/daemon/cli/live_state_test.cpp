@@ -11,7 +11,7 @@
 #include "proto/calibration/report_data.hpp"
 #include "proto/wire/messages.hpp"
 
-namespace odomcalib::cli {
+namespace odomcalib::cli::live_state_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -156,4 +156,4 @@ TEST(PageServer, a_port_that_is_taken_is_an_error_that_names_it) {
 }
 
 }  // namespace
-}  // namespace odomcalib::cli
+}  // namespace odomcalib::cli::live_state_test

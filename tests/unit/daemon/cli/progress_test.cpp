@@ -6,7 +6,7 @@
 #include "daemon/cli/output.hpp"
 #include "daemon/cli/settings.hpp"
 
-namespace odomcalib::cli {
+namespace odomcalib::cli::progress_test {
 namespace {
 
 void pass(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
@@ -45,4 +45,4 @@ TEST(Progress, is_shown_of_what_does_not_say_how_far_it_is_and_not_of_what_ends_
 }
 
 }  // namespace
-}  // namespace odomcalib::cli
+}  // namespace odomcalib::cli::progress_test

@@ -15,7 +15,7 @@
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
 
-namespace odomcalib::cli {
+namespace odomcalib::cli::proven_apply_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -242,4 +242,4 @@ TEST(CallWithLease, begins_nothing_after_ctrl_c_but_what_takes_a_write_back_back
 }
 
 }  // namespace
-}  // namespace odomcalib::cli
+}  // namespace odomcalib::cli::proven_apply_test

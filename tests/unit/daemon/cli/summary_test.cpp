@@ -9,7 +9,7 @@
 #include "daemon/cli/settings.hpp"
 #include "proto/calibration/report_data.hpp"
 
-namespace odomcalib::cli {
+namespace odomcalib::cli::summary_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -100,4 +100,4 @@ TEST(Summary, of_a_refusal_has_the_reasons) {
 }
 
 }  // namespace
-}  // namespace odomcalib::cli
+}  // namespace odomcalib::cli::summary_test

@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-namespace odomcalib::cli {
+namespace odomcalib::cli::text_layout_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -85,4 +85,4 @@ TEST(TextLayout, of_nothing_is_nothing) {
 }
 
 }  // namespace
-}  // namespace odomcalib::cli
+}  // namespace odomcalib::cli::text_layout_test

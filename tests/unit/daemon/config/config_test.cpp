@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <random>
 
-namespace odomcalib {
+namespace odomcalib::config_test {
 namespace {
 
 const std::string kGood = R"([controller]
@@ -124,4 +124,4 @@ TEST(ConfigFile, with_damaged_bytes_is_sound_or_refused) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::config_test

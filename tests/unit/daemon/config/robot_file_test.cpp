@@ -6,7 +6,7 @@
 
 #include "daemon/config/near_miss.hpp"
 
-namespace odomcalib {
+namespace odomcalib::robot_file_test {
 namespace {
 
 const std::string kDaemon = R"([controller]
@@ -122,4 +122,4 @@ TEST(NearMiss, is_at_most_a_third_of_the_letters_away) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::robot_file_test

@@ -12,7 +12,7 @@
 #include "daemon/routines/plans.hpp"
 #include "daemon/routines/runner.hpp"
 
-namespace odomcalib::routines {
+namespace odomcalib::routines::routines_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -329,4 +329,4 @@ TEST(Pattern, a_thousand_runs_take_seconds) {
 }
 
 }  // namespace
-}  // namespace odomcalib::routines
+}  // namespace odomcalib::routines::routines_test

@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-namespace odomcalib::routines {
+namespace odomcalib::routines::wiring_test {
 namespace {
 
 constexpr double kRadius = 0.075, kTrack = 0.4;
@@ -184,4 +184,4 @@ TEST(NudgePlan, moves_a_few_centimetres_by_time_and_ends_where_it_began) {
 }
 
 }  // namespace
-}  // namespace odomcalib::routines
+}  // namespace odomcalib::routines::wiring_test

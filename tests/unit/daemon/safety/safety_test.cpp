@@ -17,7 +17,7 @@
 #include "daemon/safety/speed_watch.hpp"
 #include "daemon/safety/stop_guard.hpp"
 
-namespace odomcalib::safety {
+namespace odomcalib::safety::safety_test {
 namespace {
 
 Scan scan_with(float range) {
@@ -560,4 +560,4 @@ TEST(StopGuard, stops_once_on_every_way_out) {
 }
 
 }  // namespace
-}  // namespace odomcalib::safety
+}  // namespace odomcalib::safety::safety_test

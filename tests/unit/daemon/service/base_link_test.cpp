@@ -5,7 +5,7 @@
 
 #include "tests/sim/wires/pty.hpp"
 
-namespace odomcalib {
+namespace odomcalib::base_link_test {
 namespace {
 
 class Standing : public Clock {
@@ -35,4 +35,4 @@ TEST(BaseLink, a_buffer_that_was_full_once_is_no_problem_for_ever) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::base_link_test

@@ -11,7 +11,7 @@
 
 #include "tests/unit/daemon/service/control_client.hpp"
 
-namespace odomcalib {
+namespace odomcalib::control_server_test {
 namespace {
 
 class Burst : public testing::Test {
@@ -242,4 +242,4 @@ TEST_F(Burst, of_more_than_eight_clients_is_for_a_stop_alone) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::control_server_test

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace odomcalib {
+namespace odomcalib::disk_worker_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -89,4 +89,4 @@ TEST_F(Disk, finishes_what_it_was_asked_for_and_calls_nobody_any_more) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::disk_worker_test

@@ -4,7 +4,7 @@
 
 #include "daemon/service/settings.hpp"
 
-namespace odomcalib {
+namespace odomcalib::event_rate_test {
 namespace {
 
 using service::settings::kEventPause_s;
@@ -34,4 +34,4 @@ TEST(EventRate, after_quiet_hours_is_no_more_than_at_the_start) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::event_rate_test

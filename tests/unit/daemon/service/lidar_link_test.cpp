@@ -21,7 +21,7 @@
 #include "tests/sim/wires/xv11_device.hpp"
 #include "tests/sim/wires/ydlidar_device.hpp"
 
-namespace odomcalib {
+namespace odomcalib::lidar_link_test {
 namespace {
 
 constexpr double kTurn = 1e-3;          // s between turns of the loop
@@ -439,4 +439,4 @@ TEST(LidarLinks, a_name_without_an_address_is_no_hindrance_to_start_and_is_told)
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::lidar_link_test

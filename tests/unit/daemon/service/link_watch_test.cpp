@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace odomcalib {
+namespace odomcalib::link_watch_test {
 namespace {
 
 const Error kAbsent{ErrorCode::io, "No such file or directory", "/dev/ttyUSB0", "connect it"};
@@ -38,4 +38,4 @@ TEST(LinkWatch, reports_a_line_that_is_open_and_says_nothing_useful) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::link_watch_test

@@ -6,7 +6,7 @@
 
 #include "daemon/service/settings.hpp"
 
-namespace odomcalib {
+namespace odomcalib::loop_guard_test {
 namespace {
 
 constexpr std::array kNames = {"base", "lidar", "client"};
@@ -38,4 +38,4 @@ TEST(LoopGuard, names_a_descriptor_that_is_not_open) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::loop_guard_test

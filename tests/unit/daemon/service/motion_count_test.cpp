@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace odomcalib {
+namespace odomcalib::motion_count_test {
 namespace {
 
 using testing::ElementsAre;
@@ -79,4 +79,4 @@ TEST(MotionCount, a_counter_that_starts_again_is_no_motion) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::motion_count_test

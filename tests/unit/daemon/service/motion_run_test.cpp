@@ -8,7 +8,7 @@
 
 #include "daemon/routines/plans.hpp"
 
-namespace odomcalib {
+namespace odomcalib::motion_run_test {
 namespace {
 
 using drivers::ControllerState;
@@ -270,4 +270,4 @@ TEST_F(Motion, from_which_any_call_throws_ends_with_the_stop) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::motion_run_test

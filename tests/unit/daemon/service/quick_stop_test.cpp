@@ -5,7 +5,7 @@
 
 #include "tests/sim/wires/pty.hpp"
 
-namespace odomcalib {
+namespace odomcalib::quick_stop_test {
 namespace {
 
 Config config_of(const std::string& port) {
@@ -34,4 +34,4 @@ TEST(QuickStop, of_a_line_that_is_away_says_so) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::quick_stop_test

@@ -29,7 +29,7 @@ extern "C" int statvfs(const char* path, struct statvfs* space) noexcept {
   return access(path, F_OK);
 }
 
-namespace odomcalib {
+namespace odomcalib::recorder_test {
 namespace {
 
 using Path = std::filesystem::path;
@@ -279,4 +279,4 @@ TEST(Publisher, that_could_not_be_opened_is_opened_later) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::recorder_test

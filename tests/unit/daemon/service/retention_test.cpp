@@ -7,7 +7,7 @@
 #include <fstream>
 #include <set>
 
-namespace odomcalib {
+namespace odomcalib::retention_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,4 +73,4 @@ TEST_F(RetentionTest, of_a_folder_that_is_not_there_is_nothing) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::retention_test

@@ -13,7 +13,7 @@
 
 #include "proto/control/control.hpp"
 
-namespace odomcalib {
+namespace odomcalib::solver_job_test {
 namespace {
 
 std::filesystem::path recording() {
@@ -129,4 +129,4 @@ TEST(SolverJob, that_is_forgotten_ends_by_itself) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::solver_job_test

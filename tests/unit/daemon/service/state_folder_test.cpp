@@ -7,7 +7,7 @@
 
 #include "daemon/service/parts/last_run.hpp"
 
-namespace odomcalib {
+namespace odomcalib::state_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ TEST_F(StateFolderTest, LastRun_takes_a_damaged_file_for_none) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::state_folder_test

@@ -12,7 +12,7 @@
 #include "proto/file_bytes.hpp"
 #include "tests/unit/daemon/writeback/fake_controller.hpp"
 
-namespace odomcalib {
+namespace odomcalib::journal_test {
 namespace {
 
 TEST(Journal, keeps_records_and_drops_a_torn_end) {
@@ -269,4 +269,4 @@ TEST_F(FullHistory, answers_without_its_disk) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::journal_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/daemon/writeback/fake_controller.hpp"
 
-namespace odomcalib {
+namespace odomcalib::journal_writer_test {
 namespace {
 
 /// Nothing is done before the test says so.
@@ -78,4 +78,4 @@ TEST_F(SlowJournal, knows_only_records_that_are_on_the_disk) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::journal_writer_test

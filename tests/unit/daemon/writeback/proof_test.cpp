@@ -2,7 +2,7 @@
 // protocol).
 #include "tests/unit/daemon/writeback/fake_controller.hpp"
 
-namespace odomcalib {
+namespace odomcalib::proof_test {
 namespace {
 
 const Error kWorse{ErrorCode::write_failed, "a metre is worse", "proof run", ""};
@@ -156,4 +156,4 @@ INSTANTIATE_TEST_SUITE_P(Jobs, EveryMishapOfAProof,
                                           testing::Bool()));
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::proof_test

@@ -1,7 +1,7 @@
 // What becomes of a write-back that was interrupted, and of the next one after it.
 #include "tests/unit/daemon/writeback/fake_controller.hpp"
 
-namespace odomcalib {
+namespace odomcalib::recovery_test {
 namespace {
 
 // Left old, right new, as after a crash between two writes. Both memories, so that a restart shows it too.
@@ -188,4 +188,4 @@ TEST_F(Interrupted, the_calibration_of_the_journal_comes_with_the_commit_of_the_
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::recovery_test

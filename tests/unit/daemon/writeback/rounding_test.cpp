@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace odomcalib {
+namespace odomcalib::rounding_test {
 namespace {
 
 using drivers::StoredParameter;
@@ -74,4 +74,4 @@ TEST(Rounding, incomplete_sets_are_left_to_the_controller) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::rounding_test

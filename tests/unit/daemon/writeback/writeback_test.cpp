@@ -1,6 +1,6 @@
 #include "tests/unit/daemon/writeback/fake_controller.hpp"
 
-namespace odomcalib {
+namespace odomcalib::writeback_test {
 namespace {
 
 TEST(WriteBack, values_that_live_in_ram_only_are_not_stored) {
@@ -243,4 +243,4 @@ TEST(Transaction, asks_for_an_operator_when_neither_set_can_be_reached) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::writeback_test

@@ -3,7 +3,7 @@
 #include "drivers/can/slcan_parser.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::slcan_test {
 namespace {
 
 using test::bytes_of;
@@ -153,4 +153,4 @@ TEST(Slcan, never_sends_an_error_frame) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::slcan_test

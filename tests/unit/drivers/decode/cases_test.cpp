@@ -8,7 +8,7 @@
 #include "drivers/decode/decode.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::cases_test {
 namespace {
 
 using nlohmann::json;
@@ -155,4 +155,4 @@ TEST(Cases, a_network_capture_is_read_as_it_stands) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::cases_test

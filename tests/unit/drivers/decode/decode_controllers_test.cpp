@@ -7,7 +7,7 @@
 #include "drivers/decode/decode.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::decode_controllers_test {
 namespace {
 
 using nlohmann::json;
@@ -253,4 +253,4 @@ TEST(Candump, what_is_written_is_read_back) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::decode_controllers_test

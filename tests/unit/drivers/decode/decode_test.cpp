@@ -10,7 +10,7 @@
 #include "drivers/can/socketcan_frame.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::decode_test {
 namespace {
 
 const std::string kProfiles = "drivers/base/profiles";
@@ -218,4 +218,4 @@ TEST(SocketCanFrame, rejects_partial_reads_and_wrong_lengths) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::decode_test

@@ -11,7 +11,7 @@
 #include "drivers/decode/decode.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::network_capture_test {
 namespace {
 
 using test::ByteString;
@@ -244,4 +244,4 @@ TEST(DecodeCapture, a_file_that_was_cut_off_is_read_to_its_end_and_that_is_said)
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::network_capture_test

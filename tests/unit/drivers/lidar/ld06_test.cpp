@@ -8,7 +8,7 @@
 #include "drivers/decode/decode.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::ld06_test {
 namespace {
 
 using test::ByteString;
@@ -263,4 +263,4 @@ TEST(Lidar, unknown_types_are_refused_with_the_known_ones) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::ld06_test

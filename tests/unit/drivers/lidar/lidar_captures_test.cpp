@@ -9,7 +9,7 @@
 #include "drivers/decode/decode.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::lidar_captures_test {
 namespace {
 
 using nlohmann::json;
@@ -262,4 +262,4 @@ TEST(LidarCaptures, one_packet_of_a_neato_xv11) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::lidar_captures_test

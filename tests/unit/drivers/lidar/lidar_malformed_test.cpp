@@ -16,7 +16,7 @@
 #include "tests/sim/wires/ydlidar_device.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::lidar_malformed_test {
 namespace {
 
 using test::ByteString;
@@ -335,4 +335,4 @@ TEST(Hokuyo, measurements_without_known_geometry_are_no_scans) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::lidar_malformed_test

@@ -13,7 +13,7 @@
 #include "drivers/serial/port.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::port_test {
 namespace {
 
 /// The device's end of a pseudo-terminal.
@@ -273,4 +273,4 @@ TEST(SocketCan, what_is_missing_is_named_with_a_command_that_helps) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::port_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace odomcalib {
+namespace odomcalib::calibration_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -157,4 +157,4 @@ TEST(CalibrationFile, that_cannot_be_written_leaves_an_io_error_and_no_file) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::calibration_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace odomcalib {
+namespace odomcalib::scale_test {
 namespace {
 
 TEST(Scale, is_read_with_its_deviation) {
@@ -56,4 +56,4 @@ TEST(Scale, that_is_not_understood_is_none) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::scale_test

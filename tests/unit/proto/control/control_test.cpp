@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace odomcalib::control {
+namespace odomcalib::control::control_test {
 namespace {
 
 std::vector<std::string> frames_of(FrameDecoder& decoder, std::string_view bytes, std::size_t step) {
@@ -174,4 +174,4 @@ TEST(ControlIntrospection, leaves_the_daemons_own_methods_to_the_daemon) {
 }
 
 }  // namespace
-}  // namespace odomcalib::control
+}  // namespace odomcalib::control::control_test

@@ -6,7 +6,7 @@
 
 #include "tests/unit/proto/support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::import_test {
 namespace {
 
 using test::discarded;
@@ -237,4 +237,4 @@ TEST(CarmenLog, SX_03_reads_its_messages_with_their_times_and_the_lidar_pose) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::import_test

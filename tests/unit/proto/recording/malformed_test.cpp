@@ -15,7 +15,7 @@
 #include "proto/wire/messages.hpp"
 #include "tests/unit/proto/support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::malformed_test {
 namespace {
 
 constexpr int kCases = 1500;
@@ -328,4 +328,4 @@ TEST(Damaged, calibrations_are_refused_with_a_place_or_survive_writing) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::malformed_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/proto/support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::pose_graph_test {
 namespace {
 
 constexpr const char* kTwoPoses = "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\n";
@@ -163,4 +163,4 @@ TEST(PoseGraphText, a_packed_file_without_its_end_is_refused) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::pose_graph_test

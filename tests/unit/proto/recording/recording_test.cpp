@@ -8,7 +8,7 @@
 
 #include "tests/unit/proto/support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::recording_test {
 namespace {
 
 using test::discarded;
@@ -409,4 +409,4 @@ TEST(Recording, of_five_minutes_loads_within_the_time_budget) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::recording_test

@@ -4,7 +4,7 @@
 
 #include "tests/unit/proto/recording/ros_support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::ros_containers_test {
 namespace {
 
 using sim::RosPacking;
@@ -205,4 +205,4 @@ TEST(RosContainers, of_an_older_form_or_encrypted_say_what_to_do) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::ros_containers_test

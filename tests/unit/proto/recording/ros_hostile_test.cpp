@@ -10,7 +10,7 @@
 #include "proto/recording/ros/unpack.hpp"
 #include "tests/unit/proto/recording/ros_support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::ros_hostile_test {
 namespace {
 
 using sim::RosPacking;
@@ -258,4 +258,4 @@ TEST(HostileRos, headers_of_sqlite_that_lie_are_answered) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::ros_hostile_test

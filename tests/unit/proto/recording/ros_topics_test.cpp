@@ -3,7 +3,7 @@
 
 #include "tests/unit/proto/recording/ros_support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::ros_topics_test {
 namespace {
 
 using sim::Wire;
@@ -312,4 +312,4 @@ TEST(RosTopics, without_dimensions_of_the_robot_ask_for_them) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::ros_topics_test

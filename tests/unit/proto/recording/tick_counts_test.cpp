@@ -7,7 +7,7 @@
 
 #include "tests/unit/proto/support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::tick_counts_test {
 namespace {
 
 constexpr double kInterval = 0.05;  // s
@@ -230,4 +230,4 @@ TEST(TickCounts, survive_any_numbers) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::tick_counts_test

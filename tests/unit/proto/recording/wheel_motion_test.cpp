@@ -8,7 +8,7 @@
 
 #include "tests/unit/proto/support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::wheel_motion_test {
 namespace {
 
 using test::discarded;
@@ -257,4 +257,4 @@ TEST(WheelMotion, survives_writing_as_it_was_recorded) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::wheel_motion_test

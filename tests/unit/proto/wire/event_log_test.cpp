@@ -9,7 +9,7 @@
 #include "proto/wire/messages.hpp"
 #include "tests/unit/proto/support.hpp"
 
-namespace odomcalib {
+namespace odomcalib::event_log_test {
 namespace {
 
 using messages::Stamp;
@@ -258,4 +258,4 @@ TEST(RecordingLog, of_a_json_lines_recording_gives_equal_data) {
 }
 
 }  // namespace
-}  // namespace odomcalib
+}  // namespace odomcalib::event_log_test

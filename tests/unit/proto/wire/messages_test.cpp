@@ -12,7 +12,7 @@
 #include <odomcalib/scan_t.hpp>
 #include <odomcalib/ticks_t.hpp>
 
-namespace odomcalib::messages {
+namespace odomcalib::messages::messages_test {
 namespace {
 
 constexpr Stamp kStamp{1'700'000'000'123'456, 987'654'321'012};
@@ -149,4 +149,4 @@ TEST(Messages, with_impossible_lengths_are_refused_without_allocating_them) {
 }
 
 }  // namespace
-}  // namespace odomcalib::messages
+}  // namespace odomcalib::messages::messages_test

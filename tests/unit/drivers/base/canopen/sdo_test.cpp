@@ -8,7 +8,7 @@
 #include "drivers/base/cia402/drive_state.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers::canopen {
+namespace odomcalib::drivers::canopen::sdo_test {
 namespace {
 
 constexpr std::uint8_t kNode = 1;
@@ -309,4 +309,4 @@ TEST(Words, name_codes_and_do_not_invent_names) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers::canopen
+}  // namespace odomcalib::drivers::canopen::sdo_test

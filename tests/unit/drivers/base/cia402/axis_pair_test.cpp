@@ -11,7 +11,7 @@
 #include "tests/unit/drivers/base/bench.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::axis_pair_test {
 namespace {
 
 constexpr double kCounts = 65536.0;
@@ -264,4 +264,4 @@ TEST_F(AxisPair, says_what_it_holds_and_who_they_are) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::axis_pair_test

@@ -10,7 +10,7 @@
 #include "tests/sim/wires/drive_node.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::dual_axis_test {
 namespace {
 
 constexpr double kStep = 0.001;
@@ -602,4 +602,4 @@ TEST(DualAxisParameters, a_store_without_answer_is_unknown_and_not_repeated) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::dual_axis_test

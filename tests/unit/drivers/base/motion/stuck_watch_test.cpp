@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::stuck_watch_test {
 namespace {
 
 /// A wheel by its angle over time, read every so often, and the speed it is told.
@@ -144,4 +144,4 @@ TEST(StuckWatch, a_gap_in_the_readings_is_no_standing_count) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::stuck_watch_test

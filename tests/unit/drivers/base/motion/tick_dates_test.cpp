@@ -10,7 +10,7 @@
 #include "drivers/base/controller.hpp"
 #include "tests/sim/wires/sim_robot.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::tick_dates_test {
 namespace {
 
 constexpr double kSpeed_rad_s = 8.0;
@@ -96,4 +96,4 @@ INSTANTIATE_TEST_SUITE_P(Wires, TickDates,
                          testing::Values(Wire{0.001}, Wire{0.002}, Wire{0.005}, Wire{0.01}));
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::tick_dates_test

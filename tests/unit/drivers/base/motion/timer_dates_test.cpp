@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::timer_dates_test {
 namespace {
 
 constexpr double kNominal_s = 0.020;
@@ -75,4 +75,4 @@ TEST(TimerDates, never_lie_behind_the_arrival_and_begin_anew_after_a_hole) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::timer_dates_test

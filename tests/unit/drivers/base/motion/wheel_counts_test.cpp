@@ -5,7 +5,7 @@
 
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::wheel_counts_test {
 namespace {
 
 using Kind = TickUnwrap::Reading::Kind;
@@ -125,4 +125,4 @@ TEST(WheelCounts, nothing_is_continued_across_a_device_that_was_lost) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::wheel_counts_test

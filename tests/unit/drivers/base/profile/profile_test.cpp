@@ -4,7 +4,7 @@
 
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::profile_test {
 namespace {
 
 const std::string kFolder = "drivers/base/profiles/";
@@ -78,4 +78,4 @@ TEST(Profile, parameters_convert_there_and_back_within_half_a_step) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::profile_test

@@ -6,7 +6,7 @@
 #include "tests/unit/drivers/base/bench.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::devices_test {
 namespace {
 
 using test::Bench;
@@ -308,4 +308,4 @@ TEST(RosArduino, an_answer_that_was_lost_before_that_of_a_stop_is_no_other_ones)
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::devices_test

@@ -10,7 +10,7 @@
 #include "tests/sim/wires/serial_devices.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
-namespace odomcalib::drivers {
+namespace odomcalib::drivers::malformed_test {
 namespace {
 
 using test::ByteString;
@@ -236,4 +236,4 @@ TEST(VescBuffer, lengths_and_offsets_beyond_its_end_are_refused) {
 }
 
 }  // namespace
-}  // namespace odomcalib::drivers
+}  // namespace odomcalib::drivers::malformed_test
