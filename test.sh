@@ -37,7 +37,7 @@ build() {
   if command -v ccache >/dev/null; then
     launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi
-  cmake --preset release -DODOMCALIB_PACKAGE_TESTS=$packages "${launcher[@]}"
+  cmake --preset release -DODOMCALIB_TESTS=ON -DODOMCALIB_PACKAGE_TESTS=$packages "${launcher[@]}"
   cmake --build build/release -j "$jobs"
 }
 

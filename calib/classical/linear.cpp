@@ -71,8 +71,8 @@ Result<LinearResult> solve_linear(std::span<const IncrementPair> samples, Linear
   if (!odometry.allFinite() || !observed.allFinite())
     return Error{ErrorCode::refused, "an increment is not finite", "linear method", "check the recording"};
   if (samples.size() < 3) return too_few_directions(odometry);
-  const Eigen::VectorXd singular = math::singular_values(odometry);
-  const double ratio = singular(2) / singular(0);
+  const Eigen::JacobiSVD<Eigen::MatrixX3d> svd(odometry);
+  const double ratio = svd.singularValues()(2) / svd.singularValues()(0);
   if (!(ratio > kColumnTolerance)) return too_few_directions(odometry);
   LinearResult result;
   result.condition = 1.0 / (ratio * ratio);

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "tests/sim/effects/effect.hpp"
+#include "tests/sim/wires/drawn_robot.hpp"
 #include "tests/sim/wires/fault_commands.hpp"
 #include "tests/sim/wires/truth_json.hpp"
 
@@ -72,25 +73,12 @@ odomcalib::sim::Room choose_room(const Arguments& arguments) {
   return odomcalib::sim::furnished_room();
 }
 
-/// What was asked for by name, or drawn; made from the robot's seed.
-odomcalib::sim::DrawnEffect choose_effect(const Arguments& arguments) {
-  odomcalib::sim::Random random(arguments.seed);
-  if (arguments.effect == "random") return odomcalib::sim::draw_effect(random);
-  const auto* kind = odomcalib::sim::find_effect(arguments.effect);
-  if (kind == nullptr) return {};
-  const double size = arguments.effect_size >= 0.0 ? arguments.effect_size : kind->largest;
-  return {kind, size, kind->make(size, random)};
-}
-
 SimRobotOptions robot_options(const Arguments& arguments, const odomcalib::sim::DrawnEffect& effect) {
-  SimRobotOptions options;
-  options.seed = arguments.seed;
-  options.truth = arguments.exact ? options.nominal : draw_truth(options.nominal, arguments.seed);
+  SimRobotOptions options = drawn_robot(arguments.seed, effect);
+  if (arguments.exact) options.truth = options.nominal;
   options.room = choose_room(arguments);
-  options.body.slip_noise = 0.0003;
   options.link_dir = arguments.link_dir;
   if (!arguments.can.empty()) options.socketcan = arguments.can;
-  if (effect.made) options.disturbances = {effect.made};
   return options;
 }
 
@@ -179,7 +167,7 @@ int main(int argc, char** argv) {
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  const auto effect = choose_effect(arguments);
+  const auto effect = odomcalib::sim::choose_effect(arguments.effect, arguments.seed, arguments.effect_size);
   const auto robot = SimRobot::create(robot_options(arguments, effect));
   if (!robot) {
     std::fprintf(stderr, "odomcalib-sim: %s\n", robot.error().text().c_str());
