@@ -32,7 +32,13 @@ while [ $# -gt 0 ]; do
 done
 
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
-step() { printf '\n\033[1m== %s\033[0m\n' "$*"; }
+steps=9 step_number=0
+# Bold on a terminal: how far the demo is, what comes now, and how long it has taken.
+step() {
+  step_number=$((step_number + 1))
+  local line="== $step_number of $steps, $SECONDS s: $*"
+  if [ -t 1 ]; then printf '\n\033[1m%s\033[0m\n' "$line"; else printf '\n%s\n' "$line"; fi
+}
 fail() { printf '\ndemo failed: %s\n' "$*" >&2; exit 1; }
 run() { printf '\n$ odomcalibctl %s\n' "$*"; "$bin/odomcalibctl" --socket "$dir/control" "$@"; }
 
@@ -43,14 +49,14 @@ install_packages() {
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
   done < tests/packages.txt
   [ ${#missing[@]} -eq 0 ] && return
-  step "installing ${#missing[@]} packages"
+  echo "installing ${#missing[@]} packages"
   export DEBIAN_FRONTEND=noninteractive
   { as_root apt-get update && as_root apt-get install -y --no-install-recommends "${missing[@]}"; } \
     > build/demo/install.log 2>&1 || { tail -n 20 build/demo/install.log; fail "apt-get, see build/demo/install.log"; }
 }
 
 build() {
-  step "building (the first time takes some minutes)"
+  step "building (the first time takes some minutes; what was built stays in build/release)"
   local launcher=()
   if command -v ccache > /dev/null; then
     launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
@@ -266,4 +272,15 @@ echo "report: build/demo/report.html"
 
 step "result"
 cp "$dir/truth.json" build/demo/
-python3 docs/scripts/demo_table.py build/demo
+status=0
+python3 docs/scripts/demo_table.py build/demo || status=$?
+cat << NEXT
+
+next
+  the report of this drive     build/demo/report.html
+  a bag or another recording   build/release/bin/odomcalibctl solve drive.bag --robot robot.toml --report report.html
+                               (docs/user/from-a-bag.md)
+  a robot                      docs/user/tutorial.md, the same steps by hand; to install: README.md, "Install"
+  every check and test         ./test.sh
+NEXT
+exit $status

@@ -5,17 +5,22 @@
 # With --packages the Debian packages are built and taken through install, calibration, upgrade, reboot and purge in a
 # virtual machine too, which takes some twenty minutes more.
 #
+# With --long, tests that take minutes each run too: more robots and recordings than are needed to see a fault.
+#
 # Environment: ODOMCALIB_SHARED  folder with the real recordings and captures (default ../shared); tests that need it
 #                                are skipped loudly without it
 #              JOBS              parallel jobs (default: number of processors)
 set -euo pipefail
 cd "$(dirname "$0")"
 jobs=${JOBS:-$(nproc)} packages=OFF
-case ${1:-} in
-  '') ;;
-  --packages) packages=ON ;;
-  *) echo "usage: ./test.sh [--packages]" >&2; exit 2 ;;
-esac
+unset ODOMCALIB_LONG
+for argument in "$@"; do
+  case $argument in
+    --packages) packages=ON ;;
+    --long) export ODOMCALIB_LONG=1 ;;
+    *) echo "usage: ./test.sh [--packages] [--long]" >&2; exit 2 ;;
+  esac
+done
 export DEBIAN_FRONTEND=noninteractive CTEST_PARALLEL_LEVEL=$jobs
 
 as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
@@ -44,13 +49,15 @@ build() {
 install_packages
 failed=()
 build
-tests/lint build/release || failed+=("tests/lint")
+tests/lint || failed+=("tests/lint")
 [ -d "${ODOMCALIB_SHARED:-../shared}" ] ||
   echo "WARNING: no real recordings at ${ODOMCALIB_SHARED:-../shared}; tests that need them are skipped"
 ctest --preset release -j 2 --output-junit tests.xml || failed+=("ctest")
 
 count() { tr -s '[:space:]' ' ' < build/release/tests.xml | grep -o '<testsuite [^>]*' | grep -o " $1=\"[0-9]*" | tr -dc 0-9; }
+tests/build_times build/release --tests build/release/tests.xml --jobs "$jobs" || failed+=("tests/build_times")
 [ $packages = ON ] || echo "not tested: packages, and the system that they are installed in (./test.sh --packages)"
+[ -n "${ODOMCALIB_LONG:-}" ] || echo "not tested: what takes minutes a test (./test.sh --long)"
 echo "tests run: $(count tests), failed: $(count failures), skipped: $(count skipped)"
 if [ ${#failed[@]} -gt 0 ]; then
   echo "FAILED: ${failed[*]}"

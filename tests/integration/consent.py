@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Consent on a terminal (rule M11), against the simulated robot in real time: who is asked, what is shown, and what an answer does.
+"""Consent on a terminal (rule M11), against the simulated robot: who is asked, what is shown, and what an answer does.
 
 usage: tests/integration/consent.py PROGRAMS PROFILE"""
 
@@ -49,7 +49,7 @@ def main(programs, profile):
         if not holds:
             faults.append(otherwise)
 
-    with SimulatedRobot(programs, profile, seed=3) as robot:
+    with SimulatedRobot(programs, profile, seed=3, hurry=True) as robot:
         seen, status = on_terminal(robot, [*move, "--yes"], "no", [QUESTION])
         expect(QUESTION in seen, "--yes was enough for a first motion:\n" + seen)
         expect("first motion of this robot" in seen, "the question does not say that it is the first:\n" + seen)

@@ -1,5 +1,5 @@
-// straight and spin as a person types them, with real programs in real time: driven, proposed, applied, and
-// the robot then measured against the simulator's truth.
+// straight and spin as a person types them: driven, proposed, applied, and the robot then measured against
+// the simulator's truth. Robot and service run on one clock, faster than real time.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,10 +15,9 @@ namespace {
 using nlohmann::json;
 
 constexpr double kSlowest = 150.0;     // s that a motion of three repetitions may take
-constexpr double kTyping = 1.0;        // s that a person takes at least for the next command
-constexpr double kTruthWritten = 1.5;  // s after which the simulator's file tells where it stands
+constexpr double kTruthWritten = 0.5;  // s after which the simulator's file tells where it stands
 
-class LengthsInRealTime : public ::testing::Test {
+class Lengths : public ::testing::Test {
  protected:
   void SetUp() override {
 #if defined(ODOMCALIB_SANITIZED)
@@ -31,7 +30,6 @@ class LengthsInRealTime : public ::testing::Test {
   /// What the command prints; it must succeed. The axes are off by then, as they are when a person types.
   std::string call(const std::vector<std::string>& arguments) {
     EXPECT_TRUE(wait_until([this] { return both_.ready(); }, 20.0)) << both_.status();
-    (void)wait_until([] { return false; }, kTyping, 0.1);
     const auto client = both_.run(arguments);
     EXPECT_EQ(client->wait(kSlowest), 0) << arguments[0] << ": " << both_.output();
     return both_.output();
@@ -54,10 +52,10 @@ class LengthsInRealTime : public ::testing::Test {
     return truth();
   }
 
-  RobotAndDaemon both_{7};
+  RobotAndDaemon both_{7, {}, Pace::hurried};
 };
 
-TEST_F(LengthsInRealTime, S1_05_three_repetitions_applied_make_a_metre_right_to_a_millimetre) {
+TEST_F(Lengths, S1_05_three_repetitions_applied_make_a_metre_right_to_a_millimetre) {
   const json straight = call_json({"straight", "--yes", "--repeat", "3", "--out", file("straight.json")});
   expect_found(straight, "left_wheel_diameter");
   expect_found(straight, "right_wheel_diameter");

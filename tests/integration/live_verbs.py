@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The verbs that need the daemon, against the simulated robot in real time: exit status, and the published schema of their JSON,
+"""The verbs that need the daemon, against the simulated robot: exit status, and the published schema of their JSON,
 or with --text whether their text fits a terminal.
 
 usage: tests/integration/live_verbs.py PROGRAMS SCHEMAS PROFILE [--text]"""
@@ -74,7 +74,7 @@ def check_text(robot, verb, arguments, *_):
 
 def main(programs, schema_folder, profile, text):
     schemas, faults = Schemas(schema_folder), []
-    with SimulatedRobot(programs, profile, seed=3) as robot:
+    with SimulatedRobot(programs, profile, seed=3, hurry=True) as robot:
         for row in TABLE:
             faults += check_text(robot, *row) if text else check_call(robot, schemas, *row)
         for name, schema in FILES if not text else []:

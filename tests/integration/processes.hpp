@@ -63,10 +63,15 @@ struct CanWiring {
   std::string of_robot, of_daemon;
 };
 
+enum class Pace {
+  real,    ///< two programs in real time
+  hurried  ///< one program (odomcalib-demo) whose time is faster while the robot moves: no wheel log
+};
+
 /// Simulator and daemon on a configuration of their own in a temporary folder.
 class RobotAndDaemon {
  public:
-  explicit RobotAndDaemon(int seed, CanWiring wiring = {});
+  explicit RobotAndDaemon(int seed, CanWiring wiring = {}, Pace pace = Pace::real);
   ~RobotAndDaemon();
 
   void start_daemon();

@@ -11,6 +11,9 @@
 
 namespace odomcalib::test_support {
 
+/// ./test.sh --long: more robots and recordings than are needed to see a fault.
+inline bool long_tests() { return std::getenv("ODOMCALIB_LONG") != nullptr; }
+
 inline std::filesystem::path shared_data(const std::string& name) {
   const char* root = std::getenv("ODOMCALIB_SHARED");
   return std::filesystem::path(root != nullptr ? root : "../shared") / "data" / name;

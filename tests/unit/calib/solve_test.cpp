@@ -198,6 +198,7 @@ TEST(Solve, optiodom_fitted_on_straight_and_spin_holds_on_squares_and_circles) {
 // time.
 TEST(Solve, optiodom_fitted_on_circles_too_does_better_on_squares) {
   ODOMCALIB_NEEDS_SHARED("optiodom");
+  if (!test_support::long_tests()) GTEST_SKIP() << "takes minutes: ./test.sh --long";
   std::vector<Recording> recordings = optiodom("straight-spin", 2);
   for (Recording& circle : optiodom("circle", 2)) recordings.push_back(std::move(circle));
   const EndError plain = mean_end_error("square", solve(recordings, {{"none"}}));
