@@ -11,12 +11,10 @@
 #include "calib/report/findings.hpp"
 #include "calib/report/one_robot.hpp"
 #include "calib/report/sample_pairs.hpp"
-#include "calib/selection/clocks.hpp"
+#include "calib/selection/fit_stages.hpp"
 #include "calib/selection/lidar_correction.hpp"
 #include "calib/selection/placed_fit.hpp"
 #include "calib/selection/recording_clocks.hpp"
-#include "calib/selection/reference_mounting.hpp"
-#include "calib/selection/scan_times.hpp"
 #include "calib/selection/search.hpp"
 
 namespace odomcalib::calib {

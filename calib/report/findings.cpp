@@ -17,11 +17,9 @@
 #include "calib/report/report_data.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/report/unexplained.hpp"
-#include "calib/selection/event_text.hpp"
 #include "calib/selection/held_out.hpp"
-#include "calib/selection/lidar_report.hpp"
+#include "calib/selection/lidar_trace.hpp"
 #include "calib/selection/outlier_trace.hpp"
-#include "calib/selection/range_scale.hpp"
 #include "calib/selection/selection_json.hpp"
 
 namespace odomcalib::calib::report {

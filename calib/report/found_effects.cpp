@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "calib/selection/folds.hpp"
-#include "calib/selection/lidar_report.hpp"
+#include "calib/selection/selection_json.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/selection/window_errors.hpp"
 #include "calib/terms/smooth_term.hpp"

@@ -8,18 +8,14 @@
 
 #include "calib/selection/backward_elimination.hpp"
 #include "calib/selection/candidate.hpp"
-#include "calib/selection/change_point.hpp"
 #include "calib/selection/detectable.hpp"
 #include "calib/selection/equivalent_models.hpp"
 #include "calib/selection/hyperparameter_selection.hpp"
 #include "calib/selection/hyperparameters.hpp"
-#include "calib/selection/next_addition.hpp"
 #include "calib/selection/plausibility.hpp"
 #include "calib/selection/rolling_waves.hpp"
 #include "calib/selection/search_round.hpp"
 #include "calib/selection/settings.hpp"
-#include "calib/selection/unhelpful_smooths.hpp"
-#include "calib/selection/wrong_name.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
 #include "calib/terms/smooth_term_on_drives.hpp"
 

@@ -8,7 +8,6 @@
 
 #include "calib/ingest/scan_span.hpp"
 #include "calib/selection/lidar_trace.hpp"
-#include "calib/selection/range_scale.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::terms::lidar_effect_test {
