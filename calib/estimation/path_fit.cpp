@@ -8,7 +8,7 @@
 
 #include "calib/classical/missing_motion.hpp"
 #include "calib/estimation/settings.hpp"
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/math/cluster_robust.hpp"
 #include "calib/math/linear_solve.hpp"

@@ -114,4 +114,10 @@ std::optional<EvenStamps> even_stamps(const std::vector<double>& stamps) {
   return EvenStamps{std::move(even), jitter};
 }
 
+bool has_gap(const std::vector<double>& times, std::size_t from, std::size_t to) {
+  for (std::size_t k = from; k < to; ++k)
+    if (times[k + 1] - times[k] > settings::kMaxGap_s) return true;
+  return false;
+}
+
 }  // namespace odomcalib::calib::ingest

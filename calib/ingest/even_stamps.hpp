@@ -33,4 +33,8 @@ void set_stamps(std::vector<Sample>& samples, const std::vector<double>& stamps)
   for (std::size_t k = 0; k < samples.size(); ++k) samples[k].t = stamps[k];
 }
 
+/// Whether a reference is interrupted there.
+/// @param times s, in time order
+bool has_gap(const std::vector<double>& times, std::size_t from, std::size_t to);
+
 }  // namespace odomcalib::calib::ingest

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/pose_frame.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/ingest/unit_check.hpp"

@@ -8,7 +8,7 @@
 #include "calib/measurement/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "calib/wheels/fine_track.hpp"
-#include "calib/wheels/nominal_base.hpp"
+#include "calib/wheels/wheel_track.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {

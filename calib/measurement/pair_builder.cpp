@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/matching/both_ways.hpp"
 #include "calib/math/median.hpp"
 #include "calib/measurement/placed_poses.hpp"

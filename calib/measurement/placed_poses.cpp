@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"

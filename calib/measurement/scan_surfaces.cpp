@@ -1,6 +1,6 @@
 #include "calib/measurement/scan_surfaces.hpp"
 
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/measurement/sweep_motion.hpp"
 
 namespace odomcalib::calib::measurement {

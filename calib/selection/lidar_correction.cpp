@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "calib/estimation/fit.hpp"
-#include "calib/ingest/scan_span.hpp"
+#include "calib/ingest/sweeps.hpp"
 #include "calib/measurement/scan_path.hpp"
 #include "calib/selection/criterion.hpp"
 #include "calib/selection/lidar_trace.hpp"

@@ -7,7 +7,6 @@
 
 #include "calib/measurement/heading_pairs.hpp"
 #include "calib/terms/lidar_effect.hpp"
-#include "calib/terms/lidar_finding.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::selection {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "calib/ingest/scan_span.hpp"
+#include "calib/ingest/sweeps.hpp"
 #include "calib/selection/lidar_trace.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 
