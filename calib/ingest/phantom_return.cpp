@@ -7,7 +7,7 @@
 
 #include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
-#include "calib/math/significant.hpp"
+#include "calib/math/number_text.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {

@@ -12,7 +12,7 @@
 #include "calib/ingest/settings.hpp"
 #include "calib/ingest/unit_check.hpp"
 #include "calib/math/median.hpp"
-#include "calib/math/significant.hpp"
+#include "calib/math/number_text.hpp"
 #include "proto/recording/stamp_units.hpp"
 
 namespace odomcalib::calib::ingest {

@@ -1,4 +1,5 @@
-// Scans of which nobody said when within them each beam was sent.
+// Scans of which nobody said when within them each beam was sent, and which part of a turn a
+// scan covers.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Effects that a solve found or was given, with their values and their evidence.
+// Effects that a solve found or was given, with their values and their evidence; and what stays without a name.
 #pragma once
 
 #include <optional>

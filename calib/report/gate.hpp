@@ -1,4 +1,4 @@
-// The quality gate: may this calibration be written to a robot?
+// The quality gate: may this calibration be written to a robot, and if not, why?
 #pragma once
 
 #include <cstddef>

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 
+#include "calib/math/number_text.hpp"
 #include "calib/selection/backward_elimination.hpp"
 #include "calib/selection/candidate.hpp"
 #include "calib/selection/detectable.hpp"
@@ -242,8 +243,7 @@ class Search {
     if (may_be_chance(candidates_[trial.candidate], validation) && has(Rule::gain_in_most_drives)) {
       if (!has_drives(validation))
         return "may be chance, and the reference is too broken for drives to prove it";
-      return "a gain that may be chance: error times " +
-             std::to_string(validation.improvement.ratio).substr(0, 5);
+      return "a gain that may be chance: error times " + math::five_characters(validation.improvement.ratio);
     }
     settled = round_->refit(trial.candidate, {});
     if (!settled) return "the fit does not settle";

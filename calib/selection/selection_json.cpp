@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 #include <type_traits>
 #include <variant>
 
+#include "calib/math/number_text.hpp"
 #include "calib/terms/smooth_term.hpp"
 
 namespace odomcalib::calib::selection {
@@ -106,14 +105,8 @@ std::optional<FittedSmoothTerm> smooth_from(const nlohmann::json& entry) {
   return FittedSmoothTerm{smooth, coefficients, entry.value("law_of", "")};
 }
 
-std::string signed_number(double value, int digits) {
-  std::ostringstream out;
-  out << std::showpos << std::fixed << std::setprecision(digits) << value;
-  return out.str();
-}
-
-std::string percent(double share) { return signed_number(1e2 * share, 2) + " %"; }
-std::string millimetres(double metres) { return signed_number(1e3 * metres, 1) + " mm"; }
+std::string percent(double share) { return math::signed_fixed(1e2 * share, 2) + " %"; }
+std::string millimetres(double metres) { return math::signed_fixed(1e3 * metres, 1) + " mm"; }
 
 /// The smooth term's coefficients move the base as the sensor sees it, the other way round.
 math::Pose moved_by(const std::vector<double>& coefficients, const math::Pose& mount) {
@@ -124,7 +117,8 @@ math::Pose moved_by(const std::vector<double>& coefficients, const math::Pose& m
 std::string change_of_place(const std::vector<double>& coefficients, const math::Pose& mount) {
   const math::Pose by = moved_by(coefficients, mount);
   return "the lidar was moved on the robot (x " + millimetres(by.x) + ", y " + millimetres(by.y) + ", yaw " +
-         signed_number(by.yaw * 180.0 / math::kPi, 2) + " deg); its pose is the one since then: fasten it";
+         math::signed_fixed(by.yaw * 180.0 / math::kPi, 2) +
+         " deg); its pose is the one since then: fasten it";
 }
 
 std::string change_of_wheels(const std::vector<double>& c) {
@@ -190,16 +184,12 @@ std::vector<FittedSmoothTerm> smooth_terms_from_json(const std::string& text) {
 }
 
 std::string event_to_text(const FittedSmoothTerm& event, const math::Pose& mount) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(1) << std::get<terms::ChangePoint>(event.smooth.basis).moment
-      << " s after the beginning ";
-  if (is_bump(event.smooth))
-    out << change_of_place(event.coefficients, mount);
-  else if (event.smooth.dependence.channel == vehicle::Channel::track)
-    out << change_of_track(event.coefficients);
-  else
-    out << change_of_wheels(event.coefficients);
-  return out.str();
+  const std::string when =
+      math::fixed(std::get<terms::ChangePoint>(event.smooth.basis).moment, 1) + " s after the beginning ";
+  if (is_bump(event.smooth)) return when + change_of_place(event.coefficients, mount);
+  if (event.smooth.dependence.channel == vehicle::Channel::track)
+    return when + change_of_track(event.coefficients);
+  return when + change_of_wheels(event.coefficients);
 }
 
 std::vector<EffectResult> effect_results(const std::vector<terms::LidarFinding>& findings) {

@@ -1,4 +1,4 @@
-// How a graph hangs together: neighbours, parts, spanning trees.
+// How a graph hangs together: neighbours, parts, spanning trees, and loops turned the wrong way round.
 #pragma once
 
 #include <cstddef>
