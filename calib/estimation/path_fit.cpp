@@ -14,7 +14,6 @@
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/noise_estimate.hpp"
-#include "calib/measurement/scan_surfaces.hpp"
 #include "calib/vehicle/sensitivity.hpp"
 
 namespace odomcalib::calib::estimation {

@@ -1,7 +1,6 @@
 #include "calib/ingest/phantom_return.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
 #include <vector>
 

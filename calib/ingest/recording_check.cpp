@@ -1,8 +1,6 @@
 #include "calib/ingest/recording_check.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>

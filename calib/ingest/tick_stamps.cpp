@@ -1,8 +1,6 @@
 #include "calib/ingest/tick_stamps.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>

@@ -1,7 +1,5 @@
 #include "calib/measurement/dataset.hpp"
 
-#include <cmath>
-#include <string>
 #include <utility>
 
 #include "calib/ingest/recording_check.hpp"

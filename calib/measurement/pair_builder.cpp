@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "calib/ingest/even_stamps.hpp"
 #include "calib/matching/both_ways.hpp"

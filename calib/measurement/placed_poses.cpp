@@ -7,7 +7,6 @@
 #include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"
-#include "calib/measurement/scan_surfaces.hpp"
 #include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {

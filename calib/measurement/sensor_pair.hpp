@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 
 #include "calib/math/se2.hpp"
 #include "calib/vehicle/drive_model.hpp"

@@ -14,7 +14,8 @@
 namespace odomcalib::calib::odometry {
 
 /// Base pose at each tick sample, starting at the origin. Frame: base at the first sample. What changed with
-/// time is followed where the stamps are on the clock of the calibration's own drive (DriveClock in predict.cpp).
+/// time is followed where the stamps are on the clock of the calibration's own drive (DriveClock in
+/// predict.cpp).
 std::vector<PoseSample> predict(const Recording& recording, const Calibration& calibration);
 
 /// Where a value of an effect takes effect: in odometry; in what the reference is compared with, and not in

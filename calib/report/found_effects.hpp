@@ -1,8 +1,8 @@
-// Effects that a solve found or was given, with their values and their evidence; and what stays without a name.
+// Effects that a solve found or was given, with their values and their evidence; and what stays without a
+// name.
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "calib/report/findings.hpp"

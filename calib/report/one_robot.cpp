@@ -1,6 +1,5 @@
 #include "calib/report/one_robot.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 

@@ -7,7 +7,6 @@
 
 #include "calib/classical/length_factor.hpp"
 #include "calib/classical/settings.hpp"
-#include "calib/classical/sign_check.hpp"
 #include "calib/math/number_text.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/selection/drive_error.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "calib/ingest/sweeps.hpp"
 #include "calib/measurement/scan_stamps.hpp"

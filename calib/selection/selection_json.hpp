@@ -3,12 +3,11 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "calib/math/se2.hpp"
-#include "calib/selection/lidar_trace.hpp"
 #include "calib/selection/search_result.hpp"
+#include "calib/terms/lidar_effect.hpp"
 #include "calib/terms/smooth_term.hpp"
 #include "proto/calibration/calibration.hpp"
 

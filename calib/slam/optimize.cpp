@@ -1,7 +1,6 @@
 #include "calib/slam/optimize.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "calib/vehicle/drive_model.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <complex>
 #include <stdexcept>
 
