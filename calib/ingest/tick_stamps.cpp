@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/settings.hpp"
-#include "calib/ingest/stamp_contest.hpp"
 #include "calib/math/median.hpp"
 
 namespace odomcalib::calib::ingest {

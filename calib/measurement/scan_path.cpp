@@ -8,8 +8,8 @@
 
 #include "calib/matching/point_to_line.hpp"
 #include "calib/math/linear_solve.hpp"
+#include "calib/measurement/scan_surfaces.hpp"
 #include "calib/measurement/settings.hpp"
-#include "calib/measurement/sweep_motion.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {

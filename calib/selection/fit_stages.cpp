@@ -36,9 +36,13 @@ estimation::Fit fit_to_sweeps(measurement::Dataset sweeping, const terms::Reques
   return measure_and_settle(with_scans_of(std::move(fit.dataset), moved), std::move(fit.model), how);
 }
 
+Estimate estimate_of(const estimation::FitResult& fit, Eigen::Index parameter) {
+  return {fit.parameters(parameter), fit.covariance(parameter, parameter)};
+}
+
 MountingOffset mounting_offset_of(const estimation::FitResult& fit) {
-  const auto estimate = [&](Eigen::Index k) { return Estimate{fit.parameters(k), fit.covariance(k, k)}; };
-  return {estimate(vehicle::kMountX), estimate(vehicle::kMountY), estimate(vehicle::kMountYaw)};
+  return {estimate_of(fit, vehicle::kMountX), estimate_of(fit, vehicle::kMountY),
+          estimate_of(fit, vehicle::kMountYaw)};
 }
 
 measurement::Dataset mounted(measurement::Dataset dataset, bool anywhere) {
@@ -47,10 +51,6 @@ measurement::Dataset mounted(measurement::Dataset dataset, bool anywhere) {
 }
 
 using vehicle::ClockPart;
-
-Estimate estimate_of(const estimation::FitResult& fit, Eigen::Index parameter) {
-  return {fit.parameters(parameter), fit.covariance(parameter, parameter)};
-}
 
 bool has_idle(ClockPart part, const vehicle::EffectList& effects, const estimation::FitResult& fit) {
   const auto parameter = parameter_of(effects, part);

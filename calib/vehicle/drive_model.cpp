@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "calib/math/last_value.hpp"
-#include "calib/vehicle/part_of_step.hpp"
 #include "calib/vehicle/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "calib/vehicle/step_twist.hpp"
