@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "calib/classical/settings.hpp"
+#include "calib/math/number_text.hpp"
 #include "calib/math/se2.hpp"
-#include "calib/math/significant.hpp"
 
 namespace odomcalib::calib::classical {
 namespace {

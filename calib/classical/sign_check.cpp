@@ -1,6 +1,5 @@
 #include "calib/classical/sign_check.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -2,9 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,7 +11,7 @@
 #include "calib/classical/length_factor.hpp"
 #include "calib/estimation/settings.hpp"
 #include "calib/math/linear_solve.hpp"
-#include "calib/math/significant.hpp"
+#include "calib/math/number_text.hpp"
 #include "calib/measurement/reference_motion.hpp"
 #include "calib/wheels/wheel_track.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calib/estimation/settings.hpp"
-#include "calib/measurement/fit_data.hpp"
+#include "calib/measurement/sensor_pair.hpp"
 #include "calib/measurement/whitening.hpp"
 #include "calib/vehicle/drive_model.hpp"
 #include "proto/result.hpp"

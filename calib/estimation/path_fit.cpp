@@ -8,13 +8,12 @@
 
 #include "calib/classical/missing_motion.hpp"
 #include "calib/estimation/settings.hpp"
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/math/cluster_robust.hpp"
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/noise_estimate.hpp"
-#include "calib/measurement/scan_surfaces.hpp"
 #include "calib/vehicle/sensitivity.hpp"
 
 namespace odomcalib::calib::estimation {

@@ -1,13 +1,12 @@
 #include "calib/ingest/phantom_return.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
 #include <vector>
 
 #include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
-#include "calib/math/significant.hpp"
+#include "calib/math/number_text.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {

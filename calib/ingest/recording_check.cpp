@@ -1,18 +1,16 @@
 #include "calib/ingest/recording_check.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/pose_frame.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/ingest/unit_check.hpp"
 #include "calib/math/median.hpp"
-#include "calib/math/significant.hpp"
+#include "calib/math/number_text.hpp"
 #include "proto/recording/stamp_units.hpp"
 
 namespace odomcalib::calib::ingest {

@@ -1,14 +1,12 @@
 #include "calib/ingest/tick_stamps.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/settings.hpp"
-#include "calib/ingest/stamp_contest.hpp"
 #include "calib/math/median.hpp"
 
 namespace odomcalib::calib::ingest {

@@ -8,8 +8,8 @@
 #include "calib/ingest/settings.hpp"
 #include "calib/matching/surface.hpp"
 #include "calib/math/median.hpp"
+#include "calib/math/number_text.hpp"
 #include "calib/math/se2.hpp"
-#include "calib/math/significant.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {

@@ -1,11 +1,11 @@
 #include "calib/matching/point_to_line.hpp"
 
 #include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/matching/joint_lines.hpp"
-#include "calib/matching/observability.hpp"
 #include "calib/matching/settings.hpp"
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
@@ -290,6 +290,16 @@ MatchResult match_point_to_line(const MatchReference& reference, const Surface& 
   result.iterations = match.iterations;
   conclude(result, match.system, match.scale, lines, match.converged, options);
   return result;
+}
+
+Observability observability(const Eigen::Matrix3d& information) {
+  if (!(information(2, 2) > 0.0)) return {};
+  const Eigen::Matrix2d schur = information.topLeftCorner<2, 2>() - information.topRightCorner<2, 1>() *
+                                                                        information.bottomLeftCorner<1, 2>() /
+                                                                        information(2, 2);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(schur);
+  return {std::max(eigen.eigenvalues()(0), 0.0) / std::max(eigen.eigenvalues()(1), 1e-300),
+          eigen.eigenvectors().col(0)};
 }
 
 }  // namespace odomcalib::calib::matching

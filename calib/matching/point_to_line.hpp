@@ -73,4 +73,14 @@ class MatchReference {
 MatchResult match_point_to_line(const MatchReference& reference, const Surface& scan, const math::Pose& guess,
                                 const MatchOptions& options);
 
+/// Corridors and round rooms: one direction of motion, or the rotation, leaves no trace in the readings.
+struct Observability {
+  double ratio = 0.0;  ///< smallest to largest eigenvalue of the information about translation
+  Eigen::Vector2d weak_direction = Eigen::Vector2d::Zero();  ///< eigenvector of the smallest one
+};
+
+/// Of the translation once yaw is eliminated (Schur complement). Ratio 0 when nothing is known about yaw.
+/// @param information of x, y, yaw
+Observability observability(const Eigen::Matrix3d& information);
+
 }  // namespace odomcalib::calib::matching

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/math/tukey.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/measurement/settings.hpp"
 

@@ -1,14 +1,12 @@
 #include "calib/measurement/dataset.hpp"
 
-#include <cmath>
-#include <string>
 #include <utility>
 
 #include "calib/ingest/recording_check.hpp"
 #include "calib/measurement/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "calib/wheels/fine_track.hpp"
-#include "calib/wheels/nominal_base.hpp"
+#include "calib/wheels/wheel_track.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {

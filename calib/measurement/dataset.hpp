@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "calib/ingest/recordings.hpp"
-#include "calib/measurement/fit_data.hpp"
 #include "calib/measurement/pair_builder.hpp"
+#include "calib/measurement/sensor_pair.hpp"
 #include "calib/wheels/wheel_motion.hpp"
 #include "proto/result.hpp"
 

@@ -1,7 +1,6 @@
 #include "calib/measurement/heading_pairs.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/matching/both_ways.hpp"
 #include "calib/math/median.hpp"
 #include "calib/measurement/placed_poses.hpp"

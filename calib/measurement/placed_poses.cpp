@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/vector2.hpp"
-#include "calib/measurement/scan_surfaces.hpp"
 #include "calib/measurement/settings.hpp"
 
 namespace odomcalib::calib::measurement {

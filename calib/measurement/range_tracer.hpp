@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calib/measurement/adjust.hpp"
-#include "calib/terms/lidar_finding.hpp"
+#include "calib/terms/lidar_effect.hpp"
 
 namespace odomcalib::calib::measurement {
 

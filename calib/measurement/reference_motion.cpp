@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "calib/ingest/gaps.hpp"
+#include "calib/ingest/even_stamps.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/matching/point_to_line.hpp"
 #include "calib/matching/surface.hpp"

@@ -8,8 +8,8 @@
 
 #include "calib/matching/point_to_line.hpp"
 #include "calib/math/linear_solve.hpp"
+#include "calib/measurement/scan_surfaces.hpp"
 #include "calib/measurement/settings.hpp"
-#include "calib/measurement/sweep_motion.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {
@@ -179,6 +179,12 @@ class Mapper {
   ScanPath path_;
 };
 
+void count_from_first(std::vector<vehicle::Fix>& fixes) {
+  if (fixes.empty()) return;
+  const math::Pose first = fixes.front().pose;
+  for (vehicle::Fix& fix : fixes) fix.pose = between(first, fix.pose);
+}
+
 }  // namespace
 
 bool ScanPath::is_usable() const {
@@ -190,6 +196,21 @@ ScanPath place_scans(const Recording& recording, const vehicle::DriveModel& mode
                      std::span<const double> parameters, const vehicle::EffectList& effects,
                      const PathOptions& options, const ScanPath& known) {
   return Mapper(recording, model, parameters, effects, options).run(known);
+}
+
+std::vector<vehicle::Fix> fixes_of(const ScanPath& path, const math::Pose& mount) {
+  std::vector<vehicle::Fix> fixes;
+  for (const PlacedScan& scan : path.scans) fixes.push_back({scan.time, compose(scan.pose, inverse(mount))});
+  count_from_first(fixes);
+  return fixes;
+}
+
+std::vector<vehicle::Fix> fixes_of(const Recording& recording) {
+  std::vector<vehicle::Fix> fixes;
+  for (const PoseSample& sample : recording.poses)
+    fixes.push_back({sample.t, {sample.x, sample.y, sample.yaw}});
+  count_from_first(fixes);
+  return fixes;
 }
 
 }  // namespace odomcalib::calib::measurement

@@ -36,4 +36,12 @@ ScanPath place_scans(const Recording& recording, const vehicle::DriveModel& mode
                      std::span<const double> parameters, const vehicle::EffectList& effects,
                      const PathOptions& options, const ScanPath& known = {});
 
+/// Where the base was, from what is not a wheel: floors, slopes and cables act on places and headings, and
+/// nominal dead reckoning loses both within minutes. Poses of the base, relative to the first one.
+/// @param mount of the sensor on the base
+std::vector<vehicle::Fix> fixes_of(const ScanPath& path, const math::Pose& mount);
+
+/// Of the reference poses, which are the base's own; none for recordings without.
+std::vector<vehicle::Fix> fixes_of(const Recording& recording);
+
 }  // namespace odomcalib::calib::measurement

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "calib/ingest/stamp_contest.hpp"
+#include "calib/ingest/even_stamps.hpp"
 
 namespace odomcalib::calib::measurement {
 namespace {

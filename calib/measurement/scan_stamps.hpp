@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "calib/ingest/even_stamps.hpp"
-#include "calib/measurement/fit_data.hpp"
+#include "calib/measurement/sensor_pair.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::measurement {

@@ -9,6 +9,13 @@
 
 namespace odomcalib::calib::measurement {
 
+/// How the sensor moves while its beam goes round: motion by odometry from the middle of the sweep, linear
+/// between poses every few milliseconds.
+/// @param mount of the sensor on the base
+/// @return motion that refers to neither argument; none when the recording lacks the beams' times
+matching::BeamMotion motion_in_sweep(const vehicle::Trajectory& trajectory, const math::Pose& mount,
+                                     const Scan& scan);
+
 class ScanSurfaces {
  public:
   /// All arguments but the parameters must outlive this.

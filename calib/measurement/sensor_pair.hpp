@@ -1,10 +1,12 @@
-// The measured motion of the sensor between two instants: what the model has to explain.
+// The measured motion of the sensor between two instants: what the model has to explain; and
+// what a fit works on.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
+#include <vector>
 
 #include "calib/math/se2.hpp"
+#include "calib/measurement/placed_scan.hpp"
 #include "calib/vehicle/drive_model.hpp"
 
 namespace odomcalib::calib::measurement {
@@ -15,6 +17,13 @@ struct SensorPair {
   Eigen::Matrix3d covariance;  ///< x, y, yaw of `motion`, as the matcher states it
   bool follows_previous =
       false;  ///< begins with the scan (or pose) the previous pair ends with: their errors are correlated
+};
+
+/// One recording: the model of its wheels and what the sensor saw.
+struct FitData {
+  const vehicle::DriveModel* model = nullptr;
+  std::vector<SensorPair> pairs;
+  std::vector<PlacedScan> places = {};  ///< of its scans in a map, in time order; empty without one
 };
 
 }  // namespace odomcalib::calib::measurement

@@ -8,12 +8,23 @@
 #include <span>
 #include <vector>
 
+#include "calib/matching/surface.hpp"
 #include "calib/matching/walls.hpp"
 #include "calib/math/vector2.hpp"
-#include "calib/measurement/beams.hpp"
 #include "calib/terms/lidar_effect.hpp"
 
 namespace odomcalib::calib::measurement {
+
+/// Of a scan, in the sensor's frame at the middle of the sweep.
+struct Beam {
+  Eigen::Vector2d origin;     ///< m, where the sensor was when it shot
+  Eigen::Vector2d direction;  ///< of length 1
+  double range = 0.0;         ///< m
+};
+
+/// Beams with a usable reading.
+/// @param motion of the sensor within the sweep
+std::vector<Beam> make_beams(const Scan& scan, const matching::BeamMotion& motion);
 
 struct MapWall {
   Eigen::Vector2d centre;  ///< m

@@ -1,11 +1,13 @@
 #include "calib/odometry/predict.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 
 #include "calib/ingest/tick_stamps.hpp"
-#include "calib/odometry/drive_clock.hpp"
+#include "calib/math/vector2.hpp"
 #include "calib/odometry/settings.hpp"
 #include "calib/selection/selection_json.hpp"
 #include "calib/terms/catalogue.hpp"
@@ -15,9 +17,42 @@
 #include "calib/vehicle/drive_history.hpp"
 #include "calib/vehicle/drive_model.hpp"
 #include "calib/vehicle/step_context.hpp"
+#include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::calib::odometry {
 namespace {
+
+/// Wheels that warm up or leak change with the time since the calibration's own drive began. A drive that
+/// begins on the same clock, during that one or no longer after its end than it took, finds the wheels as
+/// they were at that moment, and later as they were at the end: how they went on nobody measured. When any
+/// other drive begins, nobody knows how warm they are: they count by the middle of the calibration's drive.
+class DriveClock {
+ public:
+  DriveClock() = default;
+  /// @param stamp of the first ticks of the drive, s
+  DriveClock(const Calibration& calibration, double stamp);
+  [[nodiscard]] bool is_known() const { return begin_.has_value(); }
+  /// @return s since the beginning of the calibration's drive, from zero to its duration
+  [[nodiscard]] double at(double stamp) const;
+
+ private:
+  double duration_ = 0.0;
+  std::optional<double> begin_;  ///< of the calibration's drive, where its clock is also that of this one
+};
+
+DriveClock::DriveClock(const Calibration& calibration, double stamp) {
+  if (calibration.data.empty()) return;
+  const DataUse& drive = calibration.data.front();
+  duration_ = drive.duration;
+  // Several drives share no zero of time.
+  if (calibration.data.size() > 1 || !drive.begin) return;
+  const double since = stamp - *drive.begin;
+  if (since >= -settings::kTogether_s && since <= settings::kAfterTheDrive * duration_) begin_ = drive.begin;
+}
+
+double DriveClock::at(double stamp) const {
+  return begin_ ? std::clamp(stamp - *begin_, 0.0, duration_) : duration_ / 2.0;
+}
 
 struct Correction {
   Eigen::VectorXd parameters;
@@ -236,6 +271,27 @@ PoseSample Odometry::update(const TickSample& sample) {
       s.pose,
       model.trajectory(vehicle::as_span(s.correction.parameters), s.correction.effects).poses().back());
   return {sample.t, s.pose.x, s.pose.y, math::wrap_angle(s.pose.yaw)};
+}
+
+std::array<double, 3> deviation_at_end(std::span<const PoseSample> path, const IncrementNoise& noise,
+                                       double track_width) {
+  const Eigen::Vector3d per_metre = Eigen::Vector3d(noise[0], noise[1], noise[2]).cwiseAbs2();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 1; k < path.size(); ++k) {
+    const double dx = path[k].x - path[k - 1].x;
+    const double dy = path[k].y - path[k - 1].y;
+    // Mean of both wheels, whichever way each rolls.
+    const double rolled =
+        std::max(std::hypot(dx, dy), 0.5 * track_width * std::abs(path[k].yaw - path[k - 1].yaw));
+    // An error of the heading moves all that follows sideways; that of the increment is in its own frame.
+    Eigen::Matrix3d carried = Eigen::Matrix3d::Identity();
+    carried(0, 2) = -dy;
+    carried(1, 2) = dx;
+    const Eigen::Matrix3d turn = math::rotation_about_z(path[k - 1].yaw);
+    covariance = carried * covariance * carried.transpose() +
+                 rolled * (turn * per_metre.asDiagonal() * turn.transpose());
+  }
+  return {std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2))};
 }
 
 }  // namespace odomcalib::calib::odometry

@@ -1,17 +1,21 @@
 // Dead reckoning from ticks with a calibration and its host-side effects.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "proto/calibration/calibration.hpp"
+#include "proto/measurements.hpp"
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::odometry {
 
 /// Base pose at each tick sample, starting at the origin. Frame: base at the first sample. What changed with
-/// time is followed where the stamps are on the clock of the calibration's own drive (drive_clock.hpp).
+/// time is followed where the stamps are on the clock of the calibration's own drive (DriveClock in
+/// predict.cpp).
 std::vector<PoseSample> predict(const Recording& recording, const Calibration& calibration);
 
 /// Where a value of an effect takes effect: in odometry; in what the reference is compared with, and not in
@@ -49,5 +53,16 @@ class Odometry {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Standard deviations of an increment one metre long, forward and sideways in m, in heading in rad:
+/// variances grow with the way that the wheels roll, so that those of a longer one grow with its root.
+using IncrementNoise = std::array<double, 3>;
+
+/// How far dead reckoning may be off after a path, when nothing but chance disturbs the wheels: standard
+/// deviations x, y in the frame of the first pose and yaw of the last one: m, m, rad. First order in
+/// the errors, increments independent of each other.
+/// @param track_width m: wheels roll in turns on the spot, too
+std::array<double, 3> deviation_at_end(std::span<const PoseSample> path, const IncrementNoise& noise,
+                                       double track_width);
 
 }  // namespace odomcalib::calib::odometry

@@ -3,29 +3,60 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/classical/missing_motion.hpp"
+#include "calib/estimation/gyro_witness.hpp"
 #include "calib/report/found_effects.hpp"
 #include "calib/report/gate.hpp"
-#include "calib/report/gyro_report.hpp"
 #include "calib/report/one_robot.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/report_data.hpp"
 #include "calib/report/settings.hpp"
-#include "calib/report/unexplained.hpp"
-#include "calib/selection/event_text.hpp"
 #include "calib/selection/held_out.hpp"
-#include "calib/selection/lidar_report.hpp"
+#include "calib/selection/lidar_trace.hpp"
 #include "calib/selection/outlier_trace.hpp"
-#include "calib/selection/range_scale.hpp"
 #include "calib/selection/selection_json.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
+
+/// No gyro was held against anything.
+bool is_silent(const estimation::GyroWitness& witness) {
+  return std::none_of(witness.gyros.begin(), witness.gyros.end(), [](const auto& g) { return g.used > 0; });
+}
+
+/// A list with an entry for each recording whose gyro was weighed.
+/// @param recordings one for each of the gyros
+std::string to_json(const estimation::GyroWitness& witness, std::span<const Recording> recordings) {
+  auto list = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < witness.gyros.size(); ++k) {
+    const estimation::GyroFinding& gyro = witness.gyros[k];
+    if (gyro.used == 0) continue;
+    nlohmann::ordered_json entry = {
+        {"file", recordings[k].name}, {"used", gyro.used},     {"scale", gyro.scale}, {"scale_std", nullptr},
+        {"bias", gyro.bias},          {"offset", gyro.offset}, {"left_out", nullptr}};
+    if (gyro.scale_std >= 0.0) entry["scale_std"] = gyro.scale_std;
+    if (gyro.fault) entry["left_out"] = *gyro.fault;
+    list.push_back(std::move(entry));
+  }
+  return list.dump();
+}
+
+/// A sentence for each gyro that was left out.
+std::vector<std::string> remarks_on(const estimation::GyroWitness& witness,
+                                    std::span<const Recording> recordings) {
+  std::vector<std::string> remarks;
+  for (std::size_t k = 0; k < witness.gyros.size(); ++k)
+    if (const auto& fault = witness.gyros[k].fault)
+      remarks.push_back(recordings.size() > 1 ? recordings[k].name + ": " + *fault : *fault);
+  return remarks;
+}
 
 using SmoothTerms = std::vector<selection::FittedSmoothTerm>;
 using Outliers = std::optional<selection::OutlierTrace>;

@@ -8,7 +8,7 @@
 #include "calib/classical/closed_form_options.hpp"
 #include "calib/estimation/fit.hpp"
 #include "calib/selection/search_result.hpp"
-#include "calib/terms/lidar_finding.hpp"
+#include "calib/terms/lidar_effect.hpp"
 #include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::calib::report {

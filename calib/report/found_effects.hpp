@@ -1,10 +1,12 @@
-// Effects that a solve found or was given, with their values and their evidence.
+// Effects that a solve found or was given, with their values and their evidence; and what stays without a
+// name.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "calib/report/findings.hpp"
+#include "calib/selection/outlier_trace.hpp"
 #include "calib/selection/selection_json.hpp"
 
 namespace odomcalib::calib::report {
@@ -16,5 +18,15 @@ std::vector<EffectResult> found_effects(const Findings& found,
                                         const std::optional<estimation::FitResult>& plain);
 
 std::vector<selection::FittedSmoothTerm> found_smooths(const Findings& found);
+
+/// Smooth terms without a name, of the lidar and of the wheels: covariates they depend on, in the order
+/// found.
+std::optional<Unexplained> unnamed_smooths(const Findings& found);
+
+/// Where the only finding of a recording is what goes with its outliers: a defect that is not compensated.
+std::optional<Unexplained> flagged_outliers(const selection::OutlierTrace& outliers);
+
+/// What goes with odometry's error although no function of it predicts anything: it is not compensated.
+std::optional<Unexplained> failed_validation(const selection::SearchResult& outcome);
 
 }  // namespace odomcalib::calib::report

@@ -1,8 +1,39 @@
 #include "calib/report/gate.hpp"
 
+#include <utility>
+
+#include "calib/estimation/first_look.hpp"
+#include "calib/report/settings.hpp"
 #include "calib/report/verdict_rules.hpp"
 
 namespace odomcalib::calib::report {
+namespace {
+
+double share_that_contradicts(const Calibration& calibration) {
+  for (const MethodResult& method : calibration.methods)
+    if (method.name == "joint" && method.used + method.discarded > 0)
+      return static_cast<double>(method.discarded) / static_cast<double>(method.used + method.discarded);
+  return 0.0;
+}
+
+/// Whether a mistake in the recordings is likelier than a bad drive.
+bool needs_explanation(const Calibration& calibration) {
+  return calibration.verdict == Verdict::refused ||
+         share_that_contradicts(calibration) > settings::kManyContradict;
+}
+
+/// Refused for this reason; keeps what was measured, but no value of a fit.
+Calibration refused_for(const Error& cause, Calibration calibration) {
+  Calibration refused;
+  refused.robot = calibration.robot;
+  refused.verdict = Verdict::refused;
+  refused.reasons = {cause.text()};
+  refused.data = std::move(calibration.data);
+  refused.methods = std::move(calibration.methods);
+  return refused;
+}
+
+}  // namespace
 
 GateResult judge(const Calibration& calibration, const Footing& footing) {
   std::vector<std::string> refusals, warnings;
@@ -12,6 +43,14 @@ GateResult judge(const Calibration& calibration, const Footing& footing) {
   if (!refusals.empty()) return {Verdict::refused, refusals};
   if (!warnings.empty()) return {Verdict::accepted_with_warnings, warnings};
   return {Verdict::accepted, {}};
+}
+
+Calibration explained(std::span<const Recording> recordings, Calibration calibration) {
+  if (!needs_explanation(calibration)) return calibration;
+  for (const Recording& recording : recordings)
+    if (const auto mistake = estimation::first_look(recording))
+      return refused_for(*mistake, std::move(calibration));
+  return calibration;
 }
 
 }  // namespace odomcalib::calib::report

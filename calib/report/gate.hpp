@@ -1,13 +1,15 @@
-// The quality gate: may this calibration be written to a robot?
+// The quality gate: may this calibration be written to a robot, and if not, why?
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/report_data.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::report {
 
@@ -46,5 +48,11 @@ bool odometry_is_off(const std::vector<DriveError>& errors);
 /// Every rule of the table in verdict_rules.hpp, in its order: refused if one refuses, for its reasons alone;
 /// accepted with warnings if one warns.
 GateResult judge(const Calibration& calibration, const Footing& footing);
+
+/// Why a calibration failed, where the recording itself shows it: only of what was refused or fits badly.
+/// Where a mistake in the recordings is likelier than a bad drive, each recording is looked at without the
+/// wheels (estimation/first_look.hpp). Where that names a mistake, the calibration is refused for it, and has
+/// no value of the fit that it spoilt; otherwise it stays as it is.
+Calibration explained(std::span<const Recording> recordings, Calibration calibration);
 
 }  // namespace odomcalib::calib::report

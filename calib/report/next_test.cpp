@@ -1,7 +1,5 @@
 #include "calib/report/next_test.hpp"
 
-#include <algorithm>
-
 #include "calib/report/settings.hpp"
 #include "calib/terms/catalogue.hpp"
 

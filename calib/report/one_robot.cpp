@@ -1,10 +1,9 @@
 #include "calib/report/one_robot.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib/math/significant.hpp"
+#include "calib/math/number_text.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/settings.hpp"
 
@@ -24,12 +23,11 @@ double value_of(const selection::Homogeneity& found, std::size_t recording, Eige
 
 std::string amount_of_difference(const selection::Homogeneity& found, Eigen::Index parameter,
                                  double difference) {
-  if (parameter == vehicle::kMountYaw)
-    return math::significant(std::abs(difference) * 180.0 / math::kPi, 3) + " degrees";
-  if (!is_length(parameter)) return math::significant(1e3 * std::abs(difference), 3) + " mm";
+  if (parameter == vehicle::kMountYaw) return math::degrees_text(std::abs(difference));
+  if (!is_length(parameter)) return math::millimetres_text(std::abs(difference));
   const double value = value_of(found, found.recording, parameter);
   return math::significant(100.0 * std::abs(difference / value), 3) + " % (" +
-         math::significant(1e3 * factor_of(parameter) * std::abs(difference), 3) + " mm)";
+         math::millimetres_text(factor_of(parameter) * std::abs(difference)) + ")";
 }
 
 /// So large a difference is none that wider deviations could stand for.

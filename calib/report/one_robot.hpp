@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <span>
-#include <string>
 
 #include "calib/report/gate.hpp"
 #include "calib/selection/homogeneity.hpp"

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <optional>
-#include <sstream>
 
 #include "calib/classical/length_factor.hpp"
 #include "calib/classical/settings.hpp"
-#include "calib/classical/sign_check.hpp"
-#include "calib/math/significant.hpp"
+#include "calib/math/number_text.hpp"
 #include "calib/report/settings.hpp"
 #include "calib/selection/drive_error.hpp"
 
@@ -24,17 +21,7 @@ Objection warning(const std::string& reason) { return {false, reason}; }
 
 std::string percent(double share) { return math::significant(100.0 * share, 3) + " %"; }
 
-std::string degrees(double angle) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(0) << angle * 180.0 / math::kPi << " degrees";
-  return out.str();
-}
-
-std::string times(double ratio) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(1) << ratio << " times";
-  return out.str();
-}
+std::string times(double ratio) { return math::fixed(ratio, 1) + " times"; }
 
 // --- What odometry is off by -------------------------------------------------------------------------------
 
@@ -56,8 +43,7 @@ const DriveError* error_of(const Footing& footing, const char* name) {
 }
 
 std::string amount(const DriveError& error, double value) {
-  return error.unit == "rad" ? math::significant(value * 180.0 / math::kPi, 3) + " degrees"
-                             : math::significant(1e3 * value, 3) + " mm";
+  return error.unit == "rad" ? math::degrees_text(value) : math::millimetres_text(value);
 }
 
 bool is_no_better(const DriveError& error) {
@@ -258,8 +244,8 @@ Objections lidar_yaw(const Calibration& calibration, const Footing&) {
   if (!yaw || !calibration.robot.lidar_pose) return {};
   const double apart = math::wrap_angle(*yaw - (*calibration.robot.lidar_pose)[2]);
   if (!(std::abs(apart) > classical::settings::kFarYaw_rad)) return {};
-  return {warning("lidar_yaw differs from its nominal value by " + degrees(apart) +
-                  ": correct lidar_pose, or check which end of the robot counts forward")};
+  return {warning("lidar_yaw differs from its nominal value by " + math::fixed(apart * 180.0 / math::kPi, 0) +
+                  " degrees" + ": correct lidar_pose, or check which end of the robot counts forward")};
 }
 
 // --- Recordings --------------------------------------------------------------------------------------------

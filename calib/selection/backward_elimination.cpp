@@ -4,8 +4,10 @@
 #include <optional>
 #include <utility>
 
+#include "calib/selection/drive_error.hpp"
 #include "calib/selection/hyperparameters.hpp"
 #include "calib/selection/plausibility.hpp"
+#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 namespace {
@@ -52,12 +54,44 @@ bool eliminate_one(const FitTask& task, double per_parameter, SearchResult& resu
   return false;
 }
 
+/// Of odometry over ten seconds with the model's effects; nullopt where the drive is too short for it.
+std::optional<DriveError> open_loop_error(const FitTask& task, const FittedModel& model) {
+  const JudgedModel judged{&model.fit, task.fixed(model.effects), model.effects};
+  const auto errors = drive_errors(task.data, {}, nullptr, judged);
+  const DriveError* found = open_loop_position(errors);
+  return found == nullptr || !found->after || !found->noise_floor ? std::nullopt : std::optional(*found);
+}
+
 }  // namespace
 
 bool eliminate_superfluous(const FitTask& task, double per_parameter, SearchResult& result) {
   bool has_changed = false;
   while (eliminate_one(task, per_parameter, result)) has_changed = true;
   return has_changed;
+}
+
+std::optional<FreeTerm> free_term_instead_of(const FitTask& task, const FittedModel& model, std::size_t index,
+                                             const Candidate& candidate) {
+  const auto without = without_effect(task, model, index, {});
+  if (!without) return std::nullopt;
+  auto dependence = in_best_shape(task, *without, *candidate.smooth, model.fit.noise);
+  if (!dependence ||
+      (explains_nearly_all(task, model, index, dependence->model) &&
+       task.rules.has(Rule::nearly_all_explained)) ||
+      !is_better(task, model, dependence->model, schwarz(model.fit)))
+    return std::nullopt;
+  CrossValidation validation;
+  const auto missing =
+      objection(task, *without, dependence->model, all_folds(), largest_ratio(candidate), validation);
+  return missing.empty() ? std::optional(FreeTerm{std::move(*dependence), validation}) : std::nullopt;
+}
+
+bool explain_too_little(const FitTask& task, const FittedModel& with, const FittedModel& without) {
+  const auto after = open_loop_error(task, with), before = open_loop_error(task, without);
+  if (!after || !before) return false;
+  const auto square = [](double x) { return x * x; };
+  const double all = square(before->after->value) - square(*after->noise_floor);
+  return square(before->after->value) - square(after->after->value) < settings::kLeastExplained * all;
 }
 
 }  // namespace odomcalib::calib::selection

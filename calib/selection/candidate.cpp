@@ -9,7 +9,6 @@
 #include "calib/selection/settings.hpp"
 #include "calib/terms/candidate_smooths.hpp"
 #include "calib/terms/catalogue.hpp"
-#include "calib/terms/periodic_smooths.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
 #include "calib/terms/smooth_term_on_drives.hpp"
 #include "calib/vehicle/placed_effects.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "calib/math/number_text.hpp"
 #include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
@@ -88,7 +89,7 @@ std::string objection(const FitTask& task, const FittedModel& before, const Fitt
     validation.after = gain->after;
     validation.improvement = gain->improvement;
     if (validation.improvement.ratio > largest_ratio && task.rules.has(Rule::worthwhile_gain))
-      return "too small a gain: error times " + std::to_string(validation.improvement.ratio).substr(0, 5);
+      return "too small a gain: error times " + math::five_characters(validation.improvement.ratio);
     if (validation.improvement.upper < 1.0) return {};
     if (validation.improvement.lower > 1.0 && task.rules.has(Rule::certain_gain))
       return "held-out error rises";

@@ -1,7 +1,6 @@
 // What a recording would have shown.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "calib/selection/fitted_model.hpp"

@@ -6,7 +6,6 @@
 
 #include "calib/selection/candidate.hpp"
 #include "calib/selection/score.hpp"
-#include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
 

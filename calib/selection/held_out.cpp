@@ -1,7 +1,6 @@
 #include "calib/selection/held_out.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "calib/estimation/fit.hpp"

@@ -6,7 +6,7 @@
 
 #include "calib/estimation/fit.hpp"
 #include "calib/measurement/placement.hpp"
-#include "calib/terms/lidar_finding.hpp"
+#include "calib/terms/lidar_effect.hpp"
 
 namespace odomcalib::calib::selection {
 

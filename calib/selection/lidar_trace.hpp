@@ -2,11 +2,12 @@
 // scans.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "calib/measurement/heading_pairs.hpp"
 #include "calib/terms/lidar_effect.hpp"
-#include "calib/terms/lidar_finding.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::selection {
 
@@ -21,5 +22,12 @@ std::vector<terms::LidarFinding> trace_lidar(const std::vector<measurement::Head
 /// Values of given effects, whether they are significant or not.
 std::vector<terms::LidarFinding> fit_lidar(const std::vector<measurement::HeadingPair>& pairs,
                                            const std::vector<terms::LidarEffectPtr>& effects);
+
+/// Standard deviation, relative, of a length that was measured with scans in which errors of the range were
+/// left: half the RMS of their slope, d(error)/d(range), over what the scans see, so that one as large as the
+/// slope is two deviations off. Which part of the slope is a common scale no scan shows.
+/// @param findings those that scans are corrected by do not count
+double range_scale_uncertainty(const std::vector<terms::LidarFinding>& findings,
+                               std::span<const Recording> recordings);
 
 }  // namespace odomcalib::calib::selection

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
-#include <sstream>
 
 #include "calib/estimation/stack.hpp"
+#include "calib/math/number_text.hpp"
 #include "calib/math/se2.hpp"
 #include "calib/selection/settings.hpp"
 
@@ -197,17 +196,16 @@ class Tracer {
 /// Whose fault they are, as far as a map shows.
 std::string to_text(const OutlierCause& cause) {
   if (cause.confirmed == 0) return "";
-  std::ostringstream out;
-  out << "; the map confirms " << cause.confirmed << " of " << cause.placed
-      << ": there the robot moved otherwise than its wheels" << std::fixed << std::setprecision(1);
-  const auto excess = [&](double value, const char* verb, double unit, const char* name) {
+  std::string text = "; the map confirms " + std::to_string(cause.confirmed) + " of " +
+                     std::to_string(cause.placed) + ": there the robot moved otherwise than its wheels";
+  const auto excess = [&](double value, const std::string& verb, const std::string& unit) {
     if (value != 0.0)
-      out << ", " << verb << " " << std::abs(value) / unit << " " << name
-          << (value > 0.0 ? " farther" : " less far");
+      text += ", " + verb + " " + math::fixed(std::abs(value) / 1e-3, 1) + " " + unit +
+              (value > 0.0 ? " farther" : " less far");
   };
-  excess(cause.farther, "came", 1e-3, "mm");
-  excess(cause.turned_farther, "turned", 1e-3, "mrad");
-  return out.str();
+  excess(cause.farther, "came", "mm");
+  excess(cause.turned_farther, "turned", "mrad");
+  return text;
 }
 
 }  // namespace
@@ -224,16 +222,14 @@ std::optional<OutlierTrace> trace_outliers(std::span<const measurement::FitData>
 }
 
 std::string to_text(const OutlierTrace& trace) {
-  std::ostringstream out;
-  out << trace.outliers << " of " << trace.pairs
-      << " pairs of scans contradict all others by more than five deviations and are left out";
-  if (trace.depends_on.empty()) out << "; nothing that was observed goes with them";
+  std::string text = std::to_string(trace.outliers) + " of " + std::to_string(trace.pairs) +
+                     " pairs of scans contradict all others by more than five deviations and are left out";
+  if (trace.depends_on.empty()) text += "; nothing that was observed goes with them";
   for (std::size_t k = 0; k < trace.depends_on.size(); ++k)
-    out << (k > 0 ? ", " : "; they go with ") << to_string(trace.depends_on[k]);
+    text += (k > 0 ? ", " : "; they go with ") + to_string(trace.depends_on[k]);
   if (!trace.depends_on.empty() && trace.depends_on.front() == vehicle::Covariate::time)
-    out << std::fixed << std::setprecision(0) << ", from " << trace.begin << " to " << trace.end << " s";
-  out << to_text(trace.cause);
-  return out.str();
+    text += ", from " + math::fixed(trace.begin, 0) + " to " + math::fixed(trace.end, 0) + " s";
+  return text + to_text(trace.cause);
 }
 
 std::string to_json(const OutlierTrace& trace) {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "calib/estimation/path_fit.hpp"
-#include "calib/measurement/location.hpp"
 #include "calib/measurement/placed_pairs.hpp"
+#include "calib/measurement/scan_path.hpp"
 #include "calib/selection/criterion.hpp"
 #include "calib/selection/range_trace.hpp"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "calib/math/linear_solve.hpp"
-#include "calib/math/significant.hpp"
+#include "calib/math/number_text.hpp"
 #include "calib/selection/score.hpp"
 #include "calib/selection/settings.hpp"
 #include "calib/terms/smooth_term.hpp"

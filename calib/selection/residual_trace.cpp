@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "calib/estimation/stack.hpp"
 #include "calib/selection/settings.hpp"

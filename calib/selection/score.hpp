@@ -4,8 +4,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "calib/estimation/joint.hpp"

@@ -6,20 +6,17 @@
 #include <functional>
 #include <optional>
 
+#include "calib/math/number_text.hpp"
 #include "calib/selection/backward_elimination.hpp"
 #include "calib/selection/candidate.hpp"
-#include "calib/selection/change_point.hpp"
 #include "calib/selection/detectable.hpp"
 #include "calib/selection/equivalent_models.hpp"
 #include "calib/selection/hyperparameter_selection.hpp"
 #include "calib/selection/hyperparameters.hpp"
-#include "calib/selection/next_addition.hpp"
 #include "calib/selection/plausibility.hpp"
 #include "calib/selection/rolling_waves.hpp"
 #include "calib/selection/search_round.hpp"
 #include "calib/selection/settings.hpp"
-#include "calib/selection/unhelpful_smooths.hpp"
-#include "calib/selection/wrong_name.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
 #include "calib/terms/smooth_term_on_drives.hpp"
 
@@ -246,8 +243,7 @@ class Search {
     if (may_be_chance(candidates_[trial.candidate], validation) && has(Rule::gain_in_most_drives)) {
       if (!has_drives(validation))
         return "may be chance, and the reference is too broken for drives to prove it";
-      return "a gain that may be chance: error times " +
-             std::to_string(validation.improvement.ratio).substr(0, 5);
+      return "a gain that may be chance: error times " + math::five_characters(validation.improvement.ratio);
     }
     settled = round_->refit(trial.candidate, {});
     if (!settled) return "the fit does not settle";

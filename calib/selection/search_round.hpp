@@ -1,6 +1,7 @@
-// One round of the search: what the candidates come to on one model.
+// One round of the search: what the candidates come to on one model, and what to add next.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "calib/selection/candidate.hpp"
 #include "calib/selection/fitted_model.hpp"
 #include "calib/selection/score.hpp"
+#include "calib/selection/search_result.hpp"
 
 namespace odomcalib::calib::selection {
 
@@ -71,5 +73,19 @@ class SearchRound {
   ScoreTable table_;
   std::vector<Trial> trials_;
 };
+
+/// Cannot spoil odometry.
+bool is_clock(const Candidate& candidate);
+
+/// Whether the score is significant at the candidate's own level.
+bool passes(std::size_t candidate, const SearchRound& round, const SearchResult& found);
+
+std::optional<std::size_t> best_smooth(const SearchRound& round, const SearchResult& found);
+
+/// The best name, unless the smooth term is clearly better: then one on the smooth term's own ground, which
+/// may be the second best of two effects.
+/// @param smooth term index of the best one, if any
+std::optional<Trial> best_name_beside(std::optional<std::size_t> smooth, SearchRound& round,
+                                      const SearchResult& found);
 
 }  // namespace odomcalib::calib::selection

@@ -52,7 +52,6 @@ void add_errors(const measurement::FitData& data, const Eigen::VectorXd& paramet
 }  // namespace
 
 double WindowErrors::rms_position() const { return rms(position); }
-double WindowErrors::rms_heading() const { return rms(heading); }
 
 WindowErrors window_errors(std::span<const measurement::FitData> data,
                            const std::vector<EvaluationWindow>& windows, const vehicle::EffectList& effects,

@@ -17,7 +17,6 @@ struct WindowErrors {
   std::vector<std::size_t> fold;   ///< that each window was held out in
   std::vector<std::size_t> block;  ///< see EvaluationWindow
   [[nodiscard]] double rms_position() const;
-  [[nodiscard]] double rms_heading() const;
 };
 
 /// Error of the predicted sensor motion over each window. The parameters for a window's fold come from all

@@ -1,4 +1,4 @@
-// How a graph hangs together: neighbours, parts, spanning trees.
+// How a graph hangs together: neighbours, parts, spanning trees, and loops turned the wrong way round.
 #pragma once
 
 #include <cstddef>
@@ -56,5 +56,11 @@ SpanningTree spanning_tree(const PoseGraph& graph, const Neighbours& neighbours,
 
 /// Composes the measured motions along the tree; vertices outside of it stay where `at` has them.
 Placement placed_along(const PoseGraph& graph, const SpanningTree& tree, Placement at);
+
+/// Loops (one for each edge outside a breadth-first tree) around which the heading errors add up to more than
+/// half a turn. At a false minimum a whole turn is spread over a loop, a little on each edge, so that no edge
+/// looks wrong by itself; added up it shows. Noise alone does that only in long, very noisy loops.
+std::size_t loops_with_a_turn_too_much(const PoseGraph& graph, const Neighbours& neighbours,
+                                       const Placement& at);
 
 }  // namespace odomcalib::calib::slam

@@ -5,7 +5,6 @@
 
 #include "calib/slam/connectivity.hpp"
 #include "calib/slam/edge_error.hpp"
-#include "calib/slam/loops.hpp"
 #include "calib/slam/settings.hpp"
 
 namespace odomcalib::calib::slam {

@@ -1,12 +1,13 @@
 #include "calib/slam/optimize.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <utility>
 
+#include "calib/slam/connectivity.hpp"
 #include "calib/slam/descent.hpp"
+#include "calib/slam/edge_error.hpp"
 #include "calib/slam/first_guess.hpp"
-#include "calib/slam/loops.hpp"
 #include "calib/slam/settings.hpp"
 
 namespace odomcalib::calib::slam {
@@ -183,6 +184,20 @@ std::size_t free_coordinates(const PoseGraph& graph) {
   return count;
 }
 
+double cauchy_weight(double chi2) {
+  return 1.0 / (1.0 + chi2 / (settings::kCauchyCut * settings::kCauchyCut));
+}
+
+/// Weighs every edge by how far it is from the graph as it lies.
+void weigh(PoseGraph& graph, const std::vector<GraphEdge>& as_measured) {
+  const Placement at = placement_of(graph);
+  for (std::size_t e = 0; e < as_measured.size(); ++e) {
+    const double weight = cauchy_weight(chi2(as_measured[e], at));
+    for (std::size_t i = 0; i < as_measured[e].information.size(); ++i)
+      graph.edges[e].information.at(i) = weight * as_measured[e].information.at(i);
+  }
+}
+
 }  // namespace
 
 std::size_t fix_first_pose(PoseGraph& graph) {
@@ -227,6 +242,17 @@ GraphSummary optimize_graph(PoseGraph& graph, const GraphOptions& options, const
   write_back(graph, attempt.descent.at);
   graph.has_positions = true;
   return summary;
+}
+
+bool settle_robustly(PoseGraph& graph) {
+  PoseGraph weighed = graph;
+  for (int round = 0; round < settings::kWeightRounds; ++round) {
+    if (!optimize_graph(weighed, {.start = GraphStart::file}).is_usable()) return false;
+    weigh(weighed, graph.edges);
+  }
+  if (!optimize_graph(weighed, {.start = GraphStart::file}).is_usable()) return false;
+  graph = std::move(weighed);
+  return true;
 }
 
 }  // namespace odomcalib::calib::slam

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -87,5 +86,11 @@ GraphSummary optimize_graph(PoseGraph& graph, const GraphOptions& options = {},
 
 /// Sum of e' I e over all edges at the vertices as they are (g2o's convention, without a factor 1/2).
 double graph_chi2(const PoseGraph& graph);
+
+/// Settles the graph and lowers the information of edges that the others contradict, again and again: weights
+/// of Cauchy's distribution, 1 / (1 + chi2 / c^2) (Huber, Robust Statistics, 1981, chapter 7). What the edges
+/// hold afterwards is what they were trusted, so that settling the graph again moves nothing.
+/// @return whether the graph could be settled; if not, it is as it was
+bool settle_robustly(PoseGraph& graph);
 
 }  // namespace odomcalib::calib::slam

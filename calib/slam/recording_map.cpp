@@ -9,7 +9,7 @@
 #include "calib/measurement/scan_surfaces.hpp"
 #include "calib/slam/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
-#include "calib/wheels/nominal_base.hpp"
+#include "calib/wheels/wheel_track.hpp"
 
 namespace odomcalib::calib::slam {
 namespace {

@@ -9,7 +9,6 @@
 #include "calib/math/vector2.hpp"
 #include "calib/slam/odometry_correction.hpp"
 #include "calib/slam/optimize.hpp"
-#include "calib/slam/robust_weights.hpp"
 #include "calib/slam/settings.hpp"
 
 namespace odomcalib::calib::slam {
@@ -288,6 +287,25 @@ std::size_t ScanGraph::count(EdgeSource source) const {
 ScanGraph build_scan_graph(std::span<const matching::Surface> surfaces, std::span<const math::Pose> odometry,
                            const ScanGraphOptions& options) {
   return Builder(surfaces, odometry, options).run();
+}
+
+std::vector<std::size_t> choose_keyframes(std::span<const math::Pose> odometry,
+                                          const KeyframeSpacing& spacing) {
+  std::vector<std::size_t> chosen;
+  double travel = 0.0, turn = 0.0;
+  for (std::size_t k = 0; k < odometry.size(); ++k) {
+    if (k > 0) {
+      const math::Pose step = between(odometry[k - 1], odometry[k]);
+      travel += std::hypot(step.x, step.y);
+      turn += std::abs(math::wrap_angle(step.yaw));
+    }
+    // A hair below the limit counts: sums of many steps are not exact.
+    const bool far = travel > spacing.distance - 1e-9 || turn > spacing.rotation - 1e-9;
+    if (!chosen.empty() && !far) continue;
+    chosen.push_back(k);
+    travel = turn = 0.0;
+  }
+  return chosen;
 }
 
 }  // namespace odomcalib::calib::slam

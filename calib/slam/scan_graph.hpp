@@ -4,17 +4,29 @@
 // recorded.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "calib/slam/keyframes.hpp"
+#include "calib/math/se2.hpp"
 #include "calib/slam/loop_check.hpp"
 #include "calib/slam/settings.hpp"
 #include "proto/recording/pose_graph.hpp"
 
 namespace odomcalib::calib::slam {
+
+/// Which scans of a drive become vertices of its graph.
+struct KeyframeSpacing {
+  double distance = settings::kKeyframeDistance_m;    ///< m of travel, or ...
+  double rotation = settings::kKeyframeRotation_rad;  ///< rad turned either way
+};
+
+/// The first pose, and each after which one of the two is reached since the last one chosen. Travel and turn
+/// are those of the path, so that a robot that comes back in between is noticed.
+std::vector<std::size_t> choose_keyframes(std::span<const math::Pose> odometry,
+                                          const KeyframeSpacing& spacing);
 
 struct ScanGraphOptions {
   KeyframeSpacing spacing;

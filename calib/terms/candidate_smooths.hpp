@@ -23,4 +23,9 @@ std::vector<SmoothTerm> candidate_smooths(std::span<const vehicle::DriveModel* c
 std::vector<SmoothTerm> other_shapes(const SmoothTerm& smooth,
                                      std::span<const vehicle::DriveModel* const> models);
 
+/// Floors that repeat themselves: waves of 0.2 to 1.25 m in all directions of the plane, as far apart as the
+/// place that was driven on can tell them (its Fourier transform's resolution). None where wheels are scored
+/// on more than one recording, whose places have no common origin.
+std::vector<SmoothTerm> periodic_smooths(std::span<const vehicle::DriveModel* const> models);
+
 }  // namespace odomcalib::calib::terms

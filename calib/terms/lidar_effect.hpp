@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -74,5 +73,19 @@ LidarEffectPtr make_lidar_tilt();
 /// Every named effect of the lidar.
 std::vector<LidarEffectPtr> lidar_catalogue(bool all_round);
 LidarEffectPtr find_lidar_effect(const std::string& name);
+
+/// An error of the lidar itself that was found in its scans.
+struct LidarFinding {
+  LidarEffectPtr effect;
+  std::vector<double> values, deviations;  ///< in the order of effect->parameters()
+  double family_p_value = 1.0;
+  double before = 0.0, after = 0.0;  ///< m, RMS distance between scans on pairs that were not fitted
+};
+
+/// Whether a finding is the rest of another's function and no finding of its own.
+bool completes(const LidarFinding& finding, const std::vector<LidarFinding>& all);
+
+/// The scan as it would be without the errors found.
+Scan corrected(const Scan& scan, const std::vector<LidarFinding>& findings);
 
 }  // namespace odomcalib::calib::terms

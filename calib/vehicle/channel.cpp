@@ -1,6 +1,5 @@
 #include "calib/vehicle/channel.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace odomcalib::calib::vehicle {

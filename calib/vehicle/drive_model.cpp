@@ -1,12 +1,10 @@
 #include "calib/vehicle/drive_model.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <complex>
 #include <stdexcept>
 
 #include "calib/math/last_value.hpp"
-#include "calib/vehicle/part_of_step.hpp"
 #include "calib/vehicle/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "calib/vehicle/step_twist.hpp"

@@ -7,7 +7,6 @@
 
 #include "calib/math/last_value.hpp"
 #include "calib/math/vector2.hpp"
-#include "calib/vehicle/part_of_step.hpp"
 #include "calib/vehicle/step_twist.hpp"
 
 namespace odomcalib::calib::vehicle {

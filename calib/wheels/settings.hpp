@@ -2,8 +2,6 @@
 // calib/matching/settings.hpp).
 #pragma once
 
-#include <cstddef>
-
 namespace odomcalib::calib::wheels::settings {
 
 // --- Fine track ------------------------------------------------------------------------------------------

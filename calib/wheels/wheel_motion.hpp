@@ -1,8 +1,6 @@
 // The input common to all estimators: what the wheels did and how the sensor moved, over one interval.
 #pragma once
 
-#include <vector>
-
 #include "calib/math/se2.hpp"
 
 namespace odomcalib::calib::wheels {

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "calib/odometry/path_noise.hpp"
 #include "calib/odometry/predict.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/numbers.hpp"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/solve.hpp"
-#include "calib/terms/effect_names.hpp"
+#include "calib/terms/request.hpp"
 #include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/exit_codes.hpp"

@@ -9,7 +9,7 @@
 #include "calib/odometry/predict.hpp"
 #include "calib/report/next_test.hpp"
 #include "calib/solve.hpp"
-#include "calib/terms/effect_names.hpp"
+#include "calib/terms/request.hpp"
 #include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/settings.hpp"
 

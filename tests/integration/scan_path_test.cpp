@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/measurement/sweep_motion.hpp"
+#include "calib/measurement/scan_surfaces.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "calib/wheels/wheel_track.hpp"
 #include "tests/sim/world/simulate.hpp"

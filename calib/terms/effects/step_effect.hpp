@@ -2,8 +2,6 @@
 // derivatives.
 #pragma once
 
-#include <cmath>
-
 #include "calib/vehicle/effect.hpp"
 
 namespace odomcalib::calib::terms {

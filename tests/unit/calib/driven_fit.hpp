@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "calib/estimation/fit.hpp"
-#include "calib/selection/clocks.hpp"
+#include "calib/selection/fit_stages.hpp"
 #include "tests/unit/calib/driven_recording.hpp"
 
 namespace odomcalib::test_support {

@@ -6,8 +6,7 @@
 #include <random>
 
 #include "calib/ingest/even_stamps.hpp"
-#include "calib/ingest/stamp_contest.hpp"
-#include "calib/ingest/stamp_report.hpp"
+#include "calib/ingest/recordings.hpp"
 #include "calib/ingest/tick_stamps.hpp"
 #include "calib/measurement/scan_stamps.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"

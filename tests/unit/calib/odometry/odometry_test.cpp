@@ -4,7 +4,6 @@
 #include <cmath>
 #include <random>
 
-#include "calib/odometry/path_noise.hpp"
 #include "calib/odometry/predict.hpp"
 #include "calib/report/next_test.hpp"
 #include "calib/selection/selection_json.hpp"

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "calib/report/report.hpp"
-#include "calib/report/sample_pairs.hpp"
 #include "calib/selection/drive_error.hpp"
 #include "calib/selection/residual_trace.hpp"
 #include "calib/terms/catalogue.hpp"

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/selection/event_text.hpp"
+#include "calib/selection/backward_elimination.hpp"
 #include "calib/selection/selection_json.hpp"
-#include "calib/selection/unhelpful_smooths.hpp"
 #include "calib/terms/candidate_smooths.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/effects/step_effect.hpp"

@@ -1,11 +1,10 @@
 // Stages that may hand on another fit, or the one they were given.
-#include "calib/selection/reference_mounting.hpp"
 
 #include <gtest/gtest.h>
 
+#include "calib/selection/fit_stages.hpp"
 #include "calib/selection/lidar_correction.hpp"
 #include "calib/selection/placed_fit.hpp"
-#include "calib/selection/scan_times.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "tests/unit/calib/driven_fit.hpp"
 

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "calib/slam/connectivity.hpp"
-#include "calib/slam/loops.hpp"
-#include "calib/slam/robust_weights.hpp"
 #include "tests/unit/calib/slam/graph_support.hpp"
 
 namespace odomcalib::calib::slam::graph_optimize_test {

@@ -6,9 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "calib/ingest/scan_span.hpp"
+#include "calib/ingest/sweeps.hpp"
 #include "calib/selection/lidar_trace.hpp"
-#include "calib/selection/range_scale.hpp"
 #include "calib/terms/lidar_smooth_term.hpp"
 
 namespace odomcalib::calib::terms::lidar_effect_test {
