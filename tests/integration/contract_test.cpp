@@ -33,17 +33,13 @@ class Contract : public ServiceLoop {
     return all;
   }
   json check_named(const std::string& name) {
-    TestClient client(folder_ / "control");
-    client.call("Check", json::object());
-    const json reply = json::parse(wait_reply(client, 1.0).parameters);
+    const json reply = json::parse(ask("Check", json::object(), 1.0).parameters);
     for (const auto& check : reply["checks"])
       if (check["name"] == name) return check;
     return {};
   }
   void straight(double distance, const std::string& error) {
-    TestClient mover(folder_ / "control");
-    mover.call("Straight", {{"lease", lease_}, {"distance", distance}});
-    const auto reply = wait_reply(mover, 30.0);
+    const auto reply = ask("Straight", {{"lease", lease_}, {"distance", distance}}, 30.0);
     EXPECT_EQ(reply.error, error) << reply.parameters;
   }
 
@@ -81,9 +77,7 @@ TEST_F(Contract, check_does_not_blame_the_profile_for_a_controller_that_is_away)
 
 TEST_F(Contract, journal_names_write_backs_and_their_ends) {
   acquire();
-  TestClient writer(folder_ / "control");
-  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
-  EXPECT_EQ(wait_reply(writer, 20.0).error, "");
+  EXPECT_EQ(ask("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}}, 20.0).error, "");
   EXPECT_TRUE(logged("write_back", "begins, for user")) << all_lines();
   EXPECT_TRUE(logged("write_back", "committed")) << all_lines();
 }
@@ -122,9 +116,7 @@ TEST_F(Contract, why_the_robot_was_stopped_is_known_after_a_restart) {
   const std::string why = status()["last_stop"];
   ASSERT_NE(why, "");
   ASSERT_TRUE(robot_->plug_lidar().ok());
-  client_.reset();
-  service_.reset();
-  linked_ = renewing_ = false;
+  end_service();
   start_service();
   ASSERT_TRUE(service_);
   EXPECT_EQ(status()["last_stop"], why);
@@ -186,9 +178,7 @@ TEST_F(ReadOnlyState, F35_the_service_runs_says_so_and_neither_moves_nor_writes)
   straight(0.3, "org.odomcalib.Calibration.Io");
   EXPECT_LT(robot_->fastest_rim(), 1e-6);
   const auto stored = robot_->node().geometry_stored(), held = robot_->node().geometry_in_ram();
-  TestClient writer(folder_ / "control");
-  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
-  EXPECT_NE(wait_reply(writer, 5.0).error, "");
+  EXPECT_NE(ask("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}}, 5.0).error, "");
   EXPECT_EQ(robot_->node().geometry_stored(), stored);
   EXPECT_EQ(robot_->node().geometry_in_ram(), held);
   EXPECT_EQ(status()["state"], "idle");

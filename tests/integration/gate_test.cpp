@@ -10,9 +10,7 @@ class Gate : public ServiceLoop {
   control::Reply call(const std::string& method, json parameters) {
     if (lease_.empty()) acquire();
     if (!parameters.contains("lease")) parameters["lease"] = lease_;
-    TestClient caller(folder_ / "control");
-    caller.call(method, parameters);
-    return wait_reply(caller, 20.0);
+    return ask(method, parameters, 20.0);
   }
   void expect_refused(const control::Reply& reply, const std::string& error, const std::string& said) {
     EXPECT_EQ(reply.error, "org.odomcalib.Calibration." + error) << reply.parameters;

@@ -145,12 +145,9 @@ TEST_F(ServiceProof, nor_a_daemon_that_was_killed) {
   record.after = {{"track_width", 0.4033}};
   record.unproven = true;
   prover_.reset();
-  client_.reset();
-  service_.reset();
-  lease_.clear();
+  end_service();
   ASSERT_TRUE(Journal::open(folder_ / "state" / "journal").value().append(record).ok());
   robot_->node().dictionary().set({0x2100, 3}, 403300);
-  linked_ = false;
   start_service();
   expect_taken_back();
 }

@@ -67,9 +67,8 @@ TEST_F(ServiceLoop, headings_count_from_the_start_of_the_motion_wherever_the_odo
 }
 
 TEST_F(ServiceLoop, nobody_moves_without_a_lease) {
-  TestClient mover(folder_ / "control");
-  mover.call("Straight", {{"lease", "guess"}, {"distance", 0.8}});
-  EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.NotPermitted");
+  EXPECT_EQ(ask("Straight", {{"lease", "guess"}, {"distance", 0.8}}, 1.0).error,
+            "org.odomcalib.Calibration.NotPermitted");
   EXPECT_LT(robot_->fastest_rim(), 1e-6);
 }
 
@@ -283,9 +282,7 @@ TEST_F(ServiceLoop, a_daemon_that_is_told_to_end_begins_nothing_and_still_tells_
   service_->stop_all("told to end");
   const json wanted = {{"lease", lease_}, {"distance", 1.0}, {"values", {{"track_width", 0.4033}}}};
   for (const char* method : {"Straight", "Spin", "Calibrate", "SetParameters", "Record", "Acquire"}) {
-    TestClient late(folder_ / "control");
-    late.call(method, wanted);
-    const auto reply = wait_reply(late, 0.1);
+    const auto reply = ask(method, wanted, 0.1);
     EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused") << method;
     EXPECT_NE(reply.parameters.find("ending"), std::string::npos) << reply.parameters;
   }
@@ -350,9 +347,7 @@ TEST_F(HalfBlind, what_the_lidar_does_not_see_is_told_before_anything_moves) {
 }
 
 TEST_F(ServiceLoop, a_lidar_that_sees_all_around_has_nothing_to_ask) {
-  TestClient observer(folder_ / "control");
-  observer.call("Spin", {{"turns", 1.0}, {"dry_run", true}});
-  const json plan = json::parse(wait_reply(observer, 1.0).parameters)["result"];
+  const json plan = json::parse(ask("Spin", {{"turns", 1.0}, {"dry_run", true}}, 1.0).parameters)["result"];
   EXPECT_EQ(plan["unseen_moves"], json::array()) << plan;
 }
 
@@ -364,9 +359,7 @@ class OtherWheels : public ServiceLoop {
 
 TEST_F(OtherWheels, than_those_of_the_configuration_do_not_turn) {
   acquire();
-  TestClient mover(folder_ / "control");
-  mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
-  const auto reply = wait_reply(mover, 1.0);
+  const auto reply = ask("Straight", {{"lease", lease_}, {"distance", 0.5}}, 1.0);
   EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused");
   EXPECT_NE(reply.parameters.find("left_wheel_diameter = 0.1500 m"), std::string::npos) << reply.parameters;
   EXPECT_LT(robot_->fastest_rim(), 1e-6);
@@ -380,9 +373,7 @@ TEST_F(ServiceLoop, nothing_moves_before_the_values_of_the_controller_were_read)
   acquire();
   std::set<std::string> said;
   for (int i = 0; i < 400 && status()["robot"]["in_controller"] == false; ++i) {
-    TestClient mover(folder_ / "control");
-    mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
-    const auto reply = wait_reply(mover, 0.2);
+    const auto reply = ask("Straight", {{"lease", lease_}, {"distance", 0.5}}, 0.2);
     ASSERT_EQ(reply.error.substr(0, 27), "org.odomcalib.Calibration.D") << reply.parameters;
     said.insert(json::parse(reply.parameters)["what"]);
   }
@@ -392,9 +383,7 @@ TEST_F(ServiceLoop, nothing_moves_before_the_values_of_the_controller_were_read)
 
 TEST_F(ServiceLoop, a_motion_of_many_hours_is_refused_at_once) {
   acquire();
-  TestClient mover(folder_ / "control");
-  mover.call("Spin", {{"lease", lease_}, {"turns", 10.0}, {"rate", 0.05}, {"repeat", 20}});
-  const auto reply = wait_reply(mover, 1.0);
+  const auto reply = ask("Spin", {{"lease", lease_}, {"turns", 10.0}, {"rate", 0.05}, {"repeat", 20}}, 1.0);
   EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Usage");
   EXPECT_NE(reply.parameters.find("minutes"), std::string::npos) << reply.parameters;
 }
@@ -455,9 +444,7 @@ TEST_F(ServiceLoop, values_written_are_stored_and_survive_a_reset_of_the_node) {
 TEST_F(ServiceLoop, a_store_that_fails_leaves_the_old_values_or_asks_for_an_operator) {
   acquire();
   robot_->node().faults.store_fails = true;
-  TestClient writer(folder_ / "control");
-  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
-  const auto reply = wait_reply(writer, 30.0);
+  const auto reply = ask("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}}, 30.0);
   EXPECT_EQ(reply.error, "org.odomcalib.Calibration.WriteUnknown");
   EXPECT_EQ(robot_->node().geometry_in_ram()[2], 400000U);
   EXPECT_EQ(status()["operator_needed"], true);
@@ -518,9 +505,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(ServiceLoop, an_optional_text_that_is_null_is_an_absent_one) {
   acquire();
-  TestClient mover(folder_ / "control");
-  mover.call("Spin", {{"lease", lease_}, {"turns", 1.0}, {"direction", nullptr}, {"dry_run", true}});
-  const auto reply = wait_reply(mover, 1.0);
+  const auto reply =
+      ask("Spin", {{"lease", lease_}, {"turns", 1.0}, {"direction", nullptr}, {"dry_run", true}}, 1.0);
   ASSERT_EQ(reply.error, "") << reply.parameters;
   EXPECT_EQ(json::parse(reply.parameters)["result"]["moves"], 2);
 }
@@ -537,9 +523,7 @@ TEST_F(ServiceLoop, what_a_check_found_follows_its_outcome) {
   const auto good = checks();
   acquire();
   robot_->node().faults.store_fails = true;
-  TestClient writer(folder_ / "control");
-  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
-  (void)wait_reply(writer, 30.0);
+  (void)ask("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}}, 30.0);
   robot_->unplug_lidar();
   std::filesystem::remove_all(folder_ / "state");
   run(1.0);
