@@ -206,11 +206,7 @@ std::string payloads(const std::string& file, unsigned port) {
 TEST(LidarCaptures, network_traffic_of_a_sick_tim781s) {
   ODOMCALIB_CAPTURES(folder);
   const std::string bytes = payloads(test::read_text(folder / "sick-tim781s/tim781s_1s.pcapng"), 2112);
-  const auto text = value_of(decode("sick", bytes, "", "capture"));
-  std::vector<json> scans;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);)
-    if (const json parsed = json::parse(line); parsed["type"] == "scan") scans.push_back(parsed);
+  const auto scans = of_type(test::lines_of(decode("sick", bytes, "", "capture")), "scan");
   ASSERT_EQ(scans.size(), 16U);
   for (const json& scan : scans) {
     EXPECT_EQ(scan["ranges"].size(), 811U);

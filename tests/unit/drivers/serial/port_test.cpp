@@ -177,6 +177,22 @@ void play_adapter(const Pty& pty, const std::string& to_rate, const std::string&
   }
 }
 
+/// Opens the port of an adapter that answers so.
+Result<std::unique_ptr<CanTransport>> open_slcan(const Pty& pty, const std::string& options,
+                                                 const std::string& to_rate, const std::string& to_open) {
+  std::string heard;
+  std::thread adapter([&] { play_adapter(pty, to_rate, to_open, heard); });
+  auto can = open_can("slcan:" + pty.path + options);
+  adapter.join();
+  return can;
+}
+
+std::vector<CanFrame> frames_soon(CanTransport& can) {
+  pollfd state{can.fd(), POLLIN, 0};
+  EXPECT_EQ(poll(&state, 1, 1000), 1);
+  return value_of(can.receive(5.0));
+}
+
 TEST(SlcanPort, sets_up_the_adapter_and_passes_frames) {
   Pty pty;
   std::string heard;
@@ -186,9 +202,7 @@ TEST(SlcanPort, sets_up_the_adapter_and_passes_frames) {
   ASSERT_TRUE(can.ok()) << can.error().text();
   EXPECT_EQ(heard, "\r\r\rC\rS6\rO\r");
   pty.say("t1232AABB\r");
-  pollfd state{can.value()->fd(), POLLIN, 0};
-  ASSERT_EQ(poll(&state, 1, 1000), 1);
-  const auto frames = value_of(can.value()->receive(5.0));
+  const auto frames = frames_soon(*can.value());
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(frames[0].id, 0x123U);
   EXPECT_EQ(frames[0].t, 5.0);  // without a baud rate no transfer time is known
@@ -202,15 +216,9 @@ TEST(SlcanPort, sets_up_the_adapter_and_passes_frames) {
 
 TEST(SlcanPort, frames_of_one_read_are_dated_by_what_came_after_them) {
   Pty pty;
-  std::string heard;
-  std::thread adapter([&] { play_adapter(pty, "\r", "\r", heard); });
-  auto can = open_can("slcan:" + pty.path + "?bitrate=500000&baud=115200");
-  adapter.join();
-  ASSERT_TRUE(can.ok()) << can.error().text();
+  const auto can = value_of(open_slcan(pty, "?bitrate=500000&baud=115200", "\r", "\r"));
   pty.say("t1232AABB\rt1240\r");  // 10 and 6 characters of 10 bits each
-  pollfd state{can.value()->fd(), POLLIN, 0};
-  ASSERT_EQ(poll(&state, 1, 1000), 1);
-  const auto frames = value_of(can.value()->receive(5.0));
+  const auto frames = frames_soon(*can);
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_NEAR(frames[0].t, 5.0 - 160.0 / 115200.0, 1e-9);
   EXPECT_NEAR(frames[1].t, 5.0 - 60.0 / 115200.0, 1e-9);
@@ -218,10 +226,7 @@ TEST(SlcanPort, frames_of_one_read_are_dated_by_what_came_after_them) {
 
 TEST(SlcanPort, an_adapter_that_refuses_is_named_as_such) {
   Pty refusing;
-  std::string heard;
-  std::thread adapter([&] { play_adapter(refusing, "\r", "\a", heard); });
-  const auto can = open_can("slcan:" + refusing.path);
-  adapter.join();
+  const auto can = open_slcan(refusing, "", "\r", "\a");
   ASSERT_FALSE(can.ok());
   EXPECT_NE(can.error().text().find("does not open"), std::string::npos);
   EXPECT_EQ(open_can("slcan:" + refusing.path + "?bitrate=333").error().code, ErrorCode::usage);
@@ -234,22 +239,15 @@ TEST(SlcanPort, an_adapter_that_acknowledges_nothing_is_used_and_told_until_it_p
   EXPECT_NE(can->note().find("acknowledges nothing"), std::string::npos);
   EXPECT_EQ(can->counters().at("unacknowledged"), 1U);
   silent.say("t1232AABB\r");
-  pollfd state{can->fd(), POLLIN, 0};
-  ASSERT_EQ(poll(&state, 1, 1000), 1);
-  const auto frames = value_of(can->receive(5.0));
-  EXPECT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames_soon(*can).size(), 1U);
   EXPECT_EQ(can->note(), "");
 }
 
 TEST(SlcanPort, an_adapter_that_acknowledges_needs_no_note) {
   Pty pty;
-  std::string heard;
-  std::thread adapter([&] { play_adapter(pty, "\r\n", "\r\n", heard); });
-  const auto can = open_can("slcan:" + pty.path);
-  adapter.join();
-  ASSERT_TRUE(can.ok());
-  EXPECT_EQ(can.value()->note(), "");
-  EXPECT_EQ(can.value()->counters().at("unacknowledged"), 0U);
+  const auto can = value_of(open_slcan(pty, "", "\r\n", "\r\n"));
+  EXPECT_EQ(can->note(), "");
+  EXPECT_EQ(can->counters().at("unacknowledged"), 0U);
 }
 
 TEST(SocketCan, what_is_missing_is_named_with_a_command_that_helps) {
