@@ -54,8 +54,7 @@ TEST_F(Contract, journal_names_devices_motions_who_asked_and_why_it_stopped) {
   const std::string who = "user " + std::to_string(getuid()) + ", process " + std::to_string(getpid());
   EXPECT_TRUE(logged("motion", "straight begins, for " + who)) << all_lines();
   EXPECT_TRUE(logged("motion", "motion finished")) << all_lines();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->unplug_lidar();
   EXPECT_EQ(wait_reply(mover, 3.0).error, "org.odomcalib.Calibration.ProtectiveStop");
   const Line* lost = logged("lidar", "is lost");
@@ -109,8 +108,7 @@ TEST_F(Contract, state_directory_is_for_one_daemon) {
 
 TEST_F(Contract, why_the_robot_was_stopped_is_known_after_a_restart) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->unplug_lidar();
   (void)wait_reply(mover, 3.0);
   const std::string why = status()["last_stop"];
@@ -126,8 +124,7 @@ TEST_F(Contract, why_the_robot_was_stopped_is_known_after_a_restart) {
 TEST_F(Contract, F33_a_wall_clock_that_is_set_disturbs_no_motion) {
   acquire();
   for (const double step : {10.0, -20.0}) {
-    TestClient mover(folder_ / "control");
-    start_straight(mover);
+    Mover mover(*this);
     clock_.wall_step += step;
     const auto reply = wait_reply(mover, 30.0);
     EXPECT_EQ(reply.error, "") << step << " s: " << reply.parameters;
@@ -148,8 +145,7 @@ class EditedConfig : public Contract {
 TEST_F(EditedConfig, F40_in_motion_changes_nothing_before_the_next_start_and_check_says_so) {
   EXPECT_EQ(check_named("configuration")["outcome"], "ok");
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   std::ofstream(folder_ / "odomcalib.toml") << "[limits]\nspeed = nonsense\n";
   std::filesystem::last_write_time(folder_ / "odomcalib.toml",
                                    std::filesystem::file_time_type::clock::now() + std::chrono::seconds(5));

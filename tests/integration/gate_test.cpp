@@ -136,8 +136,7 @@ TEST_F(Gate, of_values_for_a_controller_in_fault) {
 // The wheels still turn when the motion has been answered.
 TEST_F(Gate, lets_values_pass_right_after_a_motion) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   ASSERT_EQ(call("Stop", json::object()).error, "");
   ASSERT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
   EXPECT_NE(status()["controller"]["state"], "disabled") << "nothing to wait for: this tests nothing";
@@ -149,8 +148,7 @@ TEST_F(Gate, lets_values_pass_right_after_a_motion) {
 // What was allowed when it was asked for is asked again when the axes have come to rest.
 TEST_F(Gate, of_values_for_a_controller_that_fails_while_they_wait) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   ASSERT_EQ(call("Stop", json::object()).error, "");
   ASSERT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
   ASSERT_NE(status()["controller"]["state"], "disabled") << "nothing to wait for: this tests nothing";
@@ -165,8 +163,7 @@ TEST_F(Gate, of_values_for_a_controller_that_fails_while_they_wait) {
 
 TEST_F(Gate, of_values_while_the_robot_moves) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   TestClient writer(folder_ / "control");
   json parameters = track(0.4033);
   parameters["lease"] = lease_;

@@ -100,8 +100,7 @@ TEST_F(ServiceProof, the_values_go_with_the_connection_that_wrote_them) {
 
 TEST_F(ServiceProof, they_go_when_it_leaves_in_motion_but_not_under_the_robot) {
   write_unproven();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   prover_->hang_up();
   run(0.1);
   EXPECT_TRUE(holds_new_unstored());

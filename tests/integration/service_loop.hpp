@@ -184,6 +184,10 @@ class ServiceLoop : public testing::Test {
     mover.call("Straight", {{"lease", lease_}, {"distance", 1.0}}, true);
     ASSERT_TRUE(run_until([this] { return robot_->fastest_rim() > 0.15; }, 8.0)) << service_->status_json();
   }
+  /// A client whose straight line has begun.
+  struct Mover : TestClient {
+    explicit Mover(ServiceLoop& loop) : TestClient(loop.folder_ / "control") { loop.start_straight(*this); }
+  };
   /// Time until the simulated wheels have come down to a creep.
   double time_to_rest() {
     const double begin = clock_.time;

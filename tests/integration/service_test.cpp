@@ -74,8 +74,7 @@ TEST_F(ServiceLoop, nobody_moves_without_a_lease) {
 
 TEST_F(ServiceLoop, a_lease_that_is_not_renewed_stops_within_250_ms) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   renewing_ = false;
   run(0.250);
   EXPECT_LT(robot_->fastest_rim(), 0.01);
@@ -104,8 +103,7 @@ class HeldUp : public ServiceLoop {
 
 TEST_F(HeldUp, a_renewal_that_the_daemon_reads_late_counts_and_the_delay_is_told) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   hold_up(0.15, false);
   expect_end(mover);
   const json loop = status()["loop"];
@@ -116,16 +114,14 @@ TEST_F(HeldUp, a_renewal_that_the_daemon_reads_late_counts_and_the_delay_is_told
 
 TEST_F(HeldUp, a_pause_of_the_whole_machine_does_not_end_a_motion) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   hold_up(0.15, true);
   expect_end(mover);
 }
 
 TEST_F(HeldUp, a_client_that_is_gone_after_the_pause_still_ends_it_and_the_reason_names_both_sides) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   renewing_ = false;
   hold_up(0.10, true);
   EXPECT_LT(time_to_rest(), 0.250);
@@ -137,8 +133,7 @@ TEST_F(HeldUp, a_client_that_is_gone_after_the_pause_still_ends_it_and_the_reaso
 
 TEST_F(HeldUp, a_daemon_that_was_away_for_longer_than_the_drives_watchdog_stops) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   hold_up(0.3, false);
   EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.ProtectiveStop");
   EXPECT_LT(time_to_rest(), 0.5);
@@ -146,8 +141,7 @@ TEST_F(HeldUp, a_daemon_that_was_away_for_longer_than_the_drives_watchdog_stops)
 
 TEST_F(HeldUp, a_daemon_that_was_away_for_200_ms_stops_by_itself_too) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->node().dictionary().set({0x1016, 1}, 0);  // the drive no longer watches us
   hold_up(0.22, false);
   const auto reply = wait_reply(mover, 1.0);
@@ -157,8 +151,7 @@ TEST_F(HeldUp, a_daemon_that_was_away_for_200_ms_stops_by_itself_too) {
 
 TEST_F(ServiceLoop, a_machine_that_was_suspended_does_not_drive_on) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   clock_.slept += 60.0;  // the clock of all intervals stood still meanwhile
   const auto end = wait_reply(mover, 1.0);
   EXPECT_EQ(end.error, "org.odomcalib.Calibration.ProtectiveStop");
@@ -168,16 +161,14 @@ TEST_F(ServiceLoop, a_machine_that_was_suspended_does_not_drive_on) {
 
 TEST_F(ServiceLoop, a_closed_connection_stops_at_once) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   mover.hang_up();
   EXPECT_LT(time_to_rest(), 0.5);
 }
 
 TEST_F(ServiceLoop, a_lost_lidar_stops_and_nothing_restarts_when_it_is_back) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->unplug_lidar();
   EXPECT_LT(time_to_rest(), 0.8);
   EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.ProtectiveStop");
@@ -188,8 +179,7 @@ TEST_F(ServiceLoop, a_lost_lidar_stops_and_nothing_restarts_when_it_is_back) {
 
 TEST_F(ServiceLoop, stop_needs_no_lease) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   TestClient other(folder_ / "control");
   other.call("Stop", json::object());
   EXPECT_LT(time_to_rest(), 0.5);
@@ -237,8 +227,7 @@ TEST_F(ServiceLoop, calls_get_a_few_milliseconds_of_a_turn_and_the_rest_later) {
 
 TEST_F(ServiceLoop, stop_is_heard_however_many_clients_are_connected) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   std::vector<std::unique_ptr<TestClient>> crowd;
   for (int i = 0; i < 12; ++i) {
     crowd.push_back(std::make_unique<TestClient>(folder_ / "control"));
@@ -259,8 +248,7 @@ TEST_F(ServiceLoop, stop_is_heard_however_many_clients_are_connected) {
 
 TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   service_.reset();
   for (int i = 0; i < 400; ++i) robot_->step(0.002);
   EXPECT_LT(robot_->fastest_rim(), 0.01);
@@ -268,8 +256,7 @@ TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
 
 TEST_F(ServiceLoop, a_daemon_that_is_told_to_end_stops_a_motion_at_once_and_says_why) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   service_->stop_all("told to end");
   EXPECT_LT(time_to_rest(), 0.25);
   const auto reply = wait_reply(mover, 0.1);
@@ -407,8 +394,7 @@ TEST_F(ForeignText, that_is_no_utf8_does_not_end_the_daemon) {
 // Rule M19: the robot is named who else drives it, and stands.
 TEST_F(ServiceLoop, another_program_that_commands_the_drive_stops_the_motion) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->inject(sim::make_frame(0x301, {0x10, 0, 0, 0, 0x10, 0, 0, 0}));
   const double begin = clock_.time;
   const auto reply = wait_reply(mover, 1.0);
