@@ -18,6 +18,7 @@
 #include "proto/file_bytes.hpp"
 #include "tests/integration/large_pages.hpp"
 #include "tests/integration/processes.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace odomcalib::test_support::command_line_test {
 namespace {
@@ -37,16 +38,13 @@ struct Outcome {
 class CommandLine : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = "/tmp/odomcalib-cl-XXXXXX";
-    folder_ = mkdtemp(name.data());
     write("drive.jsonl", recording(0.0));
     save("cal.json", calibration());
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   Outcome run(const std::string& program, const std::string& arguments) {
-    const std::string command =
-        "cd '" + folder_.string() + "' && { " + program + " " + arguments + "; } >.out 2>.err </dev/null";
+    const std::string command = "cd '" + folder_.path().string() + "' && { " + program + " " + arguments +
+                                "; } >.out 2>.err </dev/null";
     const int status = system(command.c_str());
     return {WEXITSTATUS(status), read(".out"), read(".err")};
   }
@@ -86,7 +84,7 @@ class CommandLine : public ::testing::Test {
     return calibration;
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 // An output that is the input, by whatever name: each line is a verb, %s the output's name.

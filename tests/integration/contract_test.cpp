@@ -33,17 +33,13 @@ class Contract : public ServiceLoop {
     return all;
   }
   json check_named(const std::string& name) {
-    TestClient client(folder_ / "control");
-    client.call("Check", json::object());
-    const json reply = json::parse(wait_reply(client, 1.0).parameters);
+    const json reply = json::parse(ask("Check", json::object(), 1.0).parameters);
     for (const auto& check : reply["checks"])
       if (check["name"] == name) return check;
     return {};
   }
   void straight(double distance, const std::string& error) {
-    TestClient mover(folder_ / "control");
-    mover.call("Straight", {{"lease", lease_}, {"distance", distance}});
-    const auto reply = wait_reply(mover, 30.0);
+    const auto reply = ask("Straight", {{"lease", lease_}, {"distance", distance}}, 30.0);
     EXPECT_EQ(reply.error, error) << reply.parameters;
   }
 
@@ -58,8 +54,7 @@ TEST_F(Contract, journal_names_devices_motions_who_asked_and_why_it_stopped) {
   const std::string who = "user " + std::to_string(getuid()) + ", process " + std::to_string(getpid());
   EXPECT_TRUE(logged("motion", "straight begins, for " + who)) << all_lines();
   EXPECT_TRUE(logged("motion", "motion finished")) << all_lines();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->unplug_lidar();
   EXPECT_EQ(wait_reply(mover, 3.0).error, "org.odomcalib.Calibration.ProtectiveStop");
   const Line* lost = logged("lidar", "is lost");
@@ -81,9 +76,7 @@ TEST_F(Contract, check_does_not_blame_the_profile_for_a_controller_that_is_away)
 
 TEST_F(Contract, journal_names_write_backs_and_their_ends) {
   acquire();
-  TestClient writer(folder_ / "control");
-  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
-  EXPECT_EQ(wait_reply(writer, 20.0).error, "");
+  EXPECT_EQ(ask("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}}, 20.0).error, "");
   EXPECT_TRUE(logged("write_back", "begins, for user")) << all_lines();
   EXPECT_TRUE(logged("write_back", "committed")) << all_lines();
 }
@@ -115,16 +108,13 @@ TEST_F(Contract, state_directory_is_for_one_daemon) {
 
 TEST_F(Contract, why_the_robot_was_stopped_is_known_after_a_restart) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->unplug_lidar();
   (void)wait_reply(mover, 3.0);
   const std::string why = status()["last_stop"];
   ASSERT_NE(why, "");
   ASSERT_TRUE(robot_->plug_lidar().ok());
-  client_.reset();
-  service_.reset();
-  linked_ = renewing_ = false;
+  end_service();
   start_service();
   ASSERT_TRUE(service_);
   EXPECT_EQ(status()["last_stop"], why);
@@ -134,8 +124,7 @@ TEST_F(Contract, why_the_robot_was_stopped_is_known_after_a_restart) {
 TEST_F(Contract, F33_a_wall_clock_that_is_set_disturbs_no_motion) {
   acquire();
   for (const double step : {10.0, -20.0}) {
-    TestClient mover(folder_ / "control");
-    start_straight(mover);
+    Mover mover(*this);
     clock_.wall_step += step;
     const auto reply = wait_reply(mover, 30.0);
     EXPECT_EQ(reply.error, "") << step << " s: " << reply.parameters;
@@ -156,8 +145,7 @@ class EditedConfig : public Contract {
 TEST_F(EditedConfig, F40_in_motion_changes_nothing_before_the_next_start_and_check_says_so) {
   EXPECT_EQ(check_named("configuration")["outcome"], "ok");
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   std::ofstream(folder_ / "odomcalib.toml") << "[limits]\nspeed = nonsense\n";
   std::filesystem::last_write_time(folder_ / "odomcalib.toml",
                                    std::filesystem::file_time_type::clock::now() + std::chrono::seconds(5));
@@ -186,9 +174,7 @@ TEST_F(ReadOnlyState, F35_the_service_runs_says_so_and_neither_moves_nor_writes)
   straight(0.3, "org.odomcalib.Calibration.Io");
   EXPECT_LT(robot_->fastest_rim(), 1e-6);
   const auto stored = robot_->node().geometry_stored(), held = robot_->node().geometry_in_ram();
-  TestClient writer(folder_ / "control");
-  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
-  EXPECT_NE(wait_reply(writer, 5.0).error, "");
+  EXPECT_NE(ask("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}}, 5.0).error, "");
   EXPECT_EQ(robot_->node().geometry_stored(), stored);
   EXPECT_EQ(robot_->node().geometry_in_ram(), held);
   EXPECT_EQ(status()["state"], "idle");

@@ -48,13 +48,12 @@ class OnFailingDisk : public ServiceLoop, public testing::WithParamInterface<int
     for (const auto& [name, value] : kNew.items())
       parameters[name] = {{"value", value}, {"std", 1e-5}, {"unit", "m"}};
     acquire();
-    TestClient writer(folder_ / "control");
-    writer.call(
+    return ask(
         "Apply",
         {{"lease", lease_},
          {"calibration",
-          {{"format", "odomcalib-calibration/1"}, {"verdict", "accepted"}, {"parameters", parameters}}}});
-    return wait_reply(writer, 30.0);
+          {{"format", "odomcalib-calibration/1"}, {"verdict", "accepted"}, {"parameters", parameters}}}},
+        30.0);
   }
   sim::DriveNode& node() { return robot_->node(); }
 };
@@ -84,10 +83,7 @@ TEST_P(OnFailingDisk, the_next_start_finds_nothing_undecided) {
   (void)apply();
   run(1.0);
   const Raw before = node().geometry_stored();
-  client_.reset();
-  service_.reset();
-  linked_ = false;
-  lease_.clear();
+  end_service();
   start_service();
   ASSERT_TRUE(run_until([this] { return ready(); }, 10.0)) << service_->status_json();
   run(1.0);

@@ -18,8 +18,7 @@ class StoppingFault : public FaultLoop, public testing::WithParamInterface<Fault
 
 TEST_P(StoppingFault, ends_in_a_named_state_in_time_and_nothing_restarts) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   GetParam().begin(*robot_);
   const double zero = time_to_zero(3.0);
   const double rest = zero + time_to_rest();
@@ -172,8 +171,7 @@ TEST_F(BearableFault, F16_counts_wrap_at_32_bits) {
 
 TEST_F(BearableFault, F27_restart_of_the_clock_of_the_lidar_ends_the_motion_or_leaves_it_whole) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->reset_lidar();
   const json end = end_of(mover, 60.0);
   EXPECT_TRUE(stopped(end) || end["error"] == "") << end;

@@ -10,9 +10,7 @@ class Gate : public ServiceLoop {
   control::Reply call(const std::string& method, json parameters) {
     if (lease_.empty()) acquire();
     if (!parameters.contains("lease")) parameters["lease"] = lease_;
-    TestClient caller(folder_ / "control");
-    caller.call(method, parameters);
-    return wait_reply(caller, 20.0);
+    return ask(method, parameters, 20.0);
   }
   void expect_refused(const control::Reply& reply, const std::string& error, const std::string& said) {
     EXPECT_EQ(reply.error, "org.odomcalib.Calibration." + error) << reply.parameters;
@@ -138,8 +136,7 @@ TEST_F(Gate, of_values_for_a_controller_in_fault) {
 // The wheels still turn when the motion has been answered.
 TEST_F(Gate, lets_values_pass_right_after_a_motion) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   ASSERT_EQ(call("Stop", json::object()).error, "");
   ASSERT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
   EXPECT_NE(status()["controller"]["state"], "disabled") << "nothing to wait for: this tests nothing";
@@ -151,8 +148,7 @@ TEST_F(Gate, lets_values_pass_right_after_a_motion) {
 // What was allowed when it was asked for is asked again when the axes have come to rest.
 TEST_F(Gate, of_values_for_a_controller_that_fails_while_they_wait) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   ASSERT_EQ(call("Stop", json::object()).error, "");
   ASSERT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.Cancelled");
   ASSERT_NE(status()["controller"]["state"], "disabled") << "nothing to wait for: this tests nothing";
@@ -167,8 +163,7 @@ TEST_F(Gate, of_values_for_a_controller_that_fails_while_they_wait) {
 
 TEST_F(Gate, of_values_while_the_robot_moves) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   TestClient writer(folder_ / "control");
   json parameters = track(0.4033);
   parameters["lease"] = lease_;

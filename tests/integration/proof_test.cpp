@@ -100,8 +100,7 @@ TEST_F(ServiceProof, the_values_go_with_the_connection_that_wrote_them) {
 
 TEST_F(ServiceProof, they_go_when_it_leaves_in_motion_but_not_under_the_robot) {
   write_unproven();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   prover_->hang_up();
   run(0.1);
   EXPECT_TRUE(holds_new_unstored());
@@ -145,12 +144,9 @@ TEST_F(ServiceProof, nor_a_daemon_that_was_killed) {
   record.after = {{"track_width", 0.4033}};
   record.unproven = true;
   prover_.reset();
-  client_.reset();
-  service_.reset();
-  lease_.clear();
+  end_service();
   ASSERT_TRUE(Journal::open(folder_ / "state" / "journal").value().append(record).ok());
   robot_->node().dictionary().set({0x2100, 3}, 403300);
-  linked_ = false;
   start_service();
   expect_taken_back();
 }

@@ -22,8 +22,7 @@ class Restarted : public ServiceLoop {
  protected:
   // The daemon dies, the journal ends like this, the drive holds that.
   void die(const JournalRecord& record, const Raw& ram) {
-    service_.reset();
-    client_.reset();
+    end_service();
     ASSERT_TRUE(Journal::open(journal_path()).value().append(record).ok());
     for (std::uint8_t i = 0; i < 3; ++i)
       robot_->node().dictionary().set({0x2100, static_cast<std::uint8_t>(i + 1)}, ram[i]);
@@ -31,8 +30,7 @@ class Restarted : public ServiceLoop {
     clock_.time += 1.0;
   }
   void restart() {
-    linked_ = false;
-    lease_.clear();
+    end_service();
     start_service();
   }
   bool settled(bool operator_needed) {
@@ -56,10 +54,8 @@ class Restarted : public ServiceLoop {
   }
   control::Reply call(const std::string& method, json parameters) {
     if (lease_.empty()) acquire();
-    TestClient writer(folder_ / "control");
     parameters["lease"] = lease_;
-    writer.call(method, parameters);
-    return wait_reply(writer, 30.0);
+    return ask(method, parameters, 30.0);
   }
   [[nodiscard]] std::filesystem::path journal_path() const { return folder_ / "state" / "journal"; }
   [[nodiscard]] std::vector<std::string> journaled() const {
@@ -128,8 +124,6 @@ TEST_F(Restarted, a_recovery_that_fails_stores_once_and_is_told_once) {
   const json check = json::parse(call("Check", json::object()).parameters)["checks"];
   EXPECT_NE(check.dump().find("store"), std::string::npos) << check;
   // Once more after a restart, but nothing new for the history.
-  client_.reset();
-  service_.reset();
   restart();
   run(5.0);
   EXPECT_EQ(journaled().size(), records + 2);
@@ -179,8 +173,6 @@ TEST_F(Restarted, the_controller_of_another_robot_is_not_written) {
 
 TEST_F(Restarted, values_are_read_again_when_the_controller_was_away) {
   node().dictionary().set({0x2100, 3}, 410000);  // in RAM only
-  client_.reset();
-  service_.reset();
   restart();
   ASSERT_TRUE(settled(false));
   EXPECT_NEAR(status()["robot"]["track_width"].get<double>(), 0.41, 1e-9);
@@ -296,8 +288,7 @@ TEST_F(Applied, a_calibration_is_kept_with_its_evidence_but_without_the_points_o
 TEST_F(Applied, a_commit_that_was_the_last_thing_done_is_settled_at_the_next_start) {
   ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}}).error, "");
   const std::string applied = read_file_bytes(active()).value();
-  client_.reset();
-  service_.reset();
+  end_service();
   std::filesystem::remove(active());
   restart();
   EXPECT_EQ(read_file_bytes(active()).value(), applied);
@@ -337,8 +328,6 @@ TEST_F(Applied, rollback_to_the_values_of_another_controller_is_refused_by_name)
     ASSERT_TRUE(others.write(entry).ok());
     others.keep(entry);
   }
-  client_.reset();
-  service_.reset();
   restart();
   ASSERT_TRUE(settled(false));
   const auto reply = call("Rollback", {{"id", "0001"}});

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -13,6 +12,8 @@
 #include "daemon/service/service.hpp"
 #include "proto/control/control.hpp"
 #include "tests/sim/wires/sim_robot.hpp"
+#include "tests/temporary_folder.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib {
 
@@ -78,25 +79,18 @@ class TestClient {
 class ServiceLoop : public testing::Test {
  protected:
   void SetUp() override {
-    std::string name = "/tmp/odomcalib-it-XXXXXX";
-    folder_ = mkdtemp(name.data());
     sim::SimRobotOptions options;
     options.truth = sim::draw_truth(options.nominal, 3);
     // A terminal that is gone may come back as that of a test beside this one: the service opens it by a name
     // of its own.
-    options.link_dir = folder_;
+    options.link_dir = folder_.path();
     adjust(options);
-    auto robot = sim::SimRobot::create(options);
-    ASSERT_TRUE(robot.ok()) << robot.error().text();
-    robot_ = std::move(robot).value();
+    robot_ = value_of(sim::SimRobot::create(options));
     start_service();
     ASSERT_TRUE(service_);
     ASSERT_TRUE(run_until([this] { return ready(); }, 10.0)) << service_->status_json();
   }
-  void TearDown() override {
-    service_.reset();
-    std::filesystem::remove_all(folder_);
-  }
+  void TearDown() override { service_.reset(); }
 
   virtual Calibrator calibrator() { return {}; }
   /// One that takes no time, virtual time or other.
@@ -125,9 +119,14 @@ class ServiceLoop : public testing::Test {
     return config;
   }
   void start_service() {
-    auto service = Service::create(configuration(), clock_, calibrator(), disk(), log());
-    ASSERT_TRUE(service.ok()) << service.error().text();
-    service_ = std::move(service).value();
+    service_ = value_of(Service::create(configuration(), clock_, calibrator(), disk(), log()));
+  }
+  /// The daemon is gone, with all that it held in its memory.
+  void end_service() {
+    client_.reset();
+    service_.reset();
+    lease_.clear();
+    linked_ = renewing_ = false;
   }
   void step() {
     robot_->step(0.002);
@@ -168,6 +167,12 @@ class ServiceLoop : public testing::Test {
     EXPECT_TRUE(got.has_value()) << "no reply";
     return got.value_or(control::Reply{});
   }
+  /// What is answered to somebody who asks this and nothing else.
+  control::Reply ask(const std::string& method, const json& parameters, double seconds) {
+    TestClient caller(folder_ / "control");
+    caller.call(method, parameters);
+    return wait_reply(caller, seconds);
+  }
   void acquire() {
     client_ = std::make_unique<TestClient>(folder_ / "control");
     client_->call("Acquire", json::object());
@@ -179,6 +184,10 @@ class ServiceLoop : public testing::Test {
     mover.call("Straight", {{"lease", lease_}, {"distance", 1.0}}, true);
     ASSERT_TRUE(run_until([this] { return robot_->fastest_rim() > 0.15; }, 8.0)) << service_->status_json();
   }
+  /// A client whose straight line has begun.
+  struct Mover : TestClient {
+    explicit Mover(ServiceLoop& loop) : TestClient(loop.folder_ / "control") { loop.start_straight(*this); }
+  };
   /// Time until the simulated wheels have come down to a creep.
   double time_to_rest() {
     const double begin = clock_.time;
@@ -186,7 +195,7 @@ class ServiceLoop : public testing::Test {
     return clock_.time - begin;
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   VirtualClock clock_;
   std::unique_ptr<sim::SimRobot> robot_;
   std::unique_ptr<Service> service_;

@@ -67,16 +67,14 @@ TEST_F(ServiceLoop, headings_count_from_the_start_of_the_motion_wherever_the_odo
 }
 
 TEST_F(ServiceLoop, nobody_moves_without_a_lease) {
-  TestClient mover(folder_ / "control");
-  mover.call("Straight", {{"lease", "guess"}, {"distance", 0.8}});
-  EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.NotPermitted");
+  EXPECT_EQ(ask("Straight", {{"lease", "guess"}, {"distance", 0.8}}, 1.0).error,
+            "org.odomcalib.Calibration.NotPermitted");
   EXPECT_LT(robot_->fastest_rim(), 1e-6);
 }
 
 TEST_F(ServiceLoop, a_lease_that_is_not_renewed_stops_within_250_ms) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   renewing_ = false;
   run(0.250);
   EXPECT_LT(robot_->fastest_rim(), 0.01);
@@ -105,8 +103,7 @@ class HeldUp : public ServiceLoop {
 
 TEST_F(HeldUp, a_renewal_that_the_daemon_reads_late_counts_and_the_delay_is_told) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   hold_up(0.15, false);
   expect_end(mover);
   const json loop = status()["loop"];
@@ -117,16 +114,14 @@ TEST_F(HeldUp, a_renewal_that_the_daemon_reads_late_counts_and_the_delay_is_told
 
 TEST_F(HeldUp, a_pause_of_the_whole_machine_does_not_end_a_motion) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   hold_up(0.15, true);
   expect_end(mover);
 }
 
 TEST_F(HeldUp, a_client_that_is_gone_after_the_pause_still_ends_it_and_the_reason_names_both_sides) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   renewing_ = false;
   hold_up(0.10, true);
   EXPECT_LT(time_to_rest(), 0.250);
@@ -138,8 +133,7 @@ TEST_F(HeldUp, a_client_that_is_gone_after_the_pause_still_ends_it_and_the_reaso
 
 TEST_F(HeldUp, a_daemon_that_was_away_for_longer_than_the_drives_watchdog_stops) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   hold_up(0.3, false);
   EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.ProtectiveStop");
   EXPECT_LT(time_to_rest(), 0.5);
@@ -147,8 +141,7 @@ TEST_F(HeldUp, a_daemon_that_was_away_for_longer_than_the_drives_watchdog_stops)
 
 TEST_F(HeldUp, a_daemon_that_was_away_for_200_ms_stops_by_itself_too) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->node().dictionary().set({0x1016, 1}, 0);  // the drive no longer watches us
   hold_up(0.22, false);
   const auto reply = wait_reply(mover, 1.0);
@@ -158,8 +151,7 @@ TEST_F(HeldUp, a_daemon_that_was_away_for_200_ms_stops_by_itself_too) {
 
 TEST_F(ServiceLoop, a_machine_that_was_suspended_does_not_drive_on) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   clock_.slept += 60.0;  // the clock of all intervals stood still meanwhile
   const auto end = wait_reply(mover, 1.0);
   EXPECT_EQ(end.error, "org.odomcalib.Calibration.ProtectiveStop");
@@ -169,16 +161,14 @@ TEST_F(ServiceLoop, a_machine_that_was_suspended_does_not_drive_on) {
 
 TEST_F(ServiceLoop, a_closed_connection_stops_at_once) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   mover.hang_up();
   EXPECT_LT(time_to_rest(), 0.5);
 }
 
 TEST_F(ServiceLoop, a_lost_lidar_stops_and_nothing_restarts_when_it_is_back) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->unplug_lidar();
   EXPECT_LT(time_to_rest(), 0.8);
   EXPECT_EQ(wait_reply(mover, 1.0).error, "org.odomcalib.Calibration.ProtectiveStop");
@@ -189,8 +179,7 @@ TEST_F(ServiceLoop, a_lost_lidar_stops_and_nothing_restarts_when_it_is_back) {
 
 TEST_F(ServiceLoop, stop_needs_no_lease) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   TestClient other(folder_ / "control");
   other.call("Stop", json::object());
   EXPECT_LT(time_to_rest(), 0.5);
@@ -238,8 +227,7 @@ TEST_F(ServiceLoop, calls_get_a_few_milliseconds_of_a_turn_and_the_rest_later) {
 
 TEST_F(ServiceLoop, stop_is_heard_however_many_clients_are_connected) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   std::vector<std::unique_ptr<TestClient>> crowd;
   for (int i = 0; i < 12; ++i) {
     crowd.push_back(std::make_unique<TestClient>(folder_ / "control"));
@@ -260,8 +248,7 @@ TEST_F(ServiceLoop, stop_is_heard_however_many_clients_are_connected) {
 
 TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   service_.reset();
   for (int i = 0; i < 400; ++i) robot_->step(0.002);
   EXPECT_LT(robot_->fastest_rim(), 0.01);
@@ -269,8 +256,7 @@ TEST_F(ServiceLoop, an_ended_daemon_leaves_the_wheels_at_rest) {
 
 TEST_F(ServiceLoop, a_daemon_that_is_told_to_end_stops_a_motion_at_once_and_says_why) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   service_->stop_all("told to end");
   EXPECT_LT(time_to_rest(), 0.25);
   const auto reply = wait_reply(mover, 0.1);
@@ -283,9 +269,7 @@ TEST_F(ServiceLoop, a_daemon_that_is_told_to_end_begins_nothing_and_still_tells_
   service_->stop_all("told to end");
   const json wanted = {{"lease", lease_}, {"distance", 1.0}, {"values", {{"track_width", 0.4033}}}};
   for (const char* method : {"Straight", "Spin", "Calibrate", "SetParameters", "Record", "Acquire"}) {
-    TestClient late(folder_ / "control");
-    late.call(method, wanted);
-    const auto reply = wait_reply(late, 0.1);
+    const auto reply = ask(method, wanted, 0.1);
     EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused") << method;
     EXPECT_NE(reply.parameters.find("ending"), std::string::npos) << reply.parameters;
   }
@@ -350,9 +334,7 @@ TEST_F(HalfBlind, what_the_lidar_does_not_see_is_told_before_anything_moves) {
 }
 
 TEST_F(ServiceLoop, a_lidar_that_sees_all_around_has_nothing_to_ask) {
-  TestClient observer(folder_ / "control");
-  observer.call("Spin", {{"turns", 1.0}, {"dry_run", true}});
-  const json plan = json::parse(wait_reply(observer, 1.0).parameters)["result"];
+  const json plan = json::parse(ask("Spin", {{"turns", 1.0}, {"dry_run", true}}, 1.0).parameters)["result"];
   EXPECT_EQ(plan["unseen_moves"], json::array()) << plan;
 }
 
@@ -364,9 +346,7 @@ class OtherWheels : public ServiceLoop {
 
 TEST_F(OtherWheels, than_those_of_the_configuration_do_not_turn) {
   acquire();
-  TestClient mover(folder_ / "control");
-  mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
-  const auto reply = wait_reply(mover, 1.0);
+  const auto reply = ask("Straight", {{"lease", lease_}, {"distance", 0.5}}, 1.0);
   EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Refused");
   EXPECT_NE(reply.parameters.find("left_wheel_diameter = 0.1500 m"), std::string::npos) << reply.parameters;
   EXPECT_LT(robot_->fastest_rim(), 1e-6);
@@ -380,9 +360,7 @@ TEST_F(ServiceLoop, nothing_moves_before_the_values_of_the_controller_were_read)
   acquire();
   std::set<std::string> said;
   for (int i = 0; i < 400 && status()["robot"]["in_controller"] == false; ++i) {
-    TestClient mover(folder_ / "control");
-    mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
-    const auto reply = wait_reply(mover, 0.2);
+    const auto reply = ask("Straight", {{"lease", lease_}, {"distance", 0.5}}, 0.2);
     ASSERT_EQ(reply.error.substr(0, 27), "org.odomcalib.Calibration.D") << reply.parameters;
     said.insert(json::parse(reply.parameters)["what"]);
   }
@@ -392,9 +370,7 @@ TEST_F(ServiceLoop, nothing_moves_before_the_values_of_the_controller_were_read)
 
 TEST_F(ServiceLoop, a_motion_of_many_hours_is_refused_at_once) {
   acquire();
-  TestClient mover(folder_ / "control");
-  mover.call("Spin", {{"lease", lease_}, {"turns", 10.0}, {"rate", 0.05}, {"repeat", 20}});
-  const auto reply = wait_reply(mover, 1.0);
+  const auto reply = ask("Spin", {{"lease", lease_}, {"turns", 10.0}, {"rate", 0.05}, {"repeat", 20}}, 1.0);
   EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Usage");
   EXPECT_NE(reply.parameters.find("minutes"), std::string::npos) << reply.parameters;
 }
@@ -418,8 +394,7 @@ TEST_F(ForeignText, that_is_no_utf8_does_not_end_the_daemon) {
 // Rule M19: the robot is named who else drives it, and stands.
 TEST_F(ServiceLoop, another_program_that_commands_the_drive_stops_the_motion) {
   acquire();
-  TestClient mover(folder_ / "control");
-  start_straight(mover);
+  Mover mover(*this);
   robot_->inject(sim::make_frame(0x301, {0x10, 0, 0, 0, 0x10, 0, 0, 0}));
   const double begin = clock_.time;
   const auto reply = wait_reply(mover, 1.0);
@@ -455,9 +430,7 @@ TEST_F(ServiceLoop, values_written_are_stored_and_survive_a_reset_of_the_node) {
 TEST_F(ServiceLoop, a_store_that_fails_leaves_the_old_values_or_asks_for_an_operator) {
   acquire();
   robot_->node().faults.store_fails = true;
-  TestClient writer(folder_ / "control");
-  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
-  const auto reply = wait_reply(writer, 30.0);
+  const auto reply = ask("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}}, 30.0);
   EXPECT_EQ(reply.error, "org.odomcalib.Calibration.WriteUnknown");
   EXPECT_EQ(robot_->node().geometry_in_ram()[2], 400000U);
   EXPECT_EQ(status()["operator_needed"], true);
@@ -518,9 +491,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(ServiceLoop, an_optional_text_that_is_null_is_an_absent_one) {
   acquire();
-  TestClient mover(folder_ / "control");
-  mover.call("Spin", {{"lease", lease_}, {"turns", 1.0}, {"direction", nullptr}, {"dry_run", true}});
-  const auto reply = wait_reply(mover, 1.0);
+  const auto reply =
+      ask("Spin", {{"lease", lease_}, {"turns", 1.0}, {"direction", nullptr}, {"dry_run", true}}, 1.0);
   ASSERT_EQ(reply.error, "") << reply.parameters;
   EXPECT_EQ(json::parse(reply.parameters)["result"]["moves"], 2);
 }
@@ -537,9 +509,7 @@ TEST_F(ServiceLoop, what_a_check_found_follows_its_outcome) {
   const auto good = checks();
   acquire();
   robot_->node().faults.store_fails = true;
-  TestClient writer(folder_ / "control");
-  writer.call("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}});
-  (void)wait_reply(writer, 30.0);
+  (void)ask("SetParameters", {{"lease", lease_}, {"values", {{"track_width", 0.4033}}}}, 30.0);
   robot_->unplug_lidar();
   std::filesystem::remove_all(folder_ / "state");
   run(1.0);

@@ -13,6 +13,7 @@
 
 #include "tests/integration/large_pages.hpp"
 #include "tests/sim/world/simulate.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace odomcalib::solver_process_test {
 namespace {
@@ -20,19 +21,16 @@ namespace {
 class SolverOnItsOwn : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = "/tmp/odomcalib-solver-XXXXXX";
-    folder_ = mkdtemp(name.data());
-    recording_ = folder_ / "recording.jsonl";
     ASSERT_TRUE(write_recording_jsonl(sim::standard_run(7).recording, recording_).ok());
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   Result<Calibration> solve(const Calibrator::Progress& progress, std::uint32_t memory = 768) {
     return solve_in_process({.program = ODOMCALIB_DAEMON, .memory = memory})({recording_}, {"none"},
                                                                              progress);
   }
 
-  std::filesystem::path folder_, recording_;
+  TemporaryFolder folder_;
+  std::filesystem::path recording_ = folder_ / "recording.jsonl";
 };
 
 /// Process ids of the children of this one.

@@ -14,6 +14,7 @@
 
 #include "drivers/can/transport.hpp"
 #include "drivers/lidar/lidar.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::drivers::test {
 
@@ -84,3 +85,10 @@ inline std::string read_text(const std::filesystem::path& path) {
 }
 
 }  // namespace odomcalib::drivers::test
+
+/// For tests on what is not part of the repository: defines `folder`, or skips loudly.
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration takes none
+#define ODOMCALIB_CAPTURES(folder)                          \
+  const auto folder = odomcalib::drivers::test::captures(); \
+  if (folder.empty()) GTEST_SKIP() << "no captures: set ODOMCALIB_SHARED to the folder that holds captures/"
+// NOLINTEND(bugprone-macro-parentheses)

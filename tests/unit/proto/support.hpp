@@ -10,6 +10,7 @@
 
 #include "proto/file_bytes.hpp"
 #include "proto/recording/recording.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::test {
 

@@ -11,6 +11,7 @@
 #include "calib/classical/settings.hpp"
 #include "proto/recording/recording.hpp"
 #include "tests/unit/calib/shared_data.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::calib::classical::linear_test {
 namespace {
@@ -34,16 +35,14 @@ Eigen::Matrix3d some_matrix() {
 }
 
 TEST(Linear, S0_01_recovers_the_matrix_from_noise_free_data) {
-  const auto result = solve_linear(generic_pairs(some_matrix(), 1000));
-  ASSERT_TRUE(result.ok());
-  EXPECT_LT((result.value().matrix - some_matrix()).norm(), 1e-9);
-  EXPECT_LE(result.value().orthogonality, 1e-10);
+  const auto result = value_of(solve_linear(generic_pairs(some_matrix(), 1000)));
+  EXPECT_LT((result.matrix - some_matrix()).norm(), 1e-9);
+  EXPECT_LE(result.orthogonality, 1e-10);
 }
 
 TEST(Linear, S0_05_S0_15_three_generic_samples_are_exact_and_two_are_refused) {
-  const auto exact = solve_linear(generic_pairs(some_matrix(), 3));
-  ASSERT_TRUE(exact.ok());
-  EXPECT_LT((exact.value().matrix - some_matrix()).norm(), 1e-9);
+  const auto exact = value_of(solve_linear(generic_pairs(some_matrix(), 3)));
+  EXPECT_LT((exact.matrix - some_matrix()).norm(), 1e-9);
   const auto refused = solve_linear(generic_pairs(some_matrix(), 2));
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().what.find("underdetermined"), std::string::npos);
@@ -85,26 +84,23 @@ TEST(Linear, S0_06_S0_16_four_solvers_agree_where_the_condition_allows_and_say_w
   const auto reference = solve_linear(pairs).value();
   ASSERT_LT(reference.condition, 1e6) << "of A^T A: the square of that of A";
   for (const LinearSolver solver : kSolvers) {
-    const auto result = solve_linear(pairs, solver);
-    ASSERT_TRUE(result.ok());
-    EXPECT_EQ(result.value().solver, solver);
-    EXPECT_LT((result.value().matrix - reference.matrix).norm(), 1e-8) << name_of(solver);
+    const auto result = value_of(solve_linear(pairs, solver));
+    EXPECT_EQ(result.solver, solver);
+    EXPECT_LT((result.matrix - reference.matrix).norm(), 1e-8) << name_of(solver);
   }
   const auto poor = driven_pairs(500, 0.0, 1e-3);
   for (const LinearSolver solver : kSolvers) {
-    const auto result = solve_linear(poor, solver);
-    ASSERT_TRUE(result.ok());
-    ASSERT_GT(result.value().condition, settings::kMostConditionOfNormal);
+    const auto result = value_of(solve_linear(poor, solver));
+    ASSERT_GT(result.condition, settings::kMostConditionOfNormal);
     const bool exact = solver == LinearSolver::svd;
-    EXPECT_EQ(result.value().solver, exact ? LinearSolver::svd : LinearSolver::qr) << name_of(solver);
+    EXPECT_EQ(result.solver, exact ? LinearSolver::svd : LinearSolver::qr) << name_of(solver);
   }
 }
 
 TEST(Linear, S0_07_S1_12_what_is_left_is_orthogonal_to_the_columns) {
-  const auto result = solve_linear(driven_pairs(1000, 1e-3, 0.5));
-  ASSERT_TRUE(result.ok());
-  EXPECT_GT(result.value().rms.minCoeff(), 5e-4) << "there is something left";
-  EXPECT_LE(result.value().orthogonality, 1e-10);
+  const auto result = value_of(solve_linear(driven_pairs(1000, 1e-3, 0.5)));
+  EXPECT_GT(result.rms.minCoeff(), 5e-4) << "there is something left";
+  EXPECT_LE(result.orthogonality, 1e-10);
 }
 
 TEST(Linear, S0_09_only_increments_of_the_base_obey_a_matrix) {
@@ -146,12 +142,11 @@ TEST(LinearSums, S0_11_a_stream_gives_what_the_whole_gives) {
   const auto pairs = driven_pairs(100000, 1e-3, 0.5);
   LinearSums sums;
   for (const IncrementPair& pair : pairs) ASSERT_FALSE(sums.add(pair));
-  const auto streamed = sums.solve();
-  ASSERT_TRUE(streamed.ok());
+  const auto streamed = value_of(sums.solve());
   const auto batch = solve_linear(pairs).value();
-  EXPECT_LT((streamed.value().matrix - batch.matrix).norm(), 1e-9 * batch.matrix.norm());
-  EXPECT_LT((streamed.value().rms - batch.rms).norm(), 1e-6 * batch.rms.norm());
-  EXPECT_EQ(streamed.value().used, batch.used);
+  EXPECT_LT((streamed.matrix - batch.matrix).norm(), 1e-9 * batch.matrix.norm());
+  EXPECT_LT((streamed.rms - batch.rms).norm(), 1e-6 * batch.rms.norm());
+  EXPECT_EQ(streamed.used, batch.used);
 }
 
 TEST(LinearSums, S0_14_a_million_samples_fit_and_what_is_no_number_is_turned_away_by_name) {
@@ -217,31 +212,27 @@ TEST_P(LinearOnCensiTuples, S1_08_agrees_to_the_printed_digits) {
   const Printed& expected = GetParam();
   ODOMCALIB_NEEDS_SHARED("khepera-censi");
   RobotDescription unknown;
-  const auto recording =
-      read_recording(odomcalib::test_support::shared_data("khepera-censi") / expected.file, &unknown);
-  ASSERT_TRUE(recording.ok()) << recording.error().text();
+  const auto recording = value_of(
+      read_recording(odomcalib::test_support::shared_data("khepera-censi") / expected.file, &unknown));
   std::vector<wheels::WheelMotion> samples;
-  for (const IncrementSample& s : recording.value().increments)
+  for (const IncrementSample& s : recording.increments)
     samples.push_back({s.duration * s.left_speed,
                        s.duration * s.right_speed,
                        {s.lidar_motion[0], s.lidar_motion[1], s.lidar_motion[2]}});
-  const auto closed = solve_closed_form(samples);
-  ASSERT_TRUE(closed.ok());
+  const auto closed = value_of(solve_closed_form(samples));
   std::vector<IncrementPair> pairs;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (!expected.inliers ||
-        std::binary_search(closed.value().inliers.begin(), closed.value().inliers.end(), i))
+    if (!expected.inliers || std::binary_search(closed.inliers.begin(), closed.inliers.end(), i))
       pairs.push_back({wheels::wheel_arc(0.0205 * samples[i].left, 0.0205 * samples[i].right, 0.08841),
                        samples[i].sensor_motion});
-  const auto result = solve_linear(pairs);
-  ASSERT_TRUE(result.ok());
+  const auto result = value_of(solve_linear(pairs));
   Eigen::Matrix3d x;
   x << expected.x11, expected.x12, expected.x13, expected.x21, expected.x22, expected.x23, expected.x31,
       expected.x32, expected.x33;
-  EXPECT_LE((result.value().matrix - x).cwiseAbs().maxCoeff(), expected.digits) << result.value().matrix;
-  EXPECT_NEAR(result.value().condition / expected.condition, 1.0, 0.01);
+  EXPECT_LE((result.matrix - x).cwiseAbs().maxCoeff(), expected.digits) << result.matrix;
+  EXPECT_NEAR(result.condition / expected.condition, 1.0, 0.01);
   if (std::string(expected.file) == "lstraight.tuple" && expected.inliers) {
-    const LinearReading reading = read_linear(result.value().matrix, 0.0205, 0.08841);
+    const LinearReading reading = read_linear(result.matrix, 0.0205, 0.08841);
     EXPECT_NEAR(reading.left_radius + reading.right_radius, 0.04184, 5e-6);
     EXPECT_NEAR(reading.track_width, 0.08906, 1e-5);  // printed from rounded elements
   }

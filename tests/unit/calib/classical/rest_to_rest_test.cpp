@@ -7,6 +7,7 @@
 
 #include "calib/classical/manual.hpp"
 #include "tests/unit/calib/synthetic.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::calib::classical::rest_to_rest_test {
 namespace {
@@ -91,26 +92,23 @@ TEST(StraightMoves, S1_03_one_repetition_gives_both_radii) {
   for (const double way : {13.0, -13.0}) {
     const std::vector<StraightMove> moves = {straight_move(way, way)};
     const auto proposal =
-        propose_radii(moves, {kNominal.left_radius, kNominal.right_radius, kTruth.track_width, {}});
-    ASSERT_TRUE(proposal.ok()) << proposal.error().text();
-    EXPECT_NEAR(proposal.value().left.mean, kTruth.left_radius, 1e-9);
-    EXPECT_NEAR(proposal.value().right.mean, kTruth.right_radius, 1e-9);
-    EXPECT_LT(proposal.value().left.std, 0.0) << "one repetition shows no spread";
+        value_of(propose_radii(moves, {kNominal.left_radius, kNominal.right_radius, kTruth.track_width, {}}));
+    EXPECT_NEAR(proposal.left.mean, kTruth.left_radius, 1e-9);
+    EXPECT_NEAR(proposal.right.mean, kTruth.right_radius, 1e-9);
+    EXPECT_LT(proposal.left.std, 0.0) << "one repetition shows no spread";
   }
 }
 
 TEST(StraightMoves, S1_07_headings_show_unequal_wheels_and_a_tape_does_not) {
   std::vector<StraightMove> moves = {straight_move(13.0, 13.0), straight_move(-13.0, -13.0)};
-  const auto seen = propose_radii(moves, kNominal);
-  ASSERT_TRUE(seen.ok());
+  const auto seen = value_of(propose_radii(moves, kNominal));
   // The track width is off by 2 %, and with it the small difference of the radii.
-  EXPECT_NEAR(seen.value().diameters->mean, kTruth.right_radius / kTruth.left_radius, 0.03 * 0.0066);
+  EXPECT_NEAR(seen.diameters->mean, kTruth.right_radius / kTruth.left_radius, 0.03 * 0.0066);
   for (StraightMove& move : moves) move.yaw.reset();
-  const auto taped = propose_radii(moves, kNominal);
-  ASSERT_TRUE(taped.ok());
-  EXPECT_FALSE(taped.value().diameters.has_value());
-  EXPECT_DOUBLE_EQ(taped.value().left.mean, taped.value().right.mean);
-  EXPECT_NEAR(taped.value().scale.mean, errors_of(kTruth, kNominal).scale, 1e-4);
+  const auto taped = value_of(propose_radii(moves, kNominal));
+  EXPECT_FALSE(taped.diameters.has_value());
+  EXPECT_DOUBLE_EQ(taped.left.mean, taped.right.mean);
+  EXPECT_NEAR(taped.scale.mean, errors_of(kTruth, kNominal).scale, 1e-4);
 }
 
 TEST(StraightMoves, S1_05_the_stated_deviation_holds_however_few_repetitions) {
@@ -145,10 +143,9 @@ TEST(StraightMoves, what_is_no_straight_move_is_refused_with_the_cause) {
 TEST(SpinMoves, S1_04_one_turn_gives_the_track_width_whichever_way) {
   for (const double turns : {1.0, -1.0, 3.0}) {
     const std::vector<SpinMove> moves = {spin_move(turns)};
-    const auto proposal =
-        propose_track_width(moves, {kTruth.left_radius, kTruth.right_radius, kNominal.track_width, {}});
-    ASSERT_TRUE(proposal.ok()) << proposal.error().text();
-    EXPECT_NEAR(proposal.value().track_width.mean, kTruth.track_width, 1e-9);
+    const auto proposal = value_of(
+        propose_track_width(moves, {kTruth.left_radius, kTruth.right_radius, kNominal.track_width, {}}));
+    EXPECT_NEAR(proposal.track_width.mean, kTruth.track_width, 1e-9);
   }
   EXPECT_FALSE(propose_track_width(std::vector{spin_move(0.2)}, kNominal).ok()) << "less than a quarter turn";
   SpinMove against = spin_move(1.0);
@@ -157,29 +154,25 @@ TEST(SpinMoves, S1_04_one_turn_gives_the_track_width_whichever_way) {
 }
 
 TEST(SpinMoves, S1_06_before_the_straight_line_the_track_inherits_the_error_of_the_diameters) {
-  const auto proposal = propose_track_width(std::vector{spin_move(1.0)}, kNominal);
-  ASSERT_TRUE(proposal.ok());
-  EXPECT_NEAR(proposal.value().track_width.mean, kTruth.track_width / errors_of(kTruth, kNominal).scale,
-              1e-9);
+  const auto proposal = value_of(propose_track_width(std::vector{spin_move(1.0)}, kNominal));
+  EXPECT_NEAR(proposal.track_width.mean, kTruth.track_width / errors_of(kTruth, kNominal).scale, 1e-9);
 }
 
 TEST(Squares, S1_07_both_ways_separate_unequal_wheels_from_the_track) {
   for (const GeometryErrors errors :
        {GeometryErrors{1.0, 1.0, 1.03}, {1.0, 1.008, 1.0}, {1.0, 0.993, 0.98}, {1.02, 1.005, 1.01}}) {
     const wheels::BaseParameters truth = with_errors(kNominal, errors);
-    const auto proposal = propose_from_squares(std::vector{square_pair(truth, 2.0)}, kNominal, 2.0);
-    ASSERT_TRUE(proposal.ok()) << proposal.error().text();
+    const auto proposal = value_of(propose_from_squares(std::vector{square_pair(truth, 2.0)}, kNominal, 2.0));
     // The square shows the track in units of the wheels: their common scale is that of the straight line.
     const double shown = errors.track / errors.scale;
     const double exactness = errors.scale == 1.0 ? 1e-9 : 1e-3;
-    EXPECT_NEAR(proposal.value().diameters.mean, errors.diameters, exactness);
-    EXPECT_NEAR(proposal.value().track.mean, shown, exactness);
+    EXPECT_NEAR(proposal.diameters.mean, errors.diameters, exactness);
+    EXPECT_NEAR(proposal.track.mean, shown, exactness);
     // First order: a tenth of the error itself.
-    EXPECT_NEAR(proposal.value().formula.diameters, errors.diameters,
-                0.1 * std::abs(errors.diameters - 1.0) + 5e-4);
-    EXPECT_NEAR(proposal.value().formula.track, shown, 0.1 * std::abs(shown - 1.0) + 1e-3);
+    EXPECT_NEAR(proposal.formula.diameters, errors.diameters, 0.1 * std::abs(errors.diameters - 1.0) + 5e-4);
+    EXPECT_NEAR(proposal.formula.track, shown, 0.1 * std::abs(shown - 1.0) + 1e-3);
     if (errors.scale == 1.0) {
-      EXPECT_LT(proposal.value().farthest_after, 0.1 * proposal.value().farthest_before);
+      EXPECT_LT(proposal.farthest_after, 0.1 * proposal.farthest_before);
     }
   }
 }
@@ -194,10 +187,9 @@ TEST(Squares, a_lidar_that_sits_elsewhere_spoils_nothing) {
     run->end = conjugate(run->end, moved);
     run->end.yaw = yaw;
   }
-  const auto proposal = propose_from_squares(std::vector{pair}, kNominal, 1.0);
-  ASSERT_TRUE(proposal.ok()) << proposal.error().text();
-  EXPECT_NEAR(proposal.value().diameters.mean, 0.993, 2e-6);
-  EXPECT_NEAR(proposal.value().track.mean, 1.03, 2e-6);
+  const auto proposal = value_of(propose_from_squares(std::vector{pair}, kNominal, 1.0));
+  EXPECT_NEAR(proposal.diameters.mean, 0.993, 2e-6);
+  EXPECT_NEAR(proposal.track.mean, 1.03, 2e-6);
 }
 
 TEST(Squares, what_does_not_end_near_its_start_is_refused) {

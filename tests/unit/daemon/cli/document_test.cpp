@@ -13,6 +13,7 @@
 #include "daemon/cli/figure_svg.hpp"
 #include "daemon/cli/parameter_tables.hpp"
 #include "proto/calibration/report_data.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::cli::document_test {
 namespace {
@@ -126,18 +127,14 @@ TEST(Figure, axis_marks_are_round_and_inside) {
 
 TEST(Export, csv_and_configuration_files) {
   const Calibration calibration = example();
-  const auto parameters = exported(calibration, "parameters");
-  ASSERT_TRUE(parameters.ok());
-  EXPECT_EQ(parameters.value().substr(0, 64),
-            "name,value,std,unit\nleft_wheel_diameter,0.147,0.0001,m\nright_whe");
-  const auto errors = exported(calibration, "errors");
-  ASSERT_TRUE(errors.ok());
-  EXPECT_THAT(errors.value(),
+  const auto parameters = value_of(exported(calibration, "parameters"));
+  EXPECT_EQ(parameters.substr(0, 64), "name,value,std,unit\nleft_wheel_diameter,0.147,0.0001,m\nright_whe");
+  const auto errors = value_of(exported(calibration, "errors"));
+  EXPECT_THAT(errors,
               HasSubstr("straight_metre_length,m,0.0204,0.02,0.021,,,,0.0011,0.0009,0.0014,0.001,12"));
-  const auto yaml = exported(calibration, "diff_drive");
-  ASSERT_TRUE(yaml.ok());
-  EXPECT_THAT(yaml.value(), HasSubstr("wheel_radius: 0.0735"));
-  EXPECT_THAT(yaml.value(), HasSubstr("left_wheel_radius_multiplier: 1"));
+  const auto yaml = value_of(exported(calibration, "diff_drive"));
+  EXPECT_THAT(yaml, HasSubstr("wheel_radius: 0.0735"));
+  EXPECT_THAT(yaml, HasSubstr("left_wheel_radius_multiplier: 1"));
 }
 
 Calibration for_export() {
@@ -169,12 +166,11 @@ Calibration for_export() {
 
 TEST(Export, of_a_configuration_says_where_it_is_from_and_what_it_cannot_hold) {
   for (const char* what : {"toml", "diff_drive", "ros_arduino", "arcos"}) {
-    const auto text = exported(for_export(), what);
-    ASSERT_TRUE(text.ok()) << text.error().text();
-    EXPECT_THAT(text.value(), HasSubstr("calibration of r-1 by odomcalib")) << what;
-    EXPECT_THAT(text.value(), HasSubstr(", 2025-06-15, sha256 abc")) << what;
-    EXPECT_THAT(text.value(), HasSubstr("not held here: wheel_eccentricity.left_cos = 0.012")) << what;
-    EXPECT_THAT(text.value(), HasSubstr("not held here: time_offset.offset = 0.05 s")) << what;
+    const auto text = value_of(exported(for_export(), what));
+    EXPECT_THAT(text, HasSubstr("calibration of r-1 by odomcalib")) << what;
+    EXPECT_THAT(text, HasSubstr(", 2025-06-15, sha256 abc")) << what;
+    EXPECT_THAT(text, HasSubstr("not held here: wheel_eccentricity.left_cos = 0.012")) << what;
+    EXPECT_THAT(text, HasSubstr("not held here: time_offset.offset = 0.05 s")) << what;
   }
   EXPECT_THAT(exported(for_export(), "ros_arduino").value(), HasSubstr("wheel differ by 1.02 %"));
   EXPECT_THAT(exported(for_export(), "diff_drive").value(), Not(HasSubstr("differ by")));

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/graph_picture.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::cli::graph_run_test {
 namespace {
@@ -79,17 +80,15 @@ TEST(GraphRun, S2_39_draws_map_scan_path_and_rays) {
 
 TEST(GraphRun, S2_05_what_is_written_is_read_back_and_is_at_its_optimum) {
   const GraphRun run = square();
-  auto again = read_pose_graph_text(to_g2o(run.after), "again");
-  ASSERT_TRUE(again.ok());
-  EXPECT_DOUBLE_EQ(calib::slam::graph_chi2(again.value()), run.summary.chi2_after);
-  EXPECT_NEAR(run_graph(std::move(again).value(), {}).summary.chi2_after, run.summary.chi2_after,
+  auto again = value_of(read_pose_graph_text(to_g2o(run.after), "again"));
+  EXPECT_DOUBLE_EQ(calib::slam::graph_chi2(again), run.summary.chi2_after);
+  EXPECT_NEAR(run_graph(std::move(again), {}).summary.chi2_after, run.summary.chi2_after,
               1e-9 * run.summary.chi2_after);
 }
 
 TEST(GraphRun, one_point_in_space_can_be_drawn) {
-  auto graph = read_pose_graph_text("VERTEX_SE2 0 5 5 0\n", "one");
-  ASSERT_TRUE(graph.ok());
-  EXPECT_THAT(graph_picture(graph.value(), graph.value()), HasSubstr("</svg>"));
+  auto graph = value_of(read_pose_graph_text("VERTEX_SE2 0 5 5 0\n", "one"));
+  EXPECT_THAT(graph_picture(graph, graph), HasSubstr("</svg>"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "daemon/cli/live/page_server.hpp"
 #include "proto/calibration/report_data.hpp"
 #include "proto/wire/messages.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::cli::live_state_test {
 namespace {
@@ -148,11 +149,10 @@ TEST(PageServer, knows_its_own_names_only) {
 
 TEST(PageServer, a_port_that_is_taken_is_an_error_that_names_it) {
   const auto state = [] { return std::string("{}"); };
-  const auto first = PageServer::open(0, live_page(), state);
-  ASSERT_TRUE(first);
-  const auto second = PageServer::open(first.value()->port(), live_page(), state);
+  const auto first = value_of(PageServer::open(0, live_page(), state));
+  const auto second = PageServer::open(first->port(), live_page(), state);
   ASSERT_FALSE(second);
-  EXPECT_THAT(second.error().text(), HasSubstr(std::to_string(first.value()->port())));
+  EXPECT_THAT(second.error().text(), HasSubstr(std::to_string(first->port())));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "daemon/cli/client.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::cli::proven_apply_test {
 namespace {
@@ -58,11 +59,10 @@ const DriveErrors kOff{0.02, 0.01, 0.2};
 
 TEST(ProvenApply, errors_are_those_of_a_metre_and_of_a_turn) {
   Daemon daemon;
-  const auto errors = drive_errors(daemon.run());
-  ASSERT_TRUE(errors.ok());
-  EXPECT_NEAR(errors.value().metre_length, 0.001, 1e-12);
-  EXPECT_NEAR(errors.value().metre_heading, 0.001, 1e-12);
-  EXPECT_NEAR(errors.value().turn, 0.001, 1e-12);
+  const auto errors = value_of(drive_errors(daemon.run()));
+  EXPECT_NEAR(errors.metre_length, 0.001, 1e-12);
+  EXPECT_NEAR(errors.metre_heading, 0.001, 1e-12);
+  EXPECT_NEAR(errors.turn, 0.001, 1e-12);
   EXPECT_THAT(daemon.asked, ElementsAre("Straight", "Spin"));
 }
 

@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <random>
 
+#include "tests/value_of.hpp"
+
 namespace odomcalib::config_test {
 namespace {
 
@@ -65,10 +67,9 @@ void expect_sound(const std::string& text) {
 }
 
 TEST(ConfigFile, that_is_good_is_read) {
-  const auto config = parse_config(kGood, "test.toml");
-  ASSERT_TRUE(config.ok()) << config.error().text();
-  EXPECT_EQ(config.value().robot.track_width, 0.4);
-  EXPECT_EQ(config.value().limits.speed, 0.2);
+  const auto config = value_of(parse_config(kGood, "test.toml"));
+  EXPECT_EQ(config.robot.track_width, 0.4);
+  EXPECT_EQ(config.limits.speed, 0.2);
 }
 
 TEST(ConfigFile, gives_a_second_before_a_motion_whatever_it_says) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/config/near_miss.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::robot_file_test {
 namespace {
@@ -41,43 +42,39 @@ void expect_names(const std::string& text, const std::string& wrong, const std::
 }
 
 TEST(RobotFile, states_dimensions_and_pose) {
-  const auto robot = parse_robot_file(
+  const auto robot = value_of(parse_robot_file(
       "wheel_diameter = 0.15\nright_wheel_diameter = 0.149\ntrack_width = 0.4\nticks_per_rev = 4096\n"
       "lidar_pose = [0.1, 0, 0.5]\nrobot_id = \"a\"\n",
-      "robot.toml");
-  ASSERT_TRUE(robot.ok()) << robot.error().text();
-  EXPECT_EQ(robot.value().left_wheel_diameter, 0.15);
-  EXPECT_EQ(robot.value().right_wheel_diameter, 0.149);
-  EXPECT_EQ(robot.value().track_width, 0.4);
-  EXPECT_EQ(robot.value().ticks_per_rev, 4096.0);
-  EXPECT_EQ((*robot.value().lidar_pose)[2], 0.5);
-  EXPECT_EQ(robot.value().robot_id, "a");
+      "robot.toml"));
+  EXPECT_EQ(robot.left_wheel_diameter, 0.15);
+  EXPECT_EQ(robot.right_wheel_diameter, 0.149);
+  EXPECT_EQ(robot.track_width, 0.4);
+  EXPECT_EQ(robot.ticks_per_rev, 4096.0);
+  EXPECT_EQ((*robot.lidar_pose)[2], 0.5);
+  EXPECT_EQ(robot.robot_id, "a");
 }
 
 TEST(RobotFile, may_be_the_configuration_of_the_daemon) {
-  const auto robot = parse_robot_file(kDaemon, "odomcalib.toml");
-  ASSERT_TRUE(robot.ok()) << robot.error().text();
-  EXPECT_EQ(robot.value().left_wheel_diameter, 0.15);
-  EXPECT_EQ(robot.value().right_wheel_diameter, 0.149);
-  EXPECT_EQ(robot.value().track_width, 0.4);
-  EXPECT_EQ((*robot.value().lidar_pose)[1], 0.02);
-  EXPECT_EQ(robot.value().robot_id, "robot-1");
-  EXPECT_EQ(robot.value().ticks_per_rev, 0.0) << "the recording's";
+  const auto robot = value_of(parse_robot_file(kDaemon, "odomcalib.toml"));
+  EXPECT_EQ(robot.left_wheel_diameter, 0.15);
+  EXPECT_EQ(robot.right_wheel_diameter, 0.149);
+  EXPECT_EQ(robot.track_width, 0.4);
+  EXPECT_EQ((*robot.lidar_pose)[1], 0.02);
+  EXPECT_EQ(robot.robot_id, "robot-1");
+  EXPECT_EQ(robot.ticks_per_rev, 0.0) << "the recording's";
 }
 
 TEST(RobotFile, that_is_shipped_as_the_configuration_is_read) {
-  const auto robot = read_robot_file("systemd/odomcalib.toml");
-  ASSERT_TRUE(robot.ok()) << robot.error().text();
-  EXPECT_EQ(robot.value().track_width, 0.4);
-  EXPECT_TRUE(robot.value().lidar_pose.has_value());
+  const auto robot = value_of(read_robot_file("systemd/odomcalib.toml"));
+  EXPECT_EQ(robot.track_width, 0.4);
+  EXPECT_TRUE(robot.lidar_pose.has_value());
 }
 
 TEST(RobotFile, with_a_section_may_hold_what_a_configuration_lacks) {
   const auto robot =
-      parse_robot_file("[robot]\nticks_per_rev = 4096\nlidar_pose = [0.1, 0, 0]\n", "robot.toml");
-  ASSERT_TRUE(robot.ok()) << robot.error().text();
-  EXPECT_EQ(robot.value().ticks_per_rev, 4096.0);
-  EXPECT_EQ((*robot.value().lidar_pose)[0], 0.1);
+      value_of(parse_robot_file("[robot]\nticks_per_rev = 4096\nlidar_pose = [0.1, 0, 0]\n", "robot.toml"));
+  EXPECT_EQ(robot.ticks_per_rev, 4096.0);
+  EXPECT_EQ((*robot.lidar_pose)[0], 0.1);
 }
 
 TEST(RobotFile, misspelt_names_the_key_that_would_work) {

@@ -16,6 +16,7 @@
 #include "daemon/safety/obstacle.hpp"
 #include "daemon/safety/speed_watch.hpp"
 #include "daemon/safety/stop_guard.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::safety::safety_test {
 namespace {
@@ -464,11 +465,7 @@ TEST(PointsOf, turns_the_scan_into_the_base_frame_and_drops_no_readings) {
 
 class AskedLease : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto given = lease_.acquire(1, 0.0);
-    ASSERT_TRUE(given.ok());
-    id_ = given.value();
-  }
+  void SetUp() override { id_ = value_of(lease_.acquire(1, 0.0)); }
   // The daemon looks every 10 ms, and the last time at `end`.
   void look(double begin, double end) {
     for (double t = begin; t < end; t += 0.010) lease_.looked(t);

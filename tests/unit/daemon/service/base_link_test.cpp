@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/sim/wires/pty.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::base_link_test {
 namespace {
@@ -16,10 +17,8 @@ class Standing : public Clock {
 
 TEST(BaseLink, a_buffer_that_was_full_once_is_no_problem_for_ever) {
   auto pty = std::move(sim::Pty::open()).value();
-  auto made =
-      BaseLink::create("serial:" + pty->path() + "?baud=57600", "drivers/base/profiles/ros_arduino.toml");
-  ASSERT_TRUE(made.ok()) << made.error().text();
-  BaseLink& link = made.value();
+  auto link = value_of(
+      BaseLink::create("serial:" + pty->path() + "?baud=57600", "drivers/base/profiles/ros_arduino.toml"));
   link.step(Standing());
   ASSERT_TRUE(link.connected());
   const auto send = [&link] {

@@ -2,14 +2,15 @@
 #include "daemon/service/control_server.hpp"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <array>
 #include <functional>
 
+#include "tests/temporary_folder.hpp"
 #include "tests/unit/daemon/service/control_client.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::control_server_test {
 namespace {
@@ -17,15 +18,7 @@ namespace {
 class Burst : public testing::Test {
  protected:
   void SetUp() override {
-    std::string name = "/tmp/odomcalib-cs-XXXXXX";
-    folder_ = mkdtemp(name.data());
-    auto made = ControlServer::create(folder_ / "control", "nobody-has-this-group");
-    ASSERT_TRUE(made.ok()) << made.error().text();
-    server_.emplace(std::move(made).value());
-  }
-  void TearDown() override {
-    server_.reset();
-    std::filesystem::remove_all(folder_);
+    server_.emplace(value_of(ControlServer::create(folder_ / "control", "nobody-has-this-group")));
   }
   /// A client that the server has accepted.
   std::unique_ptr<ControlClient> client() {
@@ -43,7 +36,7 @@ class Burst : public testing::Test {
     return names;
   }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
   std::optional<ControlServer> server_;
   double now_ = 1.0;
 };

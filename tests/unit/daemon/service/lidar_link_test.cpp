@@ -20,6 +20,7 @@
 #include "tests/sim/wires/tcp_port.hpp"
 #include "tests/sim/wires/xv11_device.hpp"
 #include "tests/sim/wires/ydlidar_device.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::lidar_link_test {
 namespace {
@@ -137,9 +138,7 @@ std::string TcpBench::address() const {
 
 template <>
 void TcpBench::open_port() {
-  auto opened = sim::TcpPort::open(tcp_port_);
-  ASSERT_TRUE(opened.ok()) << opened.error().text();
-  port_ = std::move(opened).value();
+  port_ = value_of(sim::TcpPort::open(tcp_port_));
   tcp_port_ = port_->port();
 }
 
@@ -415,12 +414,11 @@ std::string told_of(LidarLink& link) {
 TEST(LidarLinks, the_name_of_a_host_is_looked_up_and_what_it_stands_for_is_told) {
   auto port = sim::TcpPort::open(0);
   ASSERT_TRUE(port.ok());
-  auto named = LidarLink::create("tcp:localhost:" + std::to_string(port.value()->port()), "sick");
-  ASSERT_TRUE(named.ok());
-  EXPECT_EQ(named.value().host_name(), "localhost");
-  EXPECT_EQ(named.value().found_address(), "");
-  EXPECT_EQ(told_of(named.value()).find("has no address"), std::string::npos);
-  EXPECT_THAT(named.value().found_address(),
+  auto named = value_of(LidarLink::create("tcp:localhost:" + std::to_string(port.value()->port()), "sick"));
+  EXPECT_EQ(named.host_name(), "localhost");
+  EXPECT_EQ(named.found_address(), "");
+  EXPECT_EQ(told_of(named).find("has no address"), std::string::npos);
+  EXPECT_THAT(named.found_address(),
               ::testing::AnyOf(::testing::HasSubstr("127.0.0.1:"), ::testing::HasSubstr("[::1]:")));
   EXPECT_EQ(LidarLink::create("tcp:192.168.0.1", "sick").value().host_name(), "");
   EXPECT_EQ(LidarLink::create("tcp:[fe80::1]", "sick").value().host_name(), "");
@@ -429,13 +427,12 @@ TEST(LidarLinks, the_name_of_a_host_is_looked_up_and_what_it_stands_for_is_told)
 TEST(LidarLinks, a_name_without_an_address_is_no_hindrance_to_start_and_is_told) {
   // Longer than a label may be: name services know that without asking anybody.
   const std::string name(70, 'x');
-  auto named = LidarLink::create("tcp:" + name, "sick");
-  ASSERT_TRUE(named.ok()) << named.error().text();
-  EXPECT_EQ(named.value().host_name(), name);
-  const std::string said = told_of(named.value());
+  auto named = value_of(LidarLink::create("tcp:" + name, "sick"));
+  EXPECT_EQ(named.host_name(), name);
+  const std::string said = told_of(named);
   EXPECT_NE(said.find("the name \"" + name + "\" has no address"), std::string::npos) << said;
   EXPECT_NE(said.find("in numbers"), std::string::npos) << said;
-  EXPECT_FALSE(named.value().connected());
+  EXPECT_FALSE(named.connected());
 }
 
 }  // namespace

@@ -103,6 +103,15 @@ class Motion : public testing::Test {
     EXPECT_TRUE(controller_.stopped_last());
   }
 
+  /// Drives, then this is so.
+  template <typename Change>
+  void expect_end(const Change& change, ErrorCode code, const std::string& said) {
+    drive();
+    Situation situation = good();
+    change(situation);
+    expect_stop(situation, code, said);
+  }
+
   NotingController controller_;
   routines::Pose pose_;
   double now_ = 10.0;
@@ -145,17 +154,11 @@ TEST_F(Motion, begins_when_the_countdown_is_over_and_not_before) {
 }
 
 TEST_F(Motion, ends_when_the_client_no_longer_counts_as_present) {
-  drive();
-  Situation situation = good();
-  situation.lapsed = "no longer renews";
-  expect_stop(situation, ErrorCode::cancelled, "no longer renews");
+  expect_end([](Situation& s) { s.lapsed = "no longer renews"; }, ErrorCode::cancelled, "no longer renews");
 }
 
 TEST_F(Motion, ends_when_the_wheels_are_faster_than_they_may_be) {
-  drive();
-  Situation situation = good();
-  situation.too_fast = "0.41 m/s";
-  expect_stop(situation, ErrorCode::protective_stop, "0.41 m/s");
+  expect_end([](Situation& s) { s.too_fast = "0.41 m/s"; }, ErrorCode::protective_stop, "0.41 m/s");
 }
 
 TEST_F(Motion, of_which_nobody_knows_whether_there_is_a_client_does_not_begin) {
@@ -178,24 +181,16 @@ TEST_F(Motion, ends_when_a_sensor_is_stale_and_does_not_begin_with_one) {
 }
 
 TEST_F(Motion, ends_when_something_is_in_the_way) {
-  drive();
-  Situation situation = good();
-  situation.obstacle = "something is in the way";
-  expect_stop(situation, ErrorCode::protective_stop, "in the way");
+  expect_end([](Situation& s) { s.obstacle = "something is in the way"; }, ErrorCode::protective_stop,
+             "in the way");
 }
 
 TEST_F(Motion, ends_when_odometry_and_lidar_disagree) {
-  drive();
-  Situation situation = good();
-  situation.disagreement = "0.3 m apart";
-  expect_stop(situation, ErrorCode::protective_stop, "0.3 m apart");
+  expect_end([](Situation& s) { s.disagreement = "0.3 m apart"; }, ErrorCode::protective_stop, "0.3 m apart");
 }
 
 TEST_F(Motion, ends_when_it_leaves_its_envelope) {
-  drive();
-  Situation situation = good();
-  situation.odometry.x = 1.4;
-  expect_stop(situation, ErrorCode::protective_stop, "m allowed");
+  expect_end([](Situation& s) { s.odometry.x = 1.4; }, ErrorCode::protective_stop, "m allowed");
 }
 
 TEST_F(Motion, ends_when_it_leaves_its_envelope_by_the_lidar_alone) {

@@ -1,6 +1,5 @@
 // Recordings and a disk that takes its time: nothing waits for it, nothing is lost, what fails is told.
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -13,6 +12,8 @@
 
 #include "daemon/service/telemetry.hpp"
 #include "proto/recording/recording.hpp"
+#include "tests/temporary_folder.hpp"
+#include "tests/value_of.hpp"
 
 namespace {
 
@@ -75,14 +76,9 @@ class SinkOnDisk final : public RecordingSink {
 
 class RecordingOnDisk : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = "/tmp/odomcalib-rec-XXXXXX";
-    folder_ = mkdtemp(name.data());
-  }
   void TearDown() override {
     disk_->stalls = false;
     recorder_.reset();
-    std::filesystem::remove_all(folder_);
   }
   void on_slow_disk() {
     recorder_ = std::make_unique<Recorder>(folder_, "P_", [this](const Path&, const std::string&) {
@@ -100,7 +96,7 @@ class RecordingOnDisk : public ::testing::Test {
     return ended_ != nullptr;
   }
 
-  Path folder_;
+  TemporaryFolder folder_;
   std::shared_ptr<Disk> disk_ = std::make_shared<Disk>();
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<Result<Path>> ended_;
@@ -133,12 +129,10 @@ TEST_F(RecordingOnDisk, goes_on_while_the_disk_stalls_and_loses_nothing) {
 TEST_F(RecordingOnDisk, begins_anew_while_the_one_before_is_still_being_written) {
   on_slow_disk();
   disk_->stalls = true;
-  const auto first = recorder_->start("same");
-  ASSERT_TRUE(first.ok());
+  const auto first = value_of(recorder_->start("same"));
   recorder_->finish({});
-  const auto second = recorder_->start("same");
-  ASSERT_TRUE(second.ok());
-  EXPECT_NE(first.value(), second.value()) << "the first file does not exist yet";
+  const auto second = value_of(recorder_->start("same"));
+  EXPECT_NE(first, second) << "the first file does not exist yet";
   for (std::size_t i = 2; i < Recorder::kMostUnfinished; ++i) {
     recorder_->finish({});
     ASSERT_TRUE(recorder_->start("same").ok());
@@ -236,9 +230,8 @@ TEST_F(RecordingOnDisk, of_files_is_whole_when_its_end_is_told) {
   recorder_->finish(note());
   ASSERT_TRUE(ends());
   ASSERT_TRUE(ended_->ok()) << ended_->error().text();
-  const auto recording = read_recording(ended_->value());
-  ASSERT_TRUE(recording.ok()) << recording.error().text();
-  EXPECT_EQ(recording.value().ticks.size(), static_cast<std::size_t>(kSamples));
+  const auto recording = value_of(read_recording(ended_->value()));
+  EXPECT_EQ(recording.ticks.size(), static_cast<std::size_t>(kSamples));
   std::ifstream frames(Path(ended_->value()).replace_extension(".candump"));
   int lines = 0;
   for (std::string line; std::getline(frames, line);) ++lines;

@@ -1,11 +1,12 @@
 #include "daemon/service/retention.hpp"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <chrono>
 #include <fstream>
 #include <set>
+
+#include "tests/temporary_folder.hpp"
 
 namespace odomcalib::retention_test {
 namespace {
@@ -14,11 +15,6 @@ namespace fs = std::filesystem;
 
 class RetentionTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = "/tmp/odomcalib-retention-XXXXXX";
-    folder_ = mkdtemp(name.data());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   void make(const std::string& name, std::size_t bytes, int hours_ago) {
     std::ofstream(folder_ / name) << std::string(bytes, 'x');
     fs::last_write_time(folder_ / name, fs::file_time_type::clock::now() - std::chrono::hours(hours_ago));
@@ -28,7 +24,7 @@ class RetentionTest : public testing::Test {
     for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
     return names;
   }
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(RetentionTest, removes_the_oldest_and_what_belongs_to_it) {
@@ -58,7 +54,7 @@ TEST_F(RetentionTest, keeps_so_many_and_the_newest_however_large) {
 TEST_F(RetentionTest, follows_no_link_and_no_folder) {
   make("old.lcmlog", 400, 9);
   fs::create_directory(folder_ / "older");
-  const fs::path elsewhere = folder_.string() + "-elsewhere";
+  const fs::path elsewhere = folder_.path().string() + "-elsewhere";
   std::ofstream(elsewhere) << "kept";
   fs::create_symlink(elsewhere, folder_ / "link.lcmlog");
   make("new.lcmlog", 400, 1);

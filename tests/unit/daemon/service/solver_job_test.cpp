@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "proto/control/control.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::solver_job_test {
 namespace {
@@ -68,15 +69,13 @@ TEST(SolverJob, tells_its_progress_and_its_result_once) {
   const auto result = wait_for(job);
   ASSERT_TRUE(result && result->ok());
   const Solution& solution = result->value();
-  const auto kept = calibration_from_json(solution.calibration, "solution");
-  ASSERT_TRUE(kept.ok());
-  EXPECT_EQ(kept.value().robot.track_width, 0.3);
+  const auto kept = value_of(calibration_from_json(solution.calibration, "solution"));
+  EXPECT_EQ(kept.robot.track_width, 0.3);
   EXPECT_EQ(solution.line.find(path.filename().string() + ": "), 0U) << solution.line;
   control::FrameDecoder frames;
   frames.feed(solution.reply);
-  const auto reply = control::decode_reply(frames.next().value_or(""));
-  ASSERT_TRUE(reply.ok());
-  const auto parameters = nlohmann::json::parse(reply.value().parameters);
+  const auto reply = value_of(control::decode_reply(frames.next().value_or("")));
+  const auto parameters = nlohmann::json::parse(reply.parameters);
   EXPECT_EQ(parameters.at("result").at("recording"), path.string());
   EXPECT_EQ(parameters.at("result").at("calibration"), nlohmann::json::parse(solution.calibration));
   EXPECT_FALSE(job.take_result());

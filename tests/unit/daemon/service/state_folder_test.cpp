@@ -1,11 +1,12 @@
 #include "daemon/service/state_folder.hpp"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <fstream>
 
 #include "daemon/service/parts/last_run.hpp"
+#include "tests/temporary_folder.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::state_folder_test {
 namespace {
@@ -14,19 +15,13 @@ namespace fs = std::filesystem;
 
 class StateFolderTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = "/tmp/odomcalib-state-XXXXXX";
-    path_ = mkdtemp(name.data());
-  }
-  void TearDown() override { fs::remove_all(path_); }
-  fs::path path_;
+  TemporaryFolder path_;
 };
 
 TEST_F(StateFolderTest, is_for_one_daemon_at_a_time) {
   {
-    const auto first = StateFolder::open(path_ / "state");
-    ASSERT_TRUE(first.ok()) << first.error().text();
-    EXPECT_FALSE(first.value().read_only());
+    const auto first = value_of(StateFolder::open(path_ / "state"));
+    EXPECT_FALSE(first.read_only());
     const auto second = StateFolder::open(path_ / "state");
     ASSERT_FALSE(second.ok());
     EXPECT_NE(second.error().what.find("another daemon"), std::string::npos) << second.error().text();
@@ -36,10 +31,9 @@ TEST_F(StateFolderTest, is_for_one_daemon_at_a_time) {
 
 TEST_F(StateFolderTest, that_cannot_be_written_to_says_so_and_is_no_error) {
   std::ofstream(path_ / "file") << "in the way";
-  const auto folder = StateFolder::open(path_ / "file" / "state");
-  ASSERT_TRUE(folder.ok()) << folder.error().text();
-  ASSERT_TRUE(folder.value().read_only());
-  EXPECT_FALSE(folder.value().read_only()->remedy.empty());
+  const auto folder = value_of(StateFolder::open(path_ / "file" / "state"));
+  ASSERT_TRUE(folder.read_only());
+  EXPECT_FALSE(folder.read_only()->remedy.empty());
 }
 
 TEST_F(StateFolderTest, LastRun_says_why_the_robot_was_stopped_before_the_restart) {

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,22 +12,13 @@
 
 #include "daemon/writeback/journal.hpp"
 #include "daemon/writeback/transaction.hpp"
+#include "tests/temporary_folder.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib {
 
 using drivers::ParameterJobResult;
 using drivers::StoredParameter;
-
-struct Folder {
-  Folder() {
-    std::string name = "/tmp/odomcalib-test-XXXXXX";
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::filesystem::path path;
-};
 
 // Three lengths in micrometres in RAM and in permanent memory; what goes wrong is chosen by action number.
 struct Memory {
@@ -139,6 +128,53 @@ inline std::optional<WriteReport> run(Transaction& transaction, FakeController& 
   }
   return std::nullopt;
 }
+
+/// A controller, its journal and a transaction on both.
+template <typename Controller = FakeController>
+struct WriteBackBench {
+  const TemporaryFolder folder;
+  Memory memory;
+  Controller controller{memory};
+  Journal journal = value_of(Journal::open(folder / "journal"));
+  Transaction transaction{journal};
+
+  /// Ends the test where no report comes.
+  WriteReport finish() { return run(transaction, controller).value(); }
+  WriteReport write(const ParameterMap& values = kNew, Proof proof = Proof::none) {
+    EXPECT_TRUE(transaction.write("apply", values, "", proof).ok());
+    return finish();
+  }
+  WriteReport recover() {
+    EXPECT_TRUE(transaction.recover().ok());
+    return finish();
+  }
+  [[nodiscard]] bool all_old() const { return is_old(memory.ram) && is_old(memory.stored); }
+  [[nodiscard]] bool all_new() const { return is_new(memory.ram) && is_new(memory.stored); }
+};
+
+/// What a crash may do besides: the controller loses its power, the last record of the journal is torn.
+inline void lose(Memory& memory, const std::filesystem::path& journal, bool power, bool end_of_record) {
+  if (power) memory.power_cycle();
+  if (end_of_record && std::filesystem::file_size(journal) > 3)
+    std::filesystem::resize_file(journal, std::filesystem::file_size(journal) - 3);
+}
+
+/// What the next daemon makes of it: all of one set, both memories alike, and the journal ended.
+struct AfterCrash {
+  AfterCrash(Memory& memory, const std::filesystem::path& path) {
+    FakeController controller(memory);
+    auto journal = value_of(Journal::open(path));
+    Transaction transaction(journal);
+    EXPECT_TRUE(transaction.recover().ok());
+    outcome = run(transaction, controller).value().outcome;
+    stores = controller.stores;
+    EXPECT_NE(outcome, WriteOutcome::unknown);
+    EXPECT_EQ(memory.ram, memory.stored);
+    EXPECT_FALSE(journal.unfinished());
+  }
+  WriteOutcome outcome{};
+  int stores = 0;
+};
 
 inline const ParameterMap kOld{
     {"left_wheel_diameter", 0.15}, {"right_wheel_diameter", 0.15}, {"track_width", 0.4}};

@@ -16,48 +16,44 @@ namespace odomcalib::journal_test {
 namespace {
 
 TEST(Journal, keeps_records_and_drops_a_torn_end) {
-  const Folder folder;
-  const auto path = folder.path / "journal";
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
   {
-    auto journal = Journal::open(path);
-    ASSERT_TRUE(journal.ok());
+    auto journal = value_of(Journal::open(path));
     JournalRecord record;
     record.state = JournalState::write;
     record.before = {{"track_width", 0.4}};
-    ASSERT_TRUE(journal.value().append(record).ok());
+    ASSERT_TRUE(journal.append(record).ok());
     record.state = JournalState::store_begin;
-    ASSERT_TRUE(journal.value().append(record).ok());
+    ASSERT_TRUE(journal.append(record).ok());
   }
   const auto size = std::filesystem::file_size(path);
   for (std::uintmax_t cut = size - 1; cut > size / 2 + 4; --cut) {
     std::filesystem::resize_file(path, cut);
-    auto journal = Journal::open(path);
-    ASSERT_TRUE(journal.ok());
-    ASSERT_TRUE(journal.value().last().has_value()) << cut;
-    EXPECT_EQ(journal.value().last()->state, JournalState::write) << cut;
-    EXPECT_EQ(journal.value().last()->before.at("track_width"), 0.4);
+    auto journal = value_of(Journal::open(path));
+    ASSERT_TRUE(journal.last().has_value()) << cut;
+    EXPECT_EQ(journal.last()->state, JournalState::write) << cut;
+    EXPECT_EQ(journal.last()->before.at("track_width"), 0.4);
   }
 }
 
 TEST(Journal, that_is_read_only_is_read_and_never_written) {
-  const Folder folder;
-  const auto path = folder.path / "journal";
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
   {
-    auto journal = Journal::open(path);
-    ASSERT_TRUE(journal.ok());
+    auto journal = value_of(Journal::open(path));
     JournalRecord record;
     record.state = JournalState::store_begin;
-    ASSERT_TRUE(journal.value().append(record).ok());
+    ASSERT_TRUE(journal.append(record).ok());
   }
   const auto size = std::filesystem::file_size(path);
-  auto journal = Journal::open_read_only(path);
-  ASSERT_TRUE(journal.ok());
-  ASSERT_TRUE(journal.value().unfinished()) << "motion stays forbidden";
-  EXPECT_EQ(journal.value().append({}).error().code, ErrorCode::io);
+  auto journal = value_of(Journal::open_read_only(path));
+  ASSERT_TRUE(journal.unfinished()) << "motion stays forbidden";
+  EXPECT_EQ(journal.append({}).error().code, ErrorCode::io);
   EXPECT_EQ(std::filesystem::file_size(path), size);
-  EXPECT_TRUE(Journal::open_read_only(folder.path / "absent").ok());
-  EXPECT_FALSE(std::filesystem::exists(folder.path / "absent"));
-  EXPECT_FALSE(Journal::open_read_only(folder.path).ok()) << "a folder";
+  EXPECT_TRUE(Journal::open_read_only(folder / "absent").ok());
+  EXPECT_FALSE(std::filesystem::exists(folder / "absent"));
+  EXPECT_FALSE(Journal::open_read_only(folder).ok()) << "a folder";
 }
 
 std::string checked(const std::string& body) {
@@ -138,19 +134,18 @@ class FileLimit {
 };
 
 TEST(Journal, a_record_for_which_the_disk_was_full_does_not_spoil_the_next_one) {
-  const Folder folder;
-  const auto path = folder.path / "journal";
-  auto journal = Journal::open(path);
-  ASSERT_TRUE(journal.ok());
-  ASSERT_TRUE(journal.value().append(record_of(JournalState::begin)).ok());
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  auto journal = value_of(Journal::open(path));
+  ASSERT_TRUE(journal.append(record_of(JournalState::begin)).ok());
   const auto size = std::filesystem::file_size(path);
   {
     const FileLimit full(size + 20);
-    EXPECT_FALSE(journal.value().append(record_of(JournalState::write)).ok());
+    EXPECT_FALSE(journal.append(record_of(JournalState::write)).ok());
     EXPECT_EQ(std::filesystem::file_size(path), size);
-    EXPECT_EQ(journal.value().last()->state, JournalState::begin);
+    EXPECT_EQ(journal.last()->state, JournalState::begin);
   }
-  ASSERT_TRUE(journal.value().append(record_of(JournalState::rollback)).ok());
+  ASSERT_TRUE(journal.append(record_of(JournalState::rollback)).ok());
   const auto again = Journal::open(path);
   ASSERT_TRUE(again.ok() && again.value().last());
   EXPECT_EQ(again.value().last()->state, JournalState::rollback);
@@ -158,34 +153,32 @@ TEST(Journal, a_record_for_which_the_disk_was_full_does_not_spoil_the_next_one) 
 }
 
 TEST(Journal, is_rotated_between_write_backs_and_never_within_one) {
-  const Folder folder;
-  const auto path = folder.path / "journal";
-  auto journal = Journal::open(path);
-  ASSERT_TRUE(journal.ok());
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  auto journal = value_of(Journal::open(path));
   JournalRecord bulky = record_of(JournalState::needs_operator);
   bulky.label = std::string(Journal::kRotateAt, 'x');
-  ASSERT_TRUE(journal.value().append(bulky).ok());
-  ASSERT_TRUE(journal.value().append(record_of(JournalState::begin)).ok());
+  ASSERT_TRUE(journal.append(bulky).ok());
+  ASSERT_TRUE(journal.append(record_of(JournalState::begin)).ok());
   EXPECT_GT(std::filesystem::file_size(path), Journal::kRotateAt);
-  ASSERT_TRUE(journal.value().append(record_of(JournalState::commit)).ok());
-  ASSERT_TRUE(journal.value().append(record_of(JournalState::begin)).ok());
+  ASSERT_TRUE(journal.append(record_of(JournalState::commit)).ok());
+  ASSERT_TRUE(journal.append(record_of(JournalState::begin)).ok());
   EXPECT_LT(std::filesystem::file_size(path), 2000U);
   EXPECT_GT(std::filesystem::file_size(path.string() + ".1"), Journal::kRotateAt);
   EXPECT_EQ(Journal::open(path).value().last()->state, JournalState::begin);
 }
 
 TEST(CalibrationInForce, is_the_announced_one_once_it_is_settled) {
-  const Folder folder;
-  const CalibrationInForce calibrations(folder.path);
-  const auto first = calibrations.announce("first", "");
-  ASSERT_TRUE(first.ok());
+  const TemporaryFolder folder;
+  const CalibrationInForce calibrations(folder);
+  const auto first = value_of(calibrations.announce("first", ""));
   EXPECT_FALSE(std::filesystem::exists(calibrations.path()));
-  ASSERT_TRUE(calibrations.settle(first.value()).ok());
+  ASSERT_TRUE(calibrations.settle(first).ok());
   EXPECT_EQ(read_file_bytes(calibrations.path()).value(), "first");
   // What the journal still needs is kept while others are announced and forgotten.
-  const auto second = calibrations.announce("second", first.value());
-  const auto third = calibrations.announce("third", first.value());
-  EXPECT_EQ(calibrations.announced(first.value()), "first");
+  const auto second = calibrations.announce("second", first);
+  const auto third = calibrations.announce("third", first);
+  EXPECT_EQ(calibrations.announced(first), "first");
   EXPECT_FALSE(calibrations.announced(second.value()));
   ASSERT_TRUE(calibrations.settle("").ok());
   EXPECT_EQ(read_file_bytes(calibrations.path()).value(), "first");
@@ -197,10 +190,10 @@ TEST(CalibrationInForce, is_the_announced_one_once_it_is_settled) {
 }
 
 TEST(CalibrationInForce, a_damaged_announcement_is_not_put_in_force) {
-  const Folder folder;
-  const CalibrationInForce calibrations(folder.path);
+  const TemporaryFolder folder;
+  const CalibrationInForce calibrations(folder);
   const std::string id = calibrations.announce("first", "").value();
-  std::ofstream(folder.path / "announced" / (id + ".json")) << "other";
+  std::ofstream(folder / "announced" / (id + ".json")) << "other";
   EXPECT_FALSE(calibrations.settle(id).ok());
   EXPECT_FALSE(std::filesystem::exists(calibrations.path()));
 }
@@ -212,8 +205,8 @@ void add(History& history, HistoryEntry entry) {
 }
 
 TEST(History, finds_the_newest_that_was_committed_and_remembers_the_device) {
-  const Folder folder;
-  History history(folder.path / "history");
+  const TemporaryFolder folder;
+  History history(folder / "history");
   EXPECT_FALSE(history.newest_committed());
   for (const char* outcome : {"committed", "committed", "rolled_back", "unknown"}) {
     HistoryEntry entry;
@@ -247,24 +240,24 @@ class FullHistory : public testing::Test {
     EXPECT_EQ(*history.find("0060")->calibration, R"({"format":"x"})");
     EXPECT_FALSE(history.find("0001").has_value());
   }
-  const Folder folder_;
-  History history_{folder_.path / "history"};
+  const TemporaryFolder folder_;
+  History history_{folder_ / "history"};
 };
 
 TEST_F(FullHistory, keeps_the_newest_fifty_newest_first) {
   expect_newest_fifty(history_);
-  expect_newest_fifty(History(folder_.path / "history"));  // what the disk has
+  expect_newest_fifty(History(folder_ / "history"));  // what the disk has
 }
 
 TEST_F(FullHistory, goes_on_counting_behind_an_entry_that_cannot_be_read) {
-  std::ofstream(folder_.path / "history" / "0061.json") << "{";
-  const History again(folder_.path / "history");
+  std::ofstream(folder_ / "history" / "0061.json") << "{";
+  const History again(folder_ / "history");
   EXPECT_EQ(again.entries().front().id, "0060");
   EXPECT_EQ(again.numbered({}).id, "0062");
 }
 
 TEST_F(FullHistory, answers_without_its_disk) {
-  std::filesystem::remove_all(folder_.path);
+  std::filesystem::remove_all(folder_);
   expect_newest_fifty(history_);
 }
 

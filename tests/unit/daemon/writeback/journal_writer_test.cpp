@@ -40,11 +40,11 @@ class SlowJournal : public testing::Test {
     return controller_.jobs - before;
   }
 
-  Folder folder_;
+  TemporaryFolder folder_;
   Memory memory_;
   FakeController controller_{memory_};
   SlowDisk disk_;
-  Journal journal_ = Journal::open(folder_.path / "journal").value();
+  Journal journal_ = Journal::open(folder_ / "journal").value();
   Transaction transaction_{journal_, disk_};
   double now_ = 0.0;
 };

@@ -7,43 +7,34 @@ namespace {
 
 const Error kWorse{ErrorCode::write_failed, "a metre is worse", "proof run", ""};
 
-class WaitingForProof : public testing::Test {
+class WaitingForProof : public testing::Test, public WriteBackBench<> {
  protected:
   /// Up to the wait for the proof.
-  WriteReport write_unproven() {
-    EXPECT_TRUE(transaction_.write("apply", kNew, "", Proof::wanted).ok());
-    return run(transaction_, controller_).value_or(WriteReport{});
-  }
+  WriteReport write_unproven() { return write(kNew, Proof::wanted); }
   WriteReport conclude(const Result<void>& proof) {
-    EXPECT_TRUE(transaction_.conclude(proof).ok());
-    return run(transaction_, controller_).value_or(WriteReport{});
+    EXPECT_TRUE(transaction.conclude(proof).ok());
+    return finish();
   }
-
-  const Folder folder_;
-  Memory memory_;
-  FakeController controller_{memory_};
-  Journal journal_ = Journal::open(folder_.path / "journal").value();
-  Transaction transaction_{journal_};
 };
 
 TEST_F(WaitingForProof, new_values_are_in_ram_alone) {
   const auto report = write_unproven();
   EXPECT_EQ(report.outcome, WriteOutcome::proving);
   EXPECT_TRUE(holds(report.in_force, kNew));
-  EXPECT_TRUE(is_new(memory_.ram) && is_old(memory_.stored));
-  EXPECT_TRUE(transaction_.proving() && transaction_.busy());
-  EXPECT_FALSE(run(transaction_, controller_));  // however long it takes
-  EXPECT_EQ(controller_.stores, 0);
-  ASSERT_TRUE(journal_.unfinished());
-  EXPECT_TRUE(journal_.unfinished()->unproven);
+  EXPECT_TRUE(is_new(memory.ram) && is_old(memory.stored));
+  EXPECT_TRUE(transaction.proving() && transaction.busy());
+  EXPECT_FALSE(run(transaction, controller));  // however long it takes
+  EXPECT_EQ(controller.stores, 0);
+  ASSERT_TRUE(journal.unfinished());
+  EXPECT_TRUE(journal.unfinished()->unproven);
 }
 
 TEST_F(WaitingForProof, proven_values_are_stored_once) {
   write_unproven();
   const auto report = conclude({});
   EXPECT_EQ(report.outcome, WriteOutcome::committed);
-  EXPECT_TRUE(is_new(memory_.ram) && is_new(memory_.stored));
-  EXPECT_EQ(controller_.stores, 1);
+  EXPECT_TRUE(all_new());
+  EXPECT_EQ(controller.stores, 1);
   const std::vector<std::string> steps{"begin",       "write",    "readback_ok", "proof_ok",
                                        "store_begin", "store_ok", "commit"};
   EXPECT_EQ(report.steps, steps);
@@ -55,29 +46,29 @@ TEST_F(WaitingForProof, what_is_not_proven_goes_back_without_a_store) {
   EXPECT_EQ(report.outcome, WriteOutcome::rolled_back);
   ASSERT_TRUE(report.error);
   EXPECT_EQ(report.error->what, kWorse.what);
-  EXPECT_TRUE(is_old(memory_.ram) && is_old(memory_.stored));
-  EXPECT_EQ(controller_.stores, 0);
-  EXPECT_FALSE(journal_.unfinished());
+  EXPECT_TRUE(all_old());
+  EXPECT_EQ(controller.stores, 0);
+  EXPECT_FALSE(journal.unfinished());
 }
 
 TEST_F(WaitingForProof, a_controller_that_stores_nothing_is_committed_or_restored_as_well) {
-  controller_.ram_only = true;
+  controller.ram_only = true;
   write_unproven();
   EXPECT_EQ(conclude({}).outcome, WriteOutcome::committed);
-  EXPECT_EQ(controller_.stores, 0);
-  memory_ = Memory{};
+  EXPECT_EQ(controller.stores, 0);
+  memory = Memory{};
   write_unproven();
   EXPECT_EQ(conclude(kWorse).outcome, WriteOutcome::rolled_back);
-  EXPECT_TRUE(is_old(memory_.ram));
+  EXPECT_TRUE(is_old(memory.ram));
 }
 
 TEST_F(WaitingForProof, nothing_else_begins_meanwhile_and_nothing_is_concluded_twice) {
-  EXPECT_FALSE(transaction_.conclude({}).ok());
+  EXPECT_FALSE(transaction.conclude({}).ok());
   write_unproven();
-  EXPECT_FALSE(transaction_.write("apply", kOld).ok());
-  EXPECT_FALSE(transaction_.read().ok());
-  EXPECT_TRUE(transaction_.conclude({}).ok());
-  EXPECT_FALSE(transaction_.conclude(kWorse).ok());
+  EXPECT_FALSE(transaction.write("apply", kOld).ok());
+  EXPECT_FALSE(transaction.read().ok());
+  EXPECT_TRUE(transaction.conclude({}).ok());
+  EXPECT_FALSE(transaction.conclude(kWorse).ok());
 }
 
 // Killed at each step, also with all of the new values in RAM: what nobody has proven is not stored.
@@ -85,9 +76,9 @@ class EveryCrashOfAProof : public testing::TestWithParam<std::tuple<int, bool, b
 
 TEST_P(EveryCrashOfAProof, leaves_old_values_before_the_verdict_and_either_set_after_it) {
   const auto [steps, power_cycle, torn, mishap] = GetParam();
-  const Folder folder;
+  const TemporaryFolder folder;
   Memory memory;
-  const auto path = folder.path / "journal";
+  const auto path = folder / "journal";
   bool concluded = false;
   {
     FakeController controller(memory);
@@ -101,21 +92,11 @@ TEST_P(EveryCrashOfAProof, leaves_old_values_before_the_verdict_and_either_set_a
       if (transaction.proving() && i > 6) concluded = transaction.conclude({}).ok();
     }
   }
-  if (power_cycle) memory.power_cycle();
-  if (torn && std::filesystem::file_size(path) > 3)
-    std::filesystem::resize_file(path, std::filesystem::file_size(path) - 3);
+  lose(memory, path, power_cycle, torn);
   for (int round = 0; round < 2; ++round) {
-    FakeController controller(memory);
-    auto journal = Journal::open(path);
-    Transaction transaction(journal.value());
-    ASSERT_TRUE(transaction.recover().ok());
-    const auto report = run(transaction, controller);
-    ASSERT_TRUE(report.has_value());
-    EXPECT_NE(report->outcome, WriteOutcome::unknown);
+    const AfterCrash after(memory, path);
     EXPECT_TRUE(is_old(memory.ram) || (concluded && is_new(memory.ram)));
-    EXPECT_EQ(memory.ram, memory.stored);
-    EXPECT_FALSE(journal.value().unfinished().has_value());
-    EXPECT_TRUE(round == 0 || report->outcome == WriteOutcome::read);
+    EXPECT_TRUE(round == 0 || after.outcome == WriteOutcome::read);
   }
 }
 
@@ -123,30 +104,22 @@ INSTANTIATE_TEST_SUITE_P(Moments, EveryCrashOfAProof,
                          testing::Combine(testing::Range(0, 14), testing::Bool(), testing::Bool(),
                                           testing::Values(Mishap::none, Mishap::half_written)));
 
-class EveryMishapOfAProof : public testing::TestWithParam<std::tuple<int, Mishap, bool>> {};
+class EveryMishapOfAProof : public testing::TestWithParam<std::tuple<int, Mishap, bool>>,
+                            public WriteBackBench<> {};
 
 TEST_P(EveryMishapOfAProof, leaves_wholly_old_or_wholly_new_values_and_says_which) {
-  const auto [job, mishap, proven] = GetParam();
-  const Folder folder;
-  Memory memory;
-  FakeController controller(memory);
-  controller.fail_at = job;
-  controller.mishap = mishap;
-  auto journal = Journal::open(folder.path / "journal");
-  Transaction transaction(journal.value());
-  ASSERT_TRUE(transaction.write("apply", kNew, "", Proof::wanted).ok());
-  auto report = run(transaction, controller);
-  ASSERT_TRUE(report.has_value());
-  if (report->outcome == WriteOutcome::proving) {
+  bool proven = false;
+  std::tie(controller.fail_at, controller.mishap, proven) = GetParam();
+  auto report = write(kNew, Proof::wanted);
+  if (report.outcome == WriteOutcome::proving) {
     ASSERT_TRUE(transaction.conclude(proven ? Result<void>{} : Result<void>(kWorse)).ok());
-    report = run(transaction, controller);
-    ASSERT_TRUE(report.has_value());
+    report = finish();
   }
-  const bool committed = report->outcome == WriteOutcome::committed;
+  const bool committed = report.outcome == WriteOutcome::committed;
   EXPECT_TRUE(proven || !committed);
-  EXPECT_TRUE(committed ? is_new(memory.ram) && is_new(memory.stored) : is_old(memory.stored));
-  EXPECT_EQ(committed, !report->error);
-  EXPECT_TRUE(report->outcome != WriteOutcome::rolled_back || is_old(memory.ram));
+  EXPECT_TRUE(committed ? all_new() : is_old(memory.stored));
+  EXPECT_EQ(committed, !report.error);
+  EXPECT_TRUE(report.outcome != WriteOutcome::rolled_back || is_old(memory.ram));
 }
 
 INSTANTIATE_TEST_SUITE_P(Jobs, EveryMishapOfAProof,

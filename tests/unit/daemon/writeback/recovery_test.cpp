@@ -11,32 +11,18 @@ void mix(Memory& memory) {
 }
 
 // A journal that ends with an unfinished write-back, and a controller that holds a mixture.
-class Interrupted : public testing::Test {
+class Interrupted : public testing::Test, public WriteBackBench<> {
  protected:
-  Interrupted() : journal_(Journal::open(folder_.path / "journal").value()) { mix(memory_); }
-  void journaled(const JournalRecord& record) { ASSERT_TRUE(journal_.append(record).ok()); }
-  WriteReport recover() {
-    EXPECT_TRUE(transaction_.recover().ok());
-    return run(transaction_, controller_).value_or(WriteReport{});
-  }
-  WriteReport write(const ParameterMap& values) {
-    EXPECT_TRUE(transaction_.write("apply", values).ok());
-    return run(transaction_, controller_).value_or(WriteReport{});
-  }
+  Interrupted() { mix(memory); }
+  void journaled(const JournalRecord& record) { ASSERT_TRUE(journal.append(record).ok()); }
   [[nodiscard]] bool untouched() const {
-    return memory_.ram.at("right_wheel_diameter") == 149800 &&
-           memory_.ram.at("left_wheel_diameter") == 150000 && controller_.stores == 0;
+    return memory.ram.at("right_wheel_diameter") == 149800 &&
+           memory.ram.at("left_wheel_diameter") == 150000 && controller.stores == 0;
   }
   void let_fail(int job) {
-    controller_.fail_at = controller_.jobs + job;
-    controller_.mishap = Mishap::abort;
+    controller.fail_at = controller.jobs + job;
+    controller.mishap = Mishap::abort;
   }
-
-  const Folder folder_;
-  Memory memory_;
-  FakeController controller_{memory_};
-  Journal journal_;
-  Transaction transaction_{journal_};
 };
 
 TEST_F(Interrupted, a_read_that_fails_touches_neither_journal_nor_controller_and_the_next_one_restores) {
@@ -45,18 +31,18 @@ TEST_F(Interrupted, a_read_that_fails_touches_neither_journal_nor_controller_and
   const auto failed = recover();
   EXPECT_EQ(failed.outcome, WriteOutcome::read);
   EXPECT_TRUE(failed.error && failed.steps.empty() && untouched());
-  EXPECT_EQ(journal_.last()->state, JournalState::write);
-  EXPECT_EQ(journal_.unfinished()->before, kOld);
+  EXPECT_EQ(journal.last()->state, JournalState::write);
+  EXPECT_EQ(journal.unfinished()->before, kOld);
   EXPECT_EQ(recover().outcome, WriteOutcome::rolled_back);
-  EXPECT_TRUE(is_old(memory_.ram));
-  EXPECT_FALSE(journal_.unfinished());
+  EXPECT_TRUE(is_old(memory.ram));
+  EXPECT_FALSE(journal.unfinished());
 }
 
 TEST_F(Interrupted, an_apply_whose_read_fails_leaves_the_journal_as_it_was) {
   journaled(record_of(JournalState::write));
   let_fail(0);
   EXPECT_EQ(write(kNew).outcome, WriteOutcome::unknown);
-  EXPECT_EQ(journal_.last()->state, JournalState::write);
+  EXPECT_EQ(journal.last()->state, JournalState::write);
   EXPECT_TRUE(untouched());
 }
 
@@ -75,12 +61,12 @@ TEST_F(Interrupted, an_empty_set_is_held_by_nobody) {
 
 TEST_F(Interrupted, nothing_is_undone_while_the_wheels_turn) {
   journaled(record_of(JournalState::write));
-  controller_.rests = false;
-  ASSERT_TRUE(transaction_.recover().ok());
-  EXPECT_FALSE(run(transaction_, controller_, 100));
-  EXPECT_EQ(controller_.jobs, 1);  // the read
-  controller_.rests = true;
-  EXPECT_EQ(run(transaction_, controller_).value_or(WriteReport{}).outcome, WriteOutcome::rolled_back);
+  controller.rests = false;
+  ASSERT_TRUE(transaction.recover().ok());
+  EXPECT_FALSE(run(transaction, controller, 100));
+  EXPECT_EQ(controller.jobs, 1);  // the read
+  controller.rests = true;
+  EXPECT_EQ(finish().outcome, WriteOutcome::rolled_back);
 }
 
 TEST_F(Interrupted, a_second_apply_that_fails_goes_back_to_the_values_of_the_journal_not_to_the_mixture) {
@@ -89,25 +75,25 @@ TEST_F(Interrupted, a_second_apply_that_fails_goes_back_to_the_values_of_the_jou
   const auto report = write(kNew);
   EXPECT_EQ(report.outcome, WriteOutcome::rolled_back);
   EXPECT_EQ(report.before, kOld);
-  EXPECT_TRUE(is_old(memory_.ram) && is_old(memory_.stored));
-  EXPECT_FALSE(journal_.unfinished());
+  EXPECT_TRUE(all_old());
+  EXPECT_FALSE(journal.unfinished());
 }
 
 TEST_F(Interrupted, a_second_apply_that_dies_is_recovered_to_the_same_old_values_in_permanent_memory_too) {
   journaled(record_of(JournalState::needs_operator));
-  ASSERT_TRUE(transaction_.write("apply", kNew).ok());
-  EXPECT_FALSE(run(transaction_, controller_, 1));  // journaled, not yet written
-  Transaction next(journal_);
+  ASSERT_TRUE(transaction.write("apply", kNew).ok());
+  EXPECT_FALSE(run(transaction, controller, 1));  // journaled, not yet written
+  Transaction next(journal);
   ASSERT_TRUE(next.recover().ok());
-  EXPECT_EQ(run(next, controller_).value_or(WriteReport{}).outcome, WriteOutcome::rolled_back);
-  EXPECT_TRUE(is_old(memory_.ram) && is_old(memory_.stored));
+  EXPECT_EQ(run(next, controller).value().outcome, WriteOutcome::rolled_back);
+  EXPECT_TRUE(all_old());
 }
 
 TEST_F(Interrupted, a_deliberate_apply_of_a_whole_set_is_a_way_out) {
   journaled(record_of(JournalState::needs_operator));
   EXPECT_EQ(write(kNew).outcome, WriteOutcome::committed);
-  EXPECT_TRUE(is_new(memory_.ram) && is_new(memory_.stored));
-  EXPECT_FALSE(journal_.unfinished());
+  EXPECT_TRUE(all_new());
+  EXPECT_FALSE(journal.unfinished());
 }
 
 TEST_F(Interrupted, a_part_of_the_values_does_not_close_the_journal) {
@@ -116,7 +102,7 @@ TEST_F(Interrupted, a_part_of_the_values_does_not_close_the_journal) {
   EXPECT_EQ(report.outcome, WriteOutcome::unknown);
   ASSERT_TRUE(report.error);
   EXPECT_NE(report.error->what.find("mixture"), std::string::npos);
-  EXPECT_TRUE(journal_.unfinished() && untouched());
+  EXPECT_TRUE(journal.unfinished() && untouched());
 }
 
 TEST_F(Interrupted, an_apply_that_fails_where_no_old_values_are_known_still_needs_an_operator) {
@@ -126,30 +112,30 @@ TEST_F(Interrupted, an_apply_that_fails_where_no_old_values_are_known_still_need
   journaled(record);
   let_fail(1);
   EXPECT_EQ(write(kNew).outcome, WriteOutcome::unknown);
-  EXPECT_TRUE(journal_.unfinished());
+  EXPECT_TRUE(journal.unfinished());
   EXPECT_EQ(write({{"track_width", 0.4021}}).outcome, WriteOutcome::unknown);
   EXPECT_EQ(write(kNew).outcome, WriteOutcome::committed);
 }
 
 TEST_F(Interrupted, what_was_never_stored_is_restored_without_a_store) {
   journaled(record_of(JournalState::write));
-  memory_.stored = Memory{}.stored;
+  memory.stored = Memory{}.stored;
   EXPECT_EQ(recover().outcome, WriteOutcome::rolled_back);
-  EXPECT_TRUE(is_old(memory_.ram));
-  EXPECT_EQ(controller_.stores, 0);
+  EXPECT_TRUE(is_old(memory.ram));
+  EXPECT_EQ(controller.stores, 0);
 }
 
 drivers::Identity drive(std::uint32_t serial) { return {0x0FEE, 0x0D15, 1, serial, "drive"}; }
 
 TEST_F(Interrupted, another_controller_is_not_written) {
-  controller_.who = drive(1);
+  controller.who = drive(1);
   JournalRecord record = record_of(JournalState::write);
-  record.device = device_of(controller_);
+  record.device = device_of(controller);
   journaled(record);
-  controller_.who = drive(2);
+  controller.who = drive(2);
   for (const auto& values : {kOld, kNew}) {
-    for (const auto& [name, value] : values) memory_.ram[name] = std::llround(value * 1e6);
-    const auto before = memory_.ram;
+    for (const auto& [name, value] : values) memory.ram[name] = std::llround(value * 1e6);
+    const auto before = memory.ram;
     const auto report = recover();
     EXPECT_EQ(report.outcome, WriteOutcome::unknown);
     ASSERT_TRUE(report.error);
@@ -157,11 +143,11 @@ TEST_F(Interrupted, another_controller_is_not_written) {
               std::string::npos)
         << report.error->what;
     EXPECT_TRUE(report.steps.empty());
-    EXPECT_EQ(controller_.stores, 0);
-    EXPECT_EQ(memory_.ram, before);
-    EXPECT_EQ(journal_.last()->state, JournalState::write);
+    EXPECT_EQ(controller.stores, 0);
+    EXPECT_EQ(memory.ram, before);
+    EXPECT_EQ(journal.last()->state, JournalState::write);
   }
-  controller_.who = drive(1);
+  controller.who = drive(1);
   EXPECT_NE(recover().outcome, WriteOutcome::unknown);
 }
 
@@ -169,22 +155,22 @@ TEST_F(Interrupted, an_apply_to_another_controller_goes_back_to_what_that_one_he
   JournalRecord record = record_of(JournalState::needs_operator);
   record.device = "somebody else";
   journaled(record);
-  controller_.who = drive(2);
-  memory_.ram["track_width"] = memory_.stored["track_width"] = 500000;
+  controller.who = drive(2);
+  memory.ram["track_width"] = memory.stored["track_width"] = 500000;
   let_fail(1);
   EXPECT_EQ(write(kNew).outcome, WriteOutcome::rolled_back);
-  EXPECT_EQ(memory_.ram.at("track_width"), 500000);
+  EXPECT_EQ(memory.ram.at("track_width"), 500000);
 }
 
 TEST_F(Interrupted, the_calibration_of_the_journal_comes_with_the_commit_of_the_recovery) {
   JournalRecord record = record_of(JournalState::store_begin);
   record.calibration = "an id";
   journaled(record);
-  for (const auto& [name, value] : kNew) memory_.ram[name] = std::llround(value * 1e6);
+  for (const auto& [name, value] : kNew) memory.ram[name] = std::llround(value * 1e6);
   const auto report = recover();
   EXPECT_EQ(report.outcome, WriteOutcome::committed);
   EXPECT_EQ(report.calibration, "an id");
-  EXPECT_EQ(journal_.last()->calibration, "an id");
+  EXPECT_EQ(journal.last()->calibration, "an id");
 }
 
 }  // namespace

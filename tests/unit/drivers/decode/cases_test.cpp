@@ -3,15 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "drivers/decode/decode.hpp"
+#include "tests/unit/drivers/decoded.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
 namespace odomcalib::drivers::cases_test {
 namespace {
 
 using nlohmann::json;
+using test::named;
+using test::of_type;
 
 // NOLINTBEGIN(bugprone-macro-parentheses): a declaration takes none
 #define SKIP_WITHOUT_CASES(folder)   \
@@ -20,27 +22,9 @@ using nlohmann::json;
 // NOLINTEND(bugprone-macro-parentheses)
 
 std::vector<json> decoded(const std::string& driver, const std::filesystem::path& file) {
-  const auto text = decode(driver, test::read_text(file), "drivers/base/profiles", file.string());
-  EXPECT_TRUE(text.ok()) << driver << ": " << (text.ok() ? "" : text.error().text());
-  std::vector<json> out;
-  std::istringstream in(text.ok() ? text.value() : "");
-  for (std::string line; std::getline(in, line);) out.push_back(json::parse(line));
-  if (out.empty()) out.push_back(json::object());
-  return out;
-}
-
-std::vector<json> of_type(const std::vector<json>& lines, const std::string& type) {
-  std::vector<json> out;
-  for (const json& line : lines)
-    if (line.value("type", "") == type) out.push_back(line);
-  return out;
-}
-
-std::vector<json> named(const std::vector<json>& lines, const std::string& name) {
-  std::vector<json> out;
-  for (const json& line : lines)
-    if (line.value("name", "") == name) out.push_back(line);
-  return out;
+  auto lines = test::lines_of(decode(driver, test::read_text(file), test::kProfiles, file.string()));
+  if (lines.empty()) lines.push_back(json::object());
+  return lines;
 }
 
 /// Ranges are rounded to millimetres or quarters of them, angles to 1/64 degree: 3 mm at 2.8 m.
@@ -129,7 +113,7 @@ TEST(Cases, what_candump_prints_on_the_screen_is_refused_with_what_helps) {
   for (const std::string driver : {"canopen:zlac8015d", "vesc"}) {
     for (const std::string file : {"view.txt", "view_t.txt"}) {
       const auto text =
-          decode(driver, test::read_text(folder / "candump-screen" / file), "drivers/base/profiles", file);
+          decode(driver, test::read_text(folder / "candump-screen" / file), test::kProfiles, file);
       ASSERT_FALSE(text.ok()) << file;
       EXPECT_EQ(text.error().code, ErrorCode::format);
       EXPECT_NE(text.error().text().find("candump -L"), std::string::npos);
@@ -142,8 +126,7 @@ TEST(Cases, what_candump_prints_on_the_screen_is_refused_with_what_helps) {
 }
 
 TEST(Cases, a_network_capture_is_read_as_it_stands) {
-  const auto folder = test::captures();
-  if (folder.empty()) GTEST_SKIP() << "no captures: set ODOMCALIB_SHARED to the folder that holds captures/";
+  ODOMCALIB_CAPTURES(folder);
   const auto lines = decoded("sick", folder / "sick-tim781s/tim781s_1s.pcapng");
   const auto scans = of_type(lines, "scan");
   ASSERT_EQ(scans.size(), 16U);

@@ -1,33 +1,20 @@
 // Logs of controllers through `decode`: real captures, and frames written down from the protocols.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "drivers/can/candump.hpp"
 #include "drivers/decode/decode.hpp"
+#include "tests/unit/drivers/decoded.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
 namespace odomcalib::drivers::decode_controllers_test {
 namespace {
 
 using nlohmann::json;
-
-constexpr const char* kProfiles = "drivers/base/profiles";
+using test::kProfiles;
+using test::named;
 
 std::vector<json> lines_of(const std::string& driver, const std::string& text) {
-  const auto decoded = decode(driver, text, kProfiles, "test");
-  EXPECT_TRUE(decoded.ok()) << driver;
-  std::vector<json> lines;
-  std::istringstream in(decoded.ok() ? decoded.value() : "");
-  for (std::string line; std::getline(in, line);) lines.push_back(json::parse(line));
-  return lines;
-}
-
-std::vector<json> named(const std::vector<json>& lines, const std::string& name) {
-  std::vector<json> out;
-  for (const json& line : lines)
-    if (line.value("name", line.value("type", "")) == name) out.push_back(line);
-  return out;
+  return test::lines_of(decode(driver, text, kProfiles, "test"));
 }
 
 void expect_all_good(const std::vector<json>& lines) {
@@ -37,9 +24,9 @@ void expect_all_good(const std::vector<json>& lines) {
   for (const auto& [name, count] : summary["rejected"].items()) EXPECT_EQ(count, 0) << name;
 }
 
-#define CAPTURE(text, path)                                                                              \
-  if (test::captures().empty()) GTEST_SKIP() << "no captures: set ODOMCALIB_SHARED to the folder above"; \
-  const std::string text = test::read_text(test::captures() / (path))
+#define CAPTURE(text, path)     \
+  ODOMCALIB_CAPTURES(captures); \
+  const std::string text = test::read_text(captures / (path))
 
 TEST(Captures, agilex_hunter_counts_in_24_bits) {
   CAPTURE(text, "agilex/hunter_se.log");

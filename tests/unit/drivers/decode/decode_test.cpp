@@ -4,30 +4,18 @@
 #include <linux/can.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "drivers/can/candump.hpp"
 #include "drivers/can/socketcan_frame.hpp"
+#include "tests/unit/drivers/decoded.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
 namespace odomcalib::drivers::decode_test {
 namespace {
 
-const std::string kProfiles = "drivers/base/profiles";
-
-std::vector<nlohmann::json> lines_of(const Result<std::string>& text) {
-  EXPECT_TRUE(text.ok());
-  std::vector<nlohmann::json> out;
-  std::istringstream in(text.ok() ? text.value() : "");
-  for (std::string line; std::getline(in, line);) out.push_back(nlohmann::json::parse(line));
-  return out;
-}
-
-void expect_accounted_summary(const nlohmann::json& line) {
-  ASSERT_EQ(line["type"], "summary");
-  EXPECT_EQ(line["bytes_in"].get<int>(),
-            line["good"].get<int>() + line["skipped"].get<int>() + line["buffered"].get<int>());
-}
+using test::expect_accounted_summary;
+using test::kProfiles;
+using test::lines_of;
 
 int count(const std::vector<nlohmann::json>& lines, const std::string& name) {
   int n = 0;
@@ -110,8 +98,7 @@ TEST(Candump, no_damaged_line_gives_a_frame_that_cannot_be_written_again) {
 }
 
 TEST(Decode, the_commissioning_of_a_real_drive_is_read_completely) {
-  const auto folder = test::captures();
-  if (folder.empty()) GTEST_SKIP() << "no captures: set ODOMCALIB_SHARED to the folder that holds captures/";
+  ODOMCALIB_CAPTURES(folder);
   const auto lines = lines_of(
       decode("canopen:zlac8015d", test::read_text(folder / "zlac8015d/commissioning.log"), kProfiles, "log"));
   ASSERT_EQ(lines.size(), 216U);  // 215 frames and the summary
@@ -126,8 +113,7 @@ TEST(Decode, the_commissioning_of_a_real_drive_is_read_completely) {
 }
 
 TEST(Decode, aborts_of_real_drives_are_put_into_words) {
-  const auto folder = test::captures();
-  if (folder.empty()) GTEST_SKIP() << "no captures: set ODOMCALIB_SHARED to the folder that holds captures/";
+  ODOMCALIB_CAPTURES(folder);
   const auto refused = lines_of(decode(
       "canopen:sim-dual", test::read_text(folder / "orientalmotor-blvd/aborts.log"), kProfiles, "log"));
   ASSERT_EQ(count(refused, "sdo_abort"), 2);

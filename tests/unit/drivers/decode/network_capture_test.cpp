@@ -4,17 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
 
 #include "drivers/decode/decode.hpp"
+#include "tests/unit/drivers/decoded.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
 namespace odomcalib::drivers::network_capture_test {
 namespace {
 
 using test::ByteString;
+using test::lines_of;
 
 std::string big(std::uint64_t value, int bytes) {
   std::string out;
@@ -172,14 +173,6 @@ TEST(NetworkCapture, no_cut_or_changed_file_is_read_past_its_end) {
     changed[24 + random() % (changed.size() - 24)] = static_cast<char>(random() & 0xFF);
     (void)read_network_capture(changed, "test");
   }
-}
-
-std::vector<nlohmann::json> lines_of(const Result<std::string>& text) {
-  std::vector<nlohmann::json> out;
-  EXPECT_TRUE(text.ok()) << (text.ok() ? "" : text.error().text());
-  std::istringstream in(text.ok() ? text.value() : "");
-  for (std::string line; std::getline(in, line);) out.push_back(nlohmann::json::parse(line));
-  return out;
 }
 
 /// A text telegram of a SICK.

@@ -3,41 +3,22 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "drivers/decode/decode.hpp"
+#include "tests/unit/drivers/decoded.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
 namespace odomcalib::drivers::lidar_captures_test {
 namespace {
 
 using nlohmann::json;
-
-// NOLINTBEGIN(bugprone-macro-parentheses): a declaration takes none
-#define SKIP_WITHOUT_CAPTURES(folder)   \
-  const auto folder = test::captures(); \
-  if (folder.empty()) GTEST_SKIP() << "no captures: set ODOMCALIB_SHARED to the folder that holds captures/"
-// NOLINTEND(bugprone-macro-parentheses)
+using test::of_type;
 
 std::vector<json> decoded(const std::string& driver, const std::filesystem::path& file) {
-  const auto text = decode(driver, test::read_text(file), "", file.string());
-  EXPECT_TRUE(text.ok()) << (text.ok() ? "" : text.error().text());
-  std::vector<json> out;
-  std::istringstream in(text.ok() ? text.value() : "");
-  for (std::string line; std::getline(in, line);) out.push_back(json::parse(line));
-  EXPECT_EQ(out.back()["type"], "summary");
-  EXPECT_EQ(
-      out.back()["bytes_in"].get<int>(),
-      out.back()["good"].get<int>() + out.back()["skipped"].get<int>() + out.back()["buffered"].get<int>());
-  return out;
-}
-
-std::vector<json> of_type(const std::vector<json>& lines, const std::string& type) {
-  std::vector<json> out;
-  for (const json& line : lines)
-    if (line["type"] == type) out.push_back(line);
-  return out;
+  auto lines = test::lines_of(decode(driver, test::read_text(file), "", file.string()));
+  test::expect_accounted_summary(lines.back());
+  return lines;
 }
 
 /// Whole millimetres, 0 for no reading.
@@ -57,7 +38,7 @@ std::vector<int> without_codes(std::vector<int> raw) {
 }
 
 TEST(LidarCaptures, express_capsules_of_an_rplidar) {
-  SKIP_WITHOUT_CAPTURES(folder);
+  ODOMCALIB_CAPTURES(folder);
   const auto lines = decoded("rplidar", folder / "rplidar/express_capsules.txt");
   std::vector<double> angles, ranges;
   std::vector<std::size_t> turns;
@@ -89,7 +70,7 @@ TEST(LidarCaptures, express_capsules_of_an_rplidar) {
 }
 
 TEST(LidarCaptures, handshake_of_an_rplidar) {
-  SKIP_WITHOUT_CAPTURES(folder);
+  ODOMCALIB_CAPTURES(folder);
   const auto lines = decoded("rplidar", folder / "rplidar/a1_handshake.txt");
   ASSERT_EQ(lines.size(), 8U);
   EXPECT_EQ(lines[0]["name"], "rplidar_health");
@@ -104,7 +85,7 @@ TEST(LidarCaptures, handshake_of_an_rplidar) {
 }
 
 TEST(LidarCaptures, triangle_stream_of_a_ydlidar) {
-  SKIP_WITHOUT_CAPTURES(folder);
+  ODOMCALIB_CAPTURES(folder);
   const auto lines = decoded("ydlidar", folder / "ydlidar/triangle_stream.txt");
   std::vector<double> angles;
   std::vector<int> ranges;
@@ -131,7 +112,7 @@ TEST(LidarCaptures, triangle_stream_of_a_ydlidar) {
 }
 
 TEST(LidarCaptures, session_of_a_hokuyo_client) {
-  SKIP_WITHOUT_CAPTURES(folder);
+  ODOMCALIB_CAPTURES(folder);
   const auto path = folder / "hokuyo-utm30lx-ew-sim";
   const auto lines = decoded("hokuyo", path / "session.txt");
   const json expected = json::parse(test::read_text(path / "expected.json"));
@@ -159,7 +140,7 @@ TEST(LidarCaptures, session_of_a_hokuyo_client) {
 }
 
 TEST(LidarCaptures, session_of_a_sick_lms111) {
-  SKIP_WITHOUT_CAPTURES(folder);
+  ODOMCALIB_CAPTURES(folder);
   const auto lines = decoded("cola", folder / "sick-lms111/lms111.txt");
   const json expected = json::parse(test::read_text(folder / "sick-lms111/lms111.expected.json"));
   const auto scans = of_type(lines, "scan");
@@ -188,7 +169,7 @@ TEST(LidarCaptures, session_of_a_sick_lms111) {
 }
 
 TEST(LidarCaptures, text_telegrams_of_a_sick_tim551) {
-  SKIP_WITHOUT_CAPTURES(folder);
+  ODOMCALIB_CAPTURES(folder);
   const auto lines = decoded("cola", folder / "sick-tim551/tim551_cola_a.txt");
   const json expected = json::parse(test::read_text(folder / "sick-tim551/tim551_cola_a.expected.json"));
   const auto scans = of_type(lines, "scan");
@@ -223,14 +204,9 @@ std::string payloads(const std::string& file, unsigned port) {
 }
 
 TEST(LidarCaptures, network_traffic_of_a_sick_tim781s) {
-  SKIP_WITHOUT_CAPTURES(folder);
+  ODOMCALIB_CAPTURES(folder);
   const std::string bytes = payloads(test::read_text(folder / "sick-tim781s/tim781s_1s.pcapng"), 2112);
-  const auto text = decode("sick", bytes, "", "capture");
-  ASSERT_TRUE(text.ok());
-  std::vector<json> scans;
-  std::istringstream in(text.value());
-  for (std::string line; std::getline(in, line);)
-    if (const json parsed = json::parse(line); parsed["type"] == "scan") scans.push_back(parsed);
+  const auto scans = of_type(test::lines_of(decode("sick", bytes, "", "capture")), "scan");
   ASSERT_EQ(scans.size(), 16U);
   for (const json& scan : scans) {
     EXPECT_EQ(scan["ranges"].size(), 811U);
@@ -247,7 +223,7 @@ TEST(LidarCaptures, network_traffic_of_a_sick_tim781s) {
 }
 
 TEST(LidarCaptures, one_packet_of_a_neato_xv11) {
-  SKIP_WITHOUT_CAPTURES(folder);
+  ODOMCALIB_CAPTURES(folder);
   const auto lines = decoded("xv11", folder / "neato-xv11/xv11_packet.txt");
   const json packet = of_type(lines, "message").at(0);
   EXPECT_EQ(packet["index"], 17);

@@ -63,12 +63,11 @@ Result<std::vector<std::uint8_t>> read_soon(ByteStream& port) {
 }
 
 TEST(DeviceString, is_taken_apart) {
-  const auto device = parse_device("slcan:/dev/ttyACM0?bitrate=250000&baud=1000000");
-  ASSERT_TRUE(device.ok());
-  EXPECT_EQ(device.value().scheme, "slcan");
-  EXPECT_EQ(device.value().path, "/dev/ttyACM0");
-  EXPECT_EQ(device.value().option("bitrate", ""), "250000");
-  EXPECT_EQ(device.value().option("missing", "7"), "7");
+  const auto device = value_of(parse_device("slcan:/dev/ttyACM0?bitrate=250000&baud=1000000"));
+  EXPECT_EQ(device.scheme, "slcan");
+  EXPECT_EQ(device.path, "/dev/ttyACM0");
+  EXPECT_EQ(device.option("bitrate", ""), "250000");
+  EXPECT_EQ(device.option("missing", "7"), "7");
   EXPECT_TRUE(parse_device("tcp:192.168.0.10:2112").ok());
 }
 
@@ -86,44 +85,39 @@ TEST(DeviceString, that_is_wrong_is_refused_with_an_example) {
 TEST(Serial, carries_every_byte_value_unchanged_in_both_directions) {
   for (const unsigned baud : {115200U, 230400U, 256000U}) {
     Pty pty;
-    auto port = open_serial(pty.path, baud);
-    ASSERT_TRUE(port.ok()) << port.error().text();
+    auto port = value_of(open_serial(pty.path, baud));
     std::string all;
     for (int i = 0; i < 256; ++i) all += static_cast<char>(i);
     pty.say(all);
     test::ByteString got;
     while (got.size() < all.size()) {
-      const auto more = read_soon(*port.value());
-      ASSERT_TRUE(more.ok());
-      ASSERT_FALSE(more.value().empty());
-      got.insert(got.end(), more.value().begin(), more.value().end());
+      const auto more = value_of(read_soon(*port));
+      ASSERT_FALSE(more.empty());
+      got.insert(got.end(), more.begin(), more.end());
     }
     EXPECT_EQ(got, test::bytes_of(all));
-    ASSERT_TRUE(port.value()->write(test::bytes_of(all)).ok());
+    ASSERT_TRUE(port->write(test::bytes_of(all)).ok());
     EXPECT_EQ(pty.hear(), all);
   }
 }
 
 TEST(Serial, silence_is_empty_and_unplugging_is_an_error) {
   Pty pty;
-  auto port = open_serial(pty.path, 115200);
-  ASSERT_TRUE(port.ok());
-  const auto nothing = port.value()->read();
-  ASSERT_TRUE(nothing.ok());
-  EXPECT_TRUE(nothing.value().empty());
+  auto port = value_of(open_serial(pty.path, 115200));
+  const auto nothing = value_of(port->read());
+  EXPECT_TRUE(nothing.empty());
   pty.unplug();
-  const auto gone = read_soon(*port.value());
+  const auto gone = read_soon(*port);
   ASSERT_FALSE(gone.ok());
   EXPECT_EQ(gone.error().code, ErrorCode::device);
-  EXPECT_FALSE(port.value()->write(test::bytes_of("x")).ok());
+  EXPECT_FALSE(port->write(test::bytes_of("x")).ok());
 }
 
 TEST(Serial, a_port_in_use_or_absent_is_refused_and_can_be_opened_again_later) {
   Pty pty;
-  auto first = open_serial(pty.path, 115200);
-  ASSERT_TRUE(first.ok());
+  auto first = value_of(open_serial(pty.path, 115200));
   EXPECT_FALSE(open_serial(pty.path, 115200).ok());
-  first.value().reset();
+  first.reset();
   EXPECT_TRUE(open_serial(pty.path, 115200).ok());
   EXPECT_NE(open_serial("/dev/does-not-exist", 115200).error().text().find("by-id"), std::string::npos);
   EXPECT_EQ(open_serial(pty.path, 0).error().code, ErrorCode::usage);
@@ -147,11 +141,10 @@ TEST(Serial, what_is_no_serial_port_is_refused_and_leaves_no_descriptor_open) {
 
 TEST(Serial, a_device_that_takes_nothing_does_not_block) {
   Pty pty;
-  auto port = open_serial(pty.path, 115200);
-  ASSERT_TRUE(port.ok());
+  auto port = value_of(open_serial(pty.path, 115200));
   const test::ByteString block(4096, 'x');
   bool full = false;
-  for (int i = 0; i < 100 && !full; ++i) full = !port.value()->write(block).ok();
+  for (int i = 0; i < 100 && !full; ++i) full = !port->write(block).ok();
   EXPECT_TRUE(full);
 }
 
@@ -184,6 +177,22 @@ void play_adapter(const Pty& pty, const std::string& to_rate, const std::string&
   }
 }
 
+/// Opens the port of an adapter that answers so.
+Result<std::unique_ptr<CanTransport>> open_slcan(const Pty& pty, const std::string& options,
+                                                 const std::string& to_rate, const std::string& to_open) {
+  std::string heard;
+  std::thread adapter([&] { play_adapter(pty, to_rate, to_open, heard); });
+  auto can = open_can("slcan:" + pty.path + options);
+  adapter.join();
+  return can;
+}
+
+std::vector<CanFrame> frames_soon(CanTransport& can) {
+  pollfd state{can.fd(), POLLIN, 0};
+  EXPECT_EQ(poll(&state, 1, 1000), 1);
+  return value_of(can.receive(5.0));
+}
+
 TEST(SlcanPort, sets_up_the_adapter_and_passes_frames) {
   Pty pty;
   std::string heard;
@@ -193,13 +202,10 @@ TEST(SlcanPort, sets_up_the_adapter_and_passes_frames) {
   ASSERT_TRUE(can.ok()) << can.error().text();
   EXPECT_EQ(heard, "\r\r\rC\rS6\rO\r");
   pty.say("t1232AABB\r");
-  pollfd state{can.value()->fd(), POLLIN, 0};
-  ASSERT_EQ(poll(&state, 1, 1000), 1);
-  const auto frames = can.value()->receive(5.0);
-  ASSERT_TRUE(frames.ok());
-  ASSERT_EQ(frames.value().size(), 1U);
-  EXPECT_EQ(frames.value()[0].id, 0x123U);
-  EXPECT_EQ(frames.value()[0].t, 5.0);  // without a baud rate no transfer time is known
+  const auto frames = frames_soon(*can.value());
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].id, 0x123U);
+  EXPECT_EQ(frames[0].t, 5.0);  // without a baud rate no transfer time is known
   CanFrame frame;
   frame.id = 0x601;
   frame.length = 1;
@@ -210,27 +216,17 @@ TEST(SlcanPort, sets_up_the_adapter_and_passes_frames) {
 
 TEST(SlcanPort, frames_of_one_read_are_dated_by_what_came_after_them) {
   Pty pty;
-  std::string heard;
-  std::thread adapter([&] { play_adapter(pty, "\r", "\r", heard); });
-  auto can = open_can("slcan:" + pty.path + "?bitrate=500000&baud=115200");
-  adapter.join();
-  ASSERT_TRUE(can.ok()) << can.error().text();
+  const auto can = value_of(open_slcan(pty, "?bitrate=500000&baud=115200", "\r", "\r"));
   pty.say("t1232AABB\rt1240\r");  // 10 and 6 characters of 10 bits each
-  pollfd state{can.value()->fd(), POLLIN, 0};
-  ASSERT_EQ(poll(&state, 1, 1000), 1);
-  const auto frames = can.value()->receive(5.0);
-  ASSERT_TRUE(frames.ok());
-  ASSERT_EQ(frames.value().size(), 2U);
-  EXPECT_NEAR(frames.value()[0].t, 5.0 - 160.0 / 115200.0, 1e-9);
-  EXPECT_NEAR(frames.value()[1].t, 5.0 - 60.0 / 115200.0, 1e-9);
+  const auto frames = frames_soon(*can);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_NEAR(frames[0].t, 5.0 - 160.0 / 115200.0, 1e-9);
+  EXPECT_NEAR(frames[1].t, 5.0 - 60.0 / 115200.0, 1e-9);
 }
 
 TEST(SlcanPort, an_adapter_that_refuses_is_named_as_such) {
   Pty refusing;
-  std::string heard;
-  std::thread adapter([&] { play_adapter(refusing, "\r", "\a", heard); });
-  const auto can = open_can("slcan:" + refusing.path);
-  adapter.join();
+  const auto can = open_slcan(refusing, "", "\r", "\a");
   ASSERT_FALSE(can.ok());
   EXPECT_NE(can.error().text().find("does not open"), std::string::npos);
   EXPECT_EQ(open_can("slcan:" + refusing.path + "?bitrate=333").error().code, ErrorCode::usage);
@@ -239,28 +235,19 @@ TEST(SlcanPort, an_adapter_that_refuses_is_named_as_such) {
 
 TEST(SlcanPort, an_adapter_that_acknowledges_nothing_is_used_and_told_until_it_passes_frames) {
   Pty silent;
-  const auto can = open_can("slcan:" + silent.path);
-  ASSERT_TRUE(can.ok()) << can.error().text();
-  EXPECT_NE(can.value()->note().find("acknowledges nothing"), std::string::npos);
-  EXPECT_EQ(can.value()->counters().at("unacknowledged"), 1U);
+  const auto can = value_of(open_can("slcan:" + silent.path));
+  EXPECT_NE(can->note().find("acknowledges nothing"), std::string::npos);
+  EXPECT_EQ(can->counters().at("unacknowledged"), 1U);
   silent.say("t1232AABB\r");
-  pollfd state{can.value()->fd(), POLLIN, 0};
-  ASSERT_EQ(poll(&state, 1, 1000), 1);
-  const auto frames = can.value()->receive(5.0);
-  ASSERT_TRUE(frames.ok());
-  EXPECT_EQ(frames.value().size(), 1U);
-  EXPECT_EQ(can.value()->note(), "");
+  EXPECT_EQ(frames_soon(*can).size(), 1U);
+  EXPECT_EQ(can->note(), "");
 }
 
 TEST(SlcanPort, an_adapter_that_acknowledges_needs_no_note) {
   Pty pty;
-  std::string heard;
-  std::thread adapter([&] { play_adapter(pty, "\r\n", "\r\n", heard); });
-  const auto can = open_can("slcan:" + pty.path);
-  adapter.join();
-  ASSERT_TRUE(can.ok());
-  EXPECT_EQ(can.value()->note(), "");
-  EXPECT_EQ(can.value()->counters().at("unacknowledged"), 0U);
+  const auto can = value_of(open_slcan(pty, "", "\r\n", "\r\n"));
+  EXPECT_EQ(can->note(), "");
+  EXPECT_EQ(can->counters().at("unacknowledged"), 0U);
 }
 
 TEST(SocketCan, what_is_missing_is_named_with_a_command_that_helps) {

@@ -8,6 +8,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tests/value_of.hpp"
+
 namespace odomcalib::calibration_test {
 namespace {
 
@@ -43,17 +45,16 @@ Calibration example() {
 // Equal texts mean equal members: to_json writes all of them, with numbers that read back unchanged.
 TEST(CalibrationFile, read_returns_what_was_written) {
   const auto text = to_json(example());
-  const auto back = calibration_from_json(text, "test");
-  ASSERT_TRUE(back.ok()) << back.error().text();
-  EXPECT_EQ(to_json(back.value()), text);
-  EXPECT_EQ(back.value().parameters[0].second.value, 0.1539999999999999);
-  EXPECT_EQ(back.value().covariance, example().covariance);
-  EXPECT_EQ(back.value().extensions, example().extensions);
-  EXPECT_EQ(back.value().robot.lidar_pose, example().robot.lidar_pose);
-  EXPECT_EQ(back.value().methods[0].refused, "only 1 straight run");
-  EXPECT_EQ(back.value().data[0].counts, example().data[0].counts);
-  EXPECT_EQ(back.value().data[0].choices, example().data[0].choices);
-  EXPECT_EQ(back.value().verdict, Verdict::accepted_with_warnings);
+  const auto back = value_of(calibration_from_json(text, "test"));
+  EXPECT_EQ(to_json(back), text);
+  EXPECT_EQ(back.parameters[0].second.value, 0.1539999999999999);
+  EXPECT_EQ(back.covariance, example().covariance);
+  EXPECT_EQ(back.extensions, example().extensions);
+  EXPECT_EQ(back.robot.lidar_pose, example().robot.lidar_pose);
+  EXPECT_EQ(back.methods[0].refused, "only 1 straight run");
+  EXPECT_EQ(back.data[0].counts, example().data[0].counts);
+  EXPECT_EQ(back.data[0].choices, example().data[0].choices);
+  EXPECT_EQ(back.verdict, Verdict::accepted_with_warnings);
 }
 
 TEST(CalibrationFile, has_the_members_of_the_format) {
@@ -86,17 +87,15 @@ TEST(CalibrationFile, writes_no_nan_and_no_infinity) {
   const auto text = to_json(c);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   EXPECT_EQ(text.find("inf"), std::string::npos);
-  const auto back = calibration_from_json(text, "test");
-  ASSERT_TRUE(back.ok()) << back.error().text();
-  EXPECT_TRUE(std::isnan(*back.value().parameter("left_wheel_diameter")));
-  EXPECT_EQ(to_json(back.value()), text);
+  const auto back = value_of(calibration_from_json(text, "test"));
+  EXPECT_TRUE(std::isnan(*back.parameter("left_wheel_diameter")));
+  EXPECT_EQ(to_json(back), text);
 }
 
 TEST(CalibrationFile, of_an_unfinished_solve_is_refused_and_says_so) {
-  const auto back = calibration_from_json(to_json(Calibration{}), "test");
-  ASSERT_TRUE(back.ok());
-  EXPECT_EQ(back.value().verdict, Verdict::refused);
-  EXPECT_EQ(back.value().reasons.at(0), "solve was not called");
+  const auto back = value_of(calibration_from_json(to_json(Calibration{}), "test"));
+  EXPECT_EQ(back.verdict, Verdict::refused);
+  EXPECT_EQ(back.reasons.at(0), "solve was not called");
 }
 
 TEST(CalibrationFile, rejects_damage_and_names_the_member) {
@@ -143,9 +142,8 @@ TEST(CalibrationFile, replaces_the_old_file_as_a_whole) {
   const auto path = folder / "cal.json";
   ASSERT_TRUE(write_calibration(Calibration{}, path).ok());
   ASSERT_TRUE(write_calibration(example(), path).ok());
-  const auto back = read_calibration(path);
-  ASSERT_TRUE(back.ok()) << back.error().text();
-  EXPECT_EQ(to_json(back.value()), to_json(example()));
+  const auto back = value_of(read_calibration(path));
+  EXPECT_EQ(to_json(back), to_json(example()));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "no temporary file stays";
 }
 

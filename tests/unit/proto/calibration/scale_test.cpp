@@ -4,15 +4,16 @@
 
 #include <cmath>
 
+#include "tests/value_of.hpp"
+
 namespace odomcalib::scale_test {
 namespace {
 
 TEST(Scale, is_read_with_its_deviation) {
-  const auto scale = scale_from_text("1.002+-0.001");
-  ASSERT_TRUE(scale);
-  EXPECT_DOUBLE_EQ(scale.value().value, 1.002);
-  EXPECT_DOUBLE_EQ(scale.value().std, 0.001);
-  EXPECT_EQ(scale.value().source, "stated");
+  const auto scale = value_of(scale_from_text("1.002+-0.001"));
+  EXPECT_DOUBLE_EQ(scale.value, 1.002);
+  EXPECT_DOUBLE_EQ(scale.std, 0.001);
+  EXPECT_EQ(scale.source, "stated");
   ASSERT_TRUE(scale_from_text("0.99"));
   EXPECT_EQ(scale_from_text("0.99").value().std, 0.0);
 }
@@ -42,11 +43,10 @@ TEST(Scale, stands_in_the_file_with_the_deviation_of_every_parameter) {
   store_scale({1.0, 0.003, "lidar data sheet"}, calibration);
   const std::string text = to_json(calibration);
   EXPECT_NE(text.find("\"std_absolute\": 0.002"), std::string::npos) << text;
-  const auto read = calibration_from_json(text, "here");
-  ASSERT_TRUE(read);
-  ASSERT_TRUE(scale_of(read.value()));
-  EXPECT_EQ(scale_of(read.value())->source, "lidar data sheet");
-  EXPECT_EQ(to_json(read.value()), text);
+  const auto read = value_of(calibration_from_json(text, "here"));
+  ASSERT_TRUE(scale_of(read));
+  EXPECT_EQ(scale_of(read)->source, "lidar data sheet");
+  EXPECT_EQ(to_json(read), text);
 }
 
 TEST(Scale, that_is_not_understood_is_none) {

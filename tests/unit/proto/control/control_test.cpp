@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "tests/value_of.hpp"
+
 namespace odomcalib::control::control_test {
 namespace {
 
@@ -80,13 +82,12 @@ TEST(ControlCall, survives_encoding) {
                   .oneway = true,
                   .more = true,
                   .upgrade = true};
-  const auto back = decode_call(unframed(encode_call(call)));
-  ASSERT_TRUE(back.ok()) << back.error().text();
-  EXPECT_EQ(back.value().method, call.method);
-  EXPECT_EQ(back.value().parameters, call.parameters);
-  EXPECT_TRUE(back.value().oneway && back.value().more && back.value().upgrade);
-  EXPECT_EQ(back.value().interface(), kInterface);
-  EXPECT_EQ(back.value().name(), "Straight");
+  const auto back = value_of(decode_call(unframed(encode_call(call))));
+  EXPECT_EQ(back.method, call.method);
+  EXPECT_EQ(back.parameters, call.parameters);
+  EXPECT_TRUE(back.oneway && back.more && back.upgrade);
+  EXPECT_EQ(back.interface(), kInterface);
+  EXPECT_EQ(back.name(), "Straight");
 }
 
 TEST(ControlCall, is_refused_when_malformed) {
@@ -109,20 +110,18 @@ TEST(ControlCall, is_refused_when_malformed) {
 TEST(ControlReply, carries_every_error_code_with_its_texts) {
   for (int i = 0; i <= static_cast<int>(ErrorCode::busy); ++i) {
     const Error error{static_cast<ErrorCode>(i), "it \"broke\"", "can0", "plug it in"};
-    const auto reply = decode_reply(unframed(encode_error(error)));
-    ASSERT_TRUE(reply.ok());
-    const auto back = error_of(reply.value());
+    const auto reply = value_of(decode_reply(unframed(encode_error(error))));
+    const auto back = error_of(reply);
     EXPECT_EQ(back.code, error.code);
     EXPECT_EQ(back.text(), error.text());
-    const auto name = reply.value().error.substr(kInterface.size() + 1);
+    const auto name = reply.error.substr(kInterface.size() + 1);
     EXPECT_NE(interface_description().find("\nerror " + name + " ("), std::string_view::npos) << name;
   }
 }
 
 TEST(ControlReply, of_another_service_is_an_error_too) {
-  const auto reply = decode_reply(unframed(encode_method_not_found("a.B")));
-  ASSERT_TRUE(reply.ok());
-  EXPECT_EQ(error_of(reply.value()).code, ErrorCode::usage);
+  const auto reply = value_of(decode_reply(unframed(encode_method_not_found("a.B"))));
+  EXPECT_EQ(error_of(reply).code, ErrorCode::usage);
   EXPECT_EQ(error_of({.parameters = "{}", .continues = false, .error = "com.example.Odd"}).code,
             ErrorCode::io);
 }

@@ -17,12 +17,8 @@ using test::read_text;
 TEST(MaebotLog, agrees_with_its_json_lines_conversion) {
   ODOMCALIB_SHARED_FILE(log_path, "maebot/convex.lcmlog.gz");
   ODOMCALIB_SHARED_FILE(jsonl_path, "maebot/convex.jsonl.gz");
-  const auto jsonl = read_recording(jsonl_path);
-  ASSERT_TRUE(jsonl.ok());
-  const auto log = read_recording(log_path, &jsonl.value().robot);
-  ASSERT_TRUE(log.ok()) << log.error().text();
-  const auto& a = log.value();
-  const auto& b = jsonl.value();
+  const auto b = value_of(read_recording(jsonl_path));
+  const auto a = value_of(read_recording(log_path, &b.robot));
   EXPECT_EQ(discarded(a, "event", "not needed: mbot_lcm_msgs.pose2D_t"), 457U) << list_discarded(a);
   ASSERT_EQ(a.ticks.size(), b.ticks.size());
   for (std::size_t i = 0; i < a.ticks.size(); ++i) {
@@ -88,26 +84,23 @@ std::string old_encoder(std::int64_t left) {
 
 TEST(MbotLog, takes_angles_as_counter_clockwise_unless_the_encoders_are_of_the_older_stack) {
   const auto robot = test::example_robot();
-  const auto current = read_text(new_encoders(-7) + lidar(2, 5'250'000), &robot);
-  ASSERT_TRUE(current.ok()) << current.error().text();
-  EXPECT_EQ(current.value().ticks.at(0).left, -7);
-  const auto& scan = current.value().scans.at(0);
+  const auto current = value_of(read_text(new_encoders(-7) + lidar(2, 5'250'000), &robot));
+  EXPECT_EQ(current.ticks.at(0).left, -7);
+  const auto& scan = current.scans.at(0);
   EXPECT_FLOAT_EQ(scan.angles.at(0), 0.5F);
   EXPECT_NEAR(scan.angles.at(1), 6.0 - 2 * std::numbers::pi, 1e-6);
   EXPECT_EQ(scan.ranges, (std::vector<float>{1.0F, 0.0F})) << "0.05 m and less is no reading";
   EXPECT_EQ(scan.t, 0.25) << "seconds since the whole second of the first message";
   EXPECT_FLOAT_EQ(scan.times.at(1), 0.001F);
-  const auto older = read_text(old_encoder(-7) + lidar(2, 5'250'000), &robot);
-  ASSERT_TRUE(older.ok());
-  EXPECT_FLOAT_EQ(older.value().scans.at(0).angles.at(0), -0.5F);
+  const auto older = value_of(read_text(old_encoder(-7) + lidar(2, 5'250'000), &robot));
+  EXPECT_FLOAT_EQ(older.scans.at(0).angles.at(0), -0.5F);
 }
 
 TEST(MbotLog, refuses_arrays_that_do_not_fit_their_message) {
   const auto robot = test::example_robot();
   for (const std::int32_t count : {-1, 1, 3, INT32_MAX, INT32_MIN}) {
-    const auto result = read_text(new_encoders(0) + lidar(count, 1), &robot);
-    ASSERT_TRUE(result.ok());
-    EXPECT_EQ(discarded(result.value(), "scan", "damaged message"), 1U) << count;
+    const auto result = value_of(read_text(new_encoders(0) + lidar(count, 1), &robot));
+    EXPECT_EQ(discarded(result, "scan", "damaged message"), 1U) << count;
   }
 }
 
@@ -115,47 +108,38 @@ TEST(BotCoreLog, gives_planar_lidar_scans) {
   std::string data = number(0xe3d17423180b5e8d, 8) + number(1'500'000, 8) + number(2, 4) + real(1) + real(2) +
                      number(0, 4) + real(-1.5F) + real(0.25F);
   const auto robot = test::example_robot();
-  const auto result = read_text(event(data), &robot);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_EQ(result.value().scans.at(0).angle_min, -1.5);
-  EXPECT_EQ(result.value().scans.at(0).angle_increment, 0.25);
-  EXPECT_EQ(result.value().scans.at(0).ranges, (std::vector<float>{1, 2}));
+  const auto result = value_of(read_text(event(data), &robot));
+  EXPECT_EQ(result.scans.at(0).angle_min, -1.5);
+  EXPECT_EQ(result.scans.at(0).angle_increment, 0.25);
+  EXPECT_EQ(result.scans.at(0).ranges, (std::vector<float>{1, 2}));
 }
 
 TEST(CensiTuples, are_all_read_where_objects_share_a_line) {
   for (const auto& [name, count, duration] : {std::tuple{"khepera-censi/l90.tuple", 3295U, 2628.0},
                                               {"khepera-censi/lstraight.tuple", 4396U, 3511.0}}) {
     ODOMCALIB_SHARED_FILE(path, name);
-    const auto result = read_recording(path);
-    ASSERT_TRUE(result.ok()) << result.error().text();
-    EXPECT_EQ(result.value().increments.size(), count);
-    EXPECT_TRUE(result.value().discarded.empty()) << list_discarded(result.value());
+    const auto result = value_of(read_recording(path));
+    EXPECT_EQ(result.increments.size(), count);
+    EXPECT_TRUE(result.discarded.empty()) << list_discarded(result);
     double sum = 0.0;
-    for (const auto& increment : result.value().increments) sum += increment.duration;
+    for (const auto& increment : result.increments) sum += increment.duration;
     EXPECT_NEAR(sum, duration, 0.5) << "sum of T of the set's description";
-    EXPECT_EQ(result.value().robot.left_wheel_diameter, 0.0) << "wheel angles in rad need no nominal values";
+    EXPECT_EQ(result.robot.left_wheel_diameter, 0.0) << "wheel angles in rad need no nominal values";
   }
 }
 
 TEST(CensiTuples, S3_17_SX_03_take_the_robot_from_the_fallback_and_count_what_is_damaged) {
   const auto robot = test::example_robot();
-  const auto result = read_text(
-      R"({ "T": 0.5, "phi_l": 1, "phi_r": -1, "sm": [ 1, 2, 3 ] }{ "T": 1, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] })"
+  const auto r = value_of(read_text(
+      R"({ "T": 0.5, "phi_l": 1, "phi_r": -1, "sm": [ 1, 2, 3 ] }{ "T": 1, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] }
+{ "T": 1, "phi_l": 1, "phi_r": 1, "sm": [4,5] }
+{ "T": 0, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] }
+{ "T": 1, "phi_l": null, "phi_r": 1, "sm": [4,5,6] }
+{ "T": 1, "phi_l": 1, "phi_r": )"
       "\n"
-      R"({ "T": 1, "phi_l": 1, "phi_r": 1, "sm": [4,5] })"
-      "\n"
-      R"({ "T": 0, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] })"
-      "\n"
-      R"({ "T": 1, "phi_l": null, "phi_r": 1, "sm": [4,5,6] })"
-      "\n"
-      R"({ "T": 1, "phi_l": 1, "phi_r": )"
-      "\n"
-      R"({ "T": 2, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] })"
-      "\n"
-      R"({ "T": 2, "phi)",
-      &robot);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  const auto& r = result.value();
+      R"({ "T": 2, "phi_l": 1, "phi_r": 1, "sm": [4,5,6] }
+{ "T": 2, "phi)",
+      &robot));
   ASSERT_EQ(r.increments.size(), 3U) << list_discarded(r);
   EXPECT_EQ(r.increments[0].right_speed, -1.0);
   EXPECT_EQ(r.increments[1].lidar_motion[2], 6.0);
@@ -169,12 +153,8 @@ TEST(CensiTuples, S3_17_SX_03_take_the_robot_from_the_fallback_and_count_what_is
 TEST(CensiRawLog, SX_03_gives_scans_and_the_counts_they_carry) {
   ODOMCALIB_SHARED_FILE(path, "mines-rover-2/exp3.scans.jsonl.gz");
   ODOMCALIB_SHARED_FILE(jsonl_path, "mines-rover-2/exp3.jsonl.gz");
-  const auto jsonl = read_recording(jsonl_path);
-  ASSERT_TRUE(jsonl.ok());
-  const auto raw = read_recording(path, &jsonl.value().robot);
-  ASSERT_TRUE(raw.ok()) << raw.error().text();
-  const auto& a = raw.value();
-  const auto& b = jsonl.value();
+  const auto b = value_of(read_recording(jsonl_path));
+  const auto a = value_of(read_recording(path, &b.robot));
   ASSERT_EQ(a.scans.size(), b.scans.size());
   ASSERT_EQ(a.ticks.size(), b.ticks.size());
   for (std::size_t i = 0; i < a.scans.size(); ++i) {
@@ -190,9 +170,7 @@ TEST(CarmenLog, gives_back_the_counts_behind_its_odometry) {
   ODOMCALIB_SHARED_FILE(path, "azos-wheelchair/laserazosSM3.log");
   ODOMCALIB_SHARED_FILE(counts_path, "azos-wheelchair/ticks_recovered.csv");
   const RobotDescription robot{0.17, 0.17, 0.6, 2000.0, std::nullopt, "", ""};
-  const auto result = read_recording(path, &robot);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  const auto& r = result.value();
+  const auto r = value_of(read_recording(path, &robot));
   EXPECT_EQ(r.scans.size(), 778U);
   EXPECT_EQ(r.scans[0].ranges.size(), 361U);
   EXPECT_NEAR(r.scans[0].angle(360), std::numbers::pi / 2, 1e-9);
@@ -213,16 +191,14 @@ TEST(CarmenLog, gives_back_the_counts_behind_its_odometry) {
 
 TEST(CarmenLog, SX_03_reads_its_messages_with_their_times_and_the_lidar_pose) {
   const auto robot = test::example_robot();
-  const auto result = read_text(
+  const auto r = value_of(read_text(
       "# CARMEN log\nPARAM robot_width 0.5 0 host 0\n"
       "ODOM 0 0 0 0 0 0 1000000000.5 host 0.1\n"
       "ODOM 0.5 0 0 0 0 0 1000000001.5 host 1.1\n"
       "FLASER 3 1 nan 3 1 0.5 0 0.5 0.5 0 1000000001.0 host 0.6\n"
       "ROBOTLASER1 0 -1.5 3.0 1.5 20 0.01 0 3 4 5 21 0 1 0.5 0 0.5 0.5 0 0 0 0 0 0 1000000002.0 host 1.6\n"
       "WHAT 1 2\nFLASER 3 1 2\nODOM 1 x 3\nFLASER 4 1 1",
-      &robot);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  const auto& r = result.value();
+      &robot));
   ASSERT_EQ(r.scans.size(), 2U) << list_discarded(r);
   EXPECT_EQ(r.scans[0].t, 0.0);
   EXPECT_EQ(r.scans[0].ranges, (std::vector<float>{1, 0, 3}));

@@ -148,9 +148,8 @@ TEST(PoseGraphText, S2_35_vertices_and_edges_may_be_files_of_their_own_packed_or
   const auto vertices = test::write_file("graph-v.dat", "VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\n");
   const auto edges = test::write_file("graph-e.dat.gz", gzip("EDGE 1 0 -1 0 0 20 0 20 100 0 0\n").value());
   const std::vector<std::filesystem::path> files{vertices, edges};
-  const auto graph = read_pose_graph(files);
-  ASSERT_TRUE(graph.ok()) << graph.error().text();
-  EXPECT_EQ(graph.value().edges[0].information, (std::array<double, 6>{20, 0, 0, 20, 0, 100}));
+  const auto graph = value_of(read_pose_graph(files));
+  EXPECT_EQ(graph.edges[0].information, (std::array<double, 6>{20, 0, 0, 20, 0, 100}));
 }
 
 TEST(PoseGraphText, a_packed_file_without_its_end_is_refused) {

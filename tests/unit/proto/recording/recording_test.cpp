@@ -30,7 +30,7 @@ ErrorCode code_of(const Result<Recording>& result) {
 }
 
 TEST(Recording, reads_every_kind_of_line) {
-  const auto result = read_text(
+  const auto r = value_of(read_text(
       std::string(
           R"({"type":"robot","left_wheel_diameter":0.15,"right_wheel_diameter":0.16,"track_width":0.33,)"
           R"("ticks_per_rev":2796.8,"lidar_pose":[0.1,-0.2,3.1],"robot_id":"r1","controller":"c"})"
@@ -42,9 +42,7 @@ TEST(Recording, reads_every_kind_of_line) {
       "\r\n" +
       R"({"t":0.1,"x":1,"y":2,"yaw":-3,"type":"pose"})"
       "\n" +
-      R"({"type":"gyro","t":0.2,"yaw_rate":-0.25})");
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  const auto& r = result.value();
+      R"({"type":"gyro","t":0.2,"yaw_rate":-0.25})"));
   EXPECT_EQ(r.discarded.size(), 0U) << list_discarded(r);
   EXPECT_EQ(r.robot.left_wheel_diameter, 0.15);
   EXPECT_EQ(r.robot.right_wheel_diameter, 0.16);
@@ -96,14 +94,12 @@ TEST(Recording, names_the_missing_or_impossible_unit) {
 
 TEST(Recording, takes_missing_values_from_the_fallback_and_prefers_its_own) {
   const auto fallback = test::example_robot();
-  const auto bare = read_text(ticks_line(0, 0, 0), &fallback);
-  ASSERT_TRUE(bare.ok()) << bare.error().text();
-  EXPECT_EQ(bare.value().robot.track_width, 0.33);
+  const auto bare = value_of(read_text(ticks_line(0, 0, 0), &fallback));
+  EXPECT_EQ(bare.robot.track_width, 0.33);
   const auto own =
-      read_text(R"({"type":"robot","track_width":0.5})" + ("\n" + ticks_line(0, 0, 0)), &fallback);
-  ASSERT_TRUE(own.ok()) << own.error().text();
-  EXPECT_EQ(own.value().robot.track_width, 0.5);
-  EXPECT_EQ(own.value().robot.left_wheel_diameter, 0.154);
+      value_of(read_text(R"({"type":"robot","track_width":0.5})" + ("\n" + ticks_line(0, 0, 0)), &fallback));
+  EXPECT_EQ(own.robot.track_width, 0.5);
+  EXPECT_EQ(own.robot.left_wheel_diameter, 0.154);
   RobotDescription incomplete;
   incomplete.track_width = 0.3;
   EXPECT_EQ(code_of(read_text(ticks_line(0, 0, 0), &incomplete)), ErrorCode::missing_units);
@@ -127,64 +123,44 @@ TEST(Recording, uses_what_is_whole_of_a_file_cut_off_at_any_byte) {
   const std::string last = kScan;
   const std::string text = kRobotLine + ticks_line(0, 0, 0) + ticks_line(1, 10, 10) + last;
   for (std::size_t cut = 0; cut <= last.size(); ++cut) {
-    const auto result = read_text(text.substr(0, text.size() - cut));
-    ASSERT_TRUE(result.ok()) << result.error().text();
+    const auto result = value_of(read_text(text.substr(0, text.size() - cut)));
     const bool whole = cut <= 1;  // the line end alone is not missed
-    EXPECT_EQ(result.value().ticks.size(), 2U);
-    EXPECT_EQ(result.value().scans.size(), whole ? 1U : 0U) << cut;
-    EXPECT_EQ(discarded(result.value(), "line", "cut off"), whole || cut == last.size() ? 0U : 1U) << cut;
+    EXPECT_EQ(result.ticks.size(), 2U);
+    EXPECT_EQ(result.scans.size(), whole ? 1U : 0U) << cut;
+    EXPECT_EQ(discarded(result, "line", "cut off"), whole || cut == last.size() ? 0U : 1U) << cut;
   }
 }
 
 TEST(Recording, counts_damaged_lines_and_goes_on_behind_them) {
-  const auto result =
+  const auto result = value_of(
       read_text(kRobotLine + ticks_line(0, 0, 0) + "{\"type\":\"ticks\",\"t\":1,\n\x01\x02\n[1]\n12\n" +
-                "{\"type\":\"noise\"}\n{}\n" + std::string(5000, '[') + "\n" + ticks_line(1, 10, 10));
-  ASSERT_TRUE(result.ok());
-  EXPECT_EQ(result.value().ticks.size(), 2U);
-  EXPECT_EQ(discarded(result.value(), "line", "not valid JSON"), 5U) << list_discarded(result.value());
-  EXPECT_EQ(discarded(result.value(), "line", "unknown type"), 1U);
-  EXPECT_EQ(discarded(result.value(), "line", "no type"), 1U);
+                "{\"type\":\"noise\"}\n{}\n" + std::string(5000, '[') + "\n" + ticks_line(1, 10, 10)));
+  EXPECT_EQ(result.ticks.size(), 2U);
+  EXPECT_EQ(discarded(result, "line", "not valid JSON"), 5U) << list_discarded(result);
+  EXPECT_EQ(discarded(result, "line", "unknown type"), 1U);
+  EXPECT_EQ(discarded(result, "line", "no type"), 1U);
 }
 
 TEST(Recording, rejects_samples_with_missing_or_impossible_values) {
-  const auto result = read_text(std::string(kRobotLine) + ticks_line(0, 0, 0) +
-                                R"({"type":"ticks","left":1,"right":1})"
-                                "\n"
-                                R"({"type":"ticks","t":1,"left":1})"
-                                "\n"
-                                R"({"type":"ticks","t":1,"left":1.5,"right":1})"
-                                "\n"
-                                R"({"type":"ticks","t":1,"left":1e300,"right":1})"
-                                "\n"
-                                R"({"type":"ticks","t":1,"left":9223372036854775807,"right":1})"
-                                "\n"
-                                R"({"type":"ticks","t":1,"left":18446744073709551615,"right":1})"
-                                "\n"
-                                R"({"type":"ticks","t":NaN,"left":1,"right":1})"
-                                "\n"
-                                R"({"type":"ticks","t":1e300,"left":1,"right":1})"
-                                "\n"
-                                R"({"type":"pose","t":1,"x":1,"y":null,"yaw":0})"
-                                "\n"
-                                R"({"type":"gyro","t":1,"yaw_rate":Infinity})"
-                                "\n"
-                                R"({"type":"scan","t":1,"ranges":[1,2]})"
-                                "\n"
-                                R"({"type":"scan","t":1,"angle_min":0,"angle_increment":0,"ranges":[1,2]})"
-                                "\n"
-                                R"({"type":"scan","t":1,"angle_min":0,"angle_increment":0.1,"ranges":[]})"
-                                "\n"
-                                R"({"type":"scan","t":1,"angles":[0.1],"ranges":[1,2]})"
-                                "\n"
-                                R"({"type":"scan","t":1,"angles":[0.1,null],"ranges":[1,2]})"
-                                "\n"
-                                R"({"type":"scan","t":1,"angles":[0.1,0.2],"times":[0],"ranges":[1,2]})"
-                                "\n"
-                                R"({"type":"scan","t":1,"angles":[0.1,0.2],"times":[0,1e300],"ranges":[1,2]})"
-                                "\n");
-  ASSERT_TRUE(result.ok());
-  const auto& r = result.value();
+  const auto r = value_of(read_text(std::string(kRobotLine) + ticks_line(0, 0, 0) +
+                                    R"({"type":"ticks","left":1,"right":1}
+{"type":"ticks","t":1,"left":1}
+{"type":"ticks","t":1,"left":1.5,"right":1}
+{"type":"ticks","t":1,"left":1e300,"right":1}
+{"type":"ticks","t":1,"left":9223372036854775807,"right":1}
+{"type":"ticks","t":1,"left":18446744073709551615,"right":1}
+{"type":"ticks","t":NaN,"left":1,"right":1}
+{"type":"ticks","t":1e300,"left":1,"right":1}
+{"type":"pose","t":1,"x":1,"y":null,"yaw":0}
+{"type":"gyro","t":1,"yaw_rate":Infinity}
+{"type":"scan","t":1,"ranges":[1,2]}
+{"type":"scan","t":1,"angle_min":0,"angle_increment":0,"ranges":[1,2]}
+{"type":"scan","t":1,"angle_min":0,"angle_increment":0.1,"ranges":[]}
+{"type":"scan","t":1,"angles":[0.1],"ranges":[1,2]}
+{"type":"scan","t":1,"angles":[0.1,null],"ranges":[1,2]}
+{"type":"scan","t":1,"angles":[0.1,0.2],"times":[0],"ranges":[1,2]}
+{"type":"scan","t":1,"angles":[0.1,0.2],"times":[0,1e300],"ranges":[1,2]}
+)"));
   EXPECT_EQ(r.ticks.size(), 1U);
   EXPECT_EQ(r.scans.size() + r.poses.size() + r.gyro.size(), 0U);
   EXPECT_EQ(discarded(r, "ticks", "time stamp missing or impossible"), 3U) << list_discarded(r);
@@ -201,49 +177,44 @@ TEST(Recording, rejects_samples_with_missing_or_impossible_values) {
 }
 
 TEST(Recording, turns_beams_that_are_no_distance_into_no_reading) {
-  const auto result =
+  const auto r = value_of(
       read_text(std::string(kRobotLine) +
                 R"({"type":"scan","t":0,"angle_min":0,"angle_increment":0.1,"range_min":0.1,"range_max":8.2,)"
-                R"("ranges":[0.1,8.2,0.05,8.3,-1,NaN,-Infinity,null,0,"x",[1],1e300,1.0]})");
-  ASSERT_TRUE(result.ok());
-  const auto& r = result.value();
+                R"("ranges":[0.1,8.2,0.05,8.3,-1,NaN,-Infinity,null,0,"x",[1],1e300,1.0]})"));
   EXPECT_EQ(r.scans.at(0).ranges, (std::vector<float>{0.1F, 8.2F, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1.0F}));
   EXPECT_EQ(discarded(r, "beam", "outside range_min and range_max"), 3U) << list_discarded(r);
   EXPECT_EQ(discarded(r, "beam", "not a number"), 5U);
 }
 
 TEST(Recording, sorts_what_is_up_to_a_second_late_and_discards_what_is_later) {
-  const auto result = read_text(kRobotLine + ticks_line(2, 20, 20) + ticks_line(1, 10, 10) +
-                                ticks_line(3, 30, 30) + ticks_line(1.99, 19, 19) + kScan);
-  ASSERT_TRUE(result.ok());
-  ASSERT_EQ(result.value().ticks.size(), 3U);
-  EXPECT_EQ(result.value().ticks[0].left, 10);
-  EXPECT_EQ(result.value().ticks[2].left, 30);
-  EXPECT_EQ(result.value().scans.size(), 1U) << "each stream has its own order";
-  EXPECT_EQ(discarded(result.value(), "ticks", "out of order by more than 1 s"), 1U);
+  const auto result = value_of(read_text(kRobotLine + ticks_line(2, 20, 20) + ticks_line(1, 10, 10) +
+                                         ticks_line(3, 30, 30) + ticks_line(1.99, 19, 19) + kScan));
+  ASSERT_EQ(result.ticks.size(), 3U);
+  EXPECT_EQ(result.ticks[0].left, 10);
+  EXPECT_EQ(result.ticks[2].left, 30);
+  EXPECT_EQ(result.scans.size(), 1U) << "each stream has its own order";
+  EXPECT_EQ(discarded(result, "ticks", "out of order by more than 1 s"), 1U);
 }
 
 TEST(Recording, drops_one_wild_stamp_and_keeps_what_follows_it) {
-  const auto result = read_text(kRobotLine + ticks_line(1, 10, 10) + ticks_line(5000, 20, 20) +
-                                ticks_line(1.1, 30, 30) + ticks_line(1.2, 40, 40));
-  ASSERT_TRUE(result.ok());
-  ASSERT_EQ(result.value().ticks.size(), 3U);
-  EXPECT_EQ(result.value().ticks[1].left, 30);
-  EXPECT_EQ(discarded(result.value(), "ticks", "time stamp far ahead of its neighbours"), 1U);
-  const auto pause =
-      read_text(kRobotLine + ticks_line(1, 10, 10) + ticks_line(5000, 10, 10) + ticks_line(5000.1, 10, 10));
-  ASSERT_TRUE(pause.ok());
-  EXPECT_EQ(pause.value().ticks.size(), 3U) << "a real pause";
+  const auto result = value_of(read_text(kRobotLine + ticks_line(1, 10, 10) + ticks_line(5000, 20, 20) +
+                                         ticks_line(1.1, 30, 30) + ticks_line(1.2, 40, 40)));
+  ASSERT_EQ(result.ticks.size(), 3U);
+  EXPECT_EQ(result.ticks[1].left, 30);
+  EXPECT_EQ(discarded(result, "ticks", "time stamp far ahead of its neighbours"), 1U);
+  const auto pause = value_of(
+      read_text(kRobotLine + ticks_line(1, 10, 10) + ticks_line(5000, 10, 10) + ticks_line(5000.1, 10, 10)));
+  EXPECT_EQ(pause.ticks.size(), 3U) << "a real pause";
 }
 
 TEST(Recording, keeps_the_first_of_repeated_stamps) {
-  const auto result = read_text(kRobotLine + ticks_line(0, 0, 0) + ticks_line(0, 7, 7) + kScan + kScan);
-  ASSERT_TRUE(result.ok());
-  ASSERT_EQ(result.value().ticks.size(), 1U);
-  EXPECT_EQ(result.value().ticks[0].left, 0);
-  EXPECT_EQ(result.value().scans.size(), 1U);
-  EXPECT_EQ(discarded(result.value(), "ticks", "repeated time stamp"), 1U);
-  EXPECT_EQ(discarded(result.value(), "scan", "repeated time stamp"), 1U);
+  const auto result =
+      value_of(read_text(kRobotLine + ticks_line(0, 0, 0) + ticks_line(0, 7, 7) + kScan + kScan));
+  ASSERT_EQ(result.ticks.size(), 1U);
+  EXPECT_EQ(result.ticks[0].left, 0);
+  EXPECT_EQ(result.scans.size(), 1U);
+  EXPECT_EQ(discarded(result, "ticks", "repeated time stamp"), 1U);
+  EXPECT_EQ(discarded(result, "scan", "repeated time stamp"), 1U);
 }
 
 TEST(Recording, reads_gzip_by_content_and_hashes_the_stored_bytes) {
@@ -265,15 +236,13 @@ TEST(Recording, uses_what_can_be_unpacked_of_a_cut_off_or_damaged_gzip_file) {
   for (std::int64_t i = 0; i < 2000; ++i)
     text += ticks_line(static_cast<double>(i) * 0.05, i * i % 977, i * 3);
   auto packed = gzip(text).value();
-  const auto cut = read_text(packed.substr(0, packed.size() / 2));
-  ASSERT_TRUE(cut.ok()) << cut.error().text();
-  EXPECT_GT(cut.value().ticks.size(), 100U);
-  EXPECT_LT(cut.value().ticks.size(), 2000U);
-  EXPECT_EQ(discarded(cut.value(), "file", "compressed data is cut off"), 1U) << list_discarded(cut.value());
+  const auto cut = value_of(read_text(packed.substr(0, packed.size() / 2)));
+  EXPECT_GT(cut.ticks.size(), 100U);
+  EXPECT_LT(cut.ticks.size(), 2000U);
+  EXPECT_EQ(discarded(cut, "file", "compressed data is cut off"), 1U) << list_discarded(cut);
   packed[packed.size() - 6] = static_cast<char>(packed[packed.size() - 6] ^ 1);  // check sum
-  const auto damaged = read_text(packed);
-  ASSERT_TRUE(damaged.ok());
-  EXPECT_EQ(discarded(damaged.value(), "file", "compressed data is damaged"), 1U);
+  const auto damaged = value_of(read_text(packed));
+  EXPECT_EQ(discarded(damaged, "file", "compressed data is damaged"), 1U);
   const auto two = read_text(gzip(kRobotLine).value() + gzip(ticks_line(0, 0, 0)).value());
   EXPECT_TRUE(two.ok()) << "members that were appended one after the other";
 }
@@ -342,9 +311,7 @@ class RealRecordings : public testing::TestWithParam<RealRecording> {};
 
 TEST_P(RealRecordings, are_read_completely) {
   ODOMCALIB_SHARED_FILE(path, GetParam().name);
-  const auto result = read_recording(path);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  const auto& r = result.value();
+  const auto r = value_of(read_recording(path));
   EXPECT_EQ(r.ticks.size(), GetParam().ticks);
   EXPECT_EQ(r.scans.size(), GetParam().scans);
   EXPECT_EQ(r.poses.size(), GetParam().poses);
@@ -374,11 +341,10 @@ TEST(Recording, of_motion_capture_runs_are_all_read) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".gz") continue;
     ++files;
-    const auto result = read_recording(entry.path());
-    ASSERT_TRUE(result.ok()) << result.error().text();
-    EXPECT_TRUE(result.value().discarded.empty()) << entry.path() << list_discarded(result.value());
-    EXPECT_EQ(result.value().ticks.back().segment, 0) << entry.path();
-    EXPECT_GT(result.value().poses.size(), 10U);
+    const auto result = value_of(read_recording(entry.path()));
+    EXPECT_TRUE(result.discarded.empty()) << entry.path() << list_discarded(result);
+    EXPECT_EQ(result.ticks.back().segment, 0) << entry.path();
+    EXPECT_GT(result.poses.size(), 10U);
   }
   EXPECT_EQ(files, 102U);
 }

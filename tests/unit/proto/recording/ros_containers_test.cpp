@@ -76,14 +76,15 @@ std::vector<Form> forms() {
 TEST(RosContainers, hold_the_same_drive_in_every_packing_and_encoding) {
   for (const Form& form : forms()) {
     SCOPED_TRACE(form.name);
-    const auto result = read_ros(form.bytes);
-    ASSERT_TRUE(result.ok()) << result.error().text();
-    expect_small_drive(result.value(), MotionSource::wheels);
-    EXPECT_TRUE(told(result.value(),
-                     "joints wheel_left_joint (left) and wheel_right_joint (right) of /joint_states"));
-    EXPECT_TRUE(told(result.value(), "scan: /scan"));
-    EXPECT_TRUE(told(result.value(), "/odom not taken"));
-    EXPECT_EQ(discarded_like(result.value(), "message", "std_msgs/"), 1U) << list_discarded(result.value());
+    const auto read = read_ros(form.bytes);
+    ASSERT_TRUE(read.ok()) << read.error().text();
+    const Recording& result = read.value();
+    expect_small_drive(result, MotionSource::wheels);
+    EXPECT_TRUE(
+        told(result, "joints wheel_left_joint (left) and wheel_right_joint (right) of /joint_states"));
+    EXPECT_TRUE(told(result, "scan: /scan"));
+    EXPECT_TRUE(told(result, "/odom not taken"));
+    EXPECT_EQ(discarded_like(result, "message", "std_msgs/"), 1U) << list_discarded(result);
   }
 }
 
@@ -108,9 +109,8 @@ TEST(RosContainers, that_are_cut_off_give_what_is_whole) {
 
 TEST(RosContainers, that_are_packed_and_cut_off_before_anything_is_whole_say_so) {
   const std::string whole = sim::packed(RosPacking::zstd, rosbag2_bytes(Wire::cdr_little));
-  const auto complete = read_ros(whole);
-  ASSERT_TRUE(complete.ok()) << complete.error().text();
-  expect_small_drive(complete.value(), MotionSource::wheels);
+  const auto complete = value_of(read_ros(whole));
+  expect_small_drive(complete, MotionSource::wheels);
   const auto cut = read_ros(whole.substr(0, 1000));
   ASSERT_FALSE(cut.ok());
   EXPECT_EQ(cut.error().code, ErrorCode::format);
@@ -120,12 +120,10 @@ TEST(RosContainers, that_are_packed_and_cut_off_before_anything_is_whole_say_so)
 
 TEST(RosContainers, that_are_whole_report_no_damage) {
   for (const Form& form : forms()) {
-    const auto result = read_ros(form.bytes);
-    ASSERT_TRUE(result.ok());
-    EXPECT_EQ(discarded_like(result.value(), "chunk", ""), 0U) << form.name;
+    const auto result = value_of(read_ros(form.bytes));
+    EXPECT_EQ(discarded_like(result, "chunk", ""), 0U) << form.name;
     const bool open = form.name == "mcap_open";
-    EXPECT_EQ(discarded_like(result.value(), "file", ""), open ? 1U : 0U)
-        << form.name << list_discarded(result.value());
+    EXPECT_EQ(discarded_like(result, "file", ""), open ? 1U : 0U) << form.name << list_discarded(result);
   }
 }
 
@@ -146,17 +144,15 @@ TEST(RosContainers, a_folder_is_read_with_all_its_splits_and_misses_those_that_a
   }
   std::ofstream(folder / "metadata.yaml") << "rosbag2_bagfile_information: {}\n";
   const RobotDescription robot = test::ros_robot();
-  auto result = read_recording(folder, &robot);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  expect_small_drive(result.value(), MotionSource::wheels);
-  EXPECT_EQ(result.value().name, "odomcalib_split_bag");
-  EXPECT_EQ(result.value().sha256.size(), 64U);
-  EXPECT_EQ(discarded_like(result.value(), "file", ""), 0U);
+  auto result = value_of(read_recording(folder, &robot));
+  expect_small_drive(result, MotionSource::wheels);
+  EXPECT_EQ(result.name, "odomcalib_split_bag");
+  EXPECT_EQ(result.sha256.size(), 64U);
+  EXPECT_EQ(discarded_like(result, "file", ""), 0U);
   fs::remove(folder / "drive_4.db3");
-  result = read_recording(folder, &robot);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_EQ(discarded_like(result.value(), "file", "drive_4.db3 is missing"), 1U);
-  EXPECT_LT(result.value().ticks.size(), 200U);
+  result = value_of(read_recording(folder, &robot));
+  EXPECT_EQ(discarded_like(result, "file", "drive_4.db3 is missing"), 1U);
+  EXPECT_LT(result.ticks.size(), 200U);
   fs::remove_all(folder);
 }
 

@@ -58,13 +58,11 @@ sim::RosLog joints_log(const std::vector<std::string>& names, bool positions = t
 }
 
 TEST(TopicChoice, is_read_in_all_its_forms) {
-  const auto scan = parse_topic_choice("scan=/front/scan");
-  ASSERT_TRUE(scan.ok());
-  EXPECT_EQ(scan.value().part, "scan");
-  EXPECT_EQ(scan.value().topic, "/front/scan");
-  const auto wheels = parse_topic_choice("wheels=/joint_states:left_joint,right_joint");
-  ASSERT_TRUE(wheels.ok());
-  EXPECT_EQ(wheels.value().joints, (std::vector<std::string>{"left_joint", "right_joint"}));
+  const auto scan = value_of(parse_topic_choice("scan=/front/scan"));
+  EXPECT_EQ(scan.part, "scan");
+  EXPECT_EQ(scan.topic, "/front/scan");
+  const auto wheels = value_of(parse_topic_choice("wheels=/joint_states:left_joint,right_joint"));
+  EXPECT_EQ(wheels.joints, (std::vector<std::string>{"left_joint", "right_joint"}));
   EXPECT_TRUE(parse_topic_choice("wheels=/joint_states").ok());
   for (const char* wrong :
        {"", "scan", "scan=", "camera=/x", "wheels=/joint_states:left", "scan=/scan:a,b", "=/x"}) {
@@ -75,14 +73,13 @@ TEST(TopicChoice, is_read_in_all_its_forms) {
 }
 
 TEST(RosTopics, odometry_decides_where_there_are_no_joints_or_where_it_is_chosen) {
-  const auto alone = read_ros(mcap(sim::ros_log(small_drive(), {.wire = Wire::cdr_little, .joints = false})));
-  ASSERT_TRUE(alone.ok()) << alone.error().text();
-  expect_small_drive(alone.value(), MotionSource::odometry);
-  EXPECT_TRUE(told(alone.value(), "odometry of the frame base_link: /odom"));
-  const auto chosen = read_ros(mcap(small_log(Wire::cdr_little)), {{"odometry", "/odom", {}}});
-  ASSERT_TRUE(chosen.ok()) << chosen.error().text();
-  expect_small_drive(chosen.value(), MotionSource::odometry);
-  EXPECT_EQ(discarded_like(chosen.value(), "message", "/joint_states was not taken"), 200U);
+  const auto alone =
+      value_of(read_ros(mcap(sim::ros_log(small_drive(), {.wire = Wire::cdr_little, .joints = false}))));
+  expect_small_drive(alone, MotionSource::odometry);
+  EXPECT_TRUE(told(alone, "odometry of the frame base_link: /odom"));
+  const auto chosen = value_of(read_ros(mcap(small_log(Wire::cdr_little)), {{"odometry", "/odom", {}}}));
+  expect_small_drive(chosen, MotionSource::odometry);
+  EXPECT_EQ(discarded_like(chosen, "message", "/joint_states was not taken"), 200U);
 }
 
 TEST(RosTopics, two_scanners_have_to_be_chosen_between) {
@@ -91,10 +88,9 @@ TEST(RosTopics, two_scanners_have_to_be_chosen_between) {
   expect_usage(read_ros(mcap(log)),
                {"several topics could be the scan", "/scan (sensor_msgs/msg/LaserScan, 40 messages)",
                 "/rear/scan", "--topic scan="});
-  const auto chosen = read_ros(mcap(log), {{"scan", "/scan", {}}});
-  ASSERT_TRUE(chosen.ok()) << chosen.error().text();
-  expect_small_drive(chosen.value(), MotionSource::wheels);
-  EXPECT_EQ(discarded_like(chosen.value(), "message", "/rear/scan was not taken"), 1U);
+  const auto chosen = value_of(read_ros(mcap(log), {{"scan", "/scan", {}}}));
+  expect_small_drive(chosen, MotionSource::wheels);
+  EXPECT_EQ(discarded_like(chosen, "message", "/rear/scan was not taken"), 1U);
 }
 
 TEST(RosTopics, that_do_not_exist_or_do_not_fit_are_refused_with_the_list_of_those_that_do) {
@@ -140,23 +136,20 @@ TEST(RosTopics, wheels_are_recognised_by_the_names_of_their_joints) {
     const auto refused = read_ros(mcap(joints_log(names)));
     expect_usage(refused, {"no topic tells the motion"}, ErrorCode::empty);
     const auto chosen =
-        read_ros(mcap(joints_log(names)), {{"wheels", "/joint_states", {names[0], names[1]}}});
-    ASSERT_TRUE(chosen.ok()) << chosen.error().text();
-    EXPECT_EQ(chosen.value().ticks.size(), 50U);
+        value_of(read_ros(mcap(joints_log(names)), {{"wheels", "/joint_states", {names[0], names[1]}}}));
+    EXPECT_EQ(chosen.ticks.size(), 50U);
     expect_usage(read_ros(mcap(joints_log(names)), {{"wheels", "/joint_states", {}}}),
                  {"do not tell which are the wheels", names.front(), ":LEFT,RIGHT"});
   }
 }
 
 TEST(RosTopics, joints_without_angles_give_speeds) {
-  const auto result = read_ros(mcap(joints_log({"left", "right"}, false, true)));
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_EQ(result.value().motion, MotionSource::wheel_speeds);
-  EXPECT_TRUE(told(result.value(), "there are no angles"));
-  const auto chosen =
-      read_ros(mcap(joints_log({"left", "right"}, true, true)), {{"wheel_speeds", "/joint_states", {}}});
-  ASSERT_TRUE(chosen.ok()) << chosen.error().text();
-  EXPECT_EQ(chosen.value().motion, MotionSource::wheel_speeds);
+  const auto result = value_of(read_ros(mcap(joints_log({"left", "right"}, false, true))));
+  EXPECT_EQ(result.motion, MotionSource::wheel_speeds);
+  EXPECT_TRUE(told(result, "there are no angles"));
+  const auto chosen = value_of(
+      read_ros(mcap(joints_log({"left", "right"}, true, true)), {{"wheel_speeds", "/joint_states", {}}}));
+  EXPECT_EQ(chosen.motion, MotionSource::wheel_speeds);
 }
 
 /// Several publishers share /joint_states: an arm's messages lack the wheels, and orders differ.
@@ -170,9 +163,7 @@ TEST(RosTopics, joints_are_found_by_name_in_every_message) {
         "/joint_states", "sensor_msgs/JointState", time + kMillisecond,
         encode_joints(log.wire, {time + kMillisecond, ""}, {"right", "left"}, {0.1 * k, 0.1 * k + 0.01}, {}));
   }
-  const auto result = read_ros(mcap(log));
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  const Recording& r = result.value();
+  const Recording r = value_of(read_ros(mcap(log)));
   EXPECT_EQ(r.wheels.size(), 100U);
   EXPECT_EQ(discarded_like(r, "message", "without the joints of the wheels"), 50U);
   for (const WheelSample& sample : r.wheels) EXPECT_LT(sample.left - sample.right, 0.011);
@@ -183,28 +174,23 @@ TEST(RosTopics, joints_are_found_by_name_in_every_message) {
 TEST(RosTopics, poses_are_taken_unasked_only_where_there_are_no_scans) {
   sim::RosLog log = small_log(Wire::cdr_little);
   add_pose(log, "/goal_pose");
-  auto result = read_ros(mcap(log));
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_TRUE(result.value().poses.empty());
-  EXPECT_TRUE(told(result.value(), "--topic pose=/goal_pose"));
-  result = read_ros(mcap(log), {{"pose", "/goal_pose", {}}});
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  ASSERT_EQ(result.value().poses.size(), 3U);
-  EXPECT_NEAR(result.value().poses[2].yaw, 0.3, 1e-12);
-  result = read_ros(mcap(log), {{"pose", "/odom", {}}});
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_EQ(result.value().poses.size(), 200U);
+  auto result = value_of(read_ros(mcap(log)));
+  EXPECT_TRUE(result.poses.empty());
+  EXPECT_TRUE(told(result, "--topic pose=/goal_pose"));
+  result = value_of(read_ros(mcap(log), {{"pose", "/goal_pose", {}}}));
+  ASSERT_EQ(result.poses.size(), 3U);
+  EXPECT_NEAR(result.poses[2].yaw, 0.3, 1e-12);
+  result = value_of(read_ros(mcap(log), {{"pose", "/odom", {}}}));
+  EXPECT_EQ(result.poses.size(), 200U);
 
   Recording without_scans = small_drive();
   without_scans.scans.clear();
   sim::RosLog mocap = sim::ros_log(without_scans, {.wire = Wire::cdr_little});
-  result = read_ros(mcap(mocap));
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_TRUE(told(result.value(), "no topic with scans or poses"));
+  result = value_of(read_ros(mcap(mocap)));
+  EXPECT_TRUE(told(result, "no topic with scans or poses"));
   add_pose(mocap, "/mocap/robot/pose");
-  result = read_ros(mcap(mocap));
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_EQ(result.value().poses.size(), 3U);
+  result = value_of(read_ros(mcap(mocap)));
+  EXPECT_EQ(result.poses.size(), 3U);
   add_pose(mocap, "/goal_pose");
   expect_usage(read_ros(mcap(mocap)), {"several topics could be the pose"});
 }
@@ -212,22 +198,19 @@ TEST(RosTopics, poses_are_taken_unasked_only_where_there_are_no_scans) {
 TEST(RosTopics, a_second_gyro_stops_nobody) {
   sim::RosLog log = small_log(Wire::cdr_little);
   log.add("/camera/imu", "sensor_msgs/Imu", kStart, encode_imu(log.wire, {kStart, "camera"}, 0.5));
-  auto result = read_ros(mcap(log));
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_TRUE(result.value().gyro.empty());
-  EXPECT_TRUE(told(result.value(), "several topics could be the gyro"));
-  result = read_ros(mcap(log), {{"gyro", "/imu", {}}});
-  ASSERT_TRUE(result.ok());
-  expect_small_drive(result.value(), MotionSource::wheels);
+  auto result = value_of(read_ros(mcap(log)));
+  EXPECT_TRUE(result.gyro.empty());
+  EXPECT_TRUE(told(result, "several topics could be the gyro"));
+  result = value_of(read_ros(mcap(log), {{"gyro", "/imu", {}}}));
+  expect_small_drive(result, MotionSource::wheels);
 }
 
 TEST(RosTopics, an_imu_that_states_no_rates_has_none) {
   sim::RosLog log = small_log(Wire::cdr_little);
   log.add("/imu", "sensor_msgs/Imu", kStart, encode_imu(log.wire, {kStart, "imu"}, 0.5, -1.0));
-  const auto result = read_ros(mcap(log));
-  ASSERT_TRUE(result.ok());
-  EXPECT_EQ(result.value().gyro.size(), 40U);
-  EXPECT_EQ(discarded_like(result.value(), "message", "/imu: does not hold"), 1U);
+  const auto result = value_of(read_ros(mcap(log)));
+  EXPECT_EQ(result.gyro.size(), 40U);
+  EXPECT_EQ(discarded_like(result, "message", "/imu: does not hold"), 1U);
 }
 
 TEST(RosTopics, stamps_of_headers_are_used_and_those_that_are_zero_replaced_by_reception) {
@@ -235,12 +218,11 @@ TEST(RosTopics, stamps_of_headers_are_used_and_those_that_are_zero_replaced_by_r
   for (auto& message : log.messages)
     if (log.topics[message.topic].name == "/scan")
       message.bytes = encode_scan(log.wire, {0, "laser"}, small_drive().scans.front());
-  const auto result = read_ros(mcap(log));
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  ASSERT_EQ(result.value().scans.size(), 40U);
+  const auto result = value_of(read_ros(mcap(log)));
+  ASSERT_EQ(result.scans.size(), 40U);
   // 3 ms on the way, and the 25 beams of a scan
-  EXPECT_NEAR(result.value().scans[0].t, 0.003 + 0.003 + 25.0 / 1024.0, 1e-6);
-  EXPECT_EQ(result.value().ticks[1].t, 0.02);
+  EXPECT_NEAR(result.scans[0].t, 0.003 + 0.003 + 25.0 / 1024.0, 1e-6);
+  EXPECT_EQ(result.ticks[1].t, 0.02);
 }
 
 TEST(RosTopics, stamps_of_different_clocks_are_replaced_by_reception_and_it_is_said) {
@@ -251,19 +233,17 @@ TEST(RosTopics, stamps_of_different_clocks_are_replaced_by_reception_and_it_is_s
       const Scan scan = small_drive().scans[k++];
       message.bytes = encode_scan(log.wire, {17'000'000'000 + std::llround(1e9 * scan.t), "laser"}, scan);
     }
-  const auto result = read_ros(mcap(log));
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_TRUE(told(result.value(), "times of reception"));
-  ASSERT_EQ(result.value().scans.size(), 40U);
-  EXPECT_NEAR(result.value().scans[0].t, 0.006 + 25.0 / 1024.0, 1e-6);
-  EXPECT_NEAR(result.value().ticks[0].t, 0.003, 1e-6);
+  const auto result = value_of(read_ros(mcap(log)));
+  EXPECT_TRUE(told(result, "times of reception"));
+  ASSERT_EQ(result.scans.size(), 40U);
+  EXPECT_NEAR(result.scans[0].t, 0.006 + 25.0 / 1024.0, 1e-6);
+  EXPECT_NEAR(result.ticks[0].t, 0.003, 1e-6);
   // A whole recording that was played back hours later is one clock.
   sim::RosLog replayed = small_log(Wire::cdr_little);
   for (auto& message : replayed.messages) message.received_ns += 7'200'000'000'000;
-  const auto played = read_ros(mcap(replayed));
-  ASSERT_TRUE(played.ok());
-  expect_small_drive(played.value(), MotionSource::wheels);
-  EXPECT_FALSE(told(played.value(), "times of reception"));
+  const auto played = value_of(read_ros(mcap(replayed)));
+  expect_small_drive(played, MotionSource::wheels);
+  EXPECT_FALSE(told(played, "times of reception"));
 }
 
 /// REP 117: too near, too far, no echo, no number.
@@ -276,32 +256,29 @@ TEST(RosTopics, ranges_that_are_not_finite_are_no_reading_and_no_fault) {
   scan.ranges[3] = 9.0F;  // beyond range_max
   const std::int64_t time = kStart + 5000 * kMillisecond;
   log.add("/scan", "sensor_msgs/LaserScan", time, encode_scan(log.wire, {time, "laser"}, scan));
-  const auto result = read_ros(mcap(log));
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  const auto& ranges = result.value().scans.back().ranges;
+  const auto result = value_of(read_ros(mcap(log)));
+  const auto& ranges = result.scans.back().ranges;
   for (int k = 0; k < 4; ++k) EXPECT_EQ(ranges[static_cast<std::size_t>(k)], 0.0F) << k;
   EXPECT_EQ(ranges[4], scan.ranges[4]);
-  EXPECT_EQ(discarded_like(result.value(), "beam", "not a number"), 0U) << list_discarded(result.value());
-  EXPECT_EQ(discarded_like(result.value(), "beam", "outside"), 1U);
+  EXPECT_EQ(discarded_like(result, "beam", "not a number"), 0U) << list_discarded(result);
+  EXPECT_EQ(discarded_like(result, "beam", "outside"), 1U);
 }
 
 TEST(RosTopics, types_of_another_definition_and_encodings_that_are_not_read_are_named) {
   std::string bag = write_bag(small_log(Wire::ros1), {.chunk_bytes = 100'000'000});
   const std::string md5 = sim::md5_of("sensor_msgs/LaserScan");
   for (auto at = bag.find(md5); at != std::string::npos; at = bag.find(md5)) bag[at] = 'f';
-  const auto result = read_ros(bag);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_TRUE(result.value().scans.empty());
-  EXPECT_TRUE(told(result.value(), "not read: of another definition (MD5 f"));
-  EXPECT_EQ(discarded_like(result.value(), "message", "of another definition"), 40U);
+  const auto result = value_of(read_ros(bag));
+  EXPECT_TRUE(result.scans.empty());
+  EXPECT_TRUE(told(result, "not read: of another definition (MD5 f"));
+  EXPECT_EQ(discarded_like(result, "message", "of another definition"), 40U);
 
   std::string file = write_mcap(small_log(Wire::cdr_little), {.chunk_bytes = 0});
   const std::string scan = "/scan" + std::string("\x03\0\0\0cdr", 7);
   ASSERT_NE(file.find(scan), std::string::npos);
   file.replace(file.find(scan) + 9, 3, "xml");
-  const auto other = read_ros(file);
-  ASSERT_TRUE(other.ok()) << other.error().text();
-  EXPECT_TRUE(told(other.value(), "in the encoding \"xml\""));
+  const auto other = value_of(read_ros(file));
+  EXPECT_TRUE(told(other, "in the encoding \"xml\""));
 }
 
 TEST(RosTopics, without_dimensions_of_the_robot_ask_for_them) {

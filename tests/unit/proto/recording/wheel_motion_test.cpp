@@ -74,9 +74,7 @@ void expect_same_motion(const Recording& found, const std::vector<TickSample>& c
 TEST(WheelMotion, angles_on_the_encoders_grid_give_the_encoders_counts) {
   std::string text = kRobotWithTicks;
   for (const TickSample& s : drive()) text += line("wheels", s.t, angle(s.left), angle(s.right));
-  const auto result = read_text(text);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  const Recording& r = result.value();
+  const Recording r = value_of(read_text(text));
   EXPECT_EQ(r.motion, MotionSource::wheels);
   EXPECT_EQ(r.robot.ticks_per_rev, kTicksPerRev);
   const auto counted = drive();
@@ -93,13 +91,11 @@ TEST(WheelMotion, angles_off_the_grid_are_kept_finely_whatever_resolution_is_sta
     std::string text = robot;
     for (const TickSample& s : drive())
       text += line("wheels", s.t, angle(s.left) + kOff * std::sin(s.t), angle(s.right));
-    const auto result = read_text(text);
-    ASSERT_TRUE(result.ok()) << result.error().text();
-    EXPECT_EQ(result.value().robot.ticks_per_rev, kFineCountsPerRev);
-    expect_same_motion(result.value(), drive(), kOff + kFineCount);
-    for (std::size_t i = 0; i < result.value().ticks.size(); ++i)
-      EXPECT_NEAR(angle(result.value().ticks[i].left, kFineCountsPerRev), result.value().wheels[i].left,
-                  kFineCount);
+    const auto result = value_of(read_text(text));
+    EXPECT_EQ(result.robot.ticks_per_rev, kFineCountsPerRev);
+    expect_same_motion(result, drive(), kOff + kFineCount);
+    for (std::size_t i = 0; i < result.ticks.size(); ++i)
+      EXPECT_NEAR(angle(result.ticks[i].left, kFineCountsPerRev), result.wheels[i].left, kFineCount);
   }
 }
 
@@ -111,9 +107,8 @@ TEST(WheelMotion, angles_kept_within_a_turn_are_continued) {
       return lowest + kTurn * (turns - std::floor(turns));
     };
     for (const TickSample& s : drive()) text += line("wheels", s.t, within(s.left), within(s.right));
-    const auto result = read_text(text);
-    ASSERT_TRUE(result.ok()) << result.error().text();
-    expect_same_motion(result.value(), drive(), 1e-9);
+    const auto result = value_of(read_text(text));
+    expect_same_motion(result, drive(), 1e-9);
   }
 }
 
@@ -126,10 +121,9 @@ TEST(WheelMotion, S3_17_speeds_in_radians_a_second_are_held_until_the_next_line)
                  angle(counted[i + 1].right - counted[i].right) / held);
   }
   text += line("wheel_speeds", counted.back().t, 0.0, 0.0);
-  const auto result = read_text(text);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_EQ(result.value().motion, MotionSource::wheel_speeds);
-  expect_same_motion(result.value(), counted, 6e-6);
+  const auto result = value_of(read_text(text));
+  EXPECT_EQ(result.motion, MotionSource::wheel_speeds);
+  expect_same_motion(result, counted, 6e-6);
 }
 
 /// Odometry as robots compute it: x and y along the heading in the middle of the step, or along the exact
@@ -154,10 +148,9 @@ std::string odometry_of(const std::vector<TickSample>& ticks, bool exact) {
 
 TEST(WheelMotion, odometry_is_turned_back_with_the_nominal_values) {
   for (const bool exact : {true, false}) {
-    const auto result = read_text(kRobotWithoutTicks + odometry_of(drive(), exact));
-    ASSERT_TRUE(result.ok()) << result.error().text();
-    EXPECT_EQ(result.value().motion, MotionSource::odometry);
-    expect_same_motion(result.value(), drive(), exact ? 6e-6 : 2e-3);
+    const auto result = value_of(read_text(kRobotWithoutTicks + odometry_of(drive(), exact)));
+    EXPECT_EQ(result.motion, MotionSource::odometry);
+    expect_same_motion(result, drive(), exact ? 6e-6 : 2e-3);
   }
 }
 
@@ -165,9 +158,8 @@ TEST(WheelMotion, odometry_that_starts_again_at_the_origin_begins_a_segment) {
   std::string text = kRobotWithoutTicks;
   for (int k = 0; k < 100; ++k) text += odometry_line(0.02 * k, 1.0 + 0.004 * k, 0.5, 0.3);
   for (int k = 0; k < 100; ++k) text += odometry_line(2.0 + 0.02 * k, 0.004 * k, 0.0, 0.0);
-  const auto result = read_text(text);
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  const auto& ticks = result.value().ticks;
+  const auto result = value_of(read_text(text));
+  const auto& ticks = result.ticks;
   ASSERT_EQ(ticks.size(), 200U);
   EXPECT_EQ(ticks[99].segment, 0);
   EXPECT_EQ(ticks[100].segment, 1);
@@ -175,10 +167,9 @@ TEST(WheelMotion, odometry_that_starts_again_at_the_origin_begins_a_segment) {
 }
 
 TEST(WheelMotion, the_finest_decides_and_the_others_are_counted) {
-  const std::string ticks = R"({"type":"ticks","t":0,"left":0,"right":0})"
-                            "\n"
-                            R"({"type":"ticks","t":1,"left":9,"right":9})"
-                            "\n";
+  const std::string ticks = R"({"type":"ticks","t":0,"left":0,"right":0}
+{"type":"ticks","t":1,"left":9,"right":9}
+)";
   const std::string wheels = line("wheels", 0, 0, 0) + line("wheels", 1, 0.5, 0.5);
   const std::string speeds = line("wheel_speeds", 0, 1, 1) + line("wheel_speeds", 1, 1, 1);
   const std::string odometry = odometry_line(0, 0, 0, 0) + odometry_line(1, 0.1, 0, 0);
@@ -213,23 +204,17 @@ TEST(WheelMotion, needs_no_counts_a_turn_but_the_dimensions) {
 }
 
 TEST(WheelMotion, values_that_are_none_are_left_out_by_name) {
-  const auto result =
-      read_text(std::string(kRobotWithTicks) + line("wheels", 0, 0, 0) + line("wheels", 1, 0.5, 0.5) +
-                R"({"type":"wheels","t":2,"left":1e12,"right":0})"
-                "\n"
-                R"({"type":"wheels","t":2,"left":null,"right":0})"
-                "\n"
-                R"({"type":"wheel_speeds","t":0,"left":1e6,"right":0})"
-                "\n"
-                R"({"type":"odometry","t":0,"x":NaN,"y":0,"yaw":0})"
-                "\n"
-                R"({"type":"odometry","t":0,"x":1e12,"y":0,"yaw":0})"
-                "\n");
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_EQ(discarded(result.value(), "wheels", "left or right missing or not an angle"), 2U);
-  EXPECT_EQ(discarded(result.value(), "wheel_speeds", "left or right missing or not the speed of a wheel"),
-            1U);
-  EXPECT_EQ(discarded(result.value(), "odometry", "x, y or yaw missing or impossible"), 2U);
+  const auto result = value_of(read_text(std::string(kRobotWithTicks) + line("wheels", 0, 0, 0) +
+                                         line("wheels", 1, 0.5, 0.5) +
+                                         R"({"type":"wheels","t":2,"left":1e12,"right":0}
+{"type":"wheels","t":2,"left":null,"right":0}
+{"type":"wheel_speeds","t":0,"left":1e6,"right":0}
+{"type":"odometry","t":0,"x":NaN,"y":0,"yaw":0}
+{"type":"odometry","t":0,"x":1e12,"y":0,"yaw":0}
+)"));
+  EXPECT_EQ(discarded(result, "wheels", "left or right missing or not an angle"), 2U);
+  EXPECT_EQ(discarded(result, "wheel_speeds", "left or right missing or not the speed of a wheel"), 1U);
+  EXPECT_EQ(discarded(result, "odometry", "x, y or yaw missing or impossible"), 2U);
 }
 
 TEST(WheelMotion, survives_writing_as_it_was_recorded) {
@@ -239,19 +224,18 @@ TEST(WheelMotion, survives_writing_as_it_was_recorded) {
     speeds += line("wheel_speeds", s.t, std::sin(s.t), std::cos(s.t));
   }
   for (const std::string& lines : {wheels, speeds, odometry_of(drive(), true)}) {
-    const auto first = read_text(kRobotWithoutTicks + lines);
-    ASSERT_TRUE(first.ok()) << first.error().text();
+    const auto first = value_of(read_text(kRobotWithoutTicks + lines));
     const auto path = test::write_file("wheel_motion.jsonl.gz", "");
-    ASSERT_TRUE(write_recording_jsonl(first.value(), path).ok());
+    ASSERT_TRUE(write_recording_jsonl(first, path).ok());
     const auto second = read_recording(path);
     std::filesystem::remove(path);
     ASSERT_TRUE(second.ok()) << second.error().text();
-    EXPECT_EQ(second.value().motion, first.value().motion);
-    EXPECT_EQ(second.value().robot.ticks_per_rev, first.value().robot.ticks_per_rev);
-    ASSERT_EQ(second.value().ticks.size(), first.value().ticks.size());
-    for (std::size_t i = 0; i < first.value().ticks.size(); ++i) {
-      EXPECT_EQ(second.value().ticks[i].left, first.value().ticks[i].left);
-      EXPECT_EQ(second.value().ticks[i].right, first.value().ticks[i].right);
+    EXPECT_EQ(second.value().motion, first.motion);
+    EXPECT_EQ(second.value().robot.ticks_per_rev, first.robot.ticks_per_rev);
+    ASSERT_EQ(second.value().ticks.size(), first.ticks.size());
+    for (std::size_t i = 0; i < first.ticks.size(); ++i) {
+      EXPECT_EQ(second.value().ticks[i].left, first.ticks[i].left);
+      EXPECT_EQ(second.value().ticks[i].right, first.ticks[i].right);
     }
   }
 }

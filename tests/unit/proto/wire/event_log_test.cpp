@@ -113,12 +113,11 @@ Result<Recording> read_log(const std::string& bytes, const RobotDescription* fal
 }
 
 TEST(NativeLog, is_read_with_its_robot_and_monotonic_times) {
-  const auto result = read_log(robot() + ticks(2.5, 7) + robot());
-  ASSERT_TRUE(result.ok()) << result.error().text();
-  EXPECT_EQ(result.value().robot.ticks_per_rev, 2000.0);
-  ASSERT_EQ(result.value().ticks.size(), 1U);
-  EXPECT_EQ(result.value().ticks[0].t, 2.5);
-  EXPECT_TRUE(result.value().discarded.empty()) << list_discarded(result.value());
+  const auto result = value_of(read_log(robot() + ticks(2.5, 7) + robot()));
+  EXPECT_EQ(result.robot.ticks_per_rev, 2000.0);
+  ASSERT_EQ(result.ticks.size(), 1U);
+  EXPECT_EQ(result.ticks[0].t, 2.5);
+  EXPECT_TRUE(result.discarded.empty()) << list_discarded(result);
 }
 
 TEST(NativeLog, needs_a_robot_message_or_a_fallback) {
@@ -133,9 +132,8 @@ TEST(NativeLog, takes_poses_from_the_reference_channel_only) {
     return event(channel, messages::encode(at(1), PoseSample{0, 1, 2, 3}));
   };
   const auto result =
-      read_log(robot() + ticks(0, 0) + pose("ODOMCALIB_ODOM") + pose("ODOMCALIB_ODOM_CALIBRATED"));
-  ASSERT_TRUE(result.ok());
-  EXPECT_TRUE(result.value().poses.empty());
+      value_of(read_log(robot() + ticks(0, 0) + pose("ODOMCALIB_ODOM") + pose("ODOMCALIB_ODOM_CALIBRATED")));
+  EXPECT_TRUE(result.poses.empty());
   EXPECT_EQ(read_log(robot() + pose("R2_POSE_REF")).value().poses.size(), 1U);
 }
 
@@ -143,13 +141,11 @@ TEST(NativeLog, lists_what_it_does_not_know_and_counts_damaged_messages) {
   Scan scan;
   scan.angle_increment = 0.1;
   scan.ranges = {1.0F};
-  const auto result = read_log(
+  const auto r = value_of(read_log(
       robot() + ticks(0, 0) + event("X", big_endian(0x1234, 8) + "data") + event("Y", "short") +
       event("ODOMCALIB_TICKS", messages::encode(at(1), TickSample{}).substr(0, 20)) +
       event("ODOMCALIB_SCAN", messages::encode(at(1), scan, {}, false)) +
-      event("ODOMCALIB_STATUS", messages::encode_json(0, "f", "{}")) + "junk" + ticks(1, 1).substr(0, 40));
-  ASSERT_TRUE(result.ok());
-  const auto& r = result.value();
+      event("ODOMCALIB_STATUS", messages::encode_json(0, "f", "{}")) + "junk" + ticks(1, 1).substr(0, 40)));
   EXPECT_EQ(r.ticks.size(), 1U);
   EXPECT_EQ(discarded(r, "event", "unknown fingerprint 0x0000000000001234"), 1U) << list_discarded(r);
   EXPECT_EQ(discarded(r, "event", "unknown fingerprint 0x0000000000000000"), 1U);
@@ -168,9 +164,7 @@ std::filesystem::path fresh_path(const char* name) {
 
 TEST(RecordingLog, gives_back_what_was_written_and_is_read_by_the_lcm_library) {
   const auto path = fresh_path("recording_log.lcm");
-  auto created = RecordingLog::create(path, "R1_");
-  ASSERT_TRUE(created.ok()) << created.error().text();
-  auto& log = created.value();
+  auto log = value_of(RecordingLog::create(path, "R1_"));
   Scan scan;
   scan.angle_min = -1.0;
   scan.angle_increment = 0.5;
@@ -188,12 +182,11 @@ TEST(RecordingLog, gives_back_what_was_written_and_is_read_by_the_lcm_library) {
   EXPECT_EQ(log.events(), 7U);
   EXPECT_EQ(log.bytes(), std::filesystem::file_size(path));
 
-  const auto back = read_recording(path);
-  ASSERT_TRUE(back.ok()) << back.error().text();
-  EXPECT_EQ(back.value().ticks.at(0).right, 2);
-  EXPECT_EQ(back.value().scans.at(0).ranges, scan.ranges);
-  EXPECT_EQ(back.value().poses.at(0).yaw, 3.0);
-  EXPECT_EQ(back.value().gyro.at(0).yaw_rate, 0.5);
+  const auto back = value_of(read_recording(path));
+  EXPECT_EQ(back.ticks.at(0).right, 2);
+  EXPECT_EQ(back.scans.at(0).ranges, scan.ranges);
+  EXPECT_EQ(back.poses.at(0).yaw, 3.0);
+  EXPECT_EQ(back.gyro.at(0).yaw_rate, 0.5);
 
   lcm_eventlog_t* library = lcm_eventlog_create(path.c_str(), "r");
   ASSERT_NE(library, nullptr);
@@ -209,13 +202,12 @@ TEST(RecordingLog, gives_back_what_was_written_and_is_read_by_the_lcm_library) {
 
 TEST(RecordingLog, does_not_overwrite_and_refuses_long_channels) {
   const auto path = fresh_path("recording_log_once.lcm");
-  auto first = RecordingLog::create(path);
-  ASSERT_TRUE(first.ok());
+  auto first = value_of(RecordingLog::create(path));
   EXPECT_EQ(RecordingLog::create(path).error().code, ErrorCode::io);
   EXPECT_EQ(RecordingLog::create("/nonexistent/x.lcm").error().code, ErrorCode::io);
-  EXPECT_TRUE(first.value().write(0, std::string(63, 'A'), "x").ok());
-  EXPECT_EQ(first.value().write(0, std::string(64, 'A'), "x").error().code, ErrorCode::usage);
-  EXPECT_EQ(first.value().write(0, "", "x").error().code, ErrorCode::usage);
+  EXPECT_TRUE(first.write(0, std::string(63, 'A'), "x").ok());
+  EXPECT_EQ(first.write(0, std::string(64, 'A'), "x").error().code, ErrorCode::usage);
+  EXPECT_EQ(first.write(0, "", "x").error().code, ErrorCode::usage);
 }
 
 TEST(RecordingLog, reports_a_full_disk) {
@@ -229,14 +221,10 @@ TEST(RecordingLog, reports_a_full_disk) {
 // Angles and ranges travel as float, times as whole nanoseconds: everything else is the same.
 TEST(RecordingLog, of_a_json_lines_recording_gives_equal_data) {
   ODOMCALIB_SHARED_FILE(source, "maebot/convex.jsonl.gz");
-  const auto original = read_recording(source);
-  ASSERT_TRUE(original.ok());
+  const auto a = value_of(read_recording(source));
   const auto path = fresh_path("convex.lcm");
-  ASSERT_TRUE(write_recording_log(original.value(), path).ok());
-  const auto back = read_recording(path);
-  ASSERT_TRUE(back.ok()) << back.error().text();
-  const auto& a = original.value();
-  const auto& b = back.value();
+  ASSERT_TRUE(write_recording_log(a, path).ok());
+  const auto b = value_of(read_recording(path));
   EXPECT_TRUE(b.discarded.empty()) << list_discarded(b);
   EXPECT_EQ(a.robot.ticks_per_rev, b.robot.ticks_per_rev);
   EXPECT_EQ(a.robot.lidar_pose, b.robot.lidar_pose);

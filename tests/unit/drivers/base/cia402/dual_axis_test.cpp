@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 #include "drivers/base/controller.hpp"
 #include "tests/sim/wires/drive_node.hpp"
@@ -118,6 +119,18 @@ class Bench {
   std::array<double, 2> angle_{};
 };
 
+/// A test ends here where the drive does not get so far.
+struct Ready : Bench {
+  Ready() {
+    if (!ready()) throw std::runtime_error("not ready");
+  }
+};
+struct Enabled : Bench {
+  Enabled() {
+    if (!enabled()) throw std::runtime_error("not enabled");
+  }
+};
+
 /// A copy of a profile with one piece of text changed.
 std::string changed_profile(const std::string& from, const std::string& to, const std::string& name) {
   std::string text = test::read_text("drivers/base/profiles/sim-dual.toml");
@@ -130,8 +143,7 @@ std::string changed_profile(const std::string& from, const std::string& to, cons
 }
 
 TEST(DualAxis, configures_the_drive_and_gets_ticks_within_two_seconds) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   EXPECT_LT(bench.now, 2.0);
   EXPECT_TRUE(bench.controller->watchdog_armed());
   ASSERT_TRUE(bench.controller->identity());
@@ -157,8 +169,7 @@ TEST(DualAxis, writes_nothing_to_a_foreign_device) {
 }
 
 TEST(DualAxis, turns_both_wheels_by_what_was_commanded) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   const TickSample before = bench.ticks.back();
   bench.drive(2.0, -1.0, 2.0);
   const TickSample after = bench.ticks.back();
@@ -168,8 +179,7 @@ TEST(DualAxis, turns_both_wheels_by_what_was_commanded) {
 }
 
 TEST(DualAxis, a_command_that_is_not_refreshed_becomes_zero) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(2.0, 2.0, 0.5);
   bench.run(0.15);
   EXPECT_EQ(bench.node.order().rate[0], 0.0);
@@ -177,8 +187,7 @@ TEST(DualAxis, a_command_that_is_not_refreshed_becomes_zero) {
 }
 
 TEST(DualAxis, refuses_commands_that_are_not_numbers_or_not_enabled) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   EXPECT_EQ(bench.controller->command(1.0, 1.0, bench.now).error().code, ErrorCode::refused);
   ASSERT_TRUE(bench.enabled());
   EXPECT_TRUE(bench.controller->command(1.0, 1.0, bench.now).ok());
@@ -188,8 +197,7 @@ TEST(DualAxis, refuses_commands_that_are_not_numbers_or_not_enabled) {
 }
 
 TEST(DualAxis, quick_stop_takes_effect_at_once_and_stays) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(2.0, 2.0, 0.5);
   bench.controller->quick_stop(bench.now);
   bench.run(0.02);
@@ -207,8 +215,7 @@ TEST(DualAxis, quick_stop_takes_effect_at_once_and_stays) {
 // The last status that came is older than the stop: it shows axes that follow.
 TEST(DualAxis, enabled_right_after_a_stop_it_ends_the_motion_first) {
   for (const double pause : {0.0, 0.001, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2}) {
-    Bench bench;
-    ASSERT_TRUE(bench.enabled());
+    Enabled bench;
     bench.drive(2.0, 2.0, 0.5);
     bench.controller->quick_stop(bench.now);
     bench.controller->disable(bench.now);
@@ -226,8 +233,7 @@ TEST(DualAxis, enabled_right_after_a_stop_it_ends_the_motion_first) {
 TEST(DualAxis, stopped_again_before_the_motion_has_ended_it_is_not_enabled) {
   using Call = void (Controller::*)(double);
   for (const Call call : {&Controller::quick_stop, &Controller::disable}) {
-    Bench bench;
-    ASSERT_TRUE(bench.enabled());
+    Enabled bench;
     bench.drive(2.0, 2.0, 0.5);
     bench.controller->quick_stop(bench.now);
     bench.controller->enable(bench.now);
@@ -239,8 +245,7 @@ TEST(DualAxis, stopped_again_before_the_motion_has_ended_it_is_not_enabled) {
 }
 
 TEST(DualAxis, a_quick_stop_that_is_lost_on_the_bus_is_sent_again) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(2.0, 2.0, 0.5);
   bench.controller->quick_stop(bench.now);
   EXPECT_FALSE(bench.controller->take_frames().empty());
@@ -250,8 +255,7 @@ TEST(DualAxis, a_quick_stop_that_is_lost_on_the_bus_is_sent_again) {
 }
 
 TEST(DualAxis, disable_ends_without_torque) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(1.0, 1.0, 0.3);
   bench.controller->disable(bench.now);
   EXPECT_TRUE(bench.run_until([&] { return bench.controller->state() == ControllerState::disabled; }, 2.0));
@@ -277,8 +281,7 @@ TEST(DualAxis, a_watchdog_that_reads_back_otherwise_is_not_armed) {
 }
 
 TEST(DualAxis, the_drive_stops_by_itself_when_this_program_is_silent) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(2.0, 2.0, 0.5);
   bench.link_to_node = false;
   bench.run(0.5);
@@ -286,8 +289,7 @@ TEST(DualAxis, the_drive_stops_by_itself_when_this_program_is_silent) {
 }
 
 TEST(DualAxis, a_lost_heartbeat_is_a_stop_event_and_heals) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   bench.node.faults.heartbeat_stopped = true;
   const double start = bench.now;
   ASSERT_TRUE(bench.run_until([&] { return bench.find("heartbeat_lost") != nullptr; }, 0.5));
@@ -300,8 +302,7 @@ TEST(DualAxis, a_lost_heartbeat_is_a_stop_event_and_heals) {
 }
 
 TEST(DualAxis, frozen_process_data_stops_within_a_quarter_second) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(2.0, 2.0, 0.3);
   bench.node.faults.pdo_silent = true;
   const double start = bench.now;
@@ -312,8 +313,7 @@ TEST(DualAxis, frozen_process_data_stops_within_a_quarter_second) {
 }
 
 TEST(DualAxis, counts_that_stand_still_under_command_stop) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.wheels_turn = false;
   bench.drive(2.0, 2.0, 1.0);
   ASSERT_NE(bench.find("encoder_stuck"), nullptr);
@@ -321,8 +321,7 @@ TEST(DualAxis, counts_that_stand_still_under_command_stop) {
 }
 
 TEST(DualAxis, counts_that_freeze_in_motion_stop_within_a_tenth_of_a_second) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(2.0, 2.0, 0.5);
   EXPECT_EQ(bench.find("encoder_stuck"), nullptr);
   const double start = bench.now;
@@ -334,8 +333,7 @@ TEST(DualAxis, counts_that_freeze_in_motion_stop_within_a_tenth_of_a_second) {
 }
 
 TEST(DualAxis, a_wheel_that_breaks_away_late_or_stalls_for_a_moment_is_no_stuck_encoder) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.wheels_turn = false;
   bench.drive(2.0, 2.0, 0.25);
   bench.wheels_turn = true;
@@ -348,15 +346,13 @@ TEST(DualAxis, a_wheel_that_breaks_away_late_or_stalls_for_a_moment_is_no_stuck_
 }
 
 TEST(DualAxis, standing_still_on_command_is_no_stuck_encoder) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(0.0, 0.0, 3.0);
   EXPECT_TRUE(bench.events.empty());
 }
 
 TEST(DualAxis, an_emergency_message_stops) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(1.0, 1.0, 0.3);
   bench.node.emergency(0x8611, 0x20, bench.now);
   bench.run(0.05);
@@ -391,8 +387,7 @@ const Foreign kForeign[] = {
 
 TEST(DualAxis, another_program_that_commands_its_node_stops_the_wheels) {
   for (const Foreign& foreign : kForeign) {
-    Bench bench;
-    ASSERT_TRUE(bench.enabled());
+    Enabled bench;
     bench.drive(1.0, 1.0, 0.3);
     const sim::Frame sent{foreign.id, false, false, static_cast<std::uint8_t>(foreign.data.size()), {}};
     CanFrame frame = to_can(sent, bench.now);
@@ -407,8 +402,7 @@ TEST(DualAxis, another_program_that_commands_its_node_stops_the_wheels) {
 
 // At rest it is told, once.
 TEST(DualAxis, another_program_is_no_stop_where_nothing_moves) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   CanFrame frame = to_can({0x301, false, false, 8, {}}, bench.now);
   for (int i = 0; i < 20; ++i) bench.controller->on_frame(frame);
   bench.run(0.1);
@@ -420,17 +414,15 @@ TEST(DualAxis, another_program_is_no_stop_where_nothing_moves) {
 }
 
 TEST(DualAxis, enabling_resets_a_fault) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   bench.node.emergency(0x2310, 0x02, bench.now);
   ASSERT_TRUE(bench.run_until([&] { return bench.controller->state() == ControllerState::fault; }, 0.5));
   bench.controller->enable(bench.now);
-  EXPECT_TRUE(bench.run_until([&] { return bench.controller->state() == ControllerState::enabled; }, 2.0));
+  EXPECT_TRUE(bench.enabled_within(2.0));
 }
 
 TEST(DualAxis, an_unexpected_boot_up_stops_and_configures_anew) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(1.0, 1.0, 0.3);
   bench.node.reset(bench.now);
   bench.run(0.3);
@@ -450,8 +442,7 @@ TEST(DualAxis, finds_a_drive_that_is_switched_on_later) {
 }
 
 TEST(DualAxis, bus_off_is_a_stop_event) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   CanFrame frame;
   frame.error = true;
   frame.id = 0x040;
@@ -464,8 +455,7 @@ TEST(DualAxis, bus_off_is_a_stop_event) {
 }
 
 TEST(DualAxisParameters, are_written_read_back_and_stored) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   bench.run(0.2);
   ASSERT_TRUE(
       bench.controller
@@ -485,8 +475,7 @@ TEST(DualAxisParameters, are_written_read_back_and_stored) {
 }
 
 TEST(DualAxisParameters, are_read_before_rest_is_known_but_not_changed) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   EXPECT_FALSE(bench.controller->at_rest());
   EXPECT_EQ(bench.controller->start_store(bench.now).error().what, "wheels are turning");
   EXPECT_EQ(bench.controller->start_write_parameters({{"track_width", 0.41}}, bench.now).error().what,
@@ -498,8 +487,7 @@ TEST(DualAxisParameters, are_read_before_rest_is_known_but_not_changed) {
 }
 
 TEST(DualAxisParameters, a_result_that_nobody_took_is_not_given_for_the_next_job) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   ASSERT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
   bench.run(0.5);
   ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
@@ -528,8 +516,7 @@ TEST(DualAxisParameters, every_job_ends_by_itself_when_the_drive_falls_silent) {
                                    [](Controller& c, double now) { return c.start_store(now); }};
   for (const Start& start : jobs)
     for (const double after : {0.0, 0.002, 0.005, 0.02}) {
-      Bench bench;
-      ASSERT_TRUE(bench.ready());
+      Ready bench;
       bench.run(0.2);
       ASSERT_TRUE(start(*bench.controller, bench.now).ok());
       bench.run(after);
@@ -539,8 +526,7 @@ TEST(DualAxisParameters, every_job_ends_by_itself_when_the_drive_falls_silent) {
 }
 
 TEST(DualAxisParameters, are_refused_while_enabled) {
-  Bench bench;
-  ASSERT_TRUE(bench.enabled());
+  Enabled bench;
   bench.drive(0.0, 0.0, 0.5);
   ASSERT_TRUE(bench.controller->at_rest());
   for (const auto& refused : {bench.controller->start_read_parameters(bench.now),
@@ -552,8 +538,7 @@ TEST(DualAxisParameters, are_refused_while_enabled) {
 }
 
 TEST(DualAxisParameters, refuse_unknown_quantities_and_values_out_of_range) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   bench.run(0.2);
   for (const ParameterValue& value : {ParameterValue{"wheel_colour", 0.1},
                                       {"track_width", -0.4},
@@ -565,8 +550,7 @@ TEST(DualAxisParameters, refuse_unknown_quantities_and_values_out_of_range) {
 }
 
 TEST(DualAxisParameters, old_values_come_back_when_the_second_write_is_refused) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   bench.run(0.2);
   bench.node.sdo_faults().abort_on_write[{0x2100, 3}] = static_cast<sim::AbortCode>(0x06090030);
   ASSERT_TRUE(bench.controller
@@ -579,8 +563,7 @@ TEST(DualAxisParameters, old_values_come_back_when_the_second_write_is_refused) 
 }
 
 TEST(DualAxisParameters, a_failing_store_is_told_and_the_stored_set_is_the_old_one) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   bench.run(0.2);
   bench.node.faults.store_fails = true;
   ASSERT_TRUE(bench.controller->start_store(bench.now).ok());
@@ -590,8 +573,7 @@ TEST(DualAxisParameters, a_failing_store_is_told_and_the_stored_set_is_the_old_o
 }
 
 TEST(DualAxisParameters, a_store_without_answer_is_unknown_and_not_repeated) {
-  Bench bench;
-  ASSERT_TRUE(bench.ready());
+  Ready bench;
   bench.run(0.2);
   bench.node.sdo_faults().answer_delay[{0x1010, 1}] = 100.0;
   ASSERT_TRUE(bench.controller->start_store(bench.now).ok());

@@ -9,6 +9,7 @@
 
 #include "drivers/base/controller.hpp"
 #include "tests/sim/wires/sim_robot.hpp"
+#include "tests/value_of.hpp"
 
 namespace odomcalib::drivers::tick_dates_test {
 namespace {
@@ -26,18 +27,15 @@ class TickDates : public testing::TestWithParam<Wire> {
   void SetUp() override {
     sim::SimRobotOptions options;
     options.truth = options.nominal;
-    auto robot = sim::SimRobot::create(options);
-    ASSERT_TRUE(robot.ok()) << robot.error().text();
-    robot_ = std::move(robot).value();
+    robot_ = value_of(sim::SimRobot::create(options));
     robot_->serve_during([&] { bus_ = open_can(robot_->can_device()).value(); });
     controller_ = make_controller("drivers/base/profiles/sim-dual.toml").value();
   }
 
   void turn() {
     robot_->step(GetParam().poll_s);
-    const auto frames = bus_->receive(robot_->now());
-    ASSERT_TRUE(frames.ok());
-    for (const CanFrame& frame : frames.value()) controller_->on_frame(frame);
+    const auto frames = value_of(bus_->receive(robot_->now()));
+    for (const CanFrame& frame : frames) controller_->on_frame(frame);
     controller_->on_time(robot_->now());
     for (const CanFrame& frame : controller_->take_frames()) ASSERT_TRUE(bus_->send(frame).ok());
   }

@@ -10,16 +10,14 @@ namespace {
 const std::string kFolder = "drivers/base/profiles/";
 
 TEST(Profile, those_of_the_package_are_read) {
-  const auto sim = read_profile(kFolder + "sim-dual.toml");
-  ASSERT_TRUE(sim.ok()) << sim.error().text();
-  EXPECT_EQ(sim.value().parameters.size(), 3U);
-  EXPECT_EQ(sim.value().ticks_per_rev, 16384.0);
-  const auto zlac = read_profile(kFolder + "zlac8015d.toml");
-  ASSERT_TRUE(zlac.ok()) << zlac.error().text();
-  EXPECT_EQ(zlac.value().right_sign, -1);
-  EXPECT_EQ(zlac.value().heartbeat_unit_ms, 0.5);
-  EXPECT_TRUE(zlac.value().parameters.empty());
-  EXPECT_EQ(zlac.value().watchdog.object, (canopen::ObjectAddress{0x2000, 0}));
+  const auto sim = value_of(read_profile(kFolder + "sim-dual.toml"));
+  EXPECT_EQ(sim.parameters.size(), 3U);
+  EXPECT_EQ(sim.ticks_per_rev, 16384.0);
+  const auto zlac = value_of(read_profile(kFolder + "zlac8015d.toml"));
+  EXPECT_EQ(zlac.right_sign, -1);
+  EXPECT_EQ(zlac.heartbeat_unit_ms, 0.5);
+  EXPECT_TRUE(zlac.parameters.empty());
+  EXPECT_EQ(zlac.watchdog.object, (canopen::ObjectAddress{0x2000, 0}));
 }
 
 TEST(Profile, problems_name_the_key_and_what_is_allowed) {
