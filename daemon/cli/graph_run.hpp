@@ -1,4 +1,4 @@
-// One run of the pose graph optimiser as the command line does it, and its report.
+// One run of the pose graph optimiser as the command line does it, and the reports about graphs.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 
 #include "calib/slam/info.hpp"
 #include "calib/slam/optimize.hpp"
+#include "calib/slam/recording_map.hpp"
 #include "daemon/cli/document.hpp"
 #include "proto/recording/pose_graph.hpp"
 
@@ -43,5 +44,8 @@ Document describe(const GraphRun& run);
 
 nlohmann::ordered_json to_json(const PoseGraph& graph, const calib::slam::GraphInfo& info);
 Document describe(const PoseGraph& graph, const calib::slam::GraphInfo& info);
+
+nlohmann::ordered_json to_json(const calib::slam::RecordingMap& map);
+Document describe(const calib::slam::RecordingMap& map);
 
 }  // namespace odomcalib::cli

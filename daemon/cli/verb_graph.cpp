@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_codes.hpp"
-#include "daemon/cli/graph_map.hpp"
 #include "daemon/cli/graph_picture.hpp"
 #include "daemon/cli/graph_run.hpp"
 #include "daemon/cli/numbers.hpp"

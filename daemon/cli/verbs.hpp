@@ -23,25 +23,12 @@ struct Session {
   std::function<int()> run;                       ///< set by the verb that was parsed
 };
 
+using AddVerb = void(CLI::App& app, Session& session);
 // Offline: need no daemon.
-void add_solve(CLI::App& app, Session& session);
-void add_predict(CLI::App& app, Session& session);
-void add_convert(CLI::App& app, Session& session);
-void add_decode(CLI::App& app, Session& session);
-void add_match(CLI::App& app, Session& session);
-void add_report(CLI::App& app, Session& session);
-void add_export(CLI::App& app, Session& session);
-void add_graph(CLI::App& app, Session& session);
-
+AddVerb add_solve, add_predict, add_convert, add_decode, add_match, add_report, add_export, add_graph;
 // Ask the daemon.
+AddVerb add_questions, add_wait, add_monitor, add_view, add_record, add_manual, add_motions;
 int show_status(const Session& session);
 int show_checks(const Session& session);
-void add_questions(CLI::App& app, Session& session);
-void add_wait(CLI::App& app, Session& session);
-void add_monitor(CLI::App& app, Session& session);
-void add_view(CLI::App& app, Session& session);
-void add_record(CLI::App& app, Session& session);
-void add_manual(CLI::App& app, Session& session);
-void add_motions(CLI::App& app, Session& session);
 
 }  // namespace odomcalib::cli

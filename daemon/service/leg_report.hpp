@@ -44,4 +44,7 @@ class MovesReport {
   std::size_t next_ = 0;
 };
 
+/// Of a nudge: {"checks": rows of `check` with one or more about the wiring, "wiring": what was measured}
+ordered_json nudge_report(const Bench& bench, const std::vector<Leg>& legs);
+
 }  // namespace odomcalib

@@ -1,8 +1,6 @@
-#include "daemon/service/nudge_report.hpp"
+// What a nudge of each wheel shows about the wiring.
 
 #include <fmt/format.h>
-
-#include <cmath>
 
 #include "daemon/routines/wiring.hpp"
 #include "daemon/service/leg_report.hpp"

@@ -8,9 +8,18 @@
 #include <vector>
 
 #include "daemon/service/calibrator.hpp"
-#include "daemon/service/solution.hpp"
+#include "proto/calibration/report_data.hpp"
 
 namespace odomcalib {
+
+/// What the loop sends on of a calibration. The solver's thread makes it: on a small computer it takes longer
+/// than the drive waits for a sign of life.
+struct Solution {
+  std::string calibration;       ///< JSON text, as in a file
+  std::string reply;             ///< frame for the caller
+  std::string line;              ///< for the journal
+  std::vector<PathTrace> paths;  ///< of the drive, for viewers
+};
 
 class SolverJob {
  public:

@@ -8,8 +8,6 @@
 #include <system_error>
 #include <thread>
 
-#include "drivers/tcp/host_and_port.hpp"
-
 namespace odomcalib::drivers {
 namespace {
 

@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "drivers/settings.hpp"
-#include "drivers/tcp/host_and_port.hpp"
+#include "drivers/tcp/host_lookup.hpp"
 
 namespace odomcalib::drivers {
 namespace {

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -113,6 +114,9 @@ std::optional<std::string> non_finite_value(const Calibration& calibration);
 /// become null.
 std::string to_json(const Calibration& calibration);
 Result<Calibration> calibration_from_json(const std::string& text, const std::string& where);
+/// The same of a value that was parsed already, as in a call of the control interface: nesting is not
+/// limited, whoever parsed it has done that.
+Result<Calibration> calibration_from(const nlohmann::ordered_json& value, const std::string& where);
 Result<Calibration> read_calibration(const std::filesystem::path& path);
 /// Writes to a temporary file, syncs and renames: the old file stays whole until the new one is.
 Result<void> write_calibration(const Calibration& calibration, const std::filesystem::path& path);

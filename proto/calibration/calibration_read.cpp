@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "proto/calibration/calibration.hpp"
-#include "proto/calibration/calibration_value.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
@@ -250,7 +249,20 @@ bool covariance_fits(const Calibration& calibration) {
                       [size](const auto& row) { return row.size() == size; }));
 }
 
+std::optional<std::string> non_finite(const QuantityList& quantities, const std::string& path) {
+  for (const auto& [name, quantity] : quantities)
+    if (!std::isfinite(quantity.value)) return std::string(path).append(".").append(name);
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::optional<std::string> non_finite_value(const Calibration& calibration) {
+  if (auto path = non_finite(calibration.parameters, "parameters")) return path;
+  for (const EffectResult& effect : calibration.effects)
+    if (auto path = non_finite(effect.parameters, "effects." + effect.name)) return path;
+  return std::nullopt;
+}
 
 Result<Calibration> calibration_from_json(const std::string& text, const std::string& where) {
   return calibration_from(parse_calibration(text), where);

@@ -1,9 +1,61 @@
 // The methods of the control interface, each with its handler and what it requires.
 #pragma once
 
-#include "daemon/service/methods/method.hpp"
+#include <functional>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "daemon/service/tasks/task.hpp"
 
 namespace odomcalib {
+
+/// What a method works on.
+struct Context {
+  Bench& bench;
+  Task* task = nullptr;  ///< that runs, or null
+};
+
+struct Call {
+  Caller caller;
+  const ordered_json& parameters;  ///< an object
+  double arrived = 0.0;            ///< s
+  bool stopped_since = false;      ///< see IncomingCall
+};
+
+struct Answer {
+  ordered_json parameters;
+};
+/// A member of the call is missing or of a wrong type.
+struct WrongParameter {
+  std::string name;
+};
+/// Replies follow by themselves.
+struct Subscribed {};
+/// What a call came to. A task answers its caller when it ends.
+using Outcome = std::variant<Answer, Error, WrongParameter, Subscribed, std::unique_ptr<Task>>;
+
+/// A call that is right in itself. It begins when its caller holds the lease that the method requires.
+struct Request {
+  std::string lease;
+  bool dry_run = false;
+  std::function<Outcome()> begin;
+};
+using Reading = std::variant<Outcome, Request>;
+
+using Handler = Reading(Context& context, const Call& call);
+
+struct Method {
+  enum class When { always, unless_ending, when_idle };
+  enum class Lease { none, unless_dry_run, always };
+
+  const char* name;
+  When when = When::unless_ending;
+  Lease lease = Lease::none;
+  const char* lease_of = "";  ///< what the lease is for, in the error
+  Handler* handle = nullptr;
+  const char* flag = nullptr;  ///< this row is about calls in which the flag is set
+};
 
 /// Answers the call or begins what it asks for. @return the task that it began, or null
 std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming);
@@ -12,32 +64,12 @@ std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming)
 void stop_robot(Context context);
 
 // status_methods.cpp
-Reading get_status(Context& context, const Call& call);
-Reading describe(Context& context, const Call& call);
-Reading check(Context& context, const Call& call);
-Reading get_parameters(Context& context, const Call& call);
-Reading get_history(Context& context, const Call& call);
-Reading monitor(Context& context, const Call& call);
-
+Handler get_status, describe, check, get_parameters, get_history, monitor;
 // lease_methods.cpp
-Reading acquire(Context& context, const Call& call);
-Reading renew(Context& context, const Call& call);
-Reading release(Context& context, const Call& call);
-Reading stop(Context& context, const Call& call);
-
+Handler acquire, renew, release, stop;
 // motion_methods.cpp
-Reading nudge(Context& context, const Call& call);
-Reading straight(Context& context, const Call& call);
-Reading square(Context& context, const Call& call);
-Reading spin(Context& context, const Call& call);
-Reading calibrate(Context& context, const Call& call);
-Reading record(Context& context, const Call& call);
-
+Handler nudge, straight, square, spin, calibrate, record;
 // write_methods.cpp
-Reading apply(Context& context, const Call& call);
-Reading store(Context& context, const Call& call);
-Reading discard(Context& context, const Call& call);
-Reading set_parameters(Context& context, const Call& call);
-Reading rollback(Context& context, const Call& call);
+Handler apply, store, discard, set_parameters, rollback;
 
 }  // namespace odomcalib

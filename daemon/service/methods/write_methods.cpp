@@ -5,7 +5,6 @@
 #include "daemon/service/tasks/proof_task.hpp"
 #include "daemon/service/tasks/write_task.hpp"
 #include "daemon/service/write_gate.hpp"
-#include "proto/calibration/calibration_value.hpp"
 #include "proto/calibration/report_data.hpp"
 
 namespace odomcalib {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "daemon/service/leg_report.hpp"
-#include "daemon/service/nudge_report.hpp"
 #include "daemon/service/settings.hpp"
 #include "daemon/service/tasks/solving_task.hpp"
 

@@ -1,5 +1,6 @@
 #include "daemon/service/tasks/solving_task.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 namespace odomcalib {
@@ -7,6 +8,21 @@ namespace {
 
 std::filesystem::path kept_at(const Config& config, const std::filesystem::path& recording) {
   return config.state_dir / "calibrations" / (recording.stem().string() + ".json");
+}
+
+/// The same functions; `solve` ends with an exception at the first progress report after the flag was set.
+Calibrator cancellable(Calibrator calibrator, std::shared_ptr<std::atomic<bool>> cancelled) {
+  if (!calibrator.solve) return calibrator;
+  calibrator.solve = [solve = std::move(calibrator.solve), cancelled = std::move(cancelled)](
+                         const std::vector<std::filesystem::path>& recordings,
+                         const std::vector<std::string>& effects, const Calibrator::Progress& progress) {
+    const auto report = [&](const std::string& phase, double fraction) {
+      if (*cancelled) throw std::runtime_error("stopped on request");
+      if (progress) progress(phase, fraction);
+    };
+    return solve(recordings, effects, report);
+  };
+  return calibrator;
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 // From the recording of a calibration drive to the calibration.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
-#include "daemon/service/cancellable.hpp"
 #include "daemon/service/solver_job.hpp"
 #include "daemon/service/tasks/task.hpp"
 
@@ -27,7 +28,7 @@ class SolvingTask final : public Task {
 
  private:
   std::filesystem::path recording_;
-  CancelFlag cancelled_;
+  std::shared_ptr<std::atomic<bool>> cancelled_;  // read by the thread that solves
   SolverJob job_;
 };
 

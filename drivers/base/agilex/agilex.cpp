@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "drivers/base/speed/twist.hpp"
-
 namespace odomcalib::drivers {
 namespace {
 

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "drivers/base/arcos/settings.hpp"
-#include "drivers/base/speed/twist.hpp"
 
 namespace odomcalib::drivers {
 namespace {

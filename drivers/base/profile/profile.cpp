@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "drivers/base/profile/profile_parts.hpp"
+#include "drivers/base/profile/profile_reader.hpp"
 
 namespace odomcalib::drivers {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "drivers/base/profile/profile_parts.hpp"
+#include "drivers/base/profile/profile_reader.hpp"
 
 namespace odomcalib::drivers {
 namespace {

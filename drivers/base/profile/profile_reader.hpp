@@ -54,4 +54,8 @@ class ProfileTable {
   std::set<std::string, std::less<>> asked_;
 };
 
+struct Profile;
+/// The tables that only one family of protocols has (profile_canopen.cpp).
+void read_canopen_tables(ProfileTable& table, Profile& profile);
+
 }  // namespace odomcalib::drivers

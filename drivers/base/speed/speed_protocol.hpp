@@ -85,6 +85,19 @@ class SpeedProtocol {
   std::vector<DeviceMessage> messages_;
 };
 
+/// For devices that take the robot's speed and turn rate instead of wheel speeds.
+struct Twist {
+  double speed = 0.0;      ///< m/s
+  double turn_rate = 0.0;  ///< rad/s, counter-clockwise positive
+};
+
+/// With the nominal geometry: the device turns it back into wheel speeds with its own.
+inline Twist twist_of(const RobotDescription& robot, double left_rad_s, double right_rad_s) {
+  const double left = 0.5 * robot.left_wheel_diameter * left_rad_s;
+  const double right = 0.5 * robot.right_wheel_diameter * right_rad_s;
+  return {0.5 * (left + right), robot.track_width > 0.0 ? (right - left) / robot.track_width : 0.0};
+}
+
 /// The protocol that the profile names. Error usage: no such protocol.
 Result<std::unique_ptr<SpeedProtocol>> make_speed_protocol(const Profile& profile);
 

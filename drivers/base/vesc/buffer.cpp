@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "drivers/base/vesc/commands.hpp"
 #include "drivers/wire_table.hpp"
 
 namespace odomcalib::drivers::vesc {

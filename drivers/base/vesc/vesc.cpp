@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "drivers/base/vesc/commands.hpp"
-
 namespace odomcalib::drivers {
 namespace {
 

@@ -41,6 +41,15 @@ enum class Setting : std::uint32_t {
 };
 
 /// A5, command and, when there is a payload, its length, itself and the XOR of everything.
-std::vector<std::uint8_t> encode(Command command, Bytes payload = {});
+inline std::vector<std::uint8_t> encode(Command command, Bytes payload = {}) {
+  std::vector<std::uint8_t> out = {0xA5, static_cast<std::uint8_t>(command)};
+  if (payload.empty()) return out;
+  out.push_back(static_cast<std::uint8_t>(payload.size()));
+  out.insert(out.end(), payload.begin(), payload.end());
+  std::uint8_t sum = 0;
+  for (const std::uint8_t byte : out) sum ^= byte;
+  out.push_back(sum);
+  return out;
+}
 
 }  // namespace odomcalib::drivers::rplidar

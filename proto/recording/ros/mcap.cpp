@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMagicSize = 8;
 
-enum McapOp : std::uint8_t { kSchema = 3, kChannel = 4, kMessage = 5, kChunk = 6, kDataEnd = 15 };
+enum McapOp : std::uint8_t { kSchema = 3, kChannel = 4, kMcapMessage = 5, kMcapChunk = 6, kDataEnd = 15 };
 
 struct McapRecord {
   std::uint8_t op = 0;
@@ -54,7 +54,7 @@ class McapReader {
     ByteReader reader(bytes.substr(kMagicSize));
     while (!reader.at_end()) {
       const McapRecord record = next_mcap_record(reader);
-      if (record.op == kChunk)
+      if (record.op == kMcapChunk)
         read_chunk(record);
       else if (record.whole)
         read_record(record);
@@ -99,7 +99,7 @@ class McapReader {
     ByteReader reader(record.content);
     if (record.op == kSchema) read_schema(reader);
     if (record.op == kChannel) read_channel(reader);
-    if (record.op == kMessage) read_message(reader);
+    if (record.op == kMcapMessage) read_message(reader);
   }
 
   void read_schema(ByteReader& reader) {
