@@ -154,7 +154,7 @@ LidarCorrection take_out(const Findings& found, LidarCorrection before, const Ta
     return {std::move(before.fit), std::move(findings), std::move(before.placement)};
   vehicle::VehicleModel start = before.fit.model;
   if (looks == Looks::twice)
-    std::tie(findings, start) = refined(std::move(findings), before.findings.size(), before.fit, task);
+    std::tie(findings, start) = refined(findings, before.findings.size(), before.fit, task);
   estimation::Fit after =
       measure_and_settle(without(findings, before.fit.dataset, task), std::move(start), task.how);
   const bool is_kept = !after.failure && (task.is_requested() ||

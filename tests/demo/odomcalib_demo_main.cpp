@@ -7,8 +7,10 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -35,7 +37,8 @@ volatile sig_atomic_t stop_requested = 0;
 
 void on_signal(int /*number*/) { stop_requested = 1; }
 
-constexpr double kStep = 0.002;  // s, between exchanges of bytes
+constexpr double kStep = 0.002;      // s, between exchanges of bytes
+constexpr double kMostBehind = 0.1;  // s of real time that are caught up with
 
 struct Arguments {
   std::string config, folder, effect;
@@ -78,20 +81,10 @@ class Demo {
   }
 
   Result<void> run() {
-    double slept = real_now();
     while (stop_requested == 0) {
       if (auto obeyed = obey(); !obeyed) return obeyed;
       step();
-      // While nobody drives, or a solver computes, nothing is gained by haste.
-      if (!relay_->leased() || solving_) {
-        const double wait = slept + kStep - real_now();
-        if (wait > 0.0) poll(nullptr, 0, static_cast<int>(1e3 * wait) + 1);
-        while (slept + kStep < real_now() && stop_requested == 0 && (!relay_->leased() || solving_)) {
-          step();
-          slept += kStep;
-        }
-      }
-      slept = real_now();
+      keep_pace();
     }
     service_->stop_all("the demo ends");
     return {};
@@ -132,6 +125,15 @@ class Demo {
     (void)odomcalib::sim::write_truth(*robot_, truth_, effect_);
   }
 
+  /// While nobody drives, or a solver computes, nothing is gained by haste: then a step takes as long as it
+  /// says.
+  void keep_pace() {
+    const double now = real_now();
+    const bool hurries = relay_->leased() && !solving_;
+    due_ = hurries ? now : std::max(due_ + kStep, now - kMostBehind);
+    if (due_ > now) poll(nullptr, 0, static_cast<int>(std::ceil(1e3 * (due_ - now))));
+  }
+
   /// Lines on standard input: faults of the simulated robot, and `power cycle` of robot and service.
   Result<void> obey() {
     std::array<char, 256> bytes{};
@@ -162,7 +164,8 @@ class Demo {
   std::unique_ptr<odomcalib::demo::LeaseRelay> relay_;
   std::string pending_;
   bool linked_ = false;
-  double truth_due_ = 0.0;
+  double truth_due_ = 0.0;  // s of the service's time
+  double due_ = 0.0;        // s of real time
 };
 
 Result<void> run(const Arguments& arguments) {
@@ -178,9 +181,8 @@ Result<void> run(const Arguments& arguments) {
   return demo.run();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// @return exit status
+int run(int argc, char** argv) {
   CLI::App app{"The service and a simulated robot, faster than real time"};
   Arguments arguments;
   app.add_option("--config", arguments.config, "the service's configuration file")->required();
@@ -188,7 +190,7 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--seed", arguments.seed, "robot and noise are drawn from this number");
   app.add_option("--effect", arguments.effect,
-                 "something that the plain model lacks; random: any; empty: none");
+                 "something that the plain model lacks; random: any; absent: none");
   CLI11_PARSE(app, argc, argv);
   struct sigaction action {};
   action.sa_handler = on_signal;
@@ -199,4 +201,15 @@ int main(int argc, char** argv) {
   if (done) return 0;
   std::fprintf(stderr, "odomcalib-demo: %s\n", done.error().text().c_str());
   return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "odomcalib-demo: %s\n", error.what());
+    return 1;
+  }
 }

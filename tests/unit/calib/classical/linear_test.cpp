@@ -122,7 +122,7 @@ TEST(Linear, S0_10_S1_11_the_blocks_are_Kronecker_products_and_the_equations_sca
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Eigen::RowVector3d u(pairs[i].odometry.x, pairs[i].odometry.y, pairs[i].odometry.yaw);
     Eigen::Matrix<double, 3, 9> block = Eigen::Matrix<double, 3, 9>::Zero();  // kron(I3, u^T)
-    for (int k = 0; k < 3; ++k) block.block<1, 3>(k, 3 * k) = u;
+    for (Eigen::Index k = 0; k < 3; ++k) block.block<1, 3>(k, 3 * k) = u;
     const auto row = static_cast<Eigen::Index>(3 * i);
     stacked.middleRows<3>(row) = block;
     observed.segment<3>(row) << pairs[i].observed.x, pairs[i].observed.y, pairs[i].observed.yaw;
