@@ -23,6 +23,10 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
+  /// All that lies in it goes.
+  void empty() const {
+    for (const auto& entry : std::filesystem::directory_iterator(path_)) std::filesystem::remove_all(entry);
+  }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   operator const std::filesystem::path&() const { return path_; }  // NOLINT(google-explicit-constructor)
   std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }

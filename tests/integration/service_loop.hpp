@@ -90,7 +90,12 @@ class ServiceLoop : public testing::Test {
     ASSERT_TRUE(service_);
     ASSERT_TRUE(run_until([this] { return ready(); }, 10.0)) << service_->status_json();
   }
-  void TearDown() override { service_.reset(); }
+  // Some tests set up one robot after the other.
+  void TearDown() override {
+    service_.reset();
+    robot_.reset();
+    folder_.empty();
+  }
 
   virtual Calibrator calibrator() { return {}; }
   /// One that takes no time, virtual time or other.

@@ -98,7 +98,7 @@ TEST_F(GraphFactor, S2_15_sparse_sums_equal_a_dense_reference) {
     for (Eigen::Index k = 0; k < (world.graph.vertices[v].kind == VertexKind::pose ? 3 : 2); ++k)
       rows.push_back(static_cast<Eigen::Index>(3 * v) + k);
   ASSERT_EQ(equations.unknowns(), static_cast<Eigen::Index>(rows.size()));
-  const Eigen::VectorXd step = dense.H(rows, rows).ldlt().solve(dense.b(rows));
+  const Eigen::VectorXd step = dense.hessian(rows, rows).ldlt().solve(dense.b(rows));
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const auto v = static_cast<std::size_t>(rows[r] / 3);
     const auto k = rows[r] % 3;

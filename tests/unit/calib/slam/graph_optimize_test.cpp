@@ -182,8 +182,8 @@ TEST(GraphOptimize, S2_32_an_identity_on_one_vertex_gives_the_poses_of_a_fixed_o
   Placement at = world.truth;
   for (int i = 0; i < 15; ++i) {
     auto dense = test_support::dense_system(world.graph, at, analytic);
-    dense.H.topLeftCorner<3, 3>() += Eigen::Matrix3d::Identity();
-    const Eigen::VectorXd step = dense.H.ldlt().solve(dense.b);
+    dense.hessian.topLeftCorner<3, 3>() += Eigen::Matrix3d::Identity();
+    const Eigen::VectorXd step = dense.hessian.ldlt().solve(dense.b);
     for (std::size_t v = 0; v < at.size(); ++v) {
       const auto row = static_cast<Eigen::Index>(3 * v);
       at[v] = {at[v].x + step[row], at[v].y + step[row + 1], math::wrap_angle(at[v].yaw + step[row + 2])};

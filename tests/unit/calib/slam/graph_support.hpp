@@ -112,9 +112,9 @@ class WorldMaker {
   World world_;
 };
 
-/// H and b of H dx = b over all vertices, three rows each.
+/// Hessian H and b of H dx = b over all vertices, three rows each.
 struct DenseSystem {
-  Eigen::MatrixXd H;
+  Eigen::MatrixXd hessian;
   Eigen::VectorXd b;
 };
 
@@ -147,7 +147,7 @@ DenseSystem dense_system(const PoseGraph& graph, const Placement& at, Jacobian j
       const Eigen::Matrix3d weighted = jacobian_of(edge, at, a).transpose() * information;
       system.b.segment<3>(row(a)) -= weighted * error;
       for (const std::size_t b : {edge.from, edge.to})
-        system.H.block<3, 3>(row(a), row(b)) += weighted * jacobian_of(edge, at, b);
+        system.hessian.block<3, 3>(row(a), row(b)) += weighted * jacobian_of(edge, at, b);
     }
   }
   return system;

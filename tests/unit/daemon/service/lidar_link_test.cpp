@@ -404,7 +404,7 @@ std::string told_of(LidarLink& link) {
   for (int k = 0; k < 2000; ++k) {
     link.step(At(0.001 * k));
     const auto problem = link.problem();
-    const std::string said = link.connected() ? "connected" : problem ? problem->text() : "not open yet";
+    std::string said = link.connected() ? "connected" : problem ? problem->text() : "not open yet";
     if (said.find("is being looked up") == std::string::npos) return said;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
