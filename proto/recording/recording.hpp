@@ -5,17 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "proto/discarded.hpp"
 #include "proto/measurements.hpp"
 #include "proto/result.hpp"
 
 namespace odomcalib {
-
-/// Something in the file that was not used, and why.
-struct Discarded {
-  std::string what;    ///< e.g. "scan", "line", "event"
-  std::string reason;  ///< e.g. "cut off", "out of order by more than 1 s", "unknown fingerprint 0x..."
-  std::size_t count = 0;
-};
 
 /// Reason of beams that are no distance this lidar can measure.
 inline constexpr const char* kOutsideLimits = "outside range_min and range_max";
@@ -46,6 +40,7 @@ struct Recording {
   std::vector<WheelSample> wheel_speeds;  ///< rad/s
   std::vector<PoseSample> odometry;       ///< computed by the robot with the nominal values
   std::vector<Discarded> discarded;
+  std::vector<Repair> repairs;       ///< what was put right, or chosen for a reason
   std::vector<std::string> choices;  ///< what was taken where a file held several; nothing to choose: empty
 };
 

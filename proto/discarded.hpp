@@ -1,0 +1,28 @@
+// What was left out of a recording, and what was put right or chosen in it: evidence that every stage hands
+// on.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace odomcalib {
+
+/// Something that was not used, and why.
+struct Discarded {
+  std::string what;    ///< e.g. "scan", "line", "event", "interval"
+  std::string reason;  ///< e.g. "cut off", "out of order by more than 1 s", "unknown fingerprint 0x..."
+  std::size_t count = 0;
+  std::size_t of = 0;                          ///< how many of them there were; 0: not known
+  std::optional<double> begin = std::nullopt;  ///< s, of the first one; none where they have no time
+  std::optional<double> end = std::nullopt;    ///< s, of the last one
+};
+
+/// Something that was put right, or taken where there were several.
+struct Repair {
+  std::string what;    ///< e.g. "times", "joints", "frame", "turns"
+  std::string chosen;  ///< what is used
+  std::string reason;  ///< what of the recording speaks for it
+};
+
+}  // namespace odomcalib
