@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "proto/recording/scan_checks.hpp"
+#include "proto/recording/second_writer.hpp"
 #include "proto/recording/stamp_units.hpp"
 #include "proto/recording/tick_counts.hpp"
 #include "proto/recording/wheel_motion.hpp"
@@ -74,6 +75,12 @@ Error missing_unit(const std::string& field, double value, const char* unit, dou
       "robot description has \"" + field + "\" = " + number_text(value) + ", must be " + bound + " " + unit,
       where, remedy};
 }
+
+Values values_of(const TickSample& sample) {
+  return {static_cast<double>(sample.left), static_cast<double>(sample.right), 0.0};
+}
+Values values_of(const WheelSample& sample) { return {sample.left, sample.right, 0.0}; }
+Values values_of(const PoseSample& sample) { return {sample.x, sample.y, sample.yaw}; }
 
 /// What moved there is not known: a counter that wraps at another number, a reset, a jump.
 constexpr const char* kUncontinued = "count does not continue the one before: the way between is left out";
@@ -318,6 +325,41 @@ const char* name_of(MotionSource source) {
   return "ticks";
 }
 
+template <typename Sample>
+void RecordingBuilder::drop_second_writer(const char* what, std::vector<Sample>& stream) {
+  std::vector<Values> values;
+  values.reserve(stream.size());
+  for (const Sample& sample : stream) values.push_back(values_of(sample));
+  const std::vector<std::size_t> others = of_second_writer(values);
+  if (others.empty()) return;
+  const Values& one = values[others.front()];
+  const std::string text = number_text(one[0]) + ", " + number_text(one[1]);
+  recording_.repairs.push_back({what,
+                                "without " + std::to_string(others.size()) + " of " +
+                                    std::to_string(stream.size()) + " samples that are always " + text,
+                                "a second program writes them between those that move"});
+  discard(what, "always " + text + ", of a second program", others.size());
+  for (auto k = others.rbegin(); k != others.rend(); ++k)
+    stream.erase(stream.begin() + static_cast<std::ptrdiff_t>(*k));
+}
+
+void RecordingBuilder::drop_second_writers() {
+  drop_second_writer("ticks", recording_.ticks);
+  drop_second_writer("wheels", recording_.wheels);
+  drop_second_writer("wheel_speeds", recording_.wheel_speeds);
+  drop_second_writer("odometry", recording_.odometry);
+  drop_second_writer("pose", recording_.poses);
+}
+
+void RecordingBuilder::count_on() {
+  const ContinuedCounts counts = continue_counts(recording_.ticks, recording_.robot);
+  discard("ticks", "count read wrong once", counts.misread);
+  discard("ticks", kUncontinued, counts.jumps);
+  if (counts.modulus)
+    recording_.repairs.push_back({"ticks", "continued where they start again",
+                                  "both counters wrap at " + std::to_string(*counts.modulus)});
+}
+
 Result<Recording> RecordingBuilder::finish(const std::string& where, const RobotDescription* fallback,
                                            RobotNeed need) && {
   if (!has_data()) return nothing_usable(where);
@@ -326,10 +368,9 @@ Result<Recording> RecordingBuilder::finish(const std::string& where, const Robot
   if (need == RobotNeed::required)
     if (auto problem = check_robot(recording_.robot, where)) return *problem;
   sort_streams();
+  drop_second_writers();
   if (recording_.motion != MotionSource::ticks) make_ticks();
-  const ContinuedCounts counts = continue_counts(recording_.ticks, recording_.robot);
-  discard("ticks", "count read wrong once", counts.misread);
-  discard("ticks", kUncontinued, counts.jumps);
+  count_on();
   for (const auto& [key, count] : discarded_) recording_.discarded.push_back({key.first, key.second, count});
   return std::move(recording_);
 }

@@ -50,6 +50,10 @@ class RecordingBuilder {
   void forget_leap(const char* what, StreamClock& clock, std::vector<Sample>& stream);
   [[nodiscard]] bool has_data() const;
   [[nodiscard]] Error nothing_usable(const std::string& where) const;
+  template <typename Sample>
+  void drop_second_writer(const char* what, std::vector<Sample>& stream);
+  void drop_second_writers();
+  void count_on();
   void merge_robot(const RobotDescription* fallback);
   void sort_streams();
   void decide_motion();

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "proto/recording/counter_modulus.hpp"
+
 namespace odomcalib {
 namespace {
 
@@ -18,6 +20,12 @@ constexpr double kFastest = 10.0;  // m/s
 // for slip and coarse stamps.
 constexpr double kSpikeAcceleration = 30.0;  // m/s^2
 constexpr double kSpikeSpeed = 1.0;          // m/s
+// Times the upper quartile of the speeds: beyond it a step is none of this recording, whatever unit its
+// values are in. Chosen: a robot that is driven at 3 m/s or less keeps the limit above.
+constexpr double kTimesUsual = 10.0 / 3.0;
+// Neighbours over which steps are taken for that: two or three programs that write in turn make every step
+// from one sample to the next a jump, and none from one of theirs to the next of theirs.
+constexpr std::size_t kWritersInTurn = 3;
 
 // Steps of a count in which wheels at rest may rock about zero. Chosen.
 constexpr std::int64_t kRockingSteps = 8;
@@ -38,6 +46,8 @@ struct Width {
   bool possible;
 };
 
+using Widths = std::array<Width, 3>;
+
 bool fits(const std::vector<TickSample>& ticks, std::int64_t modulus) {
   const auto inside = [&](std::int64_t low) {
     return std::all_of(ticks.begin(), ticks.end(), [&](const TickSample& s) {
@@ -45,6 +55,13 @@ bool fits(const std::vector<TickSample>& ticks, std::int64_t modulus) {
     });
   };
   return inside(0) || inside(-modulus / 2);
+}
+
+Widths widths_of(const std::vector<TickSample>& ticks) {
+  const auto other = counter_modulus(ticks);
+  return {Width{std::int64_t{1} << 16, fits(ticks, std::int64_t{1} << 16)},
+          Width{std::int64_t{1} << 32, fits(ticks, std::int64_t{1} << 32)},
+          Width{other.value_or(0), other.has_value()}};
 }
 
 /// The upper median of at least one value.
@@ -88,6 +105,7 @@ class Speeds {
     const double diameter = std::max(robot.left_wheel_diameter, robot.right_wheel_diameter);
     if (diameter > 0.0 && robot.ticks_per_rev > 0.0)
       metres_per_tick_ = diameter * std::numbers::pi / robot.ticks_per_rev;
+    stretch_ = std::max(1.0, kTimesUsual * usual_speed(ticks) / kFastest);
   }
   [[nodiscard]] bool known() const { return metres_per_tick_ > 0.0; }
   /// Jittering stamps make short intervals: never divide by less than the usual one.
@@ -98,16 +116,49 @@ class Speeds {
   /// Of one count in an interval: what a slow wheel seems to have, or not, by when its count comes.
   [[nodiscard]] double of_one_count(double interval) const { return (*this)(1, interval); }
   [[nodiscard]] bool possible(std::int64_t change, double interval) const {
-    return !known() || std::abs((*this)(change, interval)) <= kFastest + of_one_count(interval);
+    return !known() || std::abs((*this)(change, interval)) <= stretch_ * kFastest + of_one_count(interval);
   }
+  /// How many times the usual limits of speed and acceleration hold for this recording: more than once where
+  /// its values or its robot are in another unit. Whether they are is judged later, by the motion of the
+  /// reference.
+  [[nodiscard]] double stretch() const { return stretch_; }
 
  private:
+  /// m/s, upper quartile of the faster wheel while either turns.
+  [[nodiscard]] double usual_speed(const std::vector<TickSample>& ticks) const {
+    double least = 0.0;
+    for (std::size_t lag = 1; lag <= kWritersInTurn; ++lag) {
+      const double speed = quartile_of_speeds(ticks, lag);
+      least = lag == 1 ? speed : std::min(least, speed);
+    }
+    return least;
+  }
+
+  [[nodiscard]] double quartile_of_speeds(const std::vector<TickSample>& ticks, std::size_t lag) const {
+    std::vector<double> speeds;
+    for (std::size_t i = lag; i < ticks.size(); ++i) {
+      const TickSample &from = ticks[i - lag], &to = ticks[i];
+      const double left = static_cast<double>(to.left) - static_cast<double>(from.left);
+      const double right = static_cast<double>(to.right) - static_cast<double>(from.right);
+      const double most = std::max(std::abs(left), std::abs(right));
+      if (most > 0.0)
+        speeds.push_back(most * metres_per_tick_ /
+                         usual_interval((to.t - from.t) / static_cast<double>(lag)) /
+                         static_cast<double>(lag));
+    }
+    if (speeds.empty()) return 0.0;
+    const auto place = speeds.begin() + static_cast<std::ptrdiff_t>(3 * speeds.size() / 4);
+    std::nth_element(speeds.begin(), place, speeds.end());
+    return *place;
+  }
+
   double floor_;
   double metres_per_tick_;
+  double stretch_ = 1.0;
 };
 
 /// The smaller of the raw difference and the same difference wrapped once in either direction.
-std::int64_t nearest_wrap(std::int64_t difference, const std::array<Width, 2>& widths) {
+std::int64_t nearest_wrap(std::int64_t difference, const Widths& widths) {
   std::int64_t best = difference;
   for (const auto& width : widths) {
     if (!width.possible) continue;
@@ -159,10 +210,11 @@ struct Change {
 class Continuation {
  public:
   Continuation(const std::vector<TickSample>& ticks, const RobotDescription& robot)
-      : speeds_(ticks, robot),
-        widths_{{{std::int64_t{1} << 16, fits(ticks, std::int64_t{1} << 16)},
-                 {std::int64_t{1} << 32, fits(ticks, std::int64_t{1} << 32)}}},
-        finest_(smallest_step(ticks)) {}
+      : speeds_(ticks, robot), widths_(widths_of(ticks)), finest_(smallest_step(ticks)) {}
+
+  [[nodiscard]] std::optional<std::int64_t> own_modulus() const {
+    return widths_.back().possible ? std::optional(widths_.back().modulus) : std::nullopt;
+  }
 
   [[nodiscard]] std::vector<Change> changes(const std::vector<TickSample>& ticks) const {
     std::vector<Change> out(ticks.size());
@@ -181,8 +233,10 @@ class Continuation {
     if (before.segment != now.segment) return {};
     const auto left = difference(now.left, before.left);
     const auto right = difference(now.right, before.right);
-    if (!left || !right || is_reset(now, {*left, *right}, usual, finest_)) return {};
+    if (!left || !right) return {};
     const Counts counts{nearest_wrap(*left, widths_), nearest_wrap(*right, widths_)};
+    // A counter that wraps passes zero as any other number.
+    if (is_reset(now, counts, usual, finest_)) return {};
     const double interval = now.t - before.t;
     const bool possible = speeds_.possible(counts[0], interval) && speeds_.possible(counts[1], interval);
     return {counts, possible};
@@ -196,7 +250,7 @@ class Continuation {
 
   /// More than wheels can change by from one step to the next.
   [[nodiscard]] double limit(double interval) const {
-    return std::max(kSpikeSpeed, kSpikeAcceleration * speeds_.usual_interval(interval)) +
+    return speeds_.stretch() * std::max(kSpikeSpeed, kSpikeAcceleration * speeds_.usual_interval(interval)) +
            2.0 * speeds_.of_one_count(interval);
   }
 
@@ -247,15 +301,17 @@ class Continuation {
   }
 
   Speeds speeds_;
-  std::array<Width, 2> widths_;
+  Widths widths_;
   std::int64_t finest_;
 };
 
 }  // namespace
 
 ContinuedCounts continue_counts(std::vector<TickSample>& ticks, const RobotDescription& robot) {
-  const auto changes = Continuation(ticks, robot).changes(ticks);
+  const Continuation continuation(ticks, robot);
+  const auto changes = continuation.changes(ticks);
   ContinuedCounts found;
+  found.modulus = continuation.own_modulus();
   std::int32_t segment = 0, given = 0;
   Counts counts{};
   for (std::size_t i = 0; i < ticks.size(); ++i) {

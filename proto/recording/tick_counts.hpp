@@ -1,6 +1,8 @@
 // Cumulative counts as controllers send them: wrapping, resetting, jumping. Internal to proto/.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "proto/measurements.hpp"
@@ -8,8 +10,9 @@
 namespace odomcalib {
 
 struct ContinuedCounts {
-  std::size_t breaks = 0;   ///< new segments
-  std::size_t jumps = 0;    ///< of them, those that the samples did not carry
+  std::size_t breaks = 0;                              ///< new segments
+  std::size_t jumps = 0;                               ///< of them, those that the samples did not carry
+  std::optional<std::int64_t> modulus = std::nullopt;  ///< at which both counters wrap, where it is no width
   std::size_t misread = 0;  ///< samples that were taken for what lies between their neighbours
 };
 
