@@ -6,6 +6,7 @@
 #include "calib/estimation/fit.hpp"
 #include "calib/estimation/start_values.hpp"
 #include "calib/ingest/phantom_return.hpp"
+#include "calib/ingest/put_right.hpp"
 #include "calib/ingest/recordings.hpp"
 #include "calib/report/findings.hpp"
 #include "calib/report/gate.hpp"
@@ -79,8 +80,9 @@ Solution solve_with_pairs(std::span<const Recording> recordings, const SolveOpti
                           const Progress& callback) {
   const Progress progress = callback ? callback : [](const std::string&, double) {};
 
-  const auto scale = options.scale ? options.scale : ingest::scale_by_data_sheet(recordings);
-  const ingest::Recordings scaled = ingest::with_scale(recordings, scale ? scale->value : 1.0);
+  const ingest::Recordings whole = ingest::put_right(recordings, options.sensor);
+  const auto scale = options.scale ? options.scale : ingest::scale_by_data_sheet(whole.view());
+  const ingest::Recordings scaled = ingest::with_scale(whole.view(), scale ? scale->value : 1.0);
   const ingest::Cleaned cleaned = ingest::without_phantom_returns(scaled.view());
   const ingest::Recordings repaired = ingest::with_even_ticks(cleaned.recordings.view());
   auto opened = measurement::open_dataset(repaired);
@@ -92,7 +94,7 @@ Solution solve_with_pairs(std::span<const Recording> recordings, const SolveOpti
 
   Solution solution =
       calibrate(std::move(opened).value(), request.value(), options, cleaned.remarks, progress);
-  solution.calibration = report::explained(recordings, std::move(solution.calibration));
+  solution.calibration = report::explained(whole.view(), std::move(solution.calibration));
   if (scale && !solution.calibration.parameters.empty()) store_scale(*scale, solution.calibration);
   return solution;
 }

@@ -6,6 +6,7 @@
 #include "calib/classical/settings.hpp"
 #include "calib/math/number_text.hpp"
 #include "calib/math/se2.hpp"
+#include "proto/recording/motion_units.hpp"
 
 namespace odomcalib::calib::classical {
 namespace {
@@ -39,20 +40,23 @@ constexpr std::array kOfAllLengths = {
     Factor{1e-2, "wheel_diameter and track_width are in centimetres"},
     Factor{1e-3, "wheel_diameter and track_width are in millimetres"}};
 
-constexpr std::array kOfBothWheels = {
-    Factor{2.0, "the radius was given as diameter, or ticks_per_rev counts twice the edges that come"},
+constexpr std::array kOfCounts = {
     Factor{4.0, "ticks_per_rev counts all four edges of a period, the recorded counts only one"},
     Factor{0.25, "ticks_per_rev counts one edge of a period, the recorded counts all four"},
+    Factor{2.0, "the radius was given as diameter, or ticks_per_rev counts twice the edges that come"},
     Factor{0.5, "ticks_per_rev counts half of the edges that come, or the diameter was doubled"},
-    Factor{1.0 / math::kPi, "the circumference was given as diameter"},
-    Factor{math::kPi, "the diameter was divided by pi"},
     Factor{0.5 / math::kPi, "ticks_per_rev is counts per radian"},
     Factor{2.0 * math::kPi, "ticks_per_rev was multiplied by 2 pi"},
     Factor{1.5, "ticks_per_rev has a gear ratio in it that the counts have not"},
-    Factor{2.0 / 3.0, "ticks_per_rev lacks a gear ratio"},
-    Factor{0.0254, "wheel_diameter is in inches"},
-    Factor{1e-2, "wheel_diameter is in centimetres"},
-    Factor{1e-3, "wheel_diameter is in millimetres"}};
+    Factor{2.0 / 3.0, "ticks_per_rev lacks a gear ratio"}};
+
+constexpr std::array kOfDiameters = {Factor{2.0, "the radius was given as diameter"},
+                                     Factor{0.5, "the diameter was doubled"},
+                                     Factor{1.0 / math::kPi, "the circumference was given as diameter"},
+                                     Factor{math::kPi, "the diameter was divided by pi"},
+                                     Factor{0.0254, "wheel_diameter is in inches"},
+                                     Factor{1e-2, "wheel_diameter is in centimetres"},
+                                     Factor{1e-3, "wheel_diameter is in millimetres"}};
 
 constexpr std::array kOfTrack = {Factor{2.0, "it was measured from the middle of the robot to a wheel"},
                                  Factor{0.5, "it was doubled"}, Factor{0.0254, "it is in inches"},
@@ -69,26 +73,89 @@ std::string because(const char* reason) {
   return reason == nullptr ? "" : ": it looks as if " + std::string(reason);
 }
 
-Cause of_all(double ratio, bool of_poses) {
-  const std::string lengths = of_poses ? "x and y of the poses" : "ranges and their limits";
+std::string values_of(MotionSource motion) {
+  switch (motion) {
+    case MotionSource::wheels:
+      return "the angles of the wheels";
+    case MotionSource::wheel_speeds:
+      return "the speeds of the wheels";
+    case MotionSource::odometry:
+      return "x and y of the odometry";
+    case MotionSource::ticks:
+      break;
+  }
+  return "the counts";
+}
+
+/// The unit in which numbers would be so many times as large; the nearest where several are near.
+const MotionUnit* unit_for(const Measured& measured, double times) {
+  const MotionUnit* nearest = nullptr;
+  const auto distance = [&](const MotionUnit& unit) {
+    return std::abs(std::log(times / factor_of(unit, measured.robot)));
+  };
+  for (const MotionUnit& unit : motion_units())
+    if (unit.source == measured.motion && is_near(times, factor_of(unit, measured.robot)) &&
+        (nearest == nullptr || distance(unit) < distance(*nearest)))
+      nearest = &unit;
+  return nearest;
+}
+
+Cause of_unit(const MotionUnit& unit, const Measured& measured, double times) {
+  const std::string values = values_of(measured.motion);
+  const double factor = factor_of(unit, measured.robot);
+  return {values + " look like " + unit.words + ": they are " + number(times) + " times as large as " +
+              si_unit_of(measured.motion) + " would be (" + unit.words + ": " + number(factor) + ")",
+          "multiply them by " + count(1.0 / factor)};
+}
+
+Cause of_all(double ratio, const Measured& measured) {
+  if (const MotionUnit* unit = unit_for(measured, 1.0 / ratio)) return of_unit(*unit, measured, 1.0 / ratio);
+  const std::string lengths = measured.of_poses ? "x and y of the poses" : "ranges and their limits";
+  const bool odometry = measured.motion == MotionSource::odometry;
+  const std::string own =
+      odometry ? ", or x and y of the odometry are " + number(1.0 / ratio) + " times as long as they are"
+               : "";
   return {"both wheel diameters and the track width come out " + number(ratio) +
               " times their nominal values, so that a unit or the scale of the reference is wrong" +
-              because(reason_for(kOfAllLengths, ratio, of_poses)),
+              because(reason_for(kOfAllLengths, ratio, measured.of_poses)) + own,
           "measure a wheel with a tape; then multiply " + lengths + " by " + number(1.0 / ratio) +
+              (odometry ? ", or x and y of the odometry by " + number(ratio) : "") +
               ", or wheel_diameter and track_width by " + number(ratio)};
 }
 
-Cause of_wheels(double ratio, const RobotDescription& robot) {
-  const char* reason = reason_for(kOfBothWheels, ratio);
-  const bool gear =
-      reason == nullptr && (ratio > settings::kGearFactor || ratio < 1.0 / settings::kGearFactor);
-  return {"both wheel diameters come out " + number(ratio) +
-              " times their nominal values, the track width does not" +
-              because(gear ? "counts are those of the motor before a gear, or ticks_per_rev is" : reason),
+bool is_gear(double ratio) { return ratio > settings::kGearFactor || ratio < 1.0 / settings::kGearFactor; }
+
+std::string diameter_for(double ratio, const RobotDescription& robot) {
+  return number(0.5 * (robot.left_wheel_diameter + robot.right_wheel_diameter) * ratio) + " m";
+}
+
+std::string of_both(double ratio) {
+  return "both wheel diameters come out " + number(ratio) +
+         " times their nominal values, the track width does not";
+}
+
+Cause of_counted_wheels(double ratio, const RobotDescription& robot) {
+  const char* reason = reason_for(kOfCounts, ratio);
+  if (reason == nullptr) reason = reason_for(kOfDiameters, ratio);
+  if (reason == nullptr && is_gear(ratio))
+    reason = "counts are those of the motor before a gear, or ticks_per_rev is";
+  return {of_both(ratio) + because(reason),
           "set ticks_per_rev to about " + count(robot.ticks_per_rev / ratio) + " instead of " +
-              count(robot.ticks_per_rev) + ", or wheel_diameter to " +
-              number(0.5 * (robot.left_wheel_diameter + robot.right_wheel_diameter) * ratio) +
-              " m; a tape at the wheel tells which"};
+              count(robot.ticks_per_rev) + ", or wheel_diameter to " + diameter_for(ratio, robot) +
+              "; a tape at the wheel tells which"};
+}
+
+/// Where there are no counts there is nothing to say about ticks_per_rev.
+Cause of_wheels(double ratio, const Measured& measured) {
+  if (measured.motion == MotionSource::ticks) return of_counted_wheels(ratio, measured.robot);
+  if (const MotionUnit* unit = unit_for(measured, 1.0 / ratio)) return of_unit(*unit, measured, 1.0 / ratio);
+  const std::string values = values_of(measured.motion);
+  const char* reason = reason_for(kOfDiameters, ratio);
+  if (reason == nullptr && is_gear(ratio)) reason = "they are those of the motor before a gear";
+  return {of_both(ratio) + ": " + values + " are " + number(1.0 / ratio) + " times as large as the wheels'" +
+              because(reason),
+          "multiply " + values + " by " + number(ratio) + ", or set wheel_diameter to " +
+              diameter_for(ratio, measured.robot) + "; a tape at the wheel tells which"};
 }
 
 Cause of_track(double ratio, const RobotDescription& robot) {
@@ -108,20 +175,19 @@ Cause of_one_wheel(const std::string& side, double ratio) {
 
 }  // namespace
 
-std::optional<Cause> cause_of_ratios(const LengthRatios& ratios, const RobotDescription& robot,
-                                     bool of_poses) {
+std::optional<Cause> cause_of_ratios(const LengthRatios& ratios, const Measured& measured) {
   const auto [left, right, track] = ratios;
   for (const double ratio : {left, right, track})
     if (!(ratio > 0.0) || !std::isfinite(ratio)) return std::nullopt;
   const bool left_fits = is_one(left), right_fits = is_one(right), track_fits = is_one(track);
   const double mean = 0.5 * (left + right);
   if (!left_fits && !right_fits && is_near(left, right)) {
-    if (track_fits) return of_wheels(mean, robot);
-    if (is_near(track, mean)) return of_all((left + right + track) / 3.0, of_poses);
+    if (track_fits) return of_wheels(mean, measured);
+    if (is_near(track, mean)) return of_all((left + right + track) / 3.0, measured);
     return std::nullopt;
   }
   if (left_fits && right_fits && !track_fits && reason_for(kOfTrack, track) != nullptr)
-    return of_track(track, robot);
+    return of_track(track, measured.robot);
   if (track_fits && left_fits != right_fits) {
     const double odd = left_fits ? right : left;
     if (odd > settings::kUnlikeCounts / settings::kSameLength ||

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "proto/measurements.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::classical {
 
@@ -19,11 +20,17 @@ struct Cause {
   std::string what, remedy;
 };
 
-/// The cause when the ratios make one of the known patterns: all three alike (units, scale of the reference),
-/// both diameters alike (counts per turn, radius or circumference instead of diameter), the track alone, one
-/// wheel alone. nullopt when they are near one, or make no pattern.
-/// @param of_poses the reference is poses, not ranges
-std::optional<Cause> cause_of_ratios(const LengthRatios& ratios, const RobotDescription& robot,
-                                     bool of_poses);
+/// What the ratios were measured with.
+struct Measured {
+  RobotDescription robot;
+  MotionSource motion = MotionSource::ticks;  ///< what told the motion of the wheels
+  bool of_poses = false;                      ///< the reference is poses, not ranges
+};
+
+/// The cause when the ratios make one of the known patterns: all three alike (units, scale of the reference,
+/// of odometry), both diameters alike (counts per turn, the unit of angles or speeds, radius or circumference
+/// instead of diameter), the track alone, one wheel alone. What is advised fits what told the motion. nullopt
+/// when they are near one, or make no pattern.
+std::optional<Cause> cause_of_ratios(const LengthRatios& ratios, const Measured& measured);
 
 }  // namespace odomcalib::calib::classical

@@ -273,7 +273,7 @@ class Look {
   [[nodiscard]] std::optional<Cause> length_factor(const std::vector<WheelMotion>& motions) const {
     const auto found = ratios(motions);
     if (!found || explained_ < settings::kContradicts) return std::nullopt;
-    return cause_of_ratios(*found, recording_.robot, !recording_.poses.empty());
+    return cause_of_ratios(*found, {recording_.robot, recording_.motion, !recording_.poses.empty()});
   }
 
   const Recording& recording_;

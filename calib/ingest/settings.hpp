@@ -47,6 +47,35 @@ inline constexpr double kAllRoundScan_rad = 6.1;
 /// Turns, of angles that look like degrees. Chosen.
 inline constexpr double kTurnsInDegrees = 4.0;
 
+// --- Parts of turns, repeated scans, beams of a wandering head
+// --------------------------------------------------
+
+/// Relative difference of the steps from beam to beam of two scans, by rounding. Derived: of single
+/// precision.
+inline constexpr double kSameStep = 1e-4;
+/// Steps, by which the first beam of a part may miss the one after the last beam of the part before. Chosen.
+inline constexpr double kNextBeam = 0.6;
+/// Scans that a judgement on the whole stream takes. Chosen.
+inline constexpr std::size_t kFewestParts = 20;
+/// Parts that make a turn, at least: of fewer, a scan is nearly a turn. Chosen.
+inline constexpr double kFewestPartsOfTurn = 1.7;
+/// Share of the scans that go on where the one before ended. Chosen: a part is lost now and then.
+inline constexpr double kFollowingParts = 0.8;
+/// Readings that make a scan which cannot be equal to another by chance. Chosen: a dozen lengths to the
+/// millimetre.
+inline constexpr int kReadingsOfScan = 12;
+/// m at the rim, between two scans that are equal in every reading: no lidar sees nothing of that. Chosen:
+/// several steps of a lidar that reads millimetres.
+inline constexpr double kMovedBetween_m = 5e-3;
+/// Beams by which the number varies while the head runs evenly. Derived: a turn is cut between two beams, so that
+/// one more or less fits.
+inline constexpr std::size_t kBeamsAtEnds = 1;
+/// Share of the scans with the most frequent number of beams, of a head that runs evenly. Chosen: half.
+inline constexpr double kUsualNumber = 0.5;
+/// Relative difference of the mean number of beams times their step from one turn. Chosen: steps are stated
+/// to that.
+inline constexpr double kNearlyOneTurn = 0.02;
+
 // --- Ranges ----------------------------------------------------------------------------------------------
 
 /// m, median reading of a recording. Chosen: lidars that measure 80 m see nothing at most bearings; robots

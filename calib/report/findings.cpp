@@ -201,6 +201,7 @@ Footing footing(const Findings& found, const BaseEstimate& base, const ReportDat
   footing.pairs = fit.used + fit.discarded;
   footing.recordings_apart = apart;
   footing.of_poses = found.fit.dataset.reference_is_base();
+  footing.motion = found.fit.dataset.recordings.front().motion;
   footing.converged = fit.converged;
   footing.measured = base.measured;
   footing.missing_motion = classical::missing_motion(measurement::wheel_motions(found.fit.dataset.data, 0.0));

@@ -37,7 +37,8 @@ struct Footing {
   std::vector<ResidualAxis> axes = {};  ///< of the residual, with their runs tests
   std::size_t outliers = 0, pairs = 0;  ///< pairs that contradict all others, of all
   std::optional<Apart> recordings_apart = std::nullopt;
-  bool of_poses = false;  ///< the reference is poses of the base
+  bool of_poses = false;                      ///< the reference is poses of the base
+  MotionSource motion = MotionSource::ticks;  ///< what told the motion of the wheels
   /// What was hardly driven: classical::missing_motion.
   std::optional<std::string> missing_motion = std::nullopt;
 };

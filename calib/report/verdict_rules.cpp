@@ -196,7 +196,7 @@ std::optional<Objection> common_factor(const Calibration& calibration, const Foo
     else
       ratios.track = ratio;
   }
-  const auto cause = cause_of_ratios(ratios, calibration.robot, footing.of_poses);
+  const auto cause = cause_of_ratios(ratios, {calibration.robot, footing.motion, footing.of_poses});
   if (!cause) return std::nullopt;
   return objection_to(*cause, std::any_of(lengths.begin(), lengths.end(), is_implausible));
 }

@@ -11,8 +11,9 @@ namespace {
 
 const RobotDescription kRobot{0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
 
-std::string told(const LengthRatios& ratios, bool of_poses = false) {
-  const auto cause = cause_of_ratios(ratios, kRobot, of_poses);
+std::string told(const LengthRatios& ratios, bool of_poses = false,
+                 MotionSource motion = MotionSource::ticks) {
+  const auto cause = cause_of_ratios(ratios, {kRobot, motion, of_poses});
   return cause ? cause->what + "; " + cause->remedy : "";
 }
 
@@ -47,6 +48,41 @@ TEST(LengthFactor, names_the_unit_of_all_lengths) {
   EXPECT_TRUE(holds(told({2.0, 2.0, 2.0}), "not halved"));
   EXPECT_FALSE(holds(told({2.0, 2.0, 2.0}, true), "not halved")) << "poses have no way back";
   EXPECT_TRUE(holds(told({2.0, 2.0, 2.0}, true), "x and y of the poses"));
+}
+
+/// The unit is told by its name, with its factor, and nothing is said of counts that there are none of.
+void expect_unit(MotionSource motion, const LengthRatios& ratios, const std::string& unit,
+                 const std::string& remedy) {
+  const std::string text = told(ratios, false, motion);
+  EXPECT_TRUE(holds(text, "look like " + unit)) << text;
+  EXPECT_TRUE(holds(text, "multiply them by " + remedy)) << text;
+  EXPECT_FALSE(holds(text, "ticks_per_rev")) << text;
+}
+
+TEST(LengthFactor, names_the_unit_of_angles_and_speeds) {
+  constexpr double kPi = std::numbers::pi;
+  const auto wheels = [](double ratio) { return LengthRatios{ratio, 1.03 * ratio, 1.01}; };
+  expect_unit(MotionSource::wheels, wheels(2.0 * kPi), "turns", "6.28319");
+  expect_unit(MotionSource::wheels, wheels(kPi / 180.0), "degrees", "0.0174533");
+  expect_unit(MotionSource::wheels, wheels(1.0 / 75.0), "millimetres at the rim", "0.0133333");
+  expect_unit(MotionSource::wheel_speeds, wheels(kPi / 30.0), "rpm", "0.10472");
+  expect_unit(MotionSource::wheel_speeds, wheels(kPi / 300.0), "rpm times 10", "0.010472");
+  expect_unit(MotionSource::wheel_speeds, wheels(1.0 / 0.075), "metres per second", "13.3333");
+}
+
+TEST(LengthFactor, names_the_unit_of_odometry) {
+  expect_unit(MotionSource::odometry, {0.01, 0.0101, 0.01}, "centimetres", "0.01");
+  expect_unit(MotionSource::odometry, {0.001, 0.00102, 0.001}, "millimetres", "0.001");
+  const std::string twice = told({0.5, 0.51, 0.5}, false, MotionSource::odometry);
+  EXPECT_TRUE(holds(twice, "or x and y of the odometry are 1.99 times as long as they are")) << twice;
+}
+
+TEST(LengthFactor, speaks_of_a_gear_where_no_unit_fits) {
+  const std::string text = told({1.0 / 30.0, 1.0 / 30.0, 1.0}, false, MotionSource::wheels);
+  EXPECT_TRUE(holds(text, "motor before a gear")) << text;
+  EXPECT_FALSE(holds(text, "ticks_per_rev")) << text;
+  EXPECT_TRUE(holds(told({2.0, 2.0, 1.0}, false, MotionSource::wheels), "the radius was given as diameter"));
+  EXPECT_EQ(told({1.1, 1.1, 1.0}, false, MotionSource::wheels), "") << "no unit is so near to rad";
 }
 
 TEST(LengthFactor, names_the_track_alone_and_one_wheel_alone) {

@@ -1,0 +1,32 @@
+#include "calib/ingest/put_right.hpp"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "calib/ingest/scan_faults.hpp"
+
+namespace odomcalib::calib::ingest {
+namespace {
+
+/// Each sees the recording as those before left it: parts of turns belong to one lidar, and whole turns
+/// repeat.
+using Mend = std::optional<Recording> (*)(const Recording&);
+constexpr std::array<Mend, 3> kMends = {with_joined_turns, without_repeated_scans, with_whole_turns};
+
+void mend(Repairs& repairs, std::size_t i, const Recording& given, const std::string& sensor) {
+  std::optional<Recording> mended = of_one_sensor(given, sensor);
+  for (const Mend one : kMends)
+    if (auto next = one(mended ? *mended : given)) mended = std::move(next);
+  if (mended) repairs.own(i) = std::move(*mended);
+}
+
+}  // namespace
+
+Recordings put_right(std::span<const Recording> given, const std::string& sensor) {
+  Repairs repairs(given);
+  for (std::size_t i = 0; i < given.size(); ++i) mend(repairs, i, given[i], sensor);
+  return std::move(repairs).take();
+}
+
+}  // namespace odomcalib::calib::ingest

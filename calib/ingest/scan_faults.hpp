@@ -1,0 +1,29 @@
+// Faults of a stream of scans that can be undone. Internal to calib/ingest: see put_right.hpp.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calib/math/se2.hpp"
+#include "proto/recording/recording.hpp"
+
+namespace odomcalib::calib::ingest {
+
+inline constexpr double kWholeTurn = 2.0 * math::kPi;  ///< rad
+
+/// Scans of one sensor only, where there are several; nothing where there is one.
+/// @param sensor the one; empty: that with most scans
+std::optional<Recording> of_one_sensor(const Recording& recording, const std::string& sensor);
+
+/// Whole turns, where each scan goes on where the one before ended; nothing where scans are no parts of
+/// turns.
+std::optional<Recording> with_joined_turns(const Recording& recording);
+
+/// Without scans whose readings are those of the one before although the wheels turned; nothing without any.
+std::optional<Recording> without_repeated_scans(const Recording& recording);
+
+/// Beams spread over one turn by their number, where their number varies and their stated step does not;
+/// nothing where both agree.
+std::optional<Recording> with_whole_turns(const Recording& recording);
+
+}  // namespace odomcalib::calib::ingest
