@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/ingest/even_stamps.hpp"
-#include "calib/ingest/scan_faults.hpp"
+#include "calib/ingest/reference_faults.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"

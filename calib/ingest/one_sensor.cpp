@@ -2,7 +2,7 @@
 #include <map>
 #include <vector>
 
-#include "calib/ingest/scan_faults.hpp"
+#include "calib/ingest/reference_faults.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {

@@ -107,14 +107,21 @@ bool heading_stands(const std::vector<PoseSample>& poses) {
   return true;
 }
 
-std::optional<Error> goes_sideways(const std::vector<PoseSample>& steps, const std::string& where) {
+struct Subject {
+  const char* goes;
+  const char* whose;
+};
+constexpr Subject kPoses{"poses go", "their"}, kOdometry{"the odometry goes", "its"};
+
+std::optional<Error> goes_sideways(const std::vector<PoseSample>& steps, const Subject& subject,
+                                   const std::string& where) {
   const double given = sideways(steps, as_given);
   if (given < settings::kSidewaysAtLeast) return std::nullopt;
   const auto wrong = [&](const std::string& what, const std::string& remedy) {
-    return Error{
-        ErrorCode::format,
-        "poses go sideways over " + std::to_string(std::lround(100.0 * given)) + " % of their way: " + what,
-        where, remedy};
+    return Error{ErrorCode::format,
+                 std::string(subject.goes) + " sideways over " + std::to_string(std::lround(100.0 * given)) +
+                     " % of " + subject.whose + " way: " + what,
+                 where, remedy};
   };
   if (heading_stands(steps)) return wrong("yaw never changes", "record the heading of the robot in radians");
   for (const Mistake& mistake : kMistakes)
@@ -122,18 +129,28 @@ std::optional<Error> goes_sideways(const std::vector<PoseSample>& steps, const s
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<Error> wrong_pose_frame(const Recording& recording) {
-  const std::vector<PoseSample> steps = spaced(recording.poses);
+std::optional<Error> wrong_headings(const std::vector<PoseSample>& poses, const Subject& subject,
+                                    const std::string& where) {
+  const std::vector<PoseSample> steps = spaced(poses);
   if (steps.size() < settings::kFewestPoseSteps) return std::nullopt;
-  if (auto error = goes_sideways(steps, recording.name)) return error;
+  if (auto error = goes_sideways(steps, subject, where)) return error;
   if (!turns_the_other_way(steps)) return std::nullopt;
   return Error{
       ErrorCode::format,
       "yaw turns clockwise where the way through x and y turns counter-clockwise (yaw clockwise, or a "
       "frame with z down)",
-      recording.name, kNegate};
+      where, kNegate};
+}
+
+}  // namespace
+
+std::optional<Error> wrong_pose_frame(const Recording& recording) {
+  return wrong_headings(recording.poses, kPoses, recording.name);
+}
+
+std::optional<Error> wrong_odometry_heading(const Recording& recording) {
+  if (recording.motion != MotionSource::odometry) return std::nullopt;
+  return wrong_headings(recording.odometry, kOdometry, recording.name);
 }
 
 }  // namespace odomcalib::calib::ingest

@@ -12,4 +12,7 @@ namespace odomcalib::calib::ingest {
 /// only the wheels contradict it. Error: format.
 std::optional<Error> wrong_pose_frame(const Recording& recording);
 
+/// The same of odometry that told the motion of the wheels.
+std::optional<Error> wrong_odometry_heading(const Recording& recording);
+
 }  // namespace odomcalib::calib::ingest

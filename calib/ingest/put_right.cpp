@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/ingest/scan_faults.hpp"
+#include "calib/ingest/reference_faults.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -12,7 +12,8 @@ namespace {
 /// Each sees the recording as those before left it: parts of turns belong to one lidar, and whole turns
 /// repeat.
 using Mend = std::optional<Recording> (*)(const Recording&);
-constexpr std::array<Mend, 3> kMends = {with_joined_turns, without_repeated_scans, with_whole_turns};
+constexpr std::array<Mend, 4> kMends = {with_joined_turns, without_repeated_scans, without_repeated_poses,
+                                        with_whole_turns};
 
 void mend(Repairs& repairs, std::size_t i, const Recording& given, const std::string& sensor) {
   std::optional<Recording> mended = of_one_sensor(given, sensor);

@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "calib/ingest/checks.hpp"
 #include "calib/ingest/even_stamps.hpp"
-#include "calib/ingest/pose_frame.hpp"
 #include "calib/ingest/settings.hpp"
+#include "calib/ingest/stamp_check.hpp"
 #include "calib/ingest/unit_check.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"
-#include "proto/recording/stamp_units.hpp"
 
 namespace odomcalib::calib::ingest {
 namespace {
@@ -19,10 +19,11 @@ namespace {
 std::string number(double value) { return math::significant(value, 6); }
 
 /// Samples that were dropped for their stamps say more than that they are missing.
-std::optional<Error> undated_stream(const Recording& recording) {
-  for (const Discarded& discarded : recording.discarded)
-    if (const std::string unit = unit_of_reason(discarded.reason); !unit.empty())
-      return wrong_dates(discarded.what, discarded.count, unit, recording.name);
+std::optional<Error> wrong_stamps(const Recording& recording) {
+  for (std::size_t k = 0; k < kForms; ++k)
+    if (auto error = no_dates(recording, static_cast<Form>(k))) return error;
+  for (std::size_t k = 0; k < kForms; ++k)
+    if (auto error = lost_digits(recording, static_cast<Form>(k))) return error;
   return std::nullopt;
 }
 
@@ -38,10 +39,13 @@ std::optional<Error> missing_stream(const Recording& recording) {
   const bool is_missing =
       recording.ticks.size() < 2 || (recording.poses.size() < 2 && recording.scans.size() < 2);
   if (is_missing)
-    if (auto error = undated_stream(recording)) return error;
+    if (auto error = wrong_stamps(recording)) return error;
+  const Form motion = motion_of(recording);
   if (recording.ticks.size() < 2)
-    return Error{ErrorCode::empty, "fewer than two tick samples" + what_was_dropped(recording, "ticks"),
-                 recording.name, "check that the controller's ticks were recorded"};
+    return Error{ErrorCode::empty,
+                 "fewer than two samples of " + std::string(many_of(motion)) +
+                     what_was_dropped(recording, name_of(motion)),
+                 recording.name, "check that the motion of the wheels was recorded"};
   if ((recording.poses.empty() ? recording.scans.size() : recording.poses.size()) < 2)
     return Error{ErrorCode::empty, "neither scans nor reference poses" + what_was_dropped(recording, "scan"),
                  recording.name, "check that the lidar was recorded"};
@@ -151,15 +155,14 @@ std::optional<Error> no_readings(const Recording& recording) {
 std::optional<Error> check_one(const Recording& recording) {
   if (!recording.increments.empty()) return std::nullopt;
   if (auto error = missing_stream(recording)) return error;
-  if (auto error = wrong_units(recording)) return error;
+  if (auto error = told_fault(recording)) return error;
   const bool by_poses = !recording.poses.empty();
-  const Stream ticks = stream("ticks", recording.ticks);
+  const Stream ticks = stream(many_of(motion_of(recording)), recording.ticks);
   const Stream reference = by_poses ? stream("poses", recording.poses) : stream("scans", recording.scans);
   for (const Stream* one : {&ticks, &reference})
     if (auto error = too_seldom(recording, *one)) return error;
   if (auto error = clocks_apart(recording, ticks, reference)) return error;
-  if (by_poses) return wrong_pose_frame(recording);
-  return no_readings(recording);
+  return by_poses ? std::nullopt : no_readings(recording);
 }
 
 }  // namespace

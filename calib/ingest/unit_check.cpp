@@ -30,32 +30,6 @@ Error wrong(const Recording& recording, const std::string& what, const std::stri
   return {ErrorCode::format, what, recording.name, remedy};
 }
 
-std::size_t count_of_reason(const Recording& recording, const std::string& what, const std::string& reason) {
-  std::size_t count = 0;
-  for (const Discarded& discarded : recording.discarded)
-    if (discarded.what == what && discarded.reason == reason) count += discarded.count;
-  return count;
-}
-
-/// Whole seconds, or numbers that are too large for the digits they are stored in.
-std::optional<Error> lost_digits(const Recording& recording, const std::string& what, const std::string& many,
-                                 std::size_t kept) {
-  const std::size_t repeated = count_of_reason(recording, what, kRepeatedStamp);
-  const auto all = static_cast<double>(kept + repeated);
-  if (!(static_cast<double>(repeated) > settings::kRepeatedShare * all)) return std::nullopt;
-  return wrong(recording,
-               std::to_string(repeated) + " of " + std::to_string(kept + repeated) + " " + many +
-                   " carry the same time stamp as the one before: the stamps have lost their last digits, as "
-                   "whole seconds or single-precision numbers do",
-               "write stamps with at least three digits after the point, as double-precision numbers");
-}
-
-std::optional<Error> rounded_stamps(const Recording& recording) {
-  if (auto error = lost_digits(recording, "ticks", "ticks", recording.ticks.size())) return error;
-  if (auto error = lost_digits(recording, "scan", "scans", recording.scans.size())) return error;
-  return lost_digits(recording, "pose", "poses", recording.poses.size());
-}
-
 /// Of one lidar: scans of several come in between each other.
 double interval_of_scans(const Recording& recording) {
   std::vector<double> times;
@@ -63,6 +37,8 @@ double interval_of_scans(const Recording& recording) {
     if (scan.sensor == recording.scans.front().sensor) times.push_back(scan.t);
   return times.size() < 2 ? settings::kLongestInterval_s : math::median_of(math::differences_of(times));
 }
+
+}  // namespace
 
 std::optional<Error> scans_too_fast(const Recording& recording) {
   if (recording.scans.size() < 2) return std::nullopt;
@@ -111,10 +87,14 @@ std::optional<Error> too_many_turns(const Recording& recording) {
                          "the number of beams per turn depends on the lidar's mode");
 }
 
+namespace {
+
 template <typename Sample>
 double span_of(const std::vector<Sample>& samples) {
   return samples.empty() ? 0.0 : samples.back().t - samples.front().t;
 }
+
+}  // namespace
 
 /// Both streams are of one drive: where one seems to take a unit's factor longer, it is in that unit.
 std::optional<Error> spans_in_units(const Recording& recording) {
@@ -151,6 +131,8 @@ std::optional<Error> wrong_lidar_pose(const Recording& recording) {
   return std::nullopt;
 }
 
+namespace {
+
 double median_reading(const Recording& recording) {
   std::vector<double> readings;
   const std::size_t step = std::max<std::size_t>(1, recording.scans.size() / settings::kScansLookedAt);
@@ -168,6 +150,8 @@ const Unit& likeliest_length(double reading) {
                            [&](const Unit& a, const Unit& b) { return distance(a) < distance(b); });
 }
 
+}  // namespace
+
 std::optional<Error> wrong_ranges(const Recording& recording) {
   const double median = median_reading(recording);
   const bool far = median > settings::kFarthestMedian_m;
@@ -180,13 +164,6 @@ std::optional<Error> wrong_ranges(const Recording& recording) {
                "multiply ranges, range_min and range_max by " + rounded(unit.size));
 }
 
-using Rule = std::optional<Error> (*)(const Recording&);
-
-constexpr std::array<Rule, 7> kRules = {rounded_stamps, scans_too_fast, spans_in_units,  slow_beams,
-                                        too_many_turns, wrong_ranges,   wrong_lidar_pose};
-
-}  // namespace
-
 std::string unit_of_interval(double interval) {
   const auto is_usual = [](double seconds) {
     return seconds >= settings::kShortestInterval_s && seconds <= settings::kLongestInterval_s;
@@ -195,12 +172,6 @@ std::string unit_of_interval(double interval) {
   for (const Unit& unit : kTimeUnits)
     if (is_usual(interval * unit.size)) return unit.name;
   return "";
-}
-
-std::optional<Error> wrong_units(const Recording& recording) {
-  for (const Rule rule : kRules)
-    if (auto error = rule(recording)) return error;
-  return std::nullopt;
 }
 
 }  // namespace odomcalib::calib::ingest

@@ -14,7 +14,12 @@ namespace odomcalib::calib::ingest {
 /// @param interval median of neighbouring stamps, in the unit of the recording
 std::string unit_of_interval(double interval);
 
-/// The first stream that cannot be what it is called; nullopt when all may be. Error: format.
-std::optional<Error> wrong_units(const Recording& recording);
+/// Each: why a stream cannot be what it is called; nullopt where it may be. Error: format.
+std::optional<Error> scans_too_fast(const Recording& recording);  ///< for any head
+std::optional<Error> spans_in_units(const Recording& recording);  ///< of the times of counts and reference
+std::optional<Error> slow_beams(const Recording& recording);  ///< a scan that takes longer than to the next
+std::optional<Error> too_many_turns(const Recording& recording);    ///< that one scan covers
+std::optional<Error> wrong_ranges(const Recording& recording);      ///< that no 2D lidar reads in metres
+std::optional<Error> wrong_lidar_pose(const Recording& recording);  ///< no place on a robot, and no angle
 
 }  // namespace odomcalib::calib::ingest

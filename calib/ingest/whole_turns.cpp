@@ -2,7 +2,7 @@
 #include <cmath>
 #include <map>
 
-#include "calib/ingest/scan_faults.hpp"
+#include "calib/ingest/reference_faults.hpp"
 #include "calib/ingest/settings.hpp"
 
 namespace odomcalib::calib::ingest {

@@ -17,8 +17,8 @@ inline constexpr const char* kOutsideLimits = "outside range_min and range_max";
 /// Reason of samples that carry the stamp of the one before.
 inline constexpr const char* kRepeatedStamp = "repeated time stamp";
 
-/// Reason of scans that the driver sent again with a new stamp.
-inline constexpr const char* kRepeatedScan = "same readings as the one before, although the wheels turned";
+/// Reason of scans and poses that a driver sent again with a new stamp.
+inline constexpr const char* kRepeatedValues = "same values as the one before, although the wheels turned";
 
 /// What a recording tells the motion of the wheels with, the finest first. One of them decides.
 enum class MotionSource { ticks, wheels, wheel_speeds, odometry };

@@ -1,4 +1,4 @@
-// Faults of a stream of scans that can be undone. Internal to calib/ingest: see put_right.hpp.
+// Faults of the reference that can be undone. Internal to calib/ingest: see put_right.hpp.
 #pragma once
 
 #include <optional>
@@ -19,8 +19,10 @@ std::optional<Recording> of_one_sensor(const Recording& recording, const std::st
 /// turns.
 std::optional<Recording> with_joined_turns(const Recording& recording);
 
-/// Without scans whose readings are those of the one before although the wheels turned; nothing without any.
+/// Without scans or poses that equal the one before in every number although the wheels turned; nothing
+/// without any.
 std::optional<Recording> without_repeated_scans(const Recording& recording);
+std::optional<Recording> without_repeated_poses(const Recording& recording);
 
 /// Beams spread over one turn by their number, where their number varies and their stated step does not;
 /// nothing where both agree.

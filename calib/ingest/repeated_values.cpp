@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "calib/ingest/scan_faults.hpp"
+#include "calib/ingest/reference_faults.hpp"
 #include "calib/ingest/settings.hpp"
 #include "calib/math/se2.hpp"
 
@@ -44,41 +44,57 @@ class WheelWay {
   double metres_ = 0.0;
 };
 
-std::vector<bool> repeats_of(const std::vector<Scan>& scans) {
-  std::vector<bool> repeats(scans.size(), false);
-  for (std::size_t k = 1; k < scans.size(); ++k) repeats[k] = is_the_same(scans[k - 1], scans[k]);
+bool is_the_same(const PoseSample& a, const PoseSample& b) {
+  return a.x == b.x && a.y == b.y && a.yaw == b.yaw;
+}
+
+template <typename Sample>
+std::vector<bool> repeats_of(const std::vector<Sample>& samples) {
+  std::vector<bool> repeats(samples.size(), false);
+  for (std::size_t k = 1; k < samples.size(); ++k) repeats[k] = is_the_same(samples[k - 1], samples[k]);
   return repeats;
 }
 
-/// At rest a lidar without noise sends equal scans as well.
-bool repeats_in_motion(const Recording& recording, const std::vector<bool>& repeats) {
+/// At rest a reference without noise repeats itself as well.
+template <typename Sample>
+bool repeats_in_motion(const Recording& recording, const std::vector<Sample>& samples,
+                       const std::vector<bool>& repeats) {
   WheelWay way(recording);
   for (std::size_t k = 1; k < repeats.size(); ++k)
-    if (repeats[k] && way.between(recording.scans[k - 1].t, recording.scans[k].t) > settings::kMovedBetween_m)
-      return true;
+    if (repeats[k] && way.between(samples[k - 1].t, samples[k].t) > settings::kMovedBetween_m) return true;
   return false;
+}
+
+template <typename Sample>
+std::optional<Recording> without_repeats(const Recording& recording, std::vector<Sample> Recording::*stream,
+                                         const char* what) {
+  const std::vector<Sample>& samples = recording.*stream;
+  const std::vector<bool> repeats = repeats_of(samples);
+  if (!repeats_in_motion(recording, samples, repeats)) return std::nullopt;
+  Recording once = recording;
+  (once.*stream).clear();
+  Discarded dropped{what, kRepeatedValues, 0, samples.size()};
+  for (std::size_t k = 0; k < repeats.size(); ++k) {
+    if (!repeats[k]) {
+      (once.*stream).push_back(samples[k]);
+      continue;
+    }
+    ++dropped.count;
+    if (!dropped.begin) dropped.begin = samples[k].t;
+    dropped.end = samples[k].t;
+  }
+  once.discarded.push_back(dropped);
+  return once;
 }
 
 }  // namespace
 
 std::optional<Recording> without_repeated_scans(const Recording& recording) {
-  const std::vector<bool> repeats = repeats_of(recording.scans);
-  if (!repeats_in_motion(recording, repeats)) return std::nullopt;
-  Recording once = recording;
-  once.scans.clear();
-  Discarded dropped{"scan", kRepeatedScan, 0, recording.scans.size()};
-  for (std::size_t k = 0; k < repeats.size(); ++k) {
-    const Scan& scan = recording.scans[k];
-    if (!repeats[k]) {
-      once.scans.push_back(scan);
-      continue;
-    }
-    ++dropped.count;
-    if (!dropped.begin) dropped.begin = scan.t;
-    dropped.end = scan.t;
-  }
-  once.discarded.push_back(dropped);
-  return once;
+  return without_repeats(recording, &Recording::scans, "scan");
+}
+
+std::optional<Recording> without_repeated_poses(const Recording& recording) {
+  return without_repeats(recording, &Recording::poses, "pose");
 }
 
 }  // namespace odomcalib::calib::ingest
