@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "calib/estimation/clock_step.hpp"
 #include "calib/estimation/first_look.hpp"
 #include "calib/estimation/fit.hpp"
 #include "calib/estimation/start_values.hpp"
@@ -46,7 +47,7 @@ std::optional<Error> contradiction(const ingest::Recordings& recordings, bool sa
 Solution calibrate(measurement::Dataset opened, const terms::Request& request, const SolveOptions& options,
                    const std::vector<std::string>& remarks, const Progress& progress) {
   progress("matching", 0.0);
-  measurement::Dataset rough = measured_roughly(std::move(opened));
+  measurement::Dataset rough = estimation::without_clock_steps(measured_roughly(std::move(opened)));
   const auto start = estimation::start_model(rough, request);
   if (!start) return {report::refused(rough, start.error()), {}};
 

@@ -104,6 +104,29 @@ inline constexpr double kClocksApart_s = 0.06;
 /// Rounds of one reweighting each. Chosen.
 inline constexpr int kMisfitRounds = 3;
 
+// --- Clock that is set
+// -----------------------------------------------------------------------------------------
+
+/// s, to either side, over which the delays before and after are searched, and step of that. Chosen: larger
+/// steps leave a gap that says the same.
+inline constexpr double kSplitReach_s = 2.0, kSplitStep_s = 0.02;
+/// s, step with which both are found in the end. Chosen: a tenth of the coarse one.
+inline constexpr double kFineSplitStep_s = 0.002;
+/// Pairs on either side. Chosen: some ten seconds.
+inline constexpr std::size_t kFewestPairsOfClock = 12;
+/// rad, noise of a measured rotation, at least. Chosen.
+inline constexpr double kLeastTurnNoise_rad = 1e-3;
+/// Square of the sigmas beyond which a pair says nothing. Chosen: three.
+inline constexpr double kGrossTurnSquared = 9.0;
+/// Chi-square by which two delays must explain more than one, and more than one that grows. Derived: of some
+/// 100 moments and 200 by 200 delays by chance one gains 2 ln(4e6) = 30; twice that, and half of it against a
+/// drift.
+inline constexpr double kPlainSplit = 60.0, kSplitNotDrift = 30.0;
+/// Rounds of splitting and of finding the gains. Chosen.
+inline constexpr int kSplitRounds = 3;
+/// s, about the first pair after the step, in which the step shows in the stamps. Chosen: two pairs.
+inline constexpr double kMomentReach_s = 2.0;
+
 // --- Gyro witness ----------------------------------------------------------------------------------------
 
 /// Relative deviation of the scale of a MEMS gyro. Published: +-3 % (MPU-6050, product specification).
