@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "calib/solve.hpp"
 #include "calib/terms/request.hpp"
@@ -26,7 +28,7 @@ namespace {
 struct SolveArguments {
   std::vector<std::string> recordings;
   std::vector<std::string> effects{"auto"};
-  std::string scale, out, report, pairs, note;
+  std::string scale, sensor, out, report, pairs, note;
   calib::classical::ClosedFormOptions cuts;
   RecordingOptions reading;
   bool same_robot = false;
@@ -47,6 +49,7 @@ Result<void> write_results(const SolveArguments& options, const calib::Solution&
 std::string settings_of(const SolveArguments& options) {
   nlohmann::ordered_json settings = {{"version", kVersion}, {"effects", options.effects}};
   if (!options.scale.empty()) settings["scale"] = options.scale;
+  if (!options.sensor.empty()) settings["sensor"] = options.sensor;
   const calib::classical::ClosedFormOptions usual;
   if (options.cuts.rounds != usual.rounds) settings["rounds"] = options.cuts.rounds;
   if (options.cuts.drop_fraction != usual.drop_fraction) settings["cut"] = options.cuts.drop_fraction;
@@ -61,6 +64,18 @@ Result<void> check_files(const SolveArguments& options) {
                        inputs);
 }
 
+std::optional<Error> wrong_sensor(const SolveArguments& options, const std::vector<Recording>& recordings) {
+  if (options.sensor.empty()) return std::nullopt;
+  std::set<std::string> sensors;
+  for (const Recording& recording : recordings)
+    for (const Scan& scan : recording.scans)
+      if (!scan.sensor.empty()) sensors.insert(scan.sensor);
+  if (sensors.contains(options.sensor)) return std::nullopt;
+  return Error{ErrorCode::usage, "no scan is of the sensor \"" + options.sensor + "\"", "--sensor",
+               sensors.empty() ? "leave it out: the scans name no sensor"
+                               : fmt::format("there are: {}", fmt::join(sensors, ", "))};
+}
+
 int solve_recordings(const SolveArguments& options, const Session& session) {
   if (const auto wrong = calib::terms::wrong_effects(options.effects))
     return report_error(*wrong, session.json);
@@ -73,6 +88,8 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
   }
   auto recordings = read_recordings(options.recordings, options.reading);
   if (!recordings) return report_error(recordings.error(), session.json);
+  if (const auto wrong = wrong_sensor(options, recordings.value())) return report_error(*wrong, session.json);
+  how.sensor = options.sensor;
   for (Recording& recording : recordings.value()) recording = without_intensities(std::move(recording));
   ProgressLine line;
   const auto progress = [&line](const std::string& phase, double fraction) { line.show(phase, fraction); };
@@ -101,6 +118,8 @@ void add_solve(CLI::App& app, Session& session) {
   verb->add_option("--effects", options->effects, "auto, none, or names of effects to fit")->delimiter(',');
   verb->add_option("--scale", options->scale,
                    "metres in a metre of the reference, as a tape has it: 1.002+-0.001");
+  verb->add_option("--sensor", options->sensor,
+                   "of several lidars on one topic, the one whose scans are used; without: that with most");
   verb->add_flag("--same-robot", options->same_robot, "recordings with different robot_id are of one robot");
   verb->add_option("--out", options->out, "calibration file to write, also when refused");
   verb->add_option("--report", options->report, "HTML report to write");
