@@ -25,12 +25,9 @@ bool is_worth_a_line(const Discarded& one) {
          (one.of == 0 ? one.what == "file" || one.what == "chunk" : share_of(one) >= settings::kTrace);
 }
 
-std::vector<std::string> lines_of(const std::vector<Discarded>& discarded, const std::vector<Repair>& repairs,
-                                  const auto& start) {
+std::vector<std::string> lines_of(const std::vector<Discarded>& discarded, const auto& start) {
   std::vector<std::string> lines;
   for (const Discarded& one : discarded) lines.push_back("not used: " + to_text(one, start(one)));
-  for (const Repair& one : repairs)
-    lines.push_back(fmt::format("put right: {}: {} ({})", one.what, one.chosen, one.reason));
   return lines;
 }
 
@@ -57,13 +54,15 @@ std::vector<std::string> left_out_lines(const Calibration& calibration) {
 }
 
 std::vector<std::string> evidence_lines(const Calibration& calibration) {
-  return lines_of(calibration.discarded, calibration.repairs,
-                  [&](const Discarded& one) { return begin_of(calibration, one); });
+  std::vector<std::string> lines =
+      lines_of(calibration.discarded, [&](const Discarded& one) { return begin_of(calibration, one); });
+  for (const Repair& one : calibration.repairs)
+    lines.push_back(fmt::format("put right: {}: {}: {}", one.what, one.chosen, one.reason));
+  return lines;
 }
 
 std::vector<std::string> evidence_lines(const Recording& recording) {
-  return lines_of(left_out_of(recording), recording.repairs,
-                  [&](const Discarded&) { return begin_of(recording); });
+  return lines_of(left_out_of(recording), [&](const Discarded&) { return begin_of(recording); });
 }
 
 void warn_of_lost_motion(const Recording& recording) {

@@ -13,8 +13,9 @@ namespace odomcalib::cli {
 /// settings::kLeftOutLines.
 std::vector<std::string> left_out_lines(const Calibration& calibration);
 
-/// All of it, and what was put right: of a calibration, of a recording.
+/// All of it, and what was put right.
 std::vector<std::string> evidence_lines(const Calibration& calibration);
+/// All of it; what was put right is told when a recording is read.
 std::vector<std::string> evidence_lines(const Recording& recording);
 
 /// Whatever dead reckoning goes on without, one warning each.

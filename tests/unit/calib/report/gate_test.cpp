@@ -206,15 +206,16 @@ GateResult judged(double residual, double odometry, double track = 0.5) {
 }
 
 TEST(Gate, refuses_when_signs_of_different_rules_add_up_and_names_the_weightiest) {
-  constexpr double kRest = settings::kMostSigns - settings::kHeaviestSign - 1.0;
-  static_assert(kRest > 1.0, "a rule below its limit is no sign");
-  EXPECT_EQ(judged(50.0, kRest - 0.1).verdict, Verdict::accepted_with_warnings);
-  EXPECT_EQ(judged(50.0, kRest + 0.1, 0.41).verdict, Verdict::accepted_with_warnings);
-  const GateResult gate = judged(50.0, kRest + 0.1);
+  constexpr double kOdometry = 1.5, kRest = settings::kMostSigns - kOdometry - 1.0;
+  static_assert(kRest > kOdometry && kRest < settings::kHeaviestSign);
+  EXPECT_EQ(judged(kRest - 0.1, kOdometry).verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(judged(kRest + 0.1, kOdometry, 0.41).verdict, Verdict::accepted_with_warnings);
+  const GateResult gate = judged(kRest + 0.1, kOdometry);
   EXPECT_EQ(gate.verdict, Verdict::refused);
   ASSERT_EQ(gate.reasons.size(), 1U);
-  for (const char* said : {"the residual in x of the sensor is 100.0 times the noise floor;",
-                           "odometry over ten seconds is off by", "track_width differs"})
+  for (const char* said :
+       {": the residual in x of the sensor is 6.8 times the noise floor; odometry over ten seconds is off by",
+        "; track_width differs"})
     EXPECT_NE(gate.reasons[0].find(said), std::string::npos) << gate.reasons[0];
 }
 

@@ -255,7 +255,7 @@ TEST(Recording, says_between_which_stamps_the_way_is_not_known) {
 
 TEST(Recording, says_when_counts_were_read_wrong) {
   std::string text = kRobotLine;
-  for (int i = 0; i < 40; ++i) text += ticks_line(0.1 * i, i == 10 || i == 30 ? 0 : 40 * i, 40 * i);
+  for (int i = 0; i < 40; ++i) text += ticks_line(0.1 * i, i == 10 || i == 30 ? 100000 : 40 * i, 40 * i);
   const auto result = value_of(read_text(text));
   const Discarded& misread = left_out(result, "ticks", kMisread);
   ASSERT_EQ(misread.count, 2U) << list_discarded(result);
