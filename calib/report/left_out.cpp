@@ -28,12 +28,12 @@ bool is_used(const Recording& recording, const std::string& what) {
   return what == kInterval || what == "ticks" || what == name_of(recording.motion);
 }
 
-std::optional<Loss> loss_of(std::span<const Recording> recordings, std::size_t k) {
-  const Recording& recording = recordings[k];
+void add_losses(std::span<const Recording> recordings, std::size_t k, std::vector<Loss>& losses) {
   struct Stream {
     double share = 0.0;
     const Discarded* most = nullptr;
   };
+  const Recording& recording = recordings[k];
   const std::vector<Discarded> all = left_out_of(recording);
   std::map<std::string, Stream> streams;
   for (const Discarded& one : all) {
@@ -42,14 +42,12 @@ std::optional<Loss> loss_of(std::span<const Recording> recordings, std::size_t k
     stream.share += share_of(one);
     if (stream.most == nullptr || one.count > stream.most->count) stream.most = &one;
   }
-  const auto worst = std::max_element(streams.begin(), streams.end(), [](const auto& a, const auto& b) {
-    return a.second.share < b.second.share;
-  });
-  if (worst == streams.end()) return std::nullopt;
   const auto start = recording.ticks.empty() ? std::nullopt : std::optional(recording.ticks.front().t);
-  Discarded most = *worst->second.most;
-  most.reason = reason_in(recordings, k, most.reason);
-  return Loss{worst->second.share, to_text(most, start)};
+  for (const auto& [name, stream] : streams) {
+    Discarded most = *stream.most;
+    most.reason = reason_in(recordings, k, most.reason);
+    losses.push_back({stream.share, to_text(most, start), is_loss_of_motion(most)});
+  }
 }
 
 std::string milliseconds(double seconds) { return std::to_string(std::lround(1e3 * seconds)) + " ms"; }
@@ -120,8 +118,7 @@ std::vector<Repair> repairs_of(const ingest::Recordings& recordings) {
 
 std::vector<Loss> losses_of(std::span<const Recording> recordings) {
   std::vector<Loss> losses;
-  for (std::size_t k = 0; k < recordings.size(); ++k)
-    if (auto loss = loss_of(recordings, k)) losses.push_back(std::move(*loss));
+  for (std::size_t k = 0; k < recordings.size(); ++k) add_losses(recordings, k, losses);
   return losses;
 }
 

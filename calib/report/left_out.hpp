@@ -24,7 +24,7 @@ std::vector<Discarded> outlier_pairs(const measurement::Dataset& dataset, const 
 /// What the recordings say of themselves, and stamps that were not believed.
 std::vector<Repair> repairs_of(const ingest::Recordings& recordings);
 
-/// Of what the values stand on, the stream of each recording that lost most of its samples.
+/// Of what the values stand on: wheels, and scans or poses.
 std::vector<Loss> losses_of(std::span<const Recording> recordings);
 
 }  // namespace odomcalib::calib::report

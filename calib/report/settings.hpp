@@ -40,7 +40,7 @@ inline constexpr double kTooManyContradict = 0.25;
 /// sample twice, which loses nothing), 0.5 % and 16 % where counters wrap anywhere or a second program sends
 /// zeros now and then, with lengths that are right; 92 to 96 % where it does so always, or stamps are in
 /// whole seconds. The first is chosen between 0 and 0.5 %, so that one restart of a controller passes; the
-/// second leaves room for drivers that send every scan twice.
+/// second, of wheels alone, is chosen: more is lost than left.
 inline constexpr double kWarnLeftOut = 0.002, kMostLeftOut = 0.5;
 
 // --- Figures of what odometry is off by

@@ -378,8 +378,8 @@ Objections much_left_out(const Calibration&, const Footing& footing) {
     if (const auto refusing = too_much_left_out(loss))
       found.push_back(*refusing);
     else if (loss.share > settings::kWarnLeftOut)
-      found.push_back(
-          warning(loss.text + "; the lengths stand on the rest, but odometry is off wherever this happens"));
+      found.push_back(warning(loss.text + "; the lengths stand on the rest" +
+                              (loss.of_wheels ? ", but odometry is off wherever this happens" : "")));
   }
   return found;
 }
@@ -442,7 +442,7 @@ constexpr std::array kRules = {VerdictRule{"much_left_out", much_left_out},
 std::span<const VerdictRule> verdict_rules() { return kRules; }
 
 std::optional<Objection> too_much_left_out(const Loss& loss) {
-  if (!(loss.share > settings::kMostLeftOut)) return std::nullopt;
+  if (!loss.of_wheels || !(loss.share > settings::kMostLeftOut)) return std::nullopt;
   return refusal(loss.text +
                  "; what is left does not tell how the robot moved: mend what sends this, and record again");
 }

@@ -27,7 +27,8 @@ struct VerdictRule {
 /// In the order in which reasons are listed.
 std::span<const VerdictRule> verdict_rules();
 
-/// Why what was left out of a recording leaves too little to stand on; nullopt where it does not.
+/// Why what was left out of a recording leaves too little to stand on; nullopt where it does not. Of scans or
+/// poses fewer do as well, as long as pairs can be made of them.
 std::optional<Objection> too_much_left_out(const Loss& loss);
 
 }  // namespace odomcalib::calib::report

@@ -60,8 +60,9 @@ std::vector<Discarded> left_out_of(const Recording& recording) {
 }
 
 bool is_loss(const Discarded& one) {
-  return one.count > one.copies && kind_of(one) != nullptr && !one.reason.ends_with(kFinerDecides) &&
-         !one.reason.ends_with(kOfSecondProgram);
+  const bool is_replaced = one.reason.ends_with(kFinerDecides) || one.reason.ends_with(kOfSecondProgram) ||
+                           one.reason.ends_with(kOfAnotherSensor);
+  return one.count > one.copies && kind_of(one) != nullptr && !is_replaced;
 }
 
 bool is_loss_of_motion(const Discarded& one) { return is_loss(one) && kind_of(one)->motion; }

@@ -28,8 +28,9 @@ inline constexpr const char* kUncontinued =
 /// End of the reason of wheel motion that is there in a finer form, too.
 inline constexpr const char* kFinerDecides = " are finer and decide";
 
-/// End of the reason of what is not the robot's, among what is.
+/// End of the reason of what is not the robot's, among what is; and reason of scans that were not chosen.
 inline constexpr const char* kOfSecondProgram = ", of a second program";
+inline constexpr const char* kOfAnotherSensor = "of another sensor";
 
 /// Reason of single counts that were taken for what lies between their neighbours.
 inline constexpr const char* kMisread = "count read wrong once";

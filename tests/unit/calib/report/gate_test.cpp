@@ -175,9 +175,9 @@ TEST(Gate, passes_remarks_on) {
   EXPECT_NE(gate.reasons[0].find("24 of 546"), std::string::npos);
 }
 
-Footing with_loss(double share) {
+Footing with_loss(double share, bool of_wheels = true) {
   Footing footing = kFirm;
-  footing.losses = {{share, "363 of 1916 intervals between counts"}};
+  footing.losses = {{share, "363 of 1916 intervals between counts", of_wheels}};
   return footing;
 }
 
@@ -190,6 +190,8 @@ TEST(Gate, warns_of_a_share_that_was_left_out_and_refuses_where_little_is_left) 
   EXPECT_EQ(gate.reasons[0].find("363 of 1916 intervals between counts"), 0U) << gate.reasons[0];
   EXPECT_EQ(judge(sound(), with_loss(0.99 * refused)).verdict, Verdict::accepted_with_warnings);
   EXPECT_EQ(judge(sound(), with_loss(1.01 * refused)).verdict, Verdict::refused);
+  EXPECT_EQ(judge(sound(), with_loss(1.01 * refused, false)).verdict, Verdict::accepted_with_warnings)
+      << "fewer scans are still scans";
 }
 
 /// Figures at so many times the limits of as many rules: residual, odometry over ten seconds; and a length

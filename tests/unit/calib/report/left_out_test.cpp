@@ -20,12 +20,15 @@ double share_lost(const Recording& recording) {
   return losses.empty() ? 0.0 : losses.front().share;
 }
 
-TEST(Losses, are_of_the_stream_that_lost_most) {
+TEST(Losses, are_of_each_stream_and_told_by_what_is_most) {
   const Recording recording = with({{"ticks", kUncontinued, 10, 100, 103.2, 171.0},
                                     {"ticks", kMisread, 20, 100},
                                     {"scan", kRepeatedStamp, 25, 100}});
   const auto losses = losses_of({&recording, 1});
-  ASSERT_EQ(losses.size(), 1U);
+  ASSERT_EQ(losses.size(), 2U);
+  EXPECT_TRUE(losses[0].of_wheels);
+  EXPECT_FALSE(losses[1].of_wheels);
+  EXPECT_NEAR(losses[1].share, 0.25, 1e-12);
   EXPECT_NEAR(losses[0].share, 0.3, 1e-12) << "of one stream they add up";
   EXPECT_EQ(losses[0].text, "20 of 100 counts (20 %): count read wrong once");
 }

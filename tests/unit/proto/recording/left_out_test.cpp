@@ -27,6 +27,8 @@ TEST(LeftOut, is_a_loss_where_a_calibration_would_have_used_it) {
   EXPECT_FALSE(is_loss({"beam", kOutsideLimits, 5, 9}));
   EXPECT_FALSE(is_loss({"message", "/tf was not taken", 5}));
   EXPECT_FALSE(is_loss({"odometry", std::string("ticks") + kFinerDecides, 9, 9}));
+  EXPECT_FALSE(is_loss({"wheels", std::string("always 0, 0") + kOfSecondProgram, 9, 20}));
+  EXPECT_FALSE(is_loss({"scan", kOfAnotherSensor, 9, 20}));
   Discarded twice{"ticks", kRepeatedStamp, 4, 9};
   twice.copies = 4;
   EXPECT_FALSE(is_loss(twice)) << "what was kept says it";
