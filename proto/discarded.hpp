@@ -16,6 +16,7 @@ struct Discarded {
   std::size_t of = 0;                          ///< how many of them there were; 0: not known
   std::optional<double> begin = std::nullopt;  ///< s, of the first one; none where they have no time
   std::optional<double> end = std::nullopt;    ///< s, of the last one
+  std::size_t copies = 0;                      ///< of the count, what said the same as what was kept
 };
 
 /// Something that was put right, or taken where there were several.

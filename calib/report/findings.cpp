@@ -14,10 +14,12 @@
 #include "calib/estimation/gyro_witness.hpp"
 #include "calib/report/found_effects.hpp"
 #include "calib/report/gate.hpp"
+#include "calib/report/left_out.hpp"
 #include "calib/report/one_robot.hpp"
 #include "calib/report/report.hpp"
 #include "calib/report/report_data.hpp"
 #include "calib/report/settings.hpp"
+#include "calib/report/verdict_rules.hpp"
 #include "calib/selection/held_out.hpp"
 #include "calib/selection/lidar_trace.hpp"
 #include "calib/selection/outlier_trace.hpp"
@@ -199,6 +201,7 @@ Footing footing(const Findings& found, const BaseEstimate& base, const ReportDat
   footing.axes = data.axes;
   footing.outliers = fit.discarded;
   footing.pairs = fit.used + fit.discarded;
+  footing.losses = losses_of(found.fit.dataset.recordings.view());
   footing.recordings_apart = apart;
   footing.of_poses = found.fit.dataset.reference_is_base();
   footing.motion = found.fit.dataset.recordings.front().motion;
@@ -226,6 +229,8 @@ Calibration begun(const ingest::Recordings& recordings, std::span<const measurem
   Calibration calibration;
   if (recordings.size() > 0) calibration.robot = recordings.front().robot;
   calibration.data = data_use(recordings.view(), sets);
+  calibration.discarded = left_out(recordings.view(), sets);
+  calibration.repairs = repairs_of(recordings);
   return calibration;
 }
 
@@ -235,20 +240,24 @@ Calibration with_classical_methods(const estimation::Fit& fit, const classical::
   return calibration;
 }
 
-Calibration refused(Calibration calibration, const Error& error) {
+/// Where most of a recording was left out, whatever failed then failed for that.
+Calibration refused(Calibration calibration, const ingest::Recordings& recordings, const Error& error) {
   calibration.verdict = Verdict::refused;
-  calibration.reasons = {error.text()};
+  calibration.reasons.clear();
+  for (const Loss& loss : losses_of(recordings.view()))
+    if (const auto refusing = too_much_left_out(loss)) calibration.reasons.push_back(refusing->reason);
+  calibration.reasons.push_back(error.text());
   return calibration;
 }
 
 }  // namespace
 
 Calibration refused(const ingest::Recordings& recordings, const Error& error) {
-  return refused(begun(recordings, {}), error);
+  return refused(begun(recordings, {}), recordings, error);
 }
 
 Calibration refused(const measurement::Dataset& dataset, const Error& error) {
-  return refused(begun(dataset.recordings, dataset.pair_sets), error);
+  return refused(begun(dataset.recordings, dataset.pair_sets), dataset.recordings, error);
 }
 
 Calibration refused(const estimation::Fit& failed, const classical::ClosedFormOptions& cuts) {
@@ -257,7 +266,8 @@ Calibration refused(const estimation::Fit& failed, const classical::ClosedFormOp
   joint.name = "joint";
   joint.refused = failed.failure->what;
   calibration.methods.push_back(joint);
-  return refused(std::move(calibration), cause_of(*failed.failure, failed.dataset.pair_sets));
+  return refused(std::move(calibration), failed.dataset.recordings,
+                 cause_of(*failed.failure, failed.dataset.pair_sets));
 }
 
 Calibration calibrated(const Findings& found) {
@@ -273,6 +283,8 @@ Calibration calibrated(const Findings& found) {
 
   Calibration calibration = with_classical_methods(found.fit, found.cuts);
   calibration.methods.push_back(joint_method(fit));
+  for (Discarded& one : outlier_pairs(found.fit.dataset, fit))
+    calibration.discarded.push_back(std::move(one));
   calibration.parameters = base.stated;
   calibration.covariance_order = base_quantity_names();
   calibration.covariance = diameter_covariance(base.covariance);

@@ -29,6 +29,8 @@ Calibration refused_for(const Error& cause, Calibration calibration) {
   refused.verdict = Verdict::refused;
   refused.reasons = {cause.text()};
   refused.data = std::move(calibration.data);
+  refused.discarded = std::move(calibration.discarded);
+  refused.repairs = std::move(calibration.repairs);
   refused.methods = std::move(calibration.methods);
   return refused;
 }
@@ -39,7 +41,7 @@ GateResult judge(const Calibration& calibration, const Footing& footing) {
   std::vector<std::string> refusals, warnings;
   for (const VerdictRule& rule : verdict_rules())
     for (const Objection& objection : rule.objections(calibration, footing))
-      (objection.refuses ? refusals : warnings).push_back(objection.reason);
+      if (!objection.is_said) (objection.refuses ? refusals : warnings).push_back(objection.reason);
   if (!refusals.empty()) return {Verdict::refused, refusals};
   if (!warnings.empty()) return {Verdict::accepted_with_warnings, warnings};
   return {Verdict::accepted, {}};

@@ -24,6 +24,13 @@ struct Apart {
   std::string reason;
 };
 
+/// Samples of one stream of a recording that nothing was made of.
+struct Loss {
+  double share = 0.0;      ///< of the stream
+  std::string text;        ///< what, how many, when and why
+  bool of_wheels = false;  ///< not of the reference
+};
+
 /// What the values stand on.
 struct Footing {
   bool converged = true;
@@ -36,6 +43,7 @@ struct Footing {
   std::vector<DriveError> drive_errors = {};
   std::vector<ResidualAxis> axes = {};  ///< of the residual, with their runs tests
   std::size_t outliers = 0, pairs = 0;  ///< pairs that contradict all others, of all
+  std::vector<Loss> losses = {};        ///< of streams that lost any
   std::optional<Apart> recordings_apart = std::nullopt;
   bool of_poses = false;                      ///< the reference is poses of the base
   MotionSource motion = MotionSource::ticks;  ///< what told the motion of the wheels

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "calib/classical/length_factor.hpp"
 #include "calib/classical/settings.hpp"
@@ -18,6 +20,8 @@ using Objections = std::vector<Objection>;
 
 Objection refusal(const std::string& reason) { return {true, reason}; }
 Objection warning(const std::string& reason) { return {false, reason}; }
+/// @param weight times the limit of the rule
+Objection sign(const std::string& reason, double weight) { return {false, reason, weight}; }
 
 std::string percent(double share) { return math::significant(100.0 * share, 3) + " %"; }
 
@@ -59,11 +63,12 @@ Objections no_better_than_before(const Calibration&, const Footing& footing) {
                                     [&](const DriveFigure& figure) { return figure.name == error.name; });
     if (!is_no_better(error)) continue;
     found.push_back(
-        warning((words == kDriveFigures.end() ? "odometry over ten seconds" : std::string(words->words)) +
-                " is no better than before on data that was not fitted: off by " +
-                amount(error, error.before->value) + " with the nominal values, by " +
-                amount(error, error.after->value) +
-                " now; keep the old values unless something else speaks for the new ones"));
+        sign((words == kDriveFigures.end() ? "odometry over ten seconds" : std::string(words->words)) +
+                 " is no better than before on data that was not fitted: off by " +
+                 amount(error, error.before->value) + " with the nominal values, by " +
+                 amount(error, error.after->value) +
+                 " now; keep the old values unless something else speaks for the new ones",
+             error.after->value / (settings::kNoBetter * error.before->value)));
   }
   return found;
 }
@@ -73,10 +78,11 @@ Objections still_off(const Calibration&, const Footing& footing) {
   for (const DriveFigure& figure : kDriveFigures) {
     const DriveError* error = error_of(footing, figure.name);
     if (error == nullptr || !error->after || !(error->after->low > figure.largest)) continue;
-    found.push_back(warning(std::string(figure.words) + " is still off by " +
-                            amount(*error, error->after->value) +
-                            " on data that was not fitted: look for slip, loose wheels and what moves the "
-                            "lidar before this is relied on"));
+    found.push_back(sign(std::string(figure.words) + " is still off by " +
+                             amount(*error, error->after->value) +
+                             " on data that was not fitted: look for slip, loose wheels and what moves the "
+                             "lidar before this is relied on",
+                         error->after->low / figure.largest));
   }
   return found;
 }
@@ -93,9 +99,11 @@ const DriveError* excessive(const std::vector<DriveError>& errors) {
 Objections odometry_off(const Calibration&, const Footing& footing) {
   const DriveError* error = excessive(footing.drive_errors);
   if (error == nullptr) return {};
-  return {warning("odometry over ten seconds is off by " + times(error->after->value / *error->noise_floor) +
-                  " the noise floor: something moves the robot that the counts do not show; look for counts "
-                  "that get lost, slip, and what touches the robot")};
+  const double ratio = error->after->value / *error->noise_floor;
+  return {sign("odometry over ten seconds is off by " + times(ratio) +
+                   " the noise floor: something moves the robot that the counts do not show; look for counts "
+                   "that get lost, slip, and what touches the robot",
+               ratio / settings::kWarnResidual)};
 }
 
 // --- Lengths ---------------------------------------------------------------------------------------------
@@ -217,8 +225,9 @@ std::optional<Objection> objection_to_change(const Length& length) {
   if (is_implausible(length))
     return refusal(length.name + " is " + percent(ratio) +
                    " of its nominal value: check ticks per revolution, gear ratio and units");
+  // However far: nominal values may be somebody's guess.
   if (std::abs(ratio - 1.0) > settings::kWarnChange)
-    return warning(length.name + " differs from its nominal value by " + percent(ratio - 1.0));
+    return sign(length.name + " differs from its nominal value by " + percent(ratio - 1.0), 1.0);
   return std::nullopt;
 }
 
@@ -270,12 +279,16 @@ Objections unmatched_pairs(const Calibration&, const Footing& footing) {
 }
 
 Objections contradicting_pairs(const Calibration&, const Footing& footing) {
-  const auto outliers = static_cast<double>(footing.outliers);
-  if (!(outliers > settings::kTooManyContradict * static_cast<double>(footing.pairs))) return {};
-  return {refusal(std::to_string(footing.outliers) + " of " + std::to_string(footing.pairs) +
-                  " measured motions contradict what the others say of the wheels: one set of lengths does "
-                  "not describe this robot; check counts that get lost, slip, and time stamps, and record "
-                  "again")};
+  const double share =
+      static_cast<double>(footing.outliers) / static_cast<double>(std::max<std::size_t>(footing.pairs, 1));
+  if (!(share > settings::kManyContradict)) return {};
+  const std::string finding = std::to_string(footing.outliers) + " of " + std::to_string(footing.pairs) +
+                              " measured motions contradict what the others say of the wheels";
+  if (!(share > settings::kTooManyContradict))
+    return {{false, finding, share / settings::kManyContradict, true}};
+  return {refusal(finding +
+                  ": one set of lengths does not describe this robot; check counts that get lost, slip, and "
+                  "time stamps, and record again")};
 }
 
 Objections residual_beyond_noise(const Calibration& calibration, const Footing&) {
@@ -286,9 +299,10 @@ Objections residual_beyond_noise(const Calibration& calibration, const Footing&)
   for (std::size_t i = 0; i < kComponents.size(); ++i) {
     const double ratio = (*residual.after)[i] / (*residual.noise_floor)[i];
     if (ratio > settings::kWarnResidual)
-      found.push_back(warning("the residual " + std::string(kComponents[i]) + " is " + times(ratio) +
-                              " the noise floor: something was not found, and the stated deviations may be "
-                              "too small"));
+      found.push_back(sign("the residual " + std::string(kComponents[i]) + " is " + times(ratio) +
+                               " the noise floor: something was not found, and the stated deviations may be "
+                               "too small",
+                           ratio / settings::kWarnResidual));
   }
   return found;
 }
@@ -311,12 +325,14 @@ Objections estimators_apart(const Calibration& calibration, const Footing&) {
     for (const auto& [other, theirs] : closed->parameters) {
       if (name != other || name.starts_with("lidar_")) continue;
       const double apart = theirs.value - ours.value, sigma = std::hypot(ours.std, theirs.std);
-      if (std::abs(apart) > settings::kEstimatorsApart * sigma &&
-          std::abs(apart) > settings::kEstimatorsApartShare * std::abs(ours.value))
-        found.push_back(warning("two estimators disagree on " + name + ": the closed form is " +
-                                percent(apart / ours.value) + " away, " +
-                                math::significant(std::abs(apart) / sigma, 3) +
-                                " of their common deviations; part of the recording says something else"));
+      const double by_sigma = std::abs(apart) / (settings::kEstimatorsApart * sigma),
+                   by_share = std::abs(apart) / (settings::kEstimatorsApartShare * std::abs(ours.value));
+      if (by_sigma > 1.0 && by_share > 1.0)
+        found.push_back(sign("two estimators disagree on " + name + ": the closed form is " +
+                                 percent(apart / ours.value) + " away, " +
+                                 math::significant(std::abs(apart) / sigma, 3) +
+                                 " of their common deviations; part of the recording says something else",
+                             std::min(by_sigma, by_share)));
     }
   return found;
 }
@@ -338,8 +354,10 @@ Objections something_unexplained(const Calibration& calibration, const Footing&)
   std::string covariates;
   for (const std::string& one : calibration.unexplained->depends_on)
     covariates += (covariates.empty() ? "" : ", ") + one;
-  return {warning("part of the residual depends on " + covariates +
-                  " and has no name: lengths hold for motion like the recorded one")};
+  const double share = calibration.unexplained->share;
+  return {sign("part of the residual depends on " + covariates +
+                   " and has no name: lengths hold for motion like the recorded one",
+               share > settings::kMostUnexplained ? share / settings::kMostUnexplained : 0.0)};
 }
 
 Objections remarks(const Calibration&, const Footing& footing) {
@@ -353,7 +371,57 @@ Objections unsettled_fit(const Calibration&, const Footing& footing) {
   return {warning("the fit had not settled when its iterations ran out")};
 }
 
-constexpr std::array kRules = {VerdictRule{"no_better_than_before", no_better_than_before},
+/// Of a drive that is as it should be, next to nothing is left out.
+Objections much_left_out(const Calibration&, const Footing& footing) {
+  Objections found;
+  for (const Loss& loss : footing.losses) {
+    if (const auto refusing = too_much_left_out(loss))
+      found.push_back(*refusing);
+    else if (loss.share > settings::kWarnLeftOut)
+      found.push_back(warning(loss.text + "; the lengths stand on the rest" +
+                              (loss.of_wheels ? ", but odometry is off wherever this happens" : "")));
+  }
+  return found;
+}
+
+/// A sign without what to do about it.
+std::string finding_of(const Objection& objection) {
+  return objection.reason.substr(0, objection.reason.find_first_of(":;"));
+}
+
+/// The rules whose objections may be signs that the model is wrong.
+constexpr std::array kSigns = {no_better_than_before, lengths,   contradicting_pairs, residual_beyond_noise,
+                               odometry_off,          still_off, estimators_apart,    something_unexplained};
+
+/// Each sign may have a harmless cause; many that are far beyond their limits have one in common.
+Objections several_signs(const Calibration& calibration, const Footing& footing) {
+  constexpr std::size_t kTold = 3;
+  Objections signs;  // the weightiest of each rule
+  double sum = 0.0;
+  for (const auto& rule : kSigns) {
+    const Objections found = rule(calibration, footing);
+    const auto most = std::max_element(found.begin(), found.end(),
+                                       [](const auto& a, const auto& b) { return a.weight < b.weight; });
+    if (most == found.end() || !(most->weight > 0.0)) continue;
+    signs.push_back(*most);
+    sum += std::min(most->weight, settings::kHeaviestSign);
+  }
+  if (!(sum > settings::kMostSigns)) return {};
+  std::stable_sort(signs.begin(), signs.end(),
+                   [](const auto& a, const auto& b) { return a.weight > b.weight; });
+  std::string weightiest;
+  for (std::size_t k = 0; k < std::min(signs.size(), kTold); ++k)
+    weightiest += (k > 0 ? "; " : "") + finding_of(signs[k]);
+  return {
+      refusal("several signs together say that two wheels on one axle and one clock do not describe this "
+              "recording: " +
+              weightiest +
+              "; check that the counts are those of the two driven wheels, that all stamps are of one clock, "
+              "and what slips or moves the lidar, and record again")};
+}
+
+constexpr std::array kRules = {VerdictRule{"much_left_out", much_left_out},
+                               VerdictRule{"no_better_than_before", no_better_than_before},
                                VerdictRule{"recordings_disagree", recordings_disagree},
                                VerdictRule{"lengths", lengths},
                                VerdictRule{"lidar_yaw", lidar_yaw},
@@ -366,11 +434,18 @@ constexpr std::array kRules = {VerdictRule{"no_better_than_before", no_better_th
                                VerdictRule{"residual_in_rows", residual_in_rows},
                                VerdictRule{"something_unexplained", something_unexplained},
                                VerdictRule{"remarks", remarks},
-                               VerdictRule{"unsettled_fit", unsettled_fit}};
+                               VerdictRule{"unsettled_fit", unsettled_fit},
+                               VerdictRule{"several_signs", several_signs}};
 
 }  // namespace
 
 std::span<const VerdictRule> verdict_rules() { return kRules; }
+
+std::optional<Objection> too_much_left_out(const Loss& loss) {
+  if (!loss.of_wheels || !(loss.share > settings::kMostLeftOut)) return std::nullopt;
+  return refusal(loss.text +
+                 "; what is left does not tell how the robot moved: mend what sends this, and record again");
+}
 
 bool odometry_is_off(const std::vector<DriveError>& errors) { return excessive(errors) != nullptr; }
 

@@ -2,6 +2,7 @@
 // report prints too, and says what it objects to.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,7 +13,10 @@ namespace odomcalib::calib::report {
 
 struct Objection {
   bool refuses = false;
-  std::string reason;  ///< a sentence: what was found, and what to do about it
+  std::string reason;  ///< a sentence: what was found, then, after a colon or semicolon, what to do about it
+  /// How many times the rule's limit was exceeded, of a sign that the model is wrong; 0: this is none.
+  double weight = 0.0;
+  bool is_said = false;  ///< by a remark already: it only weighs
 };
 
 struct VerdictRule {
@@ -22,5 +26,9 @@ struct VerdictRule {
 
 /// In the order in which reasons are listed.
 std::span<const VerdictRule> verdict_rules();
+
+/// Why what was left out of a recording leaves too little to stand on; nullopt where it does not. Of scans or
+/// poses fewer do as well, as long as pairs can be made of them.
+std::optional<Objection> too_much_left_out(const Loss& loss);
 
 }  // namespace odomcalib::calib::report

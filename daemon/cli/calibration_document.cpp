@@ -11,6 +11,7 @@
 
 #include "calib/odometry/predict.hpp"
 #include "daemon/cli/display.hpp"
+#include "daemon/cli/left_out_lines.hpp"
 #include "daemon/cli/report_sections.hpp"
 #include "proto/calibration/scale.hpp"
 
@@ -172,10 +173,13 @@ Section data_of(const Calibration& calibration) {
     }
     section.lines.push_back(line);
     for (const auto& choice : data.choices) section.lines.push_back("  " + choice);
-    for (const auto& [why, count] : data.discarded)
-      section.lines.push_back(fmt::format("  not used: {} {}", count, why));
+    // Files of before say less of it.
+    if (calibration.discarded.empty())
+      for (const auto& [why, count] : data.discarded)
+        section.lines.push_back(fmt::format("  not used: {} {}", count, why));
     section.lines.push_back("  SHA-256 " + data.sha256);
   }
+  for (const std::string& line : evidence_lines(calibration)) section.lines.push_back(line);
   return section;
 }
 

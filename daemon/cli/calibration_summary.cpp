@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/cli/calibration_document.hpp"
+#include "daemon/cli/left_out_lines.hpp"
 #include "daemon/cli/report_sections.hpp"
 #include "daemon/cli/settings.hpp"
 #include "proto/calibration/report_data.hpp"
@@ -27,9 +28,10 @@ void leave_first_reasons(std::vector<std::string>& lines) {
 }  // namespace
 
 std::string summary(const Calibration& calibration, bool legend, std::size_t width) {
-  constexpr std::size_t kVerdict = 0, kValues = 1, kEffects = 3;
+  constexpr std::size_t kVerdict = 0, kValues = 2, kEffects = 4;
   Document document{headline(calibration.verdict),
                     {verdict_section(calibration),
+                     {"", left_out_lines(calibration), {}},
                      parameters_section(calibration),
                      drive_errors_section(report_data_of(calibration), false),
                      effects_section(calibration),

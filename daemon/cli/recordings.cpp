@@ -68,6 +68,8 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
     }();
     if (!recording) return recording.error();
     for (const auto& choice : recording.value().choices) tell(fmt::format("{}: {}", path, choice));
+    for (const Repair& one : recording.value().repairs)
+      tell(fmt::format("{}: {}: {}: {}", path, one.what, one.chosen, one.reason));
     if (const Recording* one = same_drive(recordings, recording.value()))
       return Error{ErrorCode::usage, "holds the same drive as \"" + one->name + "\"", path,
                    "name every recording once"};

@@ -33,6 +33,10 @@ inline constexpr double kDependsOn = 0.5;
 /// Lines of a result that is no longer than a screen, and reasons of many that stand in it. Chosen.
 inline constexpr std::ptrdiff_t kSummaryLines = 40;
 inline constexpr std::size_t kSummaryReasons = 3;
+/// Lines on what was left out, and the share from which it is more than a trace. Chosen: one in a hundred
+/// changes no result that is worth having.
+inline constexpr std::size_t kLeftOutLines = 3;
+inline constexpr double kTrace = 0.01;
 
 // --- Columns and progress --------------------------------------------------------------------------------
 

@@ -6,10 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/left_out_lines.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/verbs.hpp"
+#include "proto/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
+#include "proto/recording/left_out.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -19,23 +22,18 @@ struct ConvertOptions {
   RecordingOptions reading;
 };
 
-nlohmann::ordered_json counts_of(const Recording& recording) {
-  nlohmann::ordered_json counts = {{"motion", name_of(recording.motion)},
-                                   {"samples", recording.ticks.size()},
-                                   {"scans", recording.scans.size()},
-                                   {"poses", recording.poses.size()},
-                                   {"gyro", recording.gyro.size()}};
-  for (const Discarded& one : recording.discarded)
-    counts["discarded"][one.what + ": " + one.reason] = one.count;
-  return counts;
+nlohmann::ordered_json summary_of(const Recording& recording) {
+  return {{"motion", name_of(recording.motion)},  {"samples", recording.ticks.size()},
+          {"scans", recording.scans.size()},      {"poses", recording.poses.size()},
+          {"gyro", recording.gyro.size()},        {"discarded", to_json(left_out_of(recording))},
+          {"repairs", to_json(recording.repairs)}};
 }
 
 void print_summary(const Recording& recording, const std::string& out) {
   print_line(fmt::format("{}: {} {}, {} scans, {} poses, {} gyro readings", out, recording.ticks.size(),
                          name_of(recording.motion), recording.scans.size(), recording.poses.size(),
                          recording.gyro.size()));
-  for (const Discarded& one : recording.discarded)
-    print_line(fmt::format("  not used: {} {}: {}", one.count, one.what, one.reason));
+  for (const std::string& line : evidence_lines(recording)) print_line("  " + line);
 }
 
 int convert_recording(const ConvertOptions& options, const Session& session) {
@@ -58,7 +56,7 @@ int convert_recording(const ConvertOptions& options, const Session& session) {
   if (session.json == JsonMode::off)
     print_summary(recording, options.out);
   else
-    print_document("conversion", counts_of(recording), session.json);
+    print_document("conversion", summary_of(recording), session.json);
   return kDone;
 }
 

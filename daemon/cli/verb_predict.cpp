@@ -11,13 +11,16 @@
 
 #include "calib/odometry/predict.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/left_out_lines.hpp"
 #include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
 #include "daemon/cli/usable_calibration.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration/calibration.hpp"
+#include "proto/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
+#include "proto/recording/left_out.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -31,6 +34,8 @@ struct PredictOptions {
 struct Predicted {
   std::vector<PoseSample> poses;
   double track_width = 0.0;  ///< m
+  std::vector<Discarded> discarded = {};
+  std::vector<Repair> repairs = {};
 };
 
 Result<Calibration> chosen_calibration(const PredictOptions& options, const RobotDescription& robot) {
@@ -80,9 +85,11 @@ Result<Predicted> predicted(const PredictOptions& options) {
   const auto calibration = chosen_calibration(options, recording.robot);
   if (!calibration) return calibration.error();
   warn_of(calibration.value(), options.calibration);
+  warn_of_lost_motion(recording);
   auto poses = finite_poses(calib::odometry::predict(recording, calibration.value()), options.recording);
   if (!poses) return poses.error();
-  return Predicted{std::move(poses).value(), calibration.value().parameter("track_width").value_or(0.0)};
+  return Predicted{std::move(poses).value(), calibration.value().parameter("track_width").value_or(0.0),
+                   left_out_of(recording), recording.repairs};
 }
 
 /// Of the last pose; nullopt where nobody stated the noise.
@@ -92,12 +99,15 @@ std::optional<std::array<double, 3>> deviation_of(const Predicted& found, const 
                                            found.track_width);
 }
 
-void print_end(const std::vector<PoseSample>& poses, const std::optional<std::array<double, 3>>& deviation,
+void print_end(const Predicted& found, const std::optional<std::array<double, 3>>& deviation,
                const Session& session) {
+  const std::vector<PoseSample>& poses = found.poses;
   const PoseSample end = poses.empty() ? PoseSample{} : poses.back();
   if (session.json != JsonMode::off) {
     nlohmann::ordered_json body{{"poses", poses.size()}, {"end", {end.x, end.y, end.yaw}}};
     if (deviation) body["std"] = *deviation;
+    body["discarded"] = to_json(found.discarded);
+    body["repairs"] = to_json(found.repairs);
     return print_document("prediction", body, session.json);
   }
   print_line(fmt::format("{} poses, end x {:.4f} m, y {:.4f} m, yaw {:.5f} rad", poses.size(), end.x, end.y,
@@ -117,10 +127,9 @@ int predict_trajectory(const PredictOptions& options, const Session& session) {
     return report_error(files.error(), session.json);
   const auto found = predicted(options);
   if (!found) return report_error(found.error(), session.json);
-  const std::vector<PoseSample>& poses = found.value().poses;
-  if (auto written = write_output(options.trajectory, to_tum(poses)); !written)
+  if (auto written = write_output(options.trajectory, to_tum(found.value().poses)); !written)
     return report_error(written.error(), session.json);
-  print_end(poses, deviation_of(found.value(), options.noise), session);
+  print_end(found.value(), deviation_of(found.value(), options.noise), session);
   return kDone;
 }
 

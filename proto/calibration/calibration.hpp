@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "proto/discarded.hpp"
 #include "proto/measurements.hpp"
 #include "proto/result.hpp"
 
@@ -95,6 +96,10 @@ struct Calibration {
   Verdict verdict = Verdict::refused;
   std::vector<std::string> reasons = {"solve was not called"};
   std::vector<DataUse> data;
+  /// Whatever was left out before and in the fit, and what was put right or chosen. Of several recordings the
+  /// reasons begin with the name of the file.
+  std::vector<Discarded> discarded;
+  std::vector<Repair> repairs;
   /// Additive members that other modules own (JSON text by member name); written verbatim, kept when read.
   std::map<std::string, std::string> extensions;
 

@@ -14,9 +14,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormat = "odomcalib-calibration/1";
-constexpr std::array<std::string_view, 12> kCalibrationMembers{
+constexpr std::array<std::string_view, 14> kCalibrationMembers{
     "format",  "verdict", "reasons",     "robot",    "parameters", "covariance", "linear_correction",
-    "methods", "effects", "unexplained", "residual", "data"};
+    "methods", "effects", "unexplained", "residual", "data",       "discarded",  "repairs"};
 constexpr int kDeepestCalibration = 64;
 
 /// One JSON value and its path. Wrong types are noted once, in `problem`, and read as empty values.
@@ -202,6 +202,23 @@ std::vector<DataUse> read_data_uses(const Node& node) {
   return out;
 }
 
+std::vector<Discarded> read_discarded(const Node& node) {
+  std::vector<Discarded> out;
+  node.each([&](const Node& value) {
+    out.push_back({value["what"].text(), value["reason"].text(), value["count"].count(), value["of"].count(),
+                   value["begin"].optional_number(), value["end"].optional_number()});
+  });
+  return out;
+}
+
+std::vector<Repair> read_repairs(const Node& node) {
+  std::vector<Repair> out;
+  node.each([&](const Node& value) {
+    out.push_back({value["what"].text(), value["chosen"].text(), value["reason"].text()});
+  });
+  return out;
+}
+
 std::map<std::string, std::string> extensions(const Json& json) {
   std::map<std::string, std::string> out;
   for (const auto& [name, value] : json.items())
@@ -236,6 +253,8 @@ Calibration calibration(const Json& json, std::string& problem) {
   out.verdict = verdict(root["verdict"]);
   out.reasons = texts(root["reasons"]);
   out.data = read_data_uses(root["data"]);
+  out.discarded = read_discarded(root["discarded"]);
+  out.repairs = read_repairs(root["repairs"]);
   out.extensions = extensions(json);
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/scale.hpp"
+#include "proto/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {
@@ -174,7 +175,9 @@ std::string to_json(const Calibration& calibration) {
       {"effects", effects(calibration.effects)},
       {"unexplained", unexplained(calibration.unexplained)},
       {"residual", residual(calibration.residual)},
-      {"data", data(calibration.data)}};
+      {"data", data(calibration.data)},
+      {"discarded", to_json(calibration.discarded)},
+      {"repairs", to_json(calibration.repairs)}};
   std::string text = out.dump(2, ' ', false, Json::error_handler_t::replace);
   text.insert(text.size() - 2, extension_lines(out, calibration.extensions));  // before the closing "\n}"
   return text + "\n";

@@ -20,6 +20,21 @@ inline constexpr const char* kRepeatedStamp = "repeated time stamp";
 /// Reason of scans and poses that a driver sent again with a new stamp.
 inline constexpr const char* kRepeatedValues = "same values as the one before, although the wheels turned";
 
+/// Reason of counts that what moved there cannot be told from: a counter that wraps at another number, a
+/// reset, a jump. Said of ticks, and left out is the way between two of them.
+inline constexpr const char* kUncontinued =
+    "count does not continue the one before: the way between is left out";
+
+/// End of the reason of wheel motion that is there in a finer form, too.
+inline constexpr const char* kFinerDecides = " are finer and decide";
+
+/// End of the reason of what is not the robot's, among what is; and reason of scans that were not chosen.
+inline constexpr const char* kOfSecondProgram = ", of a second program";
+inline constexpr const char* kOfAnotherSensor = "of another sensor";
+
+/// Reason of single counts that were taken for what lies between their neighbours.
+inline constexpr const char* kMisread = "count read wrong once";
+
 /// What a recording tells the motion of the wheels with, the finest first. One of them decides.
 enum class MotionSource { ticks, wheels, wheel_speeds, odometry };
 

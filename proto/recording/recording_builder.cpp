@@ -1,6 +1,7 @@
 #include "proto/recording/recording_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -48,14 +49,15 @@ void sort_by_time(std::vector<Sample>& samples) {
     std::stable_sort(samples.begin(), samples.end(), earlier);
 }
 
-/// Keeps the first of several samples with one stamp; returns how many went.
-template <typename Sample, typename Same>
-std::size_t drop_repeated(std::vector<Sample>& samples, Same same) {
-  const auto end = std::unique(samples.begin(), samples.end(), same);
-  const auto dropped = static_cast<std::size_t>(samples.end() - end);
-  samples.erase(end, samples.end());
-  return dropped;
+template <typename Turned>
+bool says_the_same(const Turned& a, const Turned& b) {
+  return a.left == b.left && a.right == b.right;
 }
+bool says_the_same(const PoseSample& a, const PoseSample& b) {
+  return a.x == b.x && a.y == b.y && a.yaw == b.yaw;
+}
+bool says_the_same(const GyroSample& a, const GyroSample& b) { return a.yaw_rate == b.yaw_rate; }
+bool says_the_same(const Scan& a, const Scan& b) { return a.ranges == b.ranges; }
 
 std::string number_text(double value) {
   std::string text = std::to_string(value);
@@ -82,8 +84,10 @@ Values values_of(const TickSample& sample) {
 Values values_of(const WheelSample& sample) { return {sample.left, sample.right, 0.0}; }
 Values values_of(const PoseSample& sample) { return {sample.x, sample.y, sample.yaw}; }
 
-/// What moved there is not known: a counter that wraps at another number, a reset, a jump.
-constexpr const char* kUncontinued = "count does not continue the one before: the way between is left out";
+void include(Discarded& one, double t) {
+  one.begin = std::min(one.begin.value_or(t), t);
+  one.end = std::max(one.end.value_or(t), t);
+}
 
 }  // namespace
 
@@ -111,8 +115,12 @@ std::optional<Error> check_robot(const RobotDescription& robot, const std::strin
   return std::nullopt;
 }
 
-void RecordingBuilder::discard(const std::string& what, const std::string& reason, std::size_t count) {
-  if (count > 0) discarded_[{what, reason}] += count;
+void RecordingBuilder::discard(const std::string& what, const std::string& reason, std::size_t count,
+                               std::optional<double> t) {
+  if (count == 0) return;
+  Discarded& one = discarded_.try_emplace({what, reason}, Discarded{what, reason}).first->second;
+  one.count += count;
+  if (t) include(one, *t);
 }
 
 /// One wild stamp far ahead must not make everything behind it late: it goes, when the next sample continues
@@ -137,7 +145,7 @@ bool RecordingBuilder::in_time(const char* what, const Sample& sample, StreamClo
   if (late && clock.before_leap && sample.t >= *clock.before_leap - kReorderWindow)
     forget_leap(what, clock, stream);
   else if (late) {
-    discard(what, "out of order by more than 1 s");
+    discard(what, "out of order by more than 1 s", 1, sample.t);
     return false;
   }
   clock.before_leap.reset();
@@ -191,6 +199,7 @@ void RecordingBuilder::add_scan(Scan scan) {
   if (const char* problem = scan_problem(scan)) return discard("scan", problem);
   if (!in_time("scan", scan, scan_clocks_[scan.sensor], recording_.scans)) return;
   const auto problems = clean_scan(scan);
+  readings_ += scan.ranges.size();
   discard("beam", "not a number", problems.not_a_number);
   discard("beam", kOutsideLimits, problems.out_of_limits);
   recording_.scans.push_back(std::move(scan));
@@ -227,17 +236,18 @@ bool RecordingBuilder::has_data() const {
 }
 
 Error RecordingBuilder::nothing_usable(const std::string& where) const {
-  for (const auto& [key, count] : discarded_)
-    if (const std::string unit = unit_of_reason(key.second); !unit.empty())
-      return wrong_dates(key.first, count, unit, where);
-  const auto most = std::max_element(discarded_.begin(), discarded_.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  for (const auto& [key, one] : discarded_)
+    if (const std::string unit = unit_of_reason(one.reason); !unit.empty())
+      return wrong_dates(one.what, one.count, unit, where);
+  const auto most = std::max_element(discarded_.begin(), discarded_.end(), [](const auto& a, const auto& b) {
+    return a.second.count < b.second.count;
+  });
   const std::string what = "no usable wheel motion, scans, poses or increments";
   if (most == discarded_.end())
     return {ErrorCode::empty, what, where, "check that the recording was running while the robot moved"};
-  const auto& [name, reason] = most->first;
+  const Discarded& one = most->second;
   return {ErrorCode::empty,
-          what + ": " + std::to_string(most->second) + " x " + name + " left out, " + reason, where,
+          what + ": " + std::to_string(one.count) + " x " + one.what + " left out, " + one.reason, where,
           "compare a line of it with docs/user/formats.md"};
 }
 
@@ -256,6 +266,37 @@ void RecordingBuilder::merge_robot(const RobotDescription* fallback) {
   if (robot.controller.empty()) robot.controller = fallback->controller;
 }
 
+void RecordingBuilder::count_streams() {
+  std::map<std::string, std::size_t> all = {{"ticks", recording_.ticks.size()},
+                                            {"wheels", recording_.wheels.size()},
+                                            {"wheel_speeds", recording_.wheel_speeds.size()},
+                                            {"odometry", recording_.odometry.size()},
+                                            {"scan", recording_.scans.size()},
+                                            {"pose", recording_.poses.size()},
+                                            {"gyro", recording_.gyro.size()},
+                                            {"tuple", recording_.increments.size()}};
+  for (const auto& [key, one] : discarded_)
+    if (const auto kept = all.find(one.what); kept != all.end()) kept->second += one.count;
+  all["beam"] = readings_;  // those left out are among them
+  streams_ = std::move(all);
+}
+
+/// Keeps the first of several samples with one stamp.
+template <typename Sample, typename Same>
+void RecordingBuilder::drop_repeated(const char* what, std::vector<Sample>& samples, Same same) {
+  if (samples.empty()) return;
+  auto kept = samples.begin();
+  for (auto next = std::next(kept); next != samples.end(); ++next) {
+    if (same(*kept, *next)) {
+      discard(what, kRepeatedStamp, 1, next->t);
+      if (says_the_same(*kept, *next)) ++discarded_[{what, kRepeatedStamp}].copies;
+    } else if (++kept != next) {
+      *kept = std::move(*next);
+    }
+  }
+  samples.erase(std::next(kept), samples.end());
+}
+
 void RecordingBuilder::sort_streams() {
   sort_by_time(recording_.ticks);
   sort_by_time(recording_.wheels);
@@ -266,13 +307,13 @@ void RecordingBuilder::sort_streams() {
   sort_by_time(recording_.gyro);
   const auto same = [](const auto& a, const auto& b) { return a.t == b.t; };
   const auto same_scan = [](const Scan& a, const Scan& b) { return a.t == b.t && a.sensor == b.sensor; };
-  discard("ticks", kRepeatedStamp, drop_repeated(recording_.ticks, same));
-  discard("wheels", kRepeatedStamp, drop_repeated(recording_.wheels, same));
-  discard("wheel_speeds", kRepeatedStamp, drop_repeated(recording_.wheel_speeds, same));
-  discard("odometry", kRepeatedStamp, drop_repeated(recording_.odometry, same));
-  discard("scan", kRepeatedStamp, drop_repeated(recording_.scans, same_scan));
-  discard("pose", kRepeatedStamp, drop_repeated(recording_.poses, same));
-  discard("gyro", kRepeatedStamp, drop_repeated(recording_.gyro, same));
+  drop_repeated("ticks", recording_.ticks, same);
+  drop_repeated("wheels", recording_.wheels, same);
+  drop_repeated("wheel_speeds", recording_.wheel_speeds, same);
+  drop_repeated("odometry", recording_.odometry, same);
+  drop_repeated("scan", recording_.scans, same_scan);
+  drop_repeated("pose", recording_.poses, same);
+  drop_repeated("gyro", recording_.gyro, same);
 }
 
 /// The finest that is there decides; what is coarser is left out, and counted.
@@ -284,8 +325,8 @@ void RecordingBuilder::decide_motion() {
       recording_.motion = source;
       decided = true;
     } else {
-      discard(name_of(source), std::string(name_of(recording_.motion)) + " are finer and decide",
-              samples.size());
+      const std::string reason = std::string(name_of(recording_.motion)) + kFinerDecides;
+      for (const auto& sample : samples) discard(name_of(source), reason, 1, sample.t);
       samples.clear();
     }
   };
@@ -309,6 +350,31 @@ void RecordingBuilder::make_ticks() {
   recording_.ticks = std::move(made.ticks);
   recording_.robot.ticks_per_rev = made.ticks_per_rev;
   choose("wheel motion from " + std::string(name_of(recording_.motion)));
+}
+
+/// Says between which stamps the way is not known, and which counts were not believed.
+void RecordingBuilder::count_on() {
+  std::vector<TickSample>& ticks = recording_.ticks;
+  const std::vector<TickSample> given = ticks;
+  const ContinuedCounts counts = continue_counts(ticks, recording_.robot);
+  discard("ticks", kMisread, counts.misread);
+  discard("ticks", kUncontinued, counts.jumps);
+  for (std::size_t i = 1; i < ticks.size() && counts.jumps > 0; ++i) {
+    if (ticks[i].segment == ticks[i - 1].segment || given[i].segment != given[i - 1].segment) continue;
+    for (const double t : {ticks[i - 1].t, ticks[i].t}) include(discarded_[{"ticks", kUncontinued}], t);
+  }
+  // What was added to a count that is taken for another was not added to its neighbours.
+  const auto added = [&](std::size_t i) {
+    return std::array{ticks[i].left - given[i].left, ticks[i].right - given[i].right};
+  };
+  for (std::size_t i = 1; i + 1 < ticks.size() && counts.misread > 0; ++i)
+    if (added(i) != added(i - 1) && added(i - 1) == added(i + 1))
+      include(discarded_[{"ticks", kMisread}], ticks[i].t);
+  if (counts.jumps > 0) discarded_[{"ticks", kUncontinued}].of = ticks.size() - 1;
+  if (counts.misread > 0) discarded_[{"ticks", kMisread}].of = ticks.size();
+  if (counts.modulus)
+    recording_.repairs.push_back({"ticks", "continued where they start again",
+                                  "both counters wrap at " + std::to_string(*counts.modulus)});
 }
 
 const char* name_of(MotionSource source) {
@@ -338,7 +404,7 @@ void RecordingBuilder::drop_second_writer(const char* what, std::vector<Sample>&
                                 "without " + std::to_string(others.size()) + " of " +
                                     std::to_string(stream.size()) + " samples that are always " + text,
                                 "a second program writes them between those that move"});
-  discard(what, "always " + text + ", of a second program", others.size());
+  for (const std::size_t k : others) discard(what, "always " + text + kOfSecondProgram, 1, stream[k].t);
   for (auto k = others.rbegin(); k != others.rend(); ++k)
     stream.erase(stream.begin() + static_cast<std::ptrdiff_t>(*k));
 }
@@ -351,19 +417,11 @@ void RecordingBuilder::drop_second_writers() {
   drop_second_writer("pose", recording_.poses);
 }
 
-void RecordingBuilder::count_on() {
-  const ContinuedCounts counts = continue_counts(recording_.ticks, recording_.robot);
-  discard("ticks", "count read wrong once", counts.misread);
-  discard("ticks", kUncontinued, counts.jumps);
-  if (counts.modulus)
-    recording_.repairs.push_back({"ticks", "continued where they start again",
-                                  "both counters wrap at " + std::to_string(*counts.modulus)});
-}
-
 Result<Recording> RecordingBuilder::finish(const std::string& where, const RobotDescription* fallback,
                                            RobotNeed need) && {
   if (!has_data()) return nothing_usable(where);
   merge_robot(fallback);
+  count_streams();
   decide_motion();
   if (need == RobotNeed::required)
     if (auto problem = check_robot(recording_.robot, where)) return *problem;
@@ -371,7 +429,10 @@ Result<Recording> RecordingBuilder::finish(const std::string& where, const Robot
   drop_second_writers();
   if (recording_.motion != MotionSource::ticks) make_ticks();
   count_on();
-  for (const auto& [key, count] : discarded_) recording_.discarded.push_back({key.first, key.second, count});
+  for (auto& [key, one] : discarded_) {
+    if (one.of == 0) one.of = streams_[one.what];
+    recording_.discarded.push_back(std::move(one));
+  }
   return std::move(recording_);
 }
 

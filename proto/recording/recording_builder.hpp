@@ -12,7 +12,8 @@
 
 namespace odomcalib {
 
-/// One reader fills one builder. Every rejected item is counted under (what, reason).
+/// One reader fills one builder. Every rejected item is counted under (what, reason), with the times of the
+/// first and the last.
 class RecordingBuilder {
  public:
   /// The first description stays in force; a later, different one is counted as discarded.
@@ -25,7 +26,9 @@ class RecordingBuilder {
   void add_pose(PoseSample sample);
   void add_gyro(GyroSample sample);
   void add_increment(IncrementSample sample);
-  void discard(const std::string& what, const std::string& reason, std::size_t count = 1);
+  /// @param t s, of the sample, where it has a time that can be believed
+  void discard(const std::string& what, const std::string& reason, std::size_t count = 1,
+               std::optional<double> t = std::nullopt);
   /// Something was taken where the file held several.
   void choose(const std::string& choice) { recording_.choices.push_back(choice); }
 
@@ -55,6 +58,10 @@ class RecordingBuilder {
   void drop_second_writers();
   void count_on();
   void merge_robot(const RobotDescription* fallback);
+  /// How many there are of each kind, of which some were left out: before any stream is thinned.
+  void count_streams();
+  template <typename Sample, typename Same>
+  void drop_repeated(const char* what, std::vector<Sample>& samples, Same same);
   void sort_streams();
   void decide_motion();
   void make_ticks();
@@ -62,8 +69,10 @@ class RecordingBuilder {
   Recording recording_;
   bool have_robot_ = false;
   StreamClock ticks_clock_, wheels_clock_, wheel_speeds_clock_, odometry_clock_, pose_clock_, gyro_clock_;
-  std::map<std::string, StreamClock> scan_clocks_;  // by sensor
-  std::map<std::pair<std::string, std::string>, std::size_t> discarded_;
+  std::map<std::string, StreamClock> scan_clocks_;                      // by sensor
+  std::map<std::pair<std::string, std::string>, Discarded> discarded_;  // by what and reason
+  std::map<std::string, std::size_t> streams_;  // samples of each kind, with those left out
+  std::size_t readings_ = 0;                    // of all scans
 };
 
 /// Missing or impossible unit-bearing values of a robot description, or nullopt when it is complete.

@@ -37,9 +37,10 @@ struct Outcome {
   Recording recording;
 };
 
-Outcome solved(const std::string& name, const RobotDescription* robot = nullptr) {
+Outcome solved(const std::string& name, const RobotDescription* robot = nullptr,
+               const TopicChoices& topics = {}) {
   Outcome outcome;
-  auto recording = read_recording(cases() / name, robot);
+  auto recording = read_recording(cases() / name, robot, topics);
   if (!recording) {
     outcome.text = recording.error().text();
     return outcome;
@@ -103,6 +104,32 @@ TEST_F(Cases, a_counter_that_wraps_anywhere_loses_no_interval_silently) {
       if (discarded.what == "ticks") told += discarded.count;
     EXPECT_GT(told, 0U);
   }
+}
+
+TEST_F(Cases, steered_wheels_are_refused_and_the_rear_pair_of_the_same_car_is_not) {
+  const auto robot = read_robot_file(cases() / "steered-wheels/robot.toml");
+  ASSERT_TRUE(robot.ok());
+  const auto of_pair = [&](const std::string& pair) {
+    return solved("steered-wheels/car.mcap.gz", &robot.value(),
+                  {{"wheels", "/joint_states", {pair + "_left_wheel_joint", pair + "_right_wheel_joint"}}});
+  };
+  const Outcome front = of_pair("front");
+  EXPECT_TRUE(is_refused(front));
+  EXPECT_THAT(front.text, ContainsRegex("several signs together.*odometry over ten seconds.*two estimators"));
+  const Outcome rear = of_pair("rear");
+  EXPECT_EQ(rear.calibration.verdict, Verdict::accepted) << rear.text;
+  EXPECT_NEAR(rear.calibration.parameter("track_width").value_or(0.0), 0.26, 0.002);
+}
+
+TEST_F(Cases, a_clock_that_is_set_in_the_drive_is_refused_and_its_twin_is_not) {
+  EXPECT_TRUE(is_refused(solved("clock-step-of-one-device/scans_0.5.jsonl.gz")));
+  EXPECT_FALSE(is_refused(solved("clock-step-of-one-device/no_step.jsonl.gz")));
+}
+
+TEST_F(Cases, wheels_whose_stamps_lost_their_last_digits_are_refused_for_that) {
+  const Outcome outcome = solved("wheel-stamps-whole-seconds/wheels.jsonl.gz");
+  EXPECT_TRUE(is_refused(outcome));
+  EXPECT_THAT(outcome.text, ContainsRegex("1839 of 1916 (wheel angles|wheels)"));
 }
 
 TEST_F(Cases, a_fixed_range_for_no_return_is_left_out_and_named) {

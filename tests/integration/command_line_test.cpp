@@ -317,6 +317,36 @@ TEST_F(CommandLine, S0_04_noise_of_the_wheels_tells_the_deviation_of_the_end) {
     EXPECT_EQ(ctl(call + wrong).status, 2) << wrong;
 }
 
+// What wheels did over an interval that was left out nobody knows: no trajectory goes over it without a word.
+TEST_F(CommandLine, predict_and_convert_say_what_they_go_on_without) {
+  std::string text = recording(0.0);
+  text += R"({"type":"ticks","t":10.1,"left":90000,"right":90000})"
+          "\n"
+          R"({"type":"ticks","t":10.2,"left":90174,"right":90174})"
+          "\n"
+          R"({"type":"ticks","t":10.2,"left":90200,"right":90200})"
+          "\n";
+  write("jump.jsonl", text);
+  const std::string predict = "predict jump.jsonl --calibration nominal --trajectory out ";
+  const auto told = ctl(predict);
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_THAT(told.err, HasSubstr("1 of 102 intervals between counts (0.98 %), from 10 to 10 s"));
+  EXPECT_THAT(told.err, HasSubstr("1 of 104 counts"));
+  EXPECT_THAT(ctl("predict drive.jsonl --calibration nominal --trajectory out").err,
+              Not(HasSubstr("intervals")));
+  const auto converted = ctl("convert jump.jsonl --out copy.jsonl");
+  EXPECT_THAT(converted.out, HasSubstr("not used: 1 of 102 intervals between counts"));
+  for (const std::string& call :
+       {predict + "--json", std::string("convert jump.jsonl --out copy.jsonl --json")}) {
+    const auto document = json::parse(ctl(call).out);
+    ASSERT_EQ(document["discarded"].size(), 2U) << document;
+    EXPECT_EQ(document["discarded"][0]["what"], "interval");
+    EXPECT_EQ(document["discarded"][0]["of"], 102);
+    EXPECT_NEAR(document["discarded"][0]["begin"].get<double>(), 10.0, 1e-9);
+    EXPECT_TRUE(document["repairs"].is_array());
+  }
+}
+
 TEST_F(CommandLine, S3_11_rounds_and_cut_of_the_closed_form_have_limits) {
   for (const std::string wrong : {"--rounds -1", "--rounds 1000", "--cut 0.9", "--cut nan"})
     EXPECT_EQ(ctl("solve drive.jsonl " + wrong).status, 2) << wrong;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "calib/report/settings.hpp"
+
 namespace odomcalib::calib::report::gate_test {
 namespace {
 
@@ -171,6 +173,68 @@ TEST(Gate, passes_remarks_on) {
   EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
   ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons[0].find("24 of 546"), std::string::npos);
+}
+
+Footing with_loss(double share, bool of_wheels = true) {
+  Footing footing = kFirm;
+  footing.losses = {{share, "363 of 1916 intervals between counts", of_wheels}};
+  return footing;
+}
+
+TEST(Gate, warns_of_a_share_that_was_left_out_and_refuses_where_little_is_left) {
+  const double warned = settings::kWarnLeftOut, refused = settings::kMostLeftOut;
+  EXPECT_EQ(judge(sound(), with_loss(0.9 * warned)).verdict, Verdict::accepted);
+  const GateResult gate = judge(sound(), with_loss(1.1 * warned));
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_EQ(gate.reasons[0].find("363 of 1916 intervals between counts"), 0U) << gate.reasons[0];
+  EXPECT_EQ(judge(sound(), with_loss(0.99 * refused)).verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(judge(sound(), with_loss(1.01 * refused)).verdict, Verdict::refused);
+  EXPECT_EQ(judge(sound(), with_loss(1.01 * refused, false)).verdict, Verdict::accepted_with_warnings)
+      << "fewer scans are still scans";
+}
+
+/// Figures at so many times the limits of as many rules: residual, odometry over ten seconds; and a length
+/// that is far from nominal, which weighs once.
+GateResult judged(double residual, double odometry, double track = 0.5) {
+  Calibration calibration = with_track(track, 1e-4);
+  calibration.residual.noise_floor = {{1e-3, 1e-3, 5e-4}};
+  calibration.residual.after = {{settings::kWarnResidual * residual * 1e-3, 1e-3, 5e-4}};
+  Footing footing = kFirm;
+  const double error = settings::kWarnResidual * odometry * 0.004;
+  footing.drive_errors = {
+      {"open_loop_10s_position", "m", 20, {}, {}, Bounded{error, 0.9 * error, 1.1 * error}, 0.004}};
+  return judge(calibration, footing);
+}
+
+TEST(Gate, refuses_when_signs_of_different_rules_add_up_and_names_the_weightiest) {
+  constexpr double kOdometry = 1.5, kRest = settings::kMostSigns - kOdometry - 1.0;
+  static_assert(kRest > kOdometry && kRest < settings::kHeaviestSign);
+  EXPECT_EQ(judged(kRest - 0.1, kOdometry).verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(judged(kRest + 0.1, kOdometry, 0.41).verdict, Verdict::accepted_with_warnings);
+  const GateResult gate = judged(kRest + 0.1, kOdometry);
+  EXPECT_EQ(gate.verdict, Verdict::refused);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  for (const char* said :
+       {": the residual in x of the sensor is 6.8 times the noise floor; odometry over ten seconds is off by",
+        "; track_width differs"})
+    EXPECT_NE(gate.reasons[0].find(said), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, one_sign_alone_never_refuses_however_heavy) {
+  const GateResult gate = judged(1000.0, 0.5, 0.41);
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  EXPECT_EQ(gate.reasons.size(), 1U);
+}
+
+TEST(Gate, what_a_remark_says_of_outliers_weighs_and_is_said_once) {
+  Footing footing = kFirm;
+  footing.pairs = 100;
+  footing.outliers = 20;
+  footing.remarks = {"20 of 100 pairs contradict all others"};
+  EXPECT_EQ(judge(sound(), footing).reasons.size(), 1U);
+  footing.outliers = 26;
+  EXPECT_EQ(judge(sound(), footing).verdict, Verdict::refused);
 }
 
 TEST(Gate, warns_of_a_fit_that_has_not_settled) {

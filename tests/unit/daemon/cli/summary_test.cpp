@@ -75,6 +75,35 @@ TEST(Summary, has_verdict_values_errors_and_what_was_found_and_leaves_the_rest) 
     EXPECT_THAT(text, Not(HasSubstr(rest)));
 }
 
+TEST(Summary, says_what_was_left_out_unless_it_is_a_trace_or_a_reason_already) {
+  auto calibration = example();
+  DataUse data;
+  data.begin = 100.0;
+  calibration.data = {data};
+  calibration.discarded = {{"interval", "count does not continue", 9, 1000, 103.2, 171.0},
+                           {"beam", "not a number", 900, 1000},
+                           {"scan", "repeated time stamp", 200, 1000, 100.5, 160.0},
+                           {"interval", "jump", 300, 1000, 103.2, 171.0},
+                           {"pair", "match: no_overlap", 100, 1000}};
+  const std::string text = summary(calibration, true, kColumns);
+  expect_a_screen(text);
+  EXPECT_THAT(text, HasSubstr("Left out: 300 of 1000 intervals between counts (30 %), from 3.2 to 71 s"));
+  EXPECT_LT(text.find("300 of 1000"), text.find("200 of 1000")) << "most first";
+  EXPECT_THAT(text, Not(HasSubstr("9 of 1000 intervals")));
+  EXPECT_THAT(text, Not(HasSubstr("900 of 1000")));
+  calibration.reasons = {"300 of 1000 intervals between counts (30 %), from 3.2 to 71 s: jump; what now"};
+  EXPECT_THAT(summary(calibration, true, kColumns), Not(HasSubstr("Left out: 300")));
+}
+
+TEST(Summary, says_no_more_than_three_times_that_something_was_left_out) {
+  auto calibration = example();
+  for (const char* reason : {"a", "b", "c", "d"})
+    calibration.discarded.push_back({"scan", reason, 100, 1000});
+  const std::string text = summary(calibration, true, kColumns);
+  EXPECT_THAT(text, HasSubstr("(10 %): c"));
+  EXPECT_THAT(text, Not(HasSubstr("(10 %): d")));
+}
+
 TEST(Summary, fits_a_screen_with_many_reasons_and_effects) {
   auto calibration = example();
   calibration.verdict = Verdict::accepted_with_warnings;

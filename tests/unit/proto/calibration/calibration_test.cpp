@@ -38,6 +38,8 @@ Calibration example() {
              {{"ticks", 100}, {"scans", 20}},
              {{"scan: cut off", 1}},
              {"scan: /scan"}}};
+  c.discarded = {{"interval", "count does not continue", 3, 100, 0.1 + 0.2, 71.0}, {"file", "cut off", 1}};
+  c.repairs = {{"times", "of reception", "stamps are in whole seconds"}};
   c.extensions = {{"zz_own", R"({"b":1,"a":[null,true]})"}, {"aa", "\"text\""}};
   return c;
 }
@@ -55,6 +57,21 @@ TEST(CalibrationFile, read_returns_what_was_written) {
   EXPECT_EQ(back.data[0].counts, example().data[0].counts);
   EXPECT_EQ(back.data[0].choices, example().data[0].choices);
   EXPECT_EQ(back.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(back.discarded.size(), 2U);
+  EXPECT_EQ(back.discarded[0].begin, 0.1 + 0.2);
+  EXPECT_EQ(back.discarded[0].of, 100U);
+  EXPECT_EQ(back.discarded[1].end, std::nullopt);
+  ASSERT_EQ(back.repairs.size(), 1U);
+  EXPECT_EQ(back.repairs[0].chosen, "of reception");
+}
+
+TEST(CalibrationFile, of_before_is_read_without_what_was_left_out) {
+  nlohmann::ordered_json old = nlohmann::ordered_json::parse(to_json(example()));
+  old.erase("discarded");
+  old.erase("repairs");
+  const auto back = value_of(calibration_from_json(old.dump(), "test"));
+  EXPECT_TRUE(back.discarded.empty());
+  EXPECT_TRUE(back.repairs.empty());
 }
 
 TEST(CalibrationFile, has_the_members_of_the_format) {

@@ -217,6 +217,53 @@ TEST(Recording, keeps_the_first_of_repeated_stamps) {
   EXPECT_EQ(discarded(result, "scan", "repeated time stamp"), 1U);
 }
 
+const Discarded& left_out(const Recording& recording, const std::string& what, const std::string& reason) {
+  static const Discarded kNothing;
+  for (const Discarded& one : recording.discarded)
+    if (one.what == what && one.reason == reason) return one;
+  return kNothing;
+}
+
+TEST(Recording, says_of_how_many_and_when_it_left_samples_out) {
+  const auto result =
+      value_of(read_text(kRobotLine + ticks_line(0, 0, 0) + ticks_line(1, 10, 10) + ticks_line(1, 10, 10) +
+                         ticks_line(2, 20, 20) + ticks_line(2, 21, 20) + ticks_line(4, 40, 40) +
+                         ticks_line(1.5, 15, 15) + ticks_line(2.5, 25, 25)));
+  const Discarded& repeated = left_out(result, "ticks", kRepeatedStamp);
+  EXPECT_EQ(repeated.count, 2U);
+  EXPECT_EQ(repeated.of, 8U);
+  EXPECT_EQ(repeated.begin, 1.0);
+  EXPECT_EQ(repeated.end, 2.0);
+  EXPECT_EQ(repeated.copies, 1U) << "one of them was the same sample again";
+  const Discarded& late = left_out(result, "ticks", "out of order by more than 1 s");
+  EXPECT_EQ(late.count, 2U);
+  EXPECT_EQ(late.of, 8U);
+  EXPECT_EQ(late.begin, 1.5);
+  EXPECT_EQ(late.end, 2.5);
+}
+
+TEST(Recording, says_between_which_stamps_the_way_is_not_known) {
+  std::string text = kRobotLine;
+  for (int i = 0; i < 40; ++i) text += ticks_line(0.1 * i, (i < 20 ? 40 : 9000) + 40 * i, 40 * i);
+  const auto result = value_of(read_text(text));
+  const Discarded& broken = left_out(result, "ticks", kUncontinued);
+  ASSERT_EQ(broken.count, 1U) << list_discarded(result);
+  EXPECT_EQ(broken.of, 39U);
+  EXPECT_NEAR(broken.begin.value_or(0.0), 1.9, 1e-9);
+  EXPECT_NEAR(broken.end.value_or(0.0), 2.0, 1e-9);
+}
+
+TEST(Recording, says_when_counts_were_read_wrong) {
+  std::string text = kRobotLine;
+  for (int i = 0; i < 40; ++i) text += ticks_line(0.1 * i, i == 10 || i == 30 ? 100000 : 40 * i, 40 * i);
+  const auto result = value_of(read_text(text));
+  const Discarded& misread = left_out(result, "ticks", kMisread);
+  ASSERT_EQ(misread.count, 2U) << list_discarded(result);
+  EXPECT_EQ(misread.of, 40U);
+  EXPECT_NEAR(misread.begin.value_or(0.0), 1.0, 1e-9);
+  EXPECT_NEAR(misread.end.value_or(0.0), 3.0, 1e-9);
+}
+
 TEST(Recording, reads_gzip_by_content_and_hashes_the_stored_bytes) {
   const std::string text = kRobotLine + ticks_line(0, 1, 2);
   const auto packed = gzip(text).value();

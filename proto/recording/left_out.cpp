@@ -1,0 +1,92 @@
+#include "proto/recording/left_out.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+namespace odomcalib {
+namespace {
+
+struct Kind {
+  std::string_view what;
+  std::string_view several;  ///< as a person calls them
+  bool motion = false;       ///< the wheels' motion is computed from these
+};
+
+/// What of a recording is of use for a calibration. The rest of a file (messages of other topics, a second
+/// robot line) is nobody's loss, and a lidar in an open room has empty beams.
+constexpr std::array kKinds = {Kind{kInterval, "intervals between counts", true},
+                               Kind{"ticks", "counts", true},
+                               Kind{"wheels", "wheel angles", true},
+                               Kind{"wheel_speeds", "wheel speeds", true},
+                               Kind{"odometry", "poses of odometry", true},
+                               Kind{"scan", "scans"},
+                               Kind{"pose", "poses"},
+                               Kind{"gyro", "gyro readings"},
+                               Kind{"tuple", "tuples"},
+                               Kind{"line", "lines"},
+                               Kind{"chunk", "chunks of the file"},
+                               Kind{"file", "file"},
+                               Kind{"pair", "pairs"}};
+
+const Kind* kind_of(const Discarded& one) {
+  const auto* found =
+      std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& kind) { return kind.what == one.what; });
+  return found == kKinds.end() ? nullptr : found;
+}
+
+std::string printed(const char* format, double value) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+/// Two digits tell a second from another; whole seconds are enough later on.
+std::string seconds_text(double t) { return std::abs(t) < 10.0 ? printed("%.1f", t) : printed("%.0f", t); }
+
+std::string percent_text(double share) {
+  return (share < 0.1 ? printed("%.2g", 100.0 * share) : printed("%.0f", 100.0 * share)) + " %";
+}
+
+}  // namespace
+
+std::vector<Discarded> left_out_of(const Recording& recording) {
+  std::vector<Discarded> all = recording.discarded;
+  for (Discarded& one : all)
+    if (one.what == "ticks" && one.reason == kUncontinued) one.what = kInterval;
+  return all;
+}
+
+bool is_loss(const Discarded& one) {
+  const bool is_replaced = one.reason.ends_with(kFinerDecides) || one.reason.ends_with(kOfSecondProgram) ||
+                           one.reason.ends_with(kOfAnotherSensor);
+  return one.count > one.copies && kind_of(one) != nullptr && !is_replaced;
+}
+
+bool is_loss_of_motion(const Discarded& one) { return is_loss(one) && kind_of(one)->motion; }
+
+double share_of(const Discarded& one) {
+  return one.of > 0 ? static_cast<double>(one.count - one.copies) / static_cast<double>(one.of) : 0.0;
+}
+
+std::string to_text(const Discarded& one, std::optional<double> start) {
+  const Kind* kind = kind_of(one);
+  std::string text = std::to_string(one.count);
+  if (one.of > 0) text += " of " + std::to_string(one.of);
+  text += " " + (kind != nullptr ? std::string(kind->several) : one.what);
+  if (one.of > 0)
+    text += " (" + percent_text(static_cast<double>(one.count) / static_cast<double>(one.of)) + ")";
+  if (one.copies > 0) text += ", " + std::to_string(one.copies) + " of them the same again";
+  if (one.begin && one.end) {
+    const double zero = start.value_or(0.0);
+    text += *one.begin < *one.end
+                ? ", from " + seconds_text(*one.begin - zero) + " to " + seconds_text(*one.end - zero)
+                : ", at " + seconds_text(*one.begin - zero);
+    text += " s";
+  }
+  return text + ": " + one.reason;
+}
+
+}  // namespace odomcalib
