@@ -50,6 +50,9 @@ std::vector<std::string> left_out_lines(const Calibration& calibration) {
                                        [&](const std::string& reason) { return reason.starts_with(text); });
     if (!is_reason && lines.size() < settings::kLeftOutLines) lines.push_back("Left out: " + text);
   }
+  for (const Repair& one : calibration.repairs)
+    if (lines.size() < 2 * settings::kLeftOutLines)
+      lines.push_back(fmt::format("Put right: {}: {}; {}", one.what, one.chosen, one.reason));
   return lines;
 }
 
