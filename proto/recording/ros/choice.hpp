@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +15,18 @@ namespace odomcalib::ros {
 
 struct Chosen {
   std::array<Topic*, kParts.size()> topics{};  // by part
+  Topic* right_wheel = nullptr;  // where each wheel has a topic of its own; the left one is in topics
   Joints joints;
+  std::string odometry_there;  // a topic of it, taken or not
   Topic*& operator[](Part part) { return topics.at(static_cast<std::size_t>(part)); }
+  Topic* operator[](Part part) const { return topics.at(static_cast<std::size_t>(part)); }
 };
+
+/// Every topic that is taken, once.
+std::vector<Topic*> taken_topics(const Chosen& chosen);
+
+/// What the chosen topics have to be, by name: for those whose type the file does not say.
+std::map<std::string, Kind> kinds_of(const TopicChoices& choices);
 
 /// What the user chose, and of the rest what is unique. Error: usage, or empty (no wheel motion).
 /// @param remarks what else there was, and how to take it

@@ -2,18 +2,20 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "proto/recording/ros/choice.hpp"
 
 namespace odomcalib::ros {
 
-/// Stamps, unless those of the chosen topics come from different clocks. Times count from a whole second.
+/// Stamps, unless those of a chosen topic are no times or those of two come from different clocks: then the
+/// times of reception of all, which are of one clock. Times count from a whole second.
 class Clock {
  public:
   explicit Clock(const Chosen& chosen);
 
-  [[nodiscard]] bool by_reception() const { return by_reception_; }
-  [[nodiscard]] double apart_s() const { return apart_s_; }
+  /// What to say of the times; empty for sound stamps.
+  [[nodiscard]] const std::string& remark() const { return remark_; }
   /// s after the start of the recording
   template <typename Value>
   double operator()(const Stamped<Value>& one) const {
@@ -21,11 +23,12 @@ class Clock {
   }
 
  private:
+  void judge(const std::string& reason, bool reception_is_sound);
   [[nodiscard]] std::int64_t time_ns(std::int64_t stamp, std::int64_t received) const;
   [[nodiscard]] double since_start(std::int64_t time) const;
   void set_start(const Topic& topic);
 
-  double apart_s_ = 0.0;
+  std::string remark_;
   bool by_reception_ = false;
   std::int64_t start_ = 0;  // ns
 };

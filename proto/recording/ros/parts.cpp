@@ -29,21 +29,43 @@ bool serves(const Topic& topic, Part part) {
   return false;
 }
 
-std::string types_for(Part part) {
+Kind kind_for(Part part) {
   switch (part) {
     case Part::scan:
-      return type_of(Kind::scan);
+      return Kind::scan;
     case Part::wheels:
     case Part::wheel_speeds:
-      return type_of(Kind::joints);
+      return Kind::joints;
     case Part::odometry:
-      return type_of(Kind::odometry);
+      return Kind::odometry;
     case Part::gyro:
-      return type_of(Kind::imu);
+      return Kind::imu;
     case Part::pose:
       break;
   }
-  return std::string(type_of(Kind::pose)) + " or " + type_of(Kind::odometry);
+  return Kind::pose;
+}
+
+std::optional<Part> part_by_name(const std::string& topic) {
+  struct Row {
+    const char* word;
+    Part part;
+  };
+  constexpr std::array<Row, 7> kWords{{{"joint", Part::wheels},
+                                       {"scan", Part::scan},
+                                       {"laser", Part::scan},
+                                       {"lidar", Part::scan},
+                                       {"odom", Part::odometry},
+                                       {"imu", Part::gyro},
+                                       {"gyro", Part::gyro}}};
+  const auto row = std::find_if(kWords.begin(), kWords.end(),
+                                [&](const Row& one) { return topic.find(one.word) != std::string::npos; });
+  return row == kWords.end() ? std::nullopt : std::optional(row->part);
+}
+
+std::string types_for(Part part) {
+  const std::string type = type_of(kind_for(part));
+  return part == Part::pose ? type + " or " + type_of(Kind::odometry) : type;
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -53,8 +75,8 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 std::string described(const Topic& topic) {
-  std::string out =
-      topic.header.name + " (" + topic.header.type + ", " + std::to_string(topic.count) + " messages";
+  const std::string type = topic.header.type.empty() ? "type not said" : topic.header.type;
+  std::string out = topic.header.name + " (" + type + ", " + std::to_string(topic.count) + " messages";
   if (!topic.problem.empty()) out += ", not read: " + topic.problem;
   return out + ")";
 }

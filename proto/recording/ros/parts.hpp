@@ -20,6 +20,10 @@ std::string name_of(Part part);
 
 /// Whether the messages of a topic can be the part.
 bool serves(const Topic& topic, Part part);
+/// The kind that a topic of an unknown type is read as when it is chosen as the part.
+Kind kind_for(Part part);
+/// What the name of a topic suggests.
+std::optional<Part> part_by_name(const std::string& topic);
 /// The types that can be the part, for people.
 std::string types_for(Part part);
 

@@ -4,52 +4,80 @@
 
 #include "proto/recording/ros/choice.hpp"
 #include "proto/recording/ros/clock.hpp"
+#include "proto/recording/ros/publishers.hpp"
 
 namespace odomcalib::ros {
 namespace {
 
+bool has_values(const Topic& topic, const std::vector<Places>& at, bool speeds) {
+  return std::any_of(topic.joints.begin(), topic.joints.end(), [&](const auto& one) {
+    const Places& place = at[one.value.names];
+    return (place[0] || place[1]) && !(speeds ? one.value.velocities : one.value.positions).empty();
+  });
+}
+
+/// Some drivers publish speeds only.
+bool speeds_only(const Chosen& chosen) {
+  const auto has_positions = [](const Topic* topic, const Joints& joints) {
+    return topic == nullptr || has_values(*topic, places(*topic, joints), false);
+  };
+  const Joints& joints = chosen.joints;
+  if (chosen.right_wheel == nullptr) return !has_positions(chosen[Part::wheels], joints);
+  return !has_positions(chosen[Part::wheels], {joints.left, ""}) ||
+         !has_positions(chosen.right_wheel, {"", joints.right});
+}
+
+void add_half(RecordingBuilder& builder, Side side, SideSample sample, bool speeds) {
+  speeds ? builder.add_wheel_speed(side, sample) : builder.add_wheel(side, sample);
+}
+
+/// Samples of both wheels. One wheel without the other counts only where no message has both.
 void add_joint_samples(RecordingBuilder& builder, const Topic& topic, const Joints& joints,
                        const Clock& clock, bool speeds) {
   const auto at = places(topic, joints);
+  const bool halves = std::none_of(topic.joints.begin(), topic.joints.end(), [&](const auto& one) {
+    return at[one.value.names][0] && at[one.value.names][1];
+  });
   std::size_t without = 0;
   for (const auto& one : topic.joints) {
-    const auto& place = at[one.value.names];
+    const Places& place = at[one.value.names];
     const auto& values = speeds ? one.value.velocities : one.value.positions;
-    if (!place || values.empty()) {
+    if (values.empty() || (!place[0] && !place[1]) || (!halves && (!place[0] || !place[1]))) {
       ++without;
-      continue;
+    } else if (place[0] && place[1]) {
+      const WheelSample sample{clock(one), values[*place[0]], values[*place[1]]};
+      speeds ? builder.add_wheel_speeds(sample) : builder.add_wheels(sample);
+    } else {
+      const Side side = place[0] ? Side::left : Side::right;
+      add_half(builder, side, {clock(one), values[place[0] ? *place[0] : *place[1]]}, speeds);
     }
-    const WheelSample sample{clock(one), values[(*place)[0]], values[(*place)[1]]};
-    speeds ? builder.add_wheel_speeds(sample) : builder.add_wheels(sample);
   }
   builder.discard("message", topic.header.name + ": without the joints of the wheels", without);
 }
 
-/// Some drivers publish speeds only.
-bool has_positions(const Topic& topic, const Joints& joints) {
-  const auto at = places(topic, joints);
-  return std::any_of(topic.joints.begin(), topic.joints.end(),
-                     [&](const auto& one) { return at[one.value.names] && !one.value.positions.empty(); });
-}
-
-void add_wheels(RecordingBuilder& builder, Chosen& chosen, const Clock& clock) {
-  const auto tell = [&](const Topic& topic, const char* part) {
-    builder.choose(std::string(part) + ": joints " + chosen.joints.left + " (left) and " +
-                   chosen.joints.right + " (right) of " + described(topic));
-  };
-  if (const Topic* topic = chosen[Part::wheels]) {
-    const bool positions = has_positions(*topic, chosen.joints);
-    tell(*topic, positions ? "wheels" : "wheel_speeds, there are no angles");
-    add_joint_samples(builder, *topic, chosen.joints, clock, !positions);
+void add_wheels(RecordingBuilder& builder, const Chosen& chosen, const Clock& clock, bool no_angles) {
+  const Topic* speeds = chosen[Part::wheel_speeds];
+  const Topic* topic = speeds != nullptr ? speeds : chosen[Part::wheels];
+  if (topic == nullptr) return;
+  const std::string part = speeds != nullptr ? "wheel_speeds"
+                           : no_angles       ? "wheel_speeds, there are no angles"
+                                             : "wheels";
+  const Joints& joints = chosen.joints;
+  if (const Topic* right = chosen.right_wheel) {
+    builder.choose(part + ": joint " + joints.left + " (left) of " + described(*topic) + " and joint " +
+                   joints.right + " (right) of " + described(*right));
+    add_joint_samples(builder, *topic, {joints.left, ""}, clock, no_angles);
+    add_joint_samples(builder, *right, {"", joints.right}, clock, no_angles);
+    return;
   }
-  if (const Topic* topic = chosen[Part::wheel_speeds]) {
-    tell(*topic, "wheel_speeds");
-    add_joint_samples(builder, *topic, chosen.joints, clock, true);
-  }
+  builder.choose(part + ": joints " + joints.left + " (left) and " + joints.right + " (right) of " +
+                 described(*topic));
+  add_joint_samples(builder, *topic, joints, clock, no_angles);
 }
 
 void add_poses(RecordingBuilder& builder, const Topic& topic, const Clock& clock, Part part) {
-  const std::string child = topic.child_frame.empty() ? "" : " of the frame " + topic.child_frame;
+  const Frames frames = topic.poses.empty() ? Frames{} : topic.frames[topic.poses.front().frames];
+  const std::string child = frames.child.empty() ? "" : " of the frame " + frames.child;
   builder.choose(name_of(part) + child + ": " + described(topic));
   for (const auto& one : topic.poses) {
     PoseSample sample = one.value;
@@ -60,9 +88,12 @@ void add_poses(RecordingBuilder& builder, const Topic& topic, const Clock& clock
 
 void add_scans(RecordingBuilder& builder, Topic& topic, const Clock& clock) {
   builder.choose("scan: " + described(topic));
+  const std::string several = frames_of_scans(topic);
+  if (!several.empty()) builder.choose(topic.header.name + " has scans of several frames: " + several);
   for (auto& one : topic.scans) {
     Scan scan = std::move(one.value);
     scan.t = clock(one);
+    if (!several.empty()) scan.sensor = topic.frames[one.frames].frame;
     builder.add_scan(std::move(scan));
   }
   topic.scans.clear();
@@ -73,21 +104,20 @@ void add_gyro(RecordingBuilder& builder, const Topic& topic, const Clock& clock)
   for (const auto& one : topic.yaw_rates) builder.add_gyro({clock(one), one.value});
 }
 
-void tell_times(RecordingBuilder& builder, const Clock& clock) {
-  if (clock.by_reception())
-    builder.choose("times of reception: the stamps of these topics lie " + std::to_string(clock.apart_s()) +
-                   " s apart, they come from different clocks");
+/// Of a topic that cannot be read.
+std::string unread(const Topic& topic) {
+  if (topic.header.type.empty()) return topic.header.name + ": the file does not say what it is (no schema)";
+  return topic.header.type + " is not read" + (topic.problem.empty() ? "" : ": " + topic.problem);
 }
 
 /// What was there and is not used.
 void tell_rest(RecordingBuilder& builder, const Collector& collector, const Chosen& chosen) {
+  const auto taken = taken_topics(chosen);
   for (const Topic& topic : collector.topics()) {
-    const bool taken = std::find(chosen.topics.begin(), chosen.topics.end(), &topic) != chosen.topics.end();
+    const bool is_taken = std::find(taken.begin(), taken.end(), &topic) != taken.end();
     if (topic.kind == Kind::none)
-      builder.discard(
-          "message", topic.header.type + " is not read" + (topic.problem.empty() ? "" : ": " + topic.problem),
-          topic.count);
-    else if (!taken)
+      builder.discard("message", unread(topic), topic.count);
+    else if (!is_taken)
       builder.discard("message", topic.header.name + " was not taken", topic.count);
     else
       builder.discard("message", topic.header.name + ": does not hold what its type says", topic.malformed);
@@ -95,23 +125,35 @@ void tell_rest(RecordingBuilder& builder, const Collector& collector, const Chos
   for (const auto& [what, count] : collector.discarded()) builder.discard(what.first, what.second, count);
 }
 
+std::optional<Error> fill_chosen(RecordingBuilder& builder, Chosen& chosen, const std::string& where) {
+  const bool no_angles = chosen[Part::wheel_speeds] != nullptr || speeds_only(chosen);
+  if (auto error = settle_publishers(builder, chosen, no_angles, where)) return error;
+  const Clock clock(chosen);
+  if (!clock.remark().empty()) builder.choose(clock.remark());
+  add_wheels(builder, chosen, clock, no_angles);
+  if (const Topic* topic = chosen[Part::odometry]) add_poses(builder, *topic, clock, Part::odometry);
+  if (const Topic* topic = chosen[Part::pose]) add_poses(builder, *topic, clock, Part::pose);
+  if (const Topic* topic = chosen[Part::gyro]) add_gyro(builder, *topic, clock);
+  if (Topic* topic = chosen[Part::scan]) add_scans(builder, *topic, clock);
+  if (!builder.has_motion()) return builder.no_motion(where);
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Error> fill(RecordingBuilder& builder, Collector& collector, const TopicChoices& choices,
                           const std::string& where) {
   std::vector<std::string> remarks;
-  auto result = choose_topics(collector, choices, where, remarks);
-  if (!result) return result.error();
-  Chosen& chosen = result.value();
-  tell_rest(builder, collector, chosen);
-  const Clock clock(chosen);
-  tell_times(builder, clock);
-  add_wheels(builder, chosen, clock);
-  if (const Topic* topic = chosen[Part::odometry]) add_poses(builder, *topic, clock, Part::odometry);
-  if (const Topic* topic = chosen[Part::pose]) add_poses(builder, *topic, clock, Part::pose);
-  if (const Topic* topic = chosen[Part::gyro]) add_gyro(builder, *topic, clock);
-  if (Topic* topic = chosen[Part::scan]) add_scans(builder, *topic, clock);
+  auto chosen = choose_topics(collector, choices, where, remarks);
+  std::optional<Error> error;
+  if (chosen) {
+    tell_rest(builder, collector, chosen.value());
+    error = fill_chosen(builder, chosen.value(), where);
+  } else {
+    error = chosen.error();
+  }
   for (const std::string& remark : remarks) builder.choose(remark);
+  if (error) return builder.with_remarks(*error);
   return std::nullopt;
 }
 
