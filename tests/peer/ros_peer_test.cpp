@@ -1,6 +1,7 @@
-// ROS recordings against somebody else's programs (npm): MCAP files and rosbag2 databases of their writers,
-// encoders and compressors are read here; bags, databases and MCAP files that the tests write are read by
-// them. What the readers and the tests' own writers misunderstand alike would show here.
+// ROS recordings against somebody else's programs (npm, and ROS 1's own rosbag): bags, MCAP files and rosbag2
+// databases of their writers, encoders and compressors are read here; bags, databases and MCAP files that the
+// tests write are read by them. What the readers and the tests' own writers misunderstand alike would show
+// here.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -30,6 +31,14 @@ class RosPeer : public ::testing::Test {
     const std::string command = "cd '" + folder_.string() + "' && " + ODOMCALIB_NODE + " " +
                                 ODOMCALIB_ROS_SCRIPTS + "/" + script + " " + arguments + " > out 2> err";
     EXPECT_EQ(system(command.c_str()), 0) << command << "\n" << test::bytes_of(folder_ / "err");
+    return test::bytes_of(folder_ / "out");
+  }
+
+  /// Runs ROS 1's rosbag. Python of the distribution: its packages are for no other one.
+  [[nodiscard]] std::string rosbag(const std::string& arguments, bool ends = true) const {
+    const std::string command = "cd '" + folder_.string() + "' && /usr/bin/python3 " + ODOMCALIB_ROS_SCRIPTS +
+                                "/rosbag_peer.py " + arguments + " > out 2> err";
+    EXPECT_EQ(system(command.c_str()) == 0, ends) << command << "\n" << test::bytes_of(folder_ / "err");
     return test::bytes_of(folder_ / "out");
   }
 
@@ -84,6 +93,31 @@ TEST_F(RosPeer, writes_rosbag2_databases_that_are_read) {
   }
 }
 
+TEST_F(RosPeer, writes_bags_with_rosbag_that_are_read) {
+  write_drive(folder_);
+  for (const char* packing : {"none", "bz2", "lz4"})
+    for (const char* end : {"whole", "shuffled"}) {
+      SCOPED_TRACE(std::string(packing) + " " + end);
+      (void)rosbag("write drive.jsonl drive.bag " + std::string(packing) + " " + end);
+      expect_peers_drive(folder_ / "drive.bag");
+    }
+}
+
+/// Without an index, and with the last chunk unfinished: its header says that nothing is in it.
+TEST_F(RosPeer, writes_bags_with_rosbag_that_are_read_when_it_is_killed) {
+  write_drive(folder_);
+  (void)rosbag("write drive.jsonl drive.bag none killed", false);
+  expect_peers_drive(folder_ / "drive.bag");
+  for (const std::string packing : {"bz2", "lz4"}) {
+    SCOPED_TRACE(packing);
+    (void)rosbag("write drive.jsonl drive.bag " + packing + " killed", false);
+    const RobotDescription robot = test::ros_robot();
+    const auto found = value_of(read_recording(folder_ / "drive.bag", &robot));
+    EXPECT_GT(found.ticks.size(), 100U);  // what was packed by then
+    EXPECT_GT(test::discarded_like(found, "file", ""), 0U) << "the end is missing and nothing is said";
+  }
+}
+
 /// The recording that the peer reads out of a file.
 void expect_read_by_peer(const std::string& lines) {
   const auto result =
@@ -101,6 +135,7 @@ TEST_F(RosPeer, reads_the_bags_and_mcap_files_of_the_tests) {
     std::ofstream(folder_ / "drive.bag", std::ios::binary)
         << write_bag(test::small_log(Wire::ros1), {.packing = packing, .chunk_bytes = kChunk});
     expect_read_by_peer(node("read.js", "drive.bag"));
+    expect_read_by_peer(rosbag("read drive.bag"));
   }
   for (const Wire wire : {Wire::ros1, Wire::cdr_little, Wire::cdr_big, Wire::cdr2_little, Wire::cdr2_big})
     for (const RosPacking packing : {RosPacking::none, RosPacking::lz4, RosPacking::zstd}) {

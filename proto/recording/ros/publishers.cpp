@@ -32,6 +32,8 @@ class JointLists {
     for (List& list : lists_) {
       for (const auto& one : topic.joints)
         if (one.value.names == list.index && !values(one).empty()) list.messages.push_back(&one);
+      std::stable_sort(list.messages.begin(), list.messages.end(),
+                       [](const auto* a, const auto* b) { return a->received_ns < b->received_ns; });
       list.changes = std::any_of(list.messages.begin(), list.messages.end(), [&](const auto* one) {
         return value(list, *one, 0) != value(list, *list.messages.front(), 0) ||
                value(list, *one, 1) != value(list, *list.messages.front(), 1);
