@@ -33,7 +33,8 @@ bool within_one_turn(const std::vector<SideSample>& samples) {
 void continue_turns(std::vector<SideSample>& samples) {
   if (samples.empty() || !within_one_turn(samples)) return;
   for (std::size_t k = 1; k < samples.size(); ++k)
-    samples[k].value = samples[k - 1].value + std::remainder(samples[k].value - samples[k - 1].value, kOneTurn);
+    samples[k].value =
+        samples[k - 1].value + std::remainder(samples[k].value - samples[k - 1].value, kOneTurn);
 }
 
 std::optional<double> value_at(const std::vector<SideSample>& samples, double t, double known_for,

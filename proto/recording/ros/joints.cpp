@@ -4,6 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
+#include <set>
 #include <string_view>
 
 #include "proto/recording/ros/parts.hpp"
@@ -117,9 +118,10 @@ struct Comparison {
 
 std::vector<std::string> joint_names(const Topic& topic) {
   std::vector<std::string> names;
+  std::set<std::string> known;
   for (const auto& list : topic.joint_names)
     for (const auto& name : list)
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      if (known.insert(name).second) names.push_back(name);
   return names;
 }
 
@@ -192,7 +194,9 @@ std::optional<std::array<double, 2>> unlike(const Topic& topic, const NamedWheel
     }
     last = &one;
   }
-  if (!(sides[0].ways > 0.0 && sides[1].ways > 0.0)) return std::nullopt;
+  for (const Comparison& side : sides)
+    if (!(side.ways > 0.0) || !std::isfinite(side.ways) || !std::isfinite(side.differences))
+      return std::nullopt;
   return std::array<double, 2>{sides[0].differences / sides[0].ways, sides[1].differences / sides[1].ways};
 }
 
