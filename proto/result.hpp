@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace odomcalib {
 
@@ -30,9 +31,10 @@ enum class ErrorCode {
 
 struct Error {
   ErrorCode code = ErrorCode::io;
-  std::string what;    ///< what happened
-  std::string where;   ///< file and line, device, object; may be empty
-  std::string remedy;  ///< what to do next; may be empty
+  std::string what;                       ///< what happened
+  std::string where;                      ///< file and line, device, object; may be empty
+  std::string remedy;                     ///< what to do next; may be empty
+  std::vector<std::string> remarks = {};  ///< what was noticed before; told before the error
 
   /// One line for people: "where: what; remedy".
   [[nodiscard]] std::string text() const {

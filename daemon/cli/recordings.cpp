@@ -41,10 +41,10 @@ Result<TopicChoices> parsed(const std::vector<std::string>& topics) {
 
 void add_reading_options(CLI::App& verb, RecordingOptions& options) {
   verb.add_option("--robot", options.robot_file, "nominal values (TOML) instead of those of the recording");
-  verb.add_option(
-          "--topic", options.topics,
-          "of a ROS recording: PART=TOPIC, or wheels=TOPIC:LEFT,RIGHT with the joints; parts are scan, "
-          "wheels, wheel_speeds, odometry, gyro, pose; may be repeated")
+  verb.add_option("--topic", options.topics,
+                  "of a ROS recording: PART=TOPIC, or wheels=TOPIC:LEFT,RIGHT with the joints, or "
+                  "wheels=LEFT_TOPIC,RIGHT_TOPIC; parts are scan, "
+                  "wheels, wheel_speeds, odometry, gyro, pose; may be repeated")
       ->take_all()
       ->allow_extra_args(false);  // what follows may be the recording
 }
@@ -66,7 +66,10 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
       const Meanwhile shown("reading " + path);
       return read_recording(path, robot_file.empty() ? nullptr : &robot, topics.value());
     }();
-    if (!recording) return recording.error();
+    if (!recording) {
+      for (const auto& remark : recording.error().remarks) tell(fmt::format("{}: {}", path, remark));
+      return recording.error();
+    }
     for (const auto& choice : recording.value().choices) tell(fmt::format("{}: {}", path, choice));
     for (const Repair& one : recording.value().repairs)
       tell(fmt::format("{}: {}: {}: {}", path, one.what, one.chosen, one.reason));

@@ -2,6 +2,7 @@
 
 #include "proto/file_bytes.hpp"
 #include "proto/recording/recording_readers.hpp"
+#include "proto/recording/ros/choice.hpp"
 #include "proto/recording/ros/containers.hpp"
 #include "proto/recording/ros/folder.hpp"
 #include "proto/recording/ros/topics.hpp"
@@ -51,7 +52,7 @@ Error has_no_topics(const std::string& where) {
 
 std::optional<Error> read_ros(std::string_view bytes, const std::string& where, const TopicChoices& topics,
                               RecordingBuilder& builder) {
-  ros::Collector collector;
+  ros::Collector collector(ros::kinds_of(topics));
   if (auto error = ros::read_container(bytes, where, collector)) return error;
   return ros::fill(builder, collector, topics, where);
 }
@@ -92,10 +93,10 @@ Result<Recording> read_content(std::string_view bytes, const std::string& where,
 }
 
 Error not_understood(const std::string& text) {
-  return {
-      ErrorCode::usage, "\"" + text + "\" is no choice of a topic", "--topic",
-      "write PART=TOPIC or wheels=TOPIC:LEFT,RIGHT; parts are scan, wheels, wheel_speeds, odometry, gyro and "
-      "pose"};
+  return {ErrorCode::usage, "\"" + text + "\" is no choice of a topic", "--topic",
+          "write PART=TOPIC, wheels=TOPIC:LEFT,RIGHT or wheels=LEFT_TOPIC,RIGHT_TOPIC; parts are scan, "
+          "wheels, wheel_speeds, odometry, gyro and "
+          "pose"};
 }
 
 }  // namespace
@@ -112,10 +113,16 @@ Result<TopicChoice> parse_topic_choice(const std::string& text) {
     if (comma == std::string::npos) return not_understood(text);
     choice.joints = {text.substr(colon + 1, comma - colon - 1), text.substr(comma + 1)};
   }
+  if (const auto comma = choice.topic.find(','); comma != std::string::npos) {
+    choice.right_topic = choice.topic.substr(comma + 1);
+    choice.topic.resize(comma);
+    if (choice.right_topic.empty() || !choice.joints.empty()) return not_understood(text);
+  }
   const bool joints = choice.part == "wheels" || choice.part == "wheel_speeds";
   const bool known = joints || choice.part == "scan" || choice.part == "odometry" || choice.part == "gyro" ||
                      choice.part == "pose";
-  if (!known || choice.topic.empty() || (!joints && !choice.joints.empty())) return not_understood(text);
+  if (!known || choice.topic.empty() || (!joints && (!choice.joints.empty() || !choice.right_topic.empty())))
+    return not_understood(text);
   return choice;
 }
 
@@ -143,7 +150,7 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDe
   if (!found) return found.error();
   RecordingBuilder builder;
   for (const auto& name : found.value().missing) builder.discard("file", name + " is missing");
-  ros::Collector collector;
+  ros::Collector collector(ros::kinds_of(topics));
   std::string hashes;
   for (const auto& path : found.value().files) {
     const auto file = read_file_bytes(path);

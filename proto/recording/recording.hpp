@@ -68,10 +68,11 @@ struct TopicChoice {
   std::string part;                 ///< scan, wheels, wheel_speeds, odometry, gyro or pose
   std::string topic;                ///< as recorded
   std::vector<std::string> joints;  ///< left and right, of wheels and wheel_speeds; empty: by their names
+  std::string right_topic = {};     ///< of the right wheel, where each wheel has a topic of its own
 };
 using TopicChoices = std::vector<TopicChoice>;
 
-/// Reads "PART=TOPIC" or "PART=TOPIC:LEFT,RIGHT". Error: usage.
+/// Reads "PART=TOPIC", "PART=TOPIC:LEFT,RIGHT" or, of wheels, "PART=LEFT_TOPIC,RIGHT_TOPIC". Error: usage.
 Result<TopicChoice> parse_topic_choice(const std::string& text);
 
 /// Reads a recording and recognises its form by content: JSON Lines (plain or gzip), native LCM log, LCM log

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "proto/recording/scan_checks.hpp"
 #include "proto/recording/second_writer.hpp"
@@ -30,6 +31,9 @@ constexpr double kLargestWheelSpeed = 1e4;
 
 // m; UTM coordinates stay below.
 constexpr double kFarthestPosition = 1e7;
+
+constexpr const char* kNoAngles = "left or right missing or not an angle";
+constexpr const char* kNoSpeeds = "left or right missing or not the speed of a wheel";
 
 bool is_angle(double value) { return std::abs(value) <= kLargestAngle; }
 bool is_wheel_speed(double value) { return std::abs(value) <= kLargestWheelSpeed; }
@@ -175,16 +179,34 @@ void RecordingBuilder::add_ticks(TickSample sample) {
 
 void RecordingBuilder::add_wheels(WheelSample sample) {
   if (!is_angle(sample.left) || !is_angle(sample.right))
-    discard("wheels", "left or right missing or not an angle");
+    discard("wheels", kNoAngles);
   else if (in_time("wheels", sample, wheels_clock_, recording_.wheels))
     recording_.wheels.push_back(sample);
 }
 
 void RecordingBuilder::add_wheel_speeds(WheelSample sample) {
   if (!is_wheel_speed(sample.left) || !is_wheel_speed(sample.right))
-    discard("wheel_speeds", "left or right missing or not the speed of a wheel");
+    discard("wheel_speeds", kNoSpeeds);
   else if (in_time("wheel_speeds", sample, wheel_speeds_clock_, recording_.wheel_speeds))
     recording_.wheel_speeds.push_back(sample);
+}
+
+void RecordingBuilder::add_wheel(Side side, SideSample sample) {
+  const auto at = static_cast<std::size_t>(side);
+  auto& stream = wheel_halves_.samples.at(at);
+  if (!is_angle(sample.value))
+    discard("wheels", kNoAngles);
+  else if (in_time("wheels", sample, wheel_halves_.clocks.at(at), stream))
+    stream.push_back(sample);
+}
+
+void RecordingBuilder::add_wheel_speed(Side side, SideSample sample) {
+  const auto at = static_cast<std::size_t>(side);
+  auto& stream = speed_halves_.samples.at(at);
+  if (!is_wheel_speed(sample.value))
+    discard("wheel_speeds", kNoSpeeds);
+  else if (in_time("wheel_speeds", sample, speed_halves_.clocks.at(at), stream))
+    stream.push_back(sample);
 }
 
 void RecordingBuilder::add_odometry(PoseSample sample) {
@@ -229,10 +251,65 @@ void RecordingBuilder::add_increment(IncrementSample sample) {
     recording_.increments.push_back(sample);
 }
 
-bool RecordingBuilder::has_data() const {
+bool RecordingBuilder::has_motion() const {
   return !recording_.ticks.empty() || !recording_.wheels.empty() || !recording_.wheel_speeds.empty() ||
-         !recording_.odometry.empty() || !recording_.scans.empty() || !recording_.poses.empty() ||
-         !recording_.gyro.empty() || !recording_.increments.empty();
+         !recording_.odometry.empty() || wheel_halves_.any() || speed_halves_.any();
+}
+
+Error RecordingBuilder::no_motion(const std::string& where) const {
+  std::string what = "no message tells the motion of the wheels";
+  std::size_t most = 0;
+  for (const auto& [key, one] : discarded_) {
+    const bool of_wheels = one.what == "wheels" || one.what == "wheel_speeds" || one.what == "odometry";
+    if (!of_wheels || one.count <= most) continue;
+    most = one.count;
+    what = "no message tells the motion of the wheels: " + std::to_string(one.count) + " x " + one.what +
+           " left out, " + one.reason;
+  }
+  return {ErrorCode::empty, what, where,
+          "choose another topic: --topic wheels=TOPIC or --topic odometry=TOPIC"};
+}
+
+Error RecordingBuilder::with_remarks(Error error) const {
+  error.remarks = recording_.choices;
+  return error;
+}
+
+/// Both wheels at one instant, of wheels that came one by one. Among samples that have both, one wheel alone
+/// is a sample that is broken.
+void RecordingBuilder::join_halves(MotionSource source, Halves& halves, std::vector<WheelSample>& stream) {
+  if (!halves.any()) return;
+  const bool angles = source == MotionSource::wheels;
+  const char* reason = angles ? kNoAngles : kNoSpeeds;
+  auto& [left, right] = halves.samples;
+  if (!stream.empty() || left.empty() || right.empty()) {
+    discard(name_of(source), reason, left.size() + right.size());
+    left.clear();
+    right.clear();
+    return;
+  }
+  for (auto* side : {&left, &right}) {
+    sort_by_time(*side);
+    const auto same = [](const auto& a, const auto& b) { return a.t == b.t; };
+    const auto end = std::unique(side->begin(), side->end(), same);
+    discard(name_of(source), kRepeatedStamp, static_cast<std::size_t>(side->end() - end));
+    side->erase(end, side->end());
+  }
+  const std::string counts =
+      std::to_string(left.size()) + " left, " + std::to_string(right.size()) + " right";
+  const JoinedWheels joined = joined_wheels(std::exchange(left, {}), std::exchange(right, {}),
+                                            angles ? Between::linear : Between::held);
+  const Side moved = joined.kept == Side::left ? Side::right : Side::left;
+  discard(name_of(source), "the other wheel was not told near that time", joined.alone);
+  stream = joined.wheels;
+  choose(std::string(name_of(source)) + ": each sample has one wheel only (" + counts + "); the " +
+         name_of(moved) + " wheel was brought to the times of the " + name_of(joined.kept) +
+         (angles ? ", between its neighbours" : ", each speed held until the next"));
+}
+
+bool RecordingBuilder::has_data() const {
+  return has_motion() || !recording_.scans.empty() || !recording_.poses.empty() || !recording_.gyro.empty() ||
+         !recording_.increments.empty();
 }
 
 Error RecordingBuilder::nothing_usable(const std::string& where) const {
@@ -419,6 +496,15 @@ void RecordingBuilder::drop_second_writers() {
 
 Result<Recording> RecordingBuilder::finish(const std::string& where, const RobotDescription* fallback,
                                            RobotNeed need) && {
+  auto recording = finished(where, fallback, need);
+  if (!recording) return with_remarks(recording.error());
+  return recording;
+}
+
+Result<Recording> RecordingBuilder::finished(const std::string& where, const RobotDescription* fallback,
+                                             RobotNeed need) {
+  join_halves(MotionSource::wheels, wheel_halves_, recording_.wheels);
+  join_halves(MotionSource::wheel_speeds, speed_halves_, recording_.wheel_speeds);
   if (!has_data()) return nothing_usable(where);
   merge_robot(fallback);
   count_streams();

@@ -1,6 +1,7 @@
 // Collects what a reader finds in a file, checks it, and turns it into sorted streams. Internal to proto/.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "proto/recording/recording.hpp"
+#include "proto/recording/wheel_joining.hpp"
 
 namespace odomcalib {
 
@@ -21,6 +23,11 @@ class RecordingBuilder {
   void add_ticks(TickSample sample);
   void add_wheels(WheelSample sample);
   void add_wheel_speeds(WheelSample sample);
+  /// One wheel without the other: angle in rad. Where no sample has both, finish() brings them to one
+  /// instant.
+  void add_wheel(Side side, SideSample sample);
+  /// The same for a speed in rad/s.
+  void add_wheel_speed(Side side, SideSample sample);
   void add_odometry(PoseSample sample);
   void add_scan(Scan scan);
   void add_pose(PoseSample sample);
@@ -31,6 +38,12 @@ class RecordingBuilder {
                std::optional<double> t = std::nullopt);
   /// Something was taken where the file held several.
   void choose(const std::string& choice) { recording_.choices.push_back(choice); }
+  /// Whether anything tells the motion of the wheels.
+  [[nodiscard]] bool has_motion() const;
+  /// Why nothing does: what most samples of it were left out for.
+  [[nodiscard]] Error no_motion(const std::string& where) const;
+  /// The error, with what was noticed before it.
+  [[nodiscard]] Error with_remarks(Error error) const;
 
   /// Whether a form carries the unit-bearing values; a form that needs none may leave them at zero.
   enum class RobotNeed { required, optional };
@@ -47,6 +60,13 @@ class RecordingBuilder {
     StreamClock();
   };
 
+  /// Wheels that came one by one.
+  struct Halves {
+    std::array<std::vector<SideSample>, 2> samples;  // by Side
+    std::array<StreamClock, 2> clocks;
+    [[nodiscard]] bool any() const { return !samples[0].empty() || !samples[1].empty(); }
+  };
+
   template <typename Sample>
   bool in_time(const char* what, const Sample& sample, StreamClock& clock, std::vector<Sample>& stream);
   template <typename Sample>
@@ -57,6 +77,8 @@ class RecordingBuilder {
   void drop_second_writer(const char* what, std::vector<Sample>& stream);
   void drop_second_writers();
   void count_on();
+  void join_halves(MotionSource source, Halves& halves, std::vector<WheelSample>& stream);
+  Result<Recording> finished(const std::string& where, const RobotDescription* fallback, RobotNeed need);
   void merge_robot(const RobotDescription* fallback);
   /// How many there are of each kind, of which some were left out: before any stream is thinned.
   void count_streams();
@@ -73,6 +95,7 @@ class RecordingBuilder {
   std::map<std::pair<std::string, std::string>, Discarded> discarded_;  // by what and reason
   std::map<std::string, std::size_t> streams_;  // samples of each kind, with those left out
   std::size_t readings_ = 0;                    // of all scans
+  Halves wheel_halves_, speed_halves_;
 };
 
 /// Missing or impossible unit-bearing values of a robot description, or nullopt when it is complete.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "proto/recording/recording_readers.hpp"
 #include "proto/wire/json_fields.hpp"
@@ -92,6 +93,30 @@ void add_scan_ticks(const JsonFields& fields, RecordingBuilder& builder) {
             builder);
 }
 
+/// A line may have one wheel only.
+std::optional<Side> only_side(const JsonFields& fields) {
+  if (fields.has(Scalar::left) == fields.has(Scalar::right)) return std::nullopt;
+  return fields.has(Scalar::left) ? Side::left : Side::right;
+}
+
+double value_of(const JsonFields& fields, Side side) {
+  return fields[side == Side::left ? Scalar::left : Scalar::right];
+}
+
+void add_wheels(const JsonFields& fields, RecordingBuilder& builder) {
+  if (const auto side = only_side(fields))
+    builder.add_wheel(*side, {time_of(fields), value_of(fields, *side)});
+  else
+    builder.add_wheels({time_of(fields), fields[Scalar::left], fields[Scalar::right]});
+}
+
+void add_wheel_speeds(const JsonFields& fields, RecordingBuilder& builder) {
+  if (const auto side = only_side(fields))
+    builder.add_wheel_speed(*side, {time_of(fields), value_of(fields, *side)});
+  else
+    builder.add_wheel_speeds({time_of(fields), fields[Scalar::left], fields[Scalar::right]});
+}
+
 void add_line(const JsonFields& fields, RecordingBuilder& builder) {
   const auto& type = fields[Text::type];
   if (type == "scan") {
@@ -102,9 +127,9 @@ void add_line(const JsonFields& fields, RecordingBuilder& builder) {
   } else if (type == "pose") {
     builder.add_pose({time_of(fields), fields[Scalar::x], fields[Scalar::y], fields[Scalar::yaw]});
   } else if (type == "wheels") {
-    builder.add_wheels({time_of(fields), fields[Scalar::left], fields[Scalar::right]});
+    add_wheels(fields, builder);
   } else if (type == "wheel_speeds") {
-    builder.add_wheel_speeds({time_of(fields), fields[Scalar::left], fields[Scalar::right]});
+    add_wheel_speeds(fields, builder);
   } else if (type == "odometry") {
     builder.add_odometry({time_of(fields), fields[Scalar::x], fields[Scalar::y], fields[Scalar::yaw]});
   } else if (type == "gyro") {

@@ -1,6 +1,7 @@
-// ROS recordings against somebody else's programs (npm): MCAP files and rosbag2 databases of their writers,
-// encoders and compressors are read here; bags, databases and MCAP files that the tests write are read by
-// them. What the readers and the tests' own writers misunderstand alike would show here.
+// ROS recordings against somebody else's programs (npm, and ROS 1's own rosbag): bags, MCAP files and rosbag2
+// databases of their writers, encoders and compressors are read here; bags, databases and MCAP files that the
+// tests write are read by them. What the readers and the tests' own writers misunderstand alike would show
+// here.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -33,6 +34,14 @@ class RosPeer : public ::testing::Test {
     return test::bytes_of(folder_ / "out");
   }
 
+  /// Runs ROS 1's rosbag. Python of the distribution: its packages are for no other one.
+  [[nodiscard]] std::string rosbag(const std::string& arguments, bool ends = true) const {
+    const std::string command = "cd '" + folder_.string() + "' && /usr/bin/python3 " + ODOMCALIB_ROS_SCRIPTS +
+                                "/rosbag_peer.py " + arguments + " > out 2> err";
+    EXPECT_EQ(system(command.c_str()) == 0, ends) << command << "\n" << test::bytes_of(folder_ / "err");
+    return test::bytes_of(folder_ / "out");
+  }
+
   fs::path folder_;
 };
 
@@ -46,13 +55,14 @@ fs::path write_drive(const fs::path& folder) {
 }
 
 /// What the peer made of write_drive() must be read as it is, by wheels and by odometry.
-void expect_peers_drive(const fs::path& path) {
+void expect_peers_drive(const fs::path& path, bool closed = true) {
   const RobotDescription robot = test::ros_robot();
   const auto result = read_recording(path, &robot, {{"wheels", "/joint_states", {}}, {"pose", "/mocap", {}}});
   ASSERT_TRUE(result.ok()) << result.error().text();
   test::expect_small_drive(result.value(), MotionSource::wheels);
-  for (const char* what : {"file", "chunk"})
-    EXPECT_EQ(test::discarded_like(result.value(), what, ""), 0U) << test::list_discarded(result.value());
+  EXPECT_EQ(test::discarded_like(result.value(), "chunk", ""), 0U) << test::list_discarded(result.value());
+  EXPECT_EQ(test::discarded_like(result.value(), "file", "") == 0, closed)
+      << test::list_discarded(result.value());
   ASSERT_EQ(result.value().poses.size(), 20U);
   EXPECT_NEAR(result.value().poses[7].y, -1.4, 1e-12);
   EXPECT_NEAR(result.value().poses[7].yaw, 0.7, 1e-12);
@@ -84,6 +94,31 @@ TEST_F(RosPeer, writes_rosbag2_databases_that_are_read) {
   }
 }
 
+TEST_F(RosPeer, writes_bags_with_rosbag_that_are_read) {
+  write_drive(folder_);
+  for (const char* packing : {"none", "bz2", "lz4"})
+    for (const char* end : {"whole", "shuffled"}) {
+      SCOPED_TRACE(std::string(packing) + " " + end);
+      (void)rosbag("write drive.jsonl drive.bag " + std::string(packing) + " " + end);
+      expect_peers_drive(folder_ / "drive.bag");
+    }
+}
+
+/// Without an index, and with the last chunk unfinished: its header says that nothing is in it.
+TEST_F(RosPeer, writes_bags_with_rosbag_that_are_read_when_it_is_killed) {
+  write_drive(folder_);
+  (void)rosbag("write drive.jsonl drive.bag none killed", false);
+  expect_peers_drive(folder_ / "drive.bag", false);
+  for (const std::string packing : {"bz2", "lz4"}) {
+    SCOPED_TRACE(packing);
+    (void)rosbag("write drive.jsonl drive.bag " + packing + " killed", false);
+    const RobotDescription robot = test::ros_robot();
+    const auto found = value_of(read_recording(folder_ / "drive.bag", &robot));
+    EXPECT_GT(found.ticks.size(), 100U);  // what was packed by then
+    EXPECT_GT(test::discarded_like(found, "file", ""), 0U) << "the end is missing and nothing is said";
+  }
+}
+
 /// The recording that the peer reads out of a file.
 void expect_read_by_peer(const std::string& lines) {
   const auto result =
@@ -101,6 +136,7 @@ TEST_F(RosPeer, reads_the_bags_and_mcap_files_of_the_tests) {
     std::ofstream(folder_ / "drive.bag", std::ios::binary)
         << write_bag(test::small_log(Wire::ros1), {.packing = packing, .chunk_bytes = kChunk});
     expect_read_by_peer(node("read.js", "drive.bag"));
+    expect_read_by_peer(rosbag("read drive.bag"));
   }
   for (const Wire wire : {Wire::ros1, Wire::cdr_little, Wire::cdr_big, Wire::cdr2_little, Wire::cdr2_big})
     for (const RosPacking packing : {RosPacking::none, RosPacking::lz4, RosPacking::zstd}) {

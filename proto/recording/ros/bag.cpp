@@ -78,11 +78,14 @@ class BagReader {
 
   std::optional<Error> read(std::string_view bytes, const std::string& where) {
     ByteReader reader(bytes.substr(kMagic.size()));
+    bool closed = true;
     while (!reader.at_end()) {
       const BagRecord record = next_bag_record(reader);
       if (record.op == kBagHeader && !record.header.text("encryptor").empty())
         return Error{ErrorCode::format, "is an encrypted bag", where,
                      "decrypt it: rosbag decompress, on a machine that has the key"};
+      // A recorder writes the place of the index when it closes the file.
+      if (record.op == kBagHeader) closed = record.header.number<std::uint64_t>("index_pos") != 0;
       if (record.op == kChunk)
         read_chunk(record);
       else if (record.op && record.whole)
@@ -96,6 +99,7 @@ class BagReader {
         break;
       }
     }
+    if (!closed) collector_.discard("file", "without its end: the recorder did not close it");
     return std::nullopt;
   }
 

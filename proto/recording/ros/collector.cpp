@@ -9,6 +9,8 @@ namespace {
 constexpr std::size_t kMostTopics = 65'536;
 // Lists of joint names on one topic: one a publisher, each with its own joints.
 constexpr std::size_t kMostNameLists = 256;
+// Frames on one topic: one a device that publishes there. Chosen: as lists of names.
+constexpr std::size_t kMostFrames = 256;
 
 // Characters of a name; ROS allows 255 in all.
 constexpr std::size_t kLongestName = 255;
@@ -28,9 +30,20 @@ std::string problem_of(const TopicHeader& header, Kind kind) {
   return "of another definition (MD5 " + header.md5 + ")";
 }
 
-void note_frames(Topic& topic, const std::string& frame, const std::string& child = {}) {
-  if (topic.frame.empty()) topic.frame = printable(frame);
-  if (topic.child_frame.empty()) topic.child_frame = printable(child);
+/// tf2 has no leading slash, older programs write one.
+std::string frame_name(std::string_view name) {
+  return printable(name.substr(name.starts_with('/') ? 1 : 0));
+}
+
+/// Index of the frames of a message; what has too many of them keeps the last ones.
+std::size_t index_of_frames(Topic& topic, const std::string& frame, const std::string& child = {}) {
+  const Frames frames{frame_name(frame), frame_name(child)};
+  const auto known = std::find_if(topic.frames.begin(), topic.frames.end(), [&](const Frames& one) {
+    return one.frame == frames.frame && one.child == frames.child;
+  });
+  if (known != topic.frames.end()) return static_cast<std::size_t>(known - topic.frames.begin());
+  if (topic.frames.size() < kMostFrames) topic.frames.push_back(frames);
+  return topic.frames.size() - 1;
 }
 
 /// SIZE_MAX when the topic has too many lists already.
@@ -47,8 +60,8 @@ std::size_t index_of_names(Topic& topic, std::vector<std::string> names) {
 bool add_scan(Topic& topic, std::int64_t received, std::string_view bytes) {
   auto scan = decode_scan(bytes, topic.encoding);
   if (!scan) return false;
-  note_frames(topic, scan->header.frame);
-  topic.scans.push_back({scan->header.stamp_ns, received, std::move(scan->scan)});
+  topic.scans.push_back(
+      {scan->header.stamp_ns, received, std::move(scan->scan), index_of_frames(topic, scan->header.frame)});
   return true;
 }
 
@@ -58,7 +71,6 @@ bool add_joints(Topic& topic, std::int64_t received, std::string_view bytes) {
   for (auto& name : joints->names) name = printable(name);
   const std::size_t names = index_of_names(topic, std::move(joints->names));
   if (names == SIZE_MAX) return false;
-  note_frames(topic, joints->header.frame);
   topic.joints.push_back({joints->header.stamp_ns,
                           received,
                           {names, std::move(joints->positions), std::move(joints->velocities)}});
@@ -68,8 +80,8 @@ bool add_joints(Topic& topic, std::int64_t received, std::string_view bytes) {
 bool add_imu(Topic& topic, std::int64_t received, std::string_view bytes) {
   const auto imu = decode_imu(bytes, topic.encoding);
   if (!imu || !imu->yaw_rate) return false;
-  note_frames(topic, imu->header.frame);
-  topic.yaw_rates.push_back({imu->header.stamp_ns, received, *imu->yaw_rate});
+  topic.yaw_rates.push_back(
+      {imu->header.stamp_ns, received, *imu->yaw_rate, index_of_frames(topic, imu->header.frame)});
   return true;
 }
 
@@ -77,8 +89,10 @@ bool add_pose(Topic& topic, std::int64_t received, std::string_view bytes) {
   const auto pose = topic.kind == Kind::odometry ? decode_odometry(bytes, topic.encoding)
                                                  : decode_pose(bytes, topic.encoding);
   if (!pose) return false;
-  note_frames(topic, pose->header.frame, pose->child_frame);
-  topic.poses.push_back({pose->header.stamp_ns, received, {0.0, pose->x, pose->y, pose->yaw}});
+  topic.poses.push_back({pose->header.stamp_ns,
+                         received,
+                         {0.0, pose->x, pose->y, pose->yaw},
+                         index_of_frames(topic, pose->header.frame, pose->child_frame)});
   return true;
 }
 
@@ -112,6 +126,10 @@ std::size_t Collector::topic(const TopicHeader& described) {
   topic.header = header;
   topic.encoding = header.encoding == "ros1" ? Encoding::ros1 : Encoding::cdr;
   topic.kind = kind_of(header.type);
+  if (const auto said = kinds_.find(header.name); header.type.empty() && said != kinds_.end()) {
+    topic.kind = said->second;
+    topic.header.type = std::string(type_of(topic.kind)) + " as chosen";
+  }
   if (topic.kind != Kind::none) topic.problem = problem_of(header, topic.kind);
   if (!topic.problem.empty()) topic.kind = Kind::none;
   topics_.push_back(std::move(topic));

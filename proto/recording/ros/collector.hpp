@@ -21,6 +21,12 @@ struct Stamped {
   std::int64_t stamp_ns = 0;     ///< of its header; 0: not set
   std::int64_t received_ns = 0;  ///< when the recorder had it
   Value value{};
+  std::size_t frames = 0;  ///< which of the topic's frames; not of joints
+};
+
+/// What a message is given in: frame_id of its header, and child_frame_id of odometry.
+struct Frames {
+  std::string frame, child;
 };
 
 /// The joints of one message: values in the order of one of the topic's lists of names.
@@ -40,10 +46,10 @@ struct Topic {
   TopicHeader header;
   Kind kind = Kind::none;  ///< none: cannot be read
   Encoding encoding = Encoding::cdr;
-  std::string problem;             ///< why a type that is known by name cannot be read
-  std::size_t count = 0;           ///< messages in the container
-  std::size_t malformed = 0;       ///< that did not hold what the type says
-  std::string frame, child_frame;  ///< of the first message
+  std::string problem;         ///< why a type that is known by name cannot be read
+  std::size_t count = 0;       ///< messages in the container
+  std::size_t malformed = 0;   ///< that did not hold what the type says
+  std::vector<Frames> frames;  ///< all that messages had, the first one first
 
   // Of its kind.
   std::vector<Stamped<Scan>> scans;
@@ -55,6 +61,9 @@ struct Topic {
 
 class Collector {
  public:
+  /// @param kinds of topics by name, for those whose type the file does not say
+  explicit Collector(std::map<std::string, Kind> kinds = {}) : kinds_(std::move(kinds)) {}
+
   /// A topic as one connection of one file describes it; the same name and type are the same topic. The
   /// number goes with the messages. kTooMany when a file has more of them than any robot.
   std::size_t topic(const TopicHeader& header);
@@ -74,6 +83,7 @@ class Collector {
   }
 
  private:
+  std::map<std::string, Kind> kinds_;
   std::vector<Topic> topics_;
   Unpacker unpacker_;
   std::map<std::pair<std::string, std::string>, std::size_t> by_name_;

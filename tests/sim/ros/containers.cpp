@@ -137,10 +137,12 @@ std::string mcap_channel(const RosLog& log, std::size_t topic) {
   const RosTopic& about = log.topics[topic];
   const bool ros1 = log.wire == Wire::ros1;
   const auto id = static_cast<std::uint16_t>(topic + 1);
+  const std::string channel = sized(about.name) + sized(ros1 ? "ros1" : "cdr") + sized("");
+  if (about.type.empty()) return mcap_record(4, raw(id) + raw(std::uint16_t{0}) + channel);  // no schema
   return mcap_record(3, raw(id) + sized(ros1 ? about.type : ros2_type(about.type)) +
                             sized(ros1 ? "ros1msg" : "ros2msg") +
                             sized(definition_of(about.type, log.wire))) +
-         mcap_record(4, raw(id) + raw(id) + sized(about.name) + sized(ros1 ? "ros1" : "cdr") + sized(""));
+         mcap_record(4, raw(id) + raw(id) + channel);
 }
 
 std::string mcap_message(const RosMessage& message, std::uint32_t sequence) {

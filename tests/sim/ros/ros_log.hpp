@@ -16,7 +16,7 @@ enum class Wire { ros1, cdr_little, cdr_big, cdr2_little, cdr2_big };
 
 struct RosTopic {
   std::string name;
-  std::string type;  ///< as ROS 1 writes it
+  std::string type;  ///< as ROS 1 writes it; in MCAP it may be empty: the channel has no schema then
 };
 
 struct RosMessage {

@@ -78,6 +78,31 @@ inline std::string bytes_of(const std::filesystem::path& path) {
   return bytes.ok() ? bytes.value() : "";
 }
 
+/// Start of small_drive() in a log, and a millisecond, in ns.
+constexpr std::int64_t kRosStart = 1'700'000'000'000'000'000;
+constexpr std::int64_t kMillisecond_ns = 1'000'000;
+
+/// The log without a topic's messages.
+inline sim::RosLog without_topic(sim::RosLog log, const std::string& topic) {
+  std::erase_if(log.messages, [&](const auto& one) { return log.topics[one.topic].name == topic; });
+  return log;
+}
+
+/// One message of joints, received 3 ms after its stamp.
+inline void add_joints(sim::RosLog& log, const std::string& topic, std::int64_t time,
+                       const std::vector<std::string>& names, const std::vector<double>& positions,
+                       const std::vector<double>& velocities = {}) {
+  log.add(topic, "sensor_msgs/JointState", time + 3 * kMillisecond_ns,
+          encode_joints(log.wire, {time, ""}, names, positions, velocities));
+}
+
+/// What was told, one a line.
+inline std::string all_told(const std::vector<std::string>& remarks) {
+  std::string out;
+  for (const auto& remark : remarks) out += remark + "\n";
+  return out;
+}
+
 inline bool told(const Recording& recording, const std::string& words) {
   for (const auto& choice : recording.choices)
     if (choice.find(words) != std::string::npos) return true;

@@ -132,9 +132,9 @@ TEST(RosTopics, wheels_are_recognised_by_the_names_of_their_joints) {
   }
   for (const std::vector<std::string>& names :
        {std::vector<std::string>{"joint_1", "joint_2"},
-        {"front_left_wheel", "front_right_wheel", "rear_left_wheel", "rear_right_wheel"}}) {
+        {"wheel_1_left", "wheel_1_right", "wheel_2_left", "wheel_2_right"}}) {
     const auto refused = read_ros(mcap(joints_log(names)));
-    expect_usage(refused, {"no topic tells the motion"}, ErrorCode::empty);
+    expect_usage(refused, {"do not tell which are the wheels", "--topic wheels=/joint_states:LEFT,RIGHT"});
     const auto chosen =
         value_of(read_ros(mcap(joints_log(names)), {{"wheels", "/joint_states", {names[0], names[1]}}}));
     EXPECT_EQ(chosen.ticks.size(), 50U);
