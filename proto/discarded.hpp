@@ -19,6 +19,9 @@ struct Discarded {
   std::size_t copies = 0;                      ///< of the count, what said the same as what was kept
 };
 
+/// What is called so was put right by a measurement, not by what the recording states.
+inline constexpr const char* kRepairedClock = "clock";
+
 /// Something that was put right, or taken where there were several.
 struct Repair {
   std::string what;    ///< e.g. "times", "joints", "frame", "turns"

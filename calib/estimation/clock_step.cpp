@@ -235,7 +235,7 @@ measurement::Dataset without_clock_steps(measurement::Dataset rough) {
     move(recording.scans, *step);
     move(recording.poses, *step);
     const std::string whose = recording.poses.empty() ? "scans" : "poses";
-    recording.repairs.push_back({"clock", "each side of the step with its own offset",
+    recording.repairs.push_back({kRepairedClock, "each side of the step with its own offset",
                                  "stamps of the " + whose + " step by " + math::fixed(step->size, 2) +
                                      " s at " + math::significant(step->moment, 12) +
                                      " s against those of the counts: one of the two clocks was set"});

@@ -36,7 +36,7 @@ std::optional<Recording> of_one_sensor(const Recording& recording, const std::st
   const std::string chosen = counts.contains(sensor) && !sensor.empty() ? sensor : most_of(counts);
   Recording one = recording;
   const auto is_other = [&](const Scan& scan) { return scan.sensor != chosen; };
-  Discarded others{"scan", "of another sensor", 0, one.scans.size()};
+  Discarded others{"scan", kOfAnotherSensor, 0, one.scans.size()};
   for (const Scan& scan : one.scans) {
     if (!is_other(scan)) continue;
     ++others.count;

@@ -366,6 +366,15 @@ Objections remarks(const Calibration&, const Footing& footing) {
   return found;
 }
 
+Objections clock_put_right(const Calibration& calibration, const Footing&) {
+  Objections found;
+  for (const Repair& repair : calibration.repairs)
+    if (repair.what == kRepairedClock)
+      found.push_back(warning(repair.reason + "; " + repair.chosen +
+                              " was used: let nothing set a clock while recording"));
+  return found;
+}
+
 Objections unsettled_fit(const Calibration&, const Footing& footing) {
   if (footing.converged) return {};
   return {warning("the fit had not settled when its iterations ran out")};
@@ -434,6 +443,7 @@ constexpr std::array kRules = {VerdictRule{"much_left_out", much_left_out},
                                VerdictRule{"residual_in_rows", residual_in_rows},
                                VerdictRule{"something_unexplained", something_unexplained},
                                VerdictRule{"remarks", remarks},
+                               VerdictRule{"clock_put_right", clock_put_right},
                                VerdictRule{"unsettled_fit", unsettled_fit},
                                VerdictRule{"several_signs", several_signs}};
 

@@ -121,11 +121,6 @@ TEST_F(Cases, steered_wheels_are_refused_and_the_rear_pair_of_the_same_car_is_no
   EXPECT_NEAR(rear.calibration.parameter("track_width").value_or(0.0), 0.26, 0.002);
 }
 
-TEST_F(Cases, a_clock_that_is_set_in_the_drive_is_refused_and_its_twin_is_not) {
-  EXPECT_TRUE(is_refused(solved("clock-step-of-one-device/scans_0.5.jsonl.gz")));
-  EXPECT_FALSE(is_refused(solved("clock-step-of-one-device/no_step.jsonl.gz")));
-}
-
 TEST_F(Cases, wheels_whose_stamps_lost_their_last_digits_are_refused_for_that) {
   const Outcome outcome = solved("wheel-stamps-whole-seconds/wheels.jsonl.gz");
   EXPECT_TRUE(is_refused(outcome));

@@ -23,8 +23,9 @@ TEST(Checks, have_no_empty_cell) {
     EXPECT_TRUE(names.insert(fault.name).second) << fault.name << " stands twice";
     for (const Cell& cell : fault.cells) {
       EXPECT_EQ(cell.answer == Answer::told, cell.check != nullptr) << fault.name;
-      if (cell.answer == Answer::cannot || cell.answer == Answer::mended)
+      if (cell.answer == Answer::cannot || cell.answer == Answer::mended) {
         EXPECT_STRNE(cell.words, "") << fault.name << ": why, or how";
+      }
     }
   }
 }
