@@ -197,6 +197,21 @@ TEST_F(CommandLine, effects_that_are_none_are_refused_before_anything_is_read_or
   EXPECT_EQ(read("cal.json"), before);
 }
 
+TEST_F(CommandLine, what_was_noticed_of_a_recording_is_told_before_the_error_that_it_ends_with) {
+  std::string halves;
+  for (int i = 0; i < 20; ++i)
+    halves +=
+        json{{"type", "wheels"}, {"t", 0.1 * i}, {i % 2 == 0 ? "left" : "right", 0.1 * i}}.dump() + "\n";
+  write("halves.jsonl", halves);
+  const auto got = ctl("solve halves.jsonl");
+  EXPECT_EQ(got.status, 1);
+  EXPECT_THAT(got.err, ContainsRegex(
+                           "halves.jsonl: wheels: each sample has one wheel only .*\n.*lacks.*--robot FILE"));
+  write("halves.jsonl", read("drive.jsonl").substr(0, read("drive.jsonl").find('\n') + 1) + halves);
+  EXPECT_THAT(ctl("predict halves.jsonl --calibration nominal --trajectory p.tum").err,
+              Not(HasSubstr("lacks")));
+}
+
 TEST_F(CommandLine, one_drive_given_twice_is_refused) {
   write("copy.jsonl", read("drive.jsonl"));
   write("packed.jsonl.gz", gzip(read("drive.jsonl")).value());

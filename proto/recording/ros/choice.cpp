@@ -247,10 +247,18 @@ class Choosing {
     return lines.empty() ? "--topic wheels=TOPIC --topic scan=TOPIC" : lines;
   }
 
+  /// What could be a part that is missing, or finer than the one that was taken.
   void tell_typeless() {
     const bool has_reference = chosen_[Part::scan] != nullptr || chosen_[Part::pose] != nullptr;
-    if (const auto names = without_type(); !names.empty() && !has_reference)
-      remarks_.push_back(unsaid(names) + "; say what they are: " + lines_for(names));
+    const bool has_wheels = chosen_[Part::wheels] != nullptr || chosen_[Part::wheel_speeds] != nullptr;
+    std::vector<std::string> names = without_type();
+    std::erase_if(names, [&](const auto& name) {
+      const auto part = part_by_name(name);
+      return !(part == Part::scan && !has_reference) && !(part == Part::wheels && !has_wheels);
+    });
+    if (!names.empty())
+      remarks_.push_back(unsaid(names) + "; say " + (names.size() > 1 ? "what they are: " : "what it is: ") +
+                         lines_for(names));
   }
 
   std::optional<Error> choose_reference() {

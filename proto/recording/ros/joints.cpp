@@ -103,6 +103,15 @@ double step(double from, double to) {
   return std::abs(to - from) > std::numbers::pi ? std::remainder(to - from, kTurn) : to - from;
 }
 
+/// Of one joint between two messages, in rad; by its speed where there are no angles.
+double way(const Stamped<JointValues>& from, const Stamped<JointValues>& to, std::size_t joint) {
+  if (!from.value.positions.empty() && !to.value.positions.empty())
+    return step(from.value.positions[joint], to.value.positions[joint]);
+  if (from.value.velocities.empty()) return 0.0;
+  return from.value.velocities[joint] * 1e-9 *
+         (static_cast<double>(to.received_ns) - static_cast<double>(from.received_ns));
+}
+
 /// Ways of a front and a rear wheel, compared piece by piece.
 struct Comparison {
   double front = 0.0, rear = 0.0;        // since the last piece
@@ -179,14 +188,11 @@ std::optional<std::array<double, 2>> unlike(const Topic& topic, const NamedWheel
   for (const auto& one : topic.joints) {
     const std::size_t list = one.value.names;
     if (!rear[list][0] || !rear[list][1] || !front[list][0] || !front[list][1]) continue;
-    if (one.value.positions.empty()) continue;
+    if (one.value.positions.empty() && one.value.velocities.empty()) continue;
     if (last != nullptr && last->value.names == list)
       for (std::size_t side = 0; side < 2; ++side) {
-        const auto way = [&](std::size_t at) {
-          return step(last->value.positions[at], one.value.positions[at]);
-        };
-        sides.at(side).front += way(*front[list].at(side));
-        sides.at(side).rear += way(*rear[list].at(side));
+        sides.at(side).front += way(*last, one, *front[list].at(side));
+        sides.at(side).rear += way(*last, one, *rear[list].at(side));
       }
     if (last == nullptr || one.received_ns - begin >= kCompared_ns) {
       for (Comparison& side : sides) side.finish_piece();

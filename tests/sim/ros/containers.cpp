@@ -207,8 +207,12 @@ std::string packed(RosPacking packing, const std::string& bytes) {
                              static_cast<unsigned>(bytes.size()), 9, 0, 0);
     out.resize(size);
   } else if (packing == RosPacking::lz4) {
-    out.resize(LZ4F_compressFrameBound(bytes.size(), nullptr));
-    out.resize(LZ4F_compressFrame(out.data(), out.size(), bytes.data(), bytes.size(), nullptr));
+    // As ROS 1 writes its frames, and reads no others: blocks that stand alone, a checksum at the end.
+    LZ4F_preferences_t form{};
+    form.frameInfo.blockMode = LZ4F_blockIndependent;
+    form.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+    out.resize(LZ4F_compressFrameBound(bytes.size(), &form));
+    out.resize(LZ4F_compressFrame(out.data(), out.size(), bytes.data(), bytes.size(), &form));
   } else {
     out.resize(ZSTD_compressBound(bytes.size()));
     out.resize(ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 3));

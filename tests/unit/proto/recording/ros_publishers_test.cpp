@@ -74,7 +74,7 @@ TEST(RosPublishers, of_joints_that_agree_are_one) {
   for (int k = 0; k < 200; ++k) {
     const Names names = k % 3 == 0 ? Names{"wheel_right_joint", "wheel_left_joint"} : kOther;
     const double left = 0.1 * k, right = 0.12 * k;
-    add_joints(log, "/joint_states", kRosStart + 20 * k * kMillisecond_ns, names,
+    add_joints(log, "/joint_states", kRosStart + 20 * kMillisecond_ns * k, names,
                k % 3 == 0 ? std::vector<double>{right, left} : std::vector<double>{left, right});
   }
   const auto found = value_of(read_ros(write_mcap(log)));
@@ -132,7 +132,7 @@ RosLog two_frames(bool odometry, const sim::RosHeader& header, const std::string
   RosLog log =
       test::without_topic(test::without_topic(small_log(Wire::cdr_little), "/joint_states"), "/odom");
   for (int k = 0; k < 100; ++k) {
-    const std::int64_t time = kRosStart + 40 * k * kMillisecond_ns;
+    const std::int64_t time = kRosStart + 40 * kMillisecond_ns * k;
     const bool other = k % 4 == 0;
     const sim::RosHeader own{time, other ? other_frame : header.frame};
     const std::array<double, 3> pose{0.01 * k + (other ? 5.0 : 0.0), 0.0, 0.0};
@@ -163,7 +163,7 @@ TEST(RosPublishers, of_odometry_in_two_frames_are_told_and_the_one_with_more_is_
 TEST(RosPublishers, of_poses_in_two_frames_are_told_and_the_one_with_more_is_taken) {
   RosLog log = two_frames(false, {0, "map"}, "", "", "camera");
   for (int k = 0; k < 50; ++k)
-    add_joints(log, "/joint_states", kRosStart + 80 * k * kMillisecond_ns, {"left", "right"},
+    add_joints(log, "/joint_states", kRosStart + 80 * kMillisecond_ns * k, {"left", "right"},
                {0.1 * k, 0.1 * k});
   const auto found = value_of(read_ros(write_mcap(log), {{"pose", "/pose", {}}}));
   EXPECT_EQ(found.poses.size(), 75U);

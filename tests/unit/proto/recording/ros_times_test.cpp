@@ -26,7 +26,7 @@ template <typename Stamp>
 RosLog stamped(Stamp stamp) {
   RosLog log = test::without_topic(small_log(Wire::cdr_little), "/joint_states");
   for (int k = 0; k < 200; ++k) {
-    const std::int64_t time = kRosStart + 20 * k * kMillisecond_ns;
+    const std::int64_t time = kRosStart + 20 * kMillisecond_ns * k;
     log.add("/joint_states", "sensor_msgs/JointState", time + 3 * kMillisecond_ns,
             encode_joints(log.wire, {stamp(time, k), ""}, {"left", "right"}, {0.1 * k, 0.11 * k}, {}));
   }

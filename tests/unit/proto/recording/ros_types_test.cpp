@@ -52,10 +52,13 @@ TEST(RosTypes, that_are_not_said_are_those_of_the_part_that_is_chosen) {
 TEST(RosTypes, that_are_not_said_of_the_scans_only_are_a_remark) {
   const auto found = value_of(read_ros(write_mcap(without_types({"/scan"}))));
   EXPECT_TRUE(
-      told(found, "the file does not say what /scan is (no schema); say what they are: --topic scan=/scan"))
+      told(found, "the file does not say what /scan is (no schema); say what it is: --topic scan=/scan"))
       << all_told(found.choices);
   const auto twin = value_of(read_ros(write_mcap(without_types({}))));
   EXPECT_FALSE(told(twin, "no schema"));
+  // Odometry is taken, but wheels would be finer.
+  EXPECT_TRUE(told(value_of(read_ros(write_mcap(without_types({"/joint_states"})))),
+                   "say what it is: --topic wheels=/joint_states"));
   // Of topics that are not needed nothing is said but that they were left out.
   EXPECT_FALSE(told(value_of(read_ros(write_mcap(without_types({"/rosout"})))), "no schema"));
 }

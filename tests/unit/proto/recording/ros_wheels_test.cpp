@@ -36,6 +36,7 @@ RosLog drive_of(const std::vector<std::string>& names, const std::vector<double>
   RosLog log = scans_only();
   for (int k = 0; k < 200; ++k) {
     std::vector<double> angles;
+    angles.reserve(paces.size());
     for (const double pace : paces) angles.push_back(angle(0.02 * k, pace));
     add_joints(log, "/joint_states", kRosStart + 20 * kMillisecond_ns * k, names, angles);
   }
@@ -123,6 +124,16 @@ TEST(RosWheels, axles_that_turn_otherwise_are_told_whichever_is_taken) {
         << all_told(value_of(read_ros(bytes)).choices);
     EXPECT_TRUE(told(value_of(read_ros(bytes, {{"wheels", "/joint_states", {names[0], names[1]}}})),
                      "they are steered, slip, or the robot moves sideways"));
+  }
+}
+
+TEST(RosWheels, axles_that_turn_otherwise_are_told_by_their_speeds_too) {
+  for (const double front : {1.0, 1.2}) {
+    RosLog log = scans_only();
+    for (int k = 0; k < 200; ++k)
+      add_joints(log, "/joint_states", kRosStart + 20 * kMillisecond_ns * k,
+                 {"fl_wheel", "fr_wheel", "rl_wheel", "rr_wheel"}, {}, {2.0 * front, 2.0 * front, 2.0, 2.0});
+    EXPECT_EQ(told(value_of(read_ros(write_mcap(log))), "by 18 % of their way on the left"), front > 1.0);
   }
 }
 
