@@ -121,6 +121,8 @@ std::string text_of(const Explanation& one, bool of_base) {
   return out;
 }
 
+}  // namespace
+
 std::optional<Error> wrong_signs(std::span<const wheels::WheelMotion> motions, const RobotDescription& robot,
                                  bool of_base) {
   // With wires as they should be nothing has to be put right but the heading, which is estimated.
@@ -134,6 +136,8 @@ std::optional<Error> wrong_signs(std::span<const wheels::WheelMotion> motions, c
   return Error{ErrorCode::refused, what, "",
                "put it right on the robot or in its description and record again"};
 }
+
+namespace {
 
 /// Lengths of the motion by the wheels and by the reference, medians over the motions, m.
 struct Movement {

@@ -21,4 +21,8 @@ namespace odomcalib::calib::classical {
 std::optional<Error> check_signs(std::span<const wheels::WheelMotion> motions, const RobotDescription& robot,
                                  bool of_base);
 
+/// The second of these alone.
+std::optional<Error> wrong_signs(std::span<const wheels::WheelMotion> motions, const RobotDescription& robot,
+                                 bool of_base);
+
 }  // namespace odomcalib::calib::classical

@@ -10,6 +10,7 @@
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"
+#include "calib/measurement/reference_motion.hpp"
 
 namespace odomcalib::calib::estimation {
 namespace {
@@ -66,11 +67,14 @@ class Costs {
 
   void weigh(const Eigen::Vector2d& gains, double noise) {
     sums_.clear();
-    for (const Turns& turns : turns_) {
+    for (std::size_t d = 0; d < turns_.size(); ++d) {
       std::vector<double> sum(pairs() + 1, 0.0);
       for (std::size_t k = 0; k < pairs(); ++k) {
-        const double z = (yaws_[k] - gains.dot(turns[k])) / noise;
-        sum[k + 1] = sum[k] + std::min(z * z, settings::kGrossTurnSquared);
+        const double between = 0.5 * gains.dot(turns_[d][k] - turns_[d > 0 ? d - 1 : d + 1][k]);
+        const double misfit = yaws_[k] - gains.dot(turns_[d][k]);
+        // The right delay lies between two of the grid.
+        const double squared = misfit * misfit / (noise * noise + between * between);
+        sum[k + 1] = sum[k] + std::min(squared, settings::kGrossTurnSquared);
       }
       sums_.push_back(std::move(sum));
     }
@@ -196,6 +200,18 @@ double first_after(const Recording& recording, const ClockStep& rough, double re
   return best;
 }
 
+/// Poses are so good that a few long pairs are enough for lengths; a clock shows in many short ones.
+measurement::FitData in_short_pairs(const measurement::FitData& one, const Recording& recording) {
+  if (recording.poses.empty()) return one;
+  measurement::FitData fine{one.model, {}};
+  const wheels::WheelTrack& track = one.model->track();
+  for (const measurement::ReferenceMotion& m :
+       measurement::reference_motions(recording, recording.poses.size()).motions)
+    if (track.covers(m.begin, m.end))
+      fine.pairs.push_back({{m.begin, m.end}, m.motion, Eigen::Matrix3d::Identity()});
+  return fine;
+}
+
 template <typename Sample>
 void move(std::vector<Sample>& samples, const ClockStep& step) {
   // Where a clock is set back, what came before the step and what came after it lie in between each other.
@@ -228,7 +244,7 @@ measurement::Dataset without_clock_steps(measurement::Dataset rough) {
   if (rough.has_motions_alone()) return rough;
   ingest::Repairs repairs(rough.recordings.view());
   for (std::size_t i = 0; i < rough.data.size(); ++i) {
-    auto step = clock_step(rough.data[i]);
+    auto step = clock_step(in_short_pairs(rough.data[i], rough.recordings[i]));
     if (!step) continue;
     Recording& recording = repairs.own(i);
     step->moment = first_after(recording, *step, settings::kMomentReach_s + std::abs(step->size));

@@ -9,6 +9,7 @@
 
 #include "calib/classical/closed_form.hpp"
 #include "calib/classical/length_factor.hpp"
+#include "calib/classical/sign_check.hpp"
 #include "calib/estimation/settings.hpp"
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/number_text.hpp"
@@ -147,7 +148,9 @@ class Look {
       if (auto found = delay()) return found;
     }
     if (auto found = stretched_angles()) return found;
-    return length_factor(motions_);
+    if (auto found = length_factor(motions_)) return found;
+    if (auto found = length_of_odometry()) return found;
+    return signs();
   }
 
   [[nodiscard]] std::optional<Cause> without_direction() const {
@@ -181,6 +184,12 @@ class Look {
     return Cause{"left and right counts are always the same, although the robot turned by " +
                      std::to_string(std::lround(turned * 180.0 / math::kPi)) + " degrees in all",
                  "check that each count comes from its own encoder"};
+  }
+
+  /// Where wheels lead matching astray, the reference alone still shows which way the robot turned.
+  [[nodiscard]] std::optional<Cause> signs() const {
+    const auto error = classical::wrong_signs(motions_, recording_.robot, !recording_.poses.empty());
+    return error ? std::optional(Cause{error->what, error->remedy}) : std::nullopt;
   }
 
   /// Values that are the counts since the sample before, as some controllers send them.
@@ -274,6 +283,23 @@ class Look {
     const auto found = ratios(motions);
     if (!found || explained_ < settings::kContradicts) return std::nullopt;
     return cause_of_ratios(*found, {recording_.robot, recording_.motion, !recording_.poses.empty()});
+  }
+
+  /// Odometry in another unit of length has the right turns, beside which its ways are too long or too short
+  /// for the closed form.
+  [[nodiscard]] std::optional<Cause> length_of_odometry() const {
+    if (recording_.motion != MotionSource::odometry) return std::nullopt;
+    const RobotDescription& robot = recording_.robot;
+    double seen = 0.0, rolled = 0.0;  // m, nearly straight on
+    for (const WheelMotion& m : motions_) {
+      if (std::abs(m.sensor_motion.yaw) > settings::kContradicting_rad) continue;
+      seen += std::hypot(m.sensor_motion.x, m.sensor_motion.y);
+      rolled += 0.25 * std::abs(robot.left_wheel_diameter * m.left + robot.right_wheel_diameter * m.right);
+    }
+    if (seen < settings::kStraightOn_m || !(rolled > 0.0)) return std::nullopt;
+    const double ratio = seen / rolled;
+    return classical::cause_of_ratios({ratio, ratio, ratio},
+                                      {robot, recording_.motion, !recording_.poses.empty()});
   }
 
   const Recording& recording_;

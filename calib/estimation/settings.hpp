@@ -36,6 +36,8 @@ inline constexpr double kAgainstCounting = 0.05;
 /// rad in half a second, by which a motion contradicts the counts, and the share of that which may be left
 /// with a direction. Chosen: no match is off by the first.
 inline constexpr double kContradicting_rad = 0.1, kLeftWithDirection = 0.3;
+/// m, nearly straight on in all, that show the unit of odometry. Chosen.
+inline constexpr double kStraightOn_m = 0.5;
 /// rad, turned in all, after which left and right counts cannot be the same. Chosen.
 inline constexpr double kTurned_rad = 1.0;
 /// Ratio of a length to its nominal value, less one. Chosen: nominal values are right to that.

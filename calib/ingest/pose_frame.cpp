@@ -125,7 +125,9 @@ std::optional<Error> goes_sideways(const std::vector<PoseSample>& steps, const S
   };
   if (heading_stands(steps)) return wrong("yaw never changes", "record the heading of the robot in radians");
   for (const Mistake& mistake : kMistakes)
-    if (sideways(steps, mistake.mend) < settings::kSidewaysAtMost) return wrong(mistake.what, mistake.remedy);
+    if (const double mended = sideways(steps, mistake.mend);
+        mended < settings::kSidewaysAtMost && mended < settings::kSidewaysMended * given)
+      return wrong(mistake.what, mistake.remedy);
   return std::nullopt;
 }
 

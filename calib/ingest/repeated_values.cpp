@@ -55,25 +55,42 @@ std::vector<bool> repeats_of(const std::vector<Sample>& samples) {
   return repeats;
 }
 
-/// At rest a reference without noise repeats itself as well.
-template <typename Sample>
-bool repeats_in_motion(const Recording& recording, const std::vector<Sample>& samples,
-                       const std::vector<bool>& repeats) {
+/// At rest a lidar without noise repeats itself as well: the wheels have to turn meanwhile.
+bool repeats_in_motion(const Recording& recording, const std::vector<bool>& repeats) {
   WheelWay way(recording);
   for (std::size_t k = 1; k < repeats.size(); ++k)
-    if (repeats[k] && way.between(samples[k - 1].t, samples[k].t) > settings::kMovedBetween_m) return true;
+    if (repeats[k] && way.between(recording.scans[k - 1].t, recording.scans[k].t) > settings::kMovedBetween_m)
+      return true;
   return false;
 }
 
+double way_between(const PoseSample& a, const PoseSample& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+
+/// A robot that stops slows down before: a value that stays between two steps of motion was sent again.
+std::vector<bool> repeats_between_steps(const std::vector<PoseSample>& poses) {
+  const std::vector<bool> same = repeats_of(poses);
+  std::vector<bool> repeats(poses.size(), false);
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    if (!same[k] || same[k - 1]) continue;
+    std::size_t next = k;
+    while (next < poses.size() && same[next]) ++next;
+    if (k < 2 || next == poses.size() || next - k > settings::kMostRepeats) continue;
+    if (way_between(poses[k - 2], poses[k - 1]) < settings::kMovedBetween_m ||
+        way_between(poses[next - 1], poses[next]) < settings::kMovedBetween_m)
+      continue;
+    std::fill(repeats.begin() + static_cast<std::ptrdiff_t>(k),
+              repeats.begin() + static_cast<std::ptrdiff_t>(next), true);
+  }
+  return repeats;
+}
+
 template <typename Sample>
-std::optional<Recording> without_repeats(const Recording& recording, std::vector<Sample> Recording::*stream,
-                                         const char* what) {
+std::optional<Recording> without(const Recording& recording, std::vector<Sample> Recording::*stream,
+                                 const char* what, const std::vector<bool>& repeats) {
   const std::vector<Sample>& samples = recording.*stream;
-  const std::vector<bool> repeats = repeats_of(samples);
-  if (!repeats_in_motion(recording, samples, repeats)) return std::nullopt;
+  Discarded dropped{what, kRepeatedValues, 0, samples.size()};
   Recording once = recording;
   (once.*stream).clear();
-  Discarded dropped{what, kRepeatedValues, 0, samples.size()};
   for (std::size_t k = 0; k < repeats.size(); ++k) {
     if (!repeats[k]) {
       (once.*stream).push_back(samples[k]);
@@ -83,6 +100,7 @@ std::optional<Recording> without_repeats(const Recording& recording, std::vector
     if (!dropped.begin) dropped.begin = samples[k].t;
     dropped.end = samples[k].t;
   }
+  if (dropped.count == 0) return std::nullopt;
   once.discarded.push_back(dropped);
   return once;
 }
@@ -90,11 +108,15 @@ std::optional<Recording> without_repeats(const Recording& recording, std::vector
 }  // namespace
 
 std::optional<Recording> without_repeated_scans(const Recording& recording) {
-  return without_repeats(recording, &Recording::scans, "scan");
+  const std::vector<bool> repeats = repeats_of(recording.scans);
+  if (!repeats_in_motion(recording, repeats)) return std::nullopt;
+  return without(recording, &Recording::scans, "scan", repeats);
 }
 
 std::optional<Recording> without_repeated_poses(const Recording& recording) {
-  return without_repeats(recording, &Recording::poses, "pose");
+  const std::vector<bool> repeats = repeats_between_steps(recording.poses);
+  if (std::find(repeats.begin(), repeats.end(), true) == repeats.end()) return std::nullopt;
+  return without(recording, &Recording::poses, "pose", repeats);
 }
 
 }  // namespace odomcalib::calib::ingest

@@ -268,7 +268,7 @@ void misread(Recording& r, Form form, const Draw& draw) {
 }
 
 void in_parts(Recording& r, Form, const Draw& draw) {
-  const auto count = static_cast<std::size_t>(between(10.9, 4.0, draw.size));
+  const auto count = static_cast<std::size_t>(std::lround(between(10.0, 4.0, draw.size)));
   std::vector<Scan> parts;
   for (const Scan& scan : r.scans) {
     const std::size_t length = scan.ranges.size() / count;
