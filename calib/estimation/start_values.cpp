@@ -69,6 +69,12 @@ std::pair<std::vector<measurement::FitData>, std::vector<measurement::FitData>> 
   return both;
 }
 
+std::size_t count_pairs(std::span<const measurement::FitData> data) {
+  std::size_t count = 0;
+  for (const measurement::FitData& one : data) count += one.pairs.size();
+  return count;
+}
+
 /// Of the pairs, s.
 double mean_time(std::span<const measurement::FitData> data) {
   double sum = 0.0, count = 0.0;
@@ -102,17 +108,19 @@ std::optional<Error> check_signs(const measurement::Dataset& rough, double delay
   const RobotDescription& robot = rough.recordings.front().robot;
   const bool of_base = rough.reference_is_base();
   for (std::size_t i = 0; data.size() > 1 && i < data.size(); ++i)
-    if (auto error = classical::check_signs(wheel_motions(data.subspan(i, 1), delay), robot, of_base)) {
+    if (auto error = classical::check_signs(whole_wheel_motions(data.subspan(i, 1), delay), robot, of_base)) {
       error->where = rough.recordings[i].name;
       return error;
     }
-  return classical::check_signs(wheel_motions(data, delay), robot, of_base);
+  return classical::check_signs(whole_wheel_motions(data, delay), robot, of_base);
 }
 
 }  // namespace
 
 ClockStart search_clock(std::span<const measurement::FitData> data) {
   const auto [early, late] = halves(data);
+  if (std::min(count_pairs(early), count_pairs(late)) < settings::kFewestOfHalf)
+    return {search_delay(data).seconds, 0.0};
   const Delay first = search_delay(early), second = search_delay(late);
   const auto contradicts = [](const std::vector<measurement::FitData>& half, const Delay& own,
                               const Delay& other) {
@@ -128,7 +136,7 @@ ClockStart search_clock(std::span<const measurement::FitData> data) {
 wheels::BaseParameters start_values(const measurement::Dataset& dataset, double delay) {
   wheels::BaseParameters start = dataset.nominal;
   if (dataset.reference_is_base()) return start;
-  const auto closed = classical::solve_closed_form(wheel_motions(dataset.data, delay));
+  const auto closed = classical::solve_closed_form(whole_wheel_motions(dataset.data, delay));
   if (!closed || !plausible(closed.value().parameters)) return start;
   const RobotDescription& robot = dataset.recordings.front().robot;
   if (!robot.lidar_pose) start.mount = closed.value().parameters.mount;

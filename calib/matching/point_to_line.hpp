@@ -47,7 +47,10 @@ struct MatchResult {
   Eigen::Vector2d weak_direction = Eigen::Vector2d::Zero();  ///< eigenvector of the smallest one
   double residual = 0.0;  ///< robust sigma of the point-to-line distances in units of their expectation
   int iterations = 0;
+  bool converged = false;
   [[nodiscard]] bool is_usable() const { return status == MatchStatus::ok; }
+  /// Usable, but for the weak direction.
+  [[nodiscard]] bool is_partial() const { return status == MatchStatus::degenerate && converged; }
 };
 
 /// Where a surface's beams end, in its frame.

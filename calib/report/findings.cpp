@@ -18,6 +18,7 @@
 #include "calib/report/report.hpp"
 #include "calib/report/report_data.hpp"
 #include "calib/report/settings.hpp"
+#include "calib/report/verdict_rules.hpp"
 #include "calib/selection/held_out.hpp"
 #include "calib/selection/lidar_trace.hpp"
 #include "calib/selection/outlier_trace.hpp"
@@ -189,6 +190,13 @@ std::vector<std::string> remarks_in(const Findings& found, const SmoothTerms& sm
   return sentences;
 }
 
+/// Of these recordings the one whose scans have the fewest readings.
+const measurement::PairSet& thinnest_scans(std::span<const measurement::PairSet> sets) {
+  return *std::min_element(sets.begin(), sets.end(), [](const auto& a, const auto& b) {
+    return a.readings * b.beams < b.readings * a.beams;
+  });
+}
+
 /// What the verdict stands on.
 Footing footing(const Findings& found, const BaseEstimate& base, const ReportData& data,
                 const std::optional<Apart>& apart, std::vector<std::string> remarks) {
@@ -208,16 +216,31 @@ Footing footing(const Findings& found, const BaseEstimate& base, const ReportDat
   for (const measurement::PairSet& set : found.fit.dataset.pair_sets) {
     footing.matched += set.pairs.size();
     footing.unmatched += set.unmatched;
+    footing.stood += set.stood;
   }
+  const measurement::PairSet& thinnest = thinnest_scans(found.fit.dataset.pair_sets);
+  footing.readings = thinnest.readings;
+  footing.beams = thinnest.beams;
   return footing;
 }
 
-/// Where no scan matched, the fit has nothing to say but that.
+/// Where hardly any scan matched, the fit has nothing to say but that.
 Error cause_of(const Error& error, std::span<const measurement::PairSet> sets) {
-  std::size_t unmatched = 0;
-  for (const measurement::PairSet& set : sets) unmatched += set.unmatched;
-  if (error.code != ErrorCode::empty || unmatched == 0) return error;
-  return {ErrorCode::refused, "none of " + std::to_string(unmatched) + " pairs of scans could be matched",
+  std::size_t matched = 0, unmatched = 0, stood = 0;
+  for (const measurement::PairSet& set : sets) {
+    matched += set.pairs.size();
+    unmatched += set.unmatched;
+    stood += set.stood;
+  }
+  const std::size_t all = matched + unmatched + stood;
+  if (unmatched + stood == 0 ||
+      static_cast<double>(matched) >= settings::kFewestMatched * static_cast<double>(all))
+    return error;
+  const measurement::PairSet& thinnest = thinnest_scans(sets);
+  const std::string some = matched == 0 ? "none" : "only " + std::to_string(matched);
+  return {ErrorCode::refused,
+          some + " of " + std::to_string(all) + " pairs of scans could be matched" +
+              few_readings(thinnest.readings, thinnest.beams) + while_it_stood(stood),
           "scan matching", "drive where the lidar sees walls on all sides, not along a corridor"};
 }
 

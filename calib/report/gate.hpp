@@ -29,6 +29,8 @@ struct Footing {
   bool converged = true;
   std::size_t matched = 0;           ///< pairs of scans, where the values come from these
   std::size_t unmatched = 0;         ///< pairs that gave no motion
+  std::size_t stood = 0;                ///< pairs left out: the wheels turned and the robot stood
+  std::size_t readings = 0, beams = 0;  ///< of a scan, medians: beams that met something, of all
   std::vector<std::string> remarks;  ///< what else a user should know: sentences
   /// Base quantities with the deviations that the motion leaves, without what is unknown of the effects;
   /// empty: those of the calibration.
