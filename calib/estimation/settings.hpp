@@ -105,9 +105,9 @@ inline constexpr double kBelievableDelay = 0.9;
 inline constexpr double kClocksApart_s = 0.06;
 /// Rounds of one reweighting each. Chosen.
 inline constexpr int kMisfitRounds = 3;
-/// Pairs of either half, of which a delay of its own says something of the clock's rate. Chosen as
-/// kFewestMotions.
-inline constexpr std::size_t kFewestOfHalf = 20;
+/// s/s, of two clocks that drift apart. Chosen as kSpansApart: beyond it, halves of few pairs found each its
+/// own delay.
+inline constexpr double kMostClockRate = 0.05;
 
 // --- Gyro witness ----------------------------------------------------------------------------------------
 

@@ -69,12 +69,6 @@ std::pair<std::vector<measurement::FitData>, std::vector<measurement::FitData>> 
   return both;
 }
 
-std::size_t count_pairs(std::span<const measurement::FitData> data) {
-  std::size_t count = 0;
-  for (const measurement::FitData& one : data) count += one.pairs.size();
-  return count;
-}
-
 /// Of the pairs, s.
 double mean_time(std::span<const measurement::FitData> data) {
   double sum = 0.0, count = 0.0;
@@ -119,8 +113,6 @@ std::optional<Error> check_signs(const measurement::Dataset& rough, double delay
 
 ClockStart search_clock(std::span<const measurement::FitData> data) {
   const auto [early, late] = halves(data);
-  if (std::min(count_pairs(early), count_pairs(late)) < settings::kFewestOfHalf)
-    return {search_delay(data).seconds, 0.0};
   const Delay first = search_delay(early), second = search_delay(late);
   const auto contradicts = [](const std::vector<measurement::FitData>& half, const Delay& own,
                               const Delay& other) {
@@ -130,7 +122,9 @@ ClockStart search_clock(std::span<const measurement::FitData> data) {
   if (std::abs(apart) < settings::kClocksApart_s || !contradicts(early, first, second) ||
       !contradicts(late, second, first))
     return {search_delay(data).seconds, 0.0};
-  return {0.5 * (first.seconds + second.seconds), apart / (mean_time(late) - mean_time(early))};
+  const double rate = apart / (mean_time(late) - mean_time(early));
+  if (std::abs(rate) > settings::kMostClockRate) return {search_delay(data).seconds, 0.0};
+  return {0.5 * (first.seconds + second.seconds), rate};
 }
 
 wheels::BaseParameters start_values(const measurement::Dataset& dataset, double delay) {

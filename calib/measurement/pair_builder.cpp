@@ -173,6 +173,15 @@ double size_of(const math::Pose& motion, const Eigen::Vector2d& open) {
   return std::hypot((way - open * open.dot(way)).norm(), settings::kStoodArm_m * motion.yaw);
 }
 
+/// By how much ways by the nominal wheels are longer than by those of a fit that may have taken standing for
+/// small wheels.
+double nominal_stretch(const RobotDescription& robot, std::span<const double> parameters) {
+  const wheels::BaseParameters fitted = vehicle::to_base(parameters);
+  const double nominal = 0.5 * (robot.left_wheel_diameter + robot.right_wheel_diameter);
+  const double stretch = nominal / (fitted.left_radius + fitted.right_radius);
+  return stretch > 1.0 ? stretch : 1.0;
+}
+
 bool has_stood(const math::Pose& rolled, const math::Pose& seen, const Eigen::Vector2d& open) {
   const double way = size_of(rolled, open);
   return way > settings::kStoodRolled_m && size_of(seen, open) < settings::kStoodShare * way;
@@ -197,6 +206,8 @@ void leave_out_standing(const std::vector<bool>& stood, PairSet& set) {
   if (set.stood == 0) return;
   set.rejected["the wheels turned and the robot stood"] = set.stood;
   set.pairs = std::move(left);
+  set.partial = static_cast<std::size_t>(std::count_if(
+      set.pairs.begin(), set.pairs.end(), [](const SensorPair& pair) { return pair.is_partial; }));
 }
 
 enum class Wanted {
@@ -207,8 +218,10 @@ enum class Wanted {
 /// Matches keyframe scans one after the other; every scan's surface is made once.
 class ScanChain {
  public:
-  ScanChain(const ScanSurfaces& scans, const PairOptions& options, Wanted wanted, PairSet& set)
-      : scans_(scans), options_(options), wanted_(wanted), set_(set) {}
+  /// @param stretch of the ways by guess, that makes them those of the nominal wheels
+  ScanChain(const ScanSurfaces& scans, const PairOptions& options, Wanted wanted, double stretch,
+            PairSet& set)
+      : scans_(scans), options_(options), wanted_(wanted), stretch_(stretch), set_(set) {}
 
   void run() {
     const auto keyframes = choose_keyframes(scans_.times(), scans_.odometry(), options_);
@@ -237,12 +250,11 @@ class ScanChain {
     const vehicle::Interval interval{scans_.times()[from], scans_.times()[to]};
     matching::MatchResult result = matched(reference, scan, guess, match);
     if (!result.is_usable() && wanted_ == Wanted::all_that_is_seen) {
-      match.guess_information = held_guess();
-      result = matched(reference, scan, guess, match);
+      result = matched_in_part(reference, scan, guess, match);
       if (is_sound_part(result)) {
         // Its errors are not those of its neighbours: they open other directions.
         set_.pairs.push_back(partial_pair(interval, result, guess));
-        stood_.push_back(has_stood(guess, result.motion, result.weak_direction));
+        stood_.push_back(has_stood(rolled(guess), result.motion, result.weak_direction));
         ++set_.partial;
         return false;
       }
@@ -252,7 +264,7 @@ class ScanChain {
       return reject("match: " + to_string(result.status));
     }
     set_.pairs.push_back({interval, result.motion, result.covariance, linked});
-    stood_.push_back(has_stood(guess, result.motion, Eigen::Vector2d::Zero()));
+    stood_.push_back(has_stood(rolled(guess), result.motion, Eigen::Vector2d::Zero()));
     return true;
   }
 
@@ -268,9 +280,27 @@ class ScanChain {
     return false;
   }
 
+  [[nodiscard]] math::Pose rolled(const math::Pose& guess) const {
+    return {stretch_ * guess.x, stretch_ * guess.y, guess.yaw};
+  }
+
+  /// Held to the guess, lest the scan slides where nothing stops it; or, where it does not fit there, from
+  /// rest: of a robot that stands although its wheels turn, the guess is far off.
+  [[nodiscard]] matching::MatchResult matched_in_part(const matching::MatchReference& reference,
+                                                      const matching::MatchReference& scan,
+                                                      const math::Pose& guess,
+                                                      matching::MatchOptions match) const {
+    match.guess_information = held_guess();
+    matching::MatchResult held = matched(reference, scan, guess, match);
+    if (held.status != matching::MatchStatus::no_overlap) return held;
+    match.guess_information.setZero();
+    return matched(reference, scan, {}, match);
+  }
+
   const ScanSurfaces& scans_;
   const PairOptions& options_;
   Wanted wanted_;
+  double stretch_;
   PairSet& set_;
   std::vector<bool> stood_;  ///< one for each pair
 };
@@ -295,11 +325,11 @@ void count_readings(std::span<const Scan> scans, PairSet& set) {
 
 /// The keyframes of a recording's scans, matched.
 PairSet pairs_of_scans(const Recording& recording, const ScanSurfaces& scans, const PairOptions& options,
-                       Wanted wanted) {
+                       double stretch, Wanted wanted) {
   PairSet set;
   set.range_noise = scans.range_noise();
   count_readings(recording.scans, set);
-  ScanChain(scans, options, wanted, set).run();
+  ScanChain(scans, options, wanted, stretch, set).run();
   return set;
 }
 
@@ -317,9 +347,10 @@ PairSet build_pairs(const Recording& recording, const vehicle::DriveModel& model
   if (!recording.poses.empty()) return pairs_from_poses(recording, model, parameters, effects);
   const ScanSurfaces scans(recording, model, parameters, effects,
                            matching::estimate_range_noise(recording.scans));
-  PairSet whole = pairs_of_scans(recording, scans, options, Wanted::whole_motions);
+  const double stretch = nominal_stretch(recording.robot, parameters);
+  PairSet whole = pairs_of_scans(recording, scans, options, stretch, Wanted::whole_motions);
   if (!has_few_whole_pairs(whole)) return whole;
-  return pairs_of_scans(recording, scans, options, Wanted::all_that_is_seen);
+  return pairs_of_scans(recording, scans, options, stretch, Wanted::all_that_is_seen);
 }
 
 }  // namespace odomcalib::calib::measurement

@@ -215,6 +215,7 @@ Footing footing(const Findings& found, const BaseEstimate& base, const ReportDat
   if (!found.fit.dataset.reference_is_scans() || found.every_scan_placed) return footing;
   for (const measurement::PairSet& set : found.fit.dataset.pair_sets) {
     footing.matched += set.pairs.size();
+    footing.partial += set.partial;
     footing.unmatched += set.unmatched;
     footing.stood += set.stood;
   }

@@ -28,6 +28,7 @@ struct Apart {
 struct Footing {
   bool converged = true;
   std::size_t matched = 0;           ///< pairs of scans, where the values come from these
+  std::size_t partial = 0;           ///< of these, those that leave a direction open
   std::size_t unmatched = 0;         ///< pairs that gave no motion
   std::size_t stood = 0;                ///< pairs left out: the wheels turned and the robot stood
   std::size_t readings = 0, beams = 0;  ///< of a scan, medians: beams that met something, of all

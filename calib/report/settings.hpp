@@ -27,6 +27,8 @@ inline constexpr double kGoodEnough = 5e-4;
 
 /// Share of the pairs that matched: of fewer the rest may say something else. Chosen.
 inline constexpr double kFewestMatched = 0.1, kWarnMatched = 0.5;
+/// The same where most pairs that matched leave a direction open. Chosen: each says less.
+inline constexpr double kFewestMatchedInPart = 0.5;
 /// Pairs that a word about wires, gears, units or lost counts needs. Chosen: fewer, and a few failed matches
 /// say the same.
 inline constexpr std::size_t kFewestForCause = 20;

@@ -106,7 +106,11 @@ double share_of_matches(const Footing& footing) {
 }
 
 /// The rest may say something else.
-bool has_few_matches(const Footing& footing) { return share_of_matches(footing) < settings::kFewestMatched; }
+bool has_few_matches(const Footing& footing) {
+  const bool is_in_part = 2 * footing.partial > footing.matched;
+  return share_of_matches(footing) <
+         (is_in_part ? settings::kFewestMatchedInPart : settings::kFewestMatched);
+}
 
 // --- Lengths ---------------------------------------------------------------------------------------------
 
@@ -407,7 +411,8 @@ std::string few_readings(std::size_t readings, std::size_t beams) {
 std::string while_it_stood(std::size_t pairs) {
   if (pairs == 0) return "";
   return ", and in " + std::to_string(pairs) +
-         " the wheels turned and the robot stood: it pushed against something, or scans came twice";
+         " the wheels turned and the scans show a robot that stood: it pushed against something, what the lidar "
+         "sees moves along with it, or scans came twice";
 }
 
 std::span<const VerdictRule> verdict_rules() { return kRules; }
