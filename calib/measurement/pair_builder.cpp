@@ -290,6 +290,7 @@ class ScanChain {
                                                       const matching::MatchReference& scan,
                                                       const math::Pose& guess,
                                                       matching::MatchOptions match) const {
+    match.wants_part = true;
     match.guess_information = held_guess();
     matching::MatchResult held = matched(reference, scan, guess, match);
     if (held.status != matching::MatchStatus::no_overlap) return held;

@@ -28,10 +28,7 @@ struct Apart {
 struct Footing {
   bool converged = true;
   std::size_t matched = 0;           ///< pairs of scans, where the values come from these
-  std::size_t partial = 0;           ///< of these, those that leave a direction open
   std::size_t unmatched = 0;         ///< pairs that gave no motion
-  std::size_t stood = 0;                ///< pairs left out: the wheels turned and the robot stood
-  std::size_t readings = 0, beams = 0;  ///< of a scan, medians: beams that met something, of all
   std::vector<std::string> remarks;  ///< what else a user should know: sentences
   /// Base quantities with the deviations that the motion leaves, without what is unknown of the effects;
   /// empty: those of the calibration.
@@ -43,6 +40,9 @@ struct Footing {
   bool of_poses = false;  ///< the reference is poses of the base
   /// What was hardly driven: classical::missing_motion.
   std::optional<std::string> missing_motion = std::nullopt;
+  std::size_t partial = 0;              ///< of the matched pairs, those that leave a direction open
+  std::size_t stood = 0;                ///< pairs left out: the wheels turned and the robot stood
+  std::size_t readings = 0, beams = 0;  ///< of a scan, medians: beams that met something, of all
 };
 
 /// Odometry over ten seconds errs by plainly more than the reference and the wheels' noise make of it.
