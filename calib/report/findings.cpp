@@ -197,6 +197,19 @@ const measurement::PairSet& thinnest_scans(std::span<const measurement::PairSet>
   });
 }
 
+/// What became of the pairs of scans.
+void count_matches(std::span<const measurement::PairSet> sets, Footing& footing) {
+  for (const measurement::PairSet& set : sets) {
+    footing.matched += set.pairs.size();
+    footing.partial += set.partial;
+    footing.unmatched += set.unmatched;
+    footing.stood += set.stood;
+  }
+  const measurement::PairSet& thinnest = thinnest_scans(sets);
+  footing.readings = thinnest.readings;
+  footing.beams = thinnest.beams;
+}
+
 /// What the verdict stands on.
 Footing footing(const Findings& found, const BaseEstimate& base, const ReportData& data,
                 const std::optional<Apart>& apart, std::vector<std::string> remarks) {
@@ -213,36 +226,18 @@ Footing footing(const Findings& found, const BaseEstimate& base, const ReportDat
   footing.measured = base.measured;
   footing.missing_motion = classical::missing_motion(measurement::wheel_motions(found.fit.dataset.data, 0.0));
   if (!found.fit.dataset.reference_is_scans() || found.every_scan_placed) return footing;
-  for (const measurement::PairSet& set : found.fit.dataset.pair_sets) {
-    footing.matched += set.pairs.size();
-    footing.partial += set.partial;
-    footing.unmatched += set.unmatched;
-    footing.stood += set.stood;
-  }
-  const measurement::PairSet& thinnest = thinnest_scans(found.fit.dataset.pair_sets);
-  footing.readings = thinnest.readings;
-  footing.beams = thinnest.beams;
+  count_matches(found.fit.dataset.pair_sets, footing);
   return footing;
 }
 
-/// Where hardly any scan matched, the fit has nothing to say but that.
+/// Where hardly any scan matched, a fit that failed has nothing to say but that.
 Error cause_of(const Error& error, std::span<const measurement::PairSet> sets) {
-  std::size_t matched = 0, unmatched = 0, stood = 0;
-  for (const measurement::PairSet& set : sets) {
-    matched += set.pairs.size();
-    unmatched += set.unmatched;
-    stood += set.stood;
-  }
-  const std::size_t all = matched + unmatched + stood;
-  if (unmatched + stood == 0 ||
-      static_cast<double>(matched) >= settings::kFewestMatched * static_cast<double>(all))
-    return error;
-  const measurement::PairSet& thinnest = thinnest_scans(sets);
-  const std::string some = matched == 0 ? "none" : "only " + std::to_string(matched);
-  return {ErrorCode::refused,
-          some + " of " + std::to_string(all) + " pairs of scans could be matched" +
-              few_readings(thinnest.readings, thinnest.beams) + while_it_stood(stood),
-          "scan matching", "drive where the lidar sees walls on all sides, not along a corridor"};
+  Footing footing;
+  count_matches(sets, footing);
+  const auto what = poor_matches(footing);
+  if (!what) return error;
+  return {ErrorCode::refused, *what, "scan matching",
+          "drive where the lidar sees walls on all sides, not along a corridor"};
 }
 
 Calibration begun(const ingest::Recordings& recordings, std::span<const measurement::PairSet> sets) {

@@ -105,11 +105,39 @@ double share_of_matches(const Footing& footing) {
   return all > 0.0 ? static_cast<double>(footing.matched) / all : 1.0;
 }
 
+bool are_in_part(const Footing& footing) { return 2 * footing.partial > footing.matched; }
+
 /// The rest may say something else.
 bool has_few_matches(const Footing& footing) {
-  const bool is_in_part = 2 * footing.partial > footing.matched;
   return share_of_matches(footing) <
-         (is_in_part ? settings::kFewestMatchedInPart : settings::kFewestMatched);
+         (are_in_part(footing) ? settings::kFewestMatchedInPart : settings::kFewestMatched);
+}
+
+/// ", with 17 of 361 readings a scan" where so many beams met nothing that it matters; else nothing.
+std::string few_readings(std::size_t readings, std::size_t beams) {
+  if (!(static_cast<double>(readings) < settings::kFewReadings * static_cast<double>(beams))) return "";
+  return ", with " + std::to_string(readings) + " of " + std::to_string(beams) + " readings a scan";
+}
+
+/// Nothing where there are none.
+std::string while_it_stood(std::size_t pairs) {
+  if (pairs == 0) return "";
+  return ", and in " + std::to_string(pairs) +
+         " the wheels turned and the scans show a robot that stood: it pushed against something, what the lidar "
+         "sees moves along with it, or scans came twice";
+}
+
+std::string matches_text(const Footing& footing) {
+  const std::string some = footing.matched == 0 ? "none" : "only " + std::to_string(footing.matched);
+  return some + " of " + std::to_string(footing.matched + footing.unmatched + footing.stood) +
+         " pairs of scans could be matched" + few_readings(footing.readings, footing.beams) +
+         while_it_stood(footing.stood);
+}
+
+std::string parts_text(const Footing& footing) {
+  return std::to_string(footing.partial) + " of " + std::to_string(footing.matched) +
+         " pairs of scans leave one direction open" + few_readings(footing.readings, footing.beams) +
+         while_it_stood(footing.stood);
 }
 
 // --- Lengths ---------------------------------------------------------------------------------------------
@@ -162,8 +190,10 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Footin
     if (length.is_determined()) continue;
     const std::string how = length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
                                                   : "is not determined";
-    found.push_back(
-        refusal(length.name + " " + how + "; to fix that, record " + motion_for(length.name, footing)));
+    const std::string way = are_in_part(footing)
+                                ? "drive where the lidar sees walls on all sides: " + parts_text(footing)
+                                : "record " + motion_for(length.name, footing);
+    found.push_back(refusal(length.name + " " + how + "; to fix that, " + way));
   }
   return found;
 }
@@ -289,11 +319,7 @@ Objections recordings_disagree(const Calibration&, const Footing& footing) {
 // --- Pairs -------------------------------------------------------------------------------------------------
 
 Objections unmatched_pairs(const Calibration&, const Footing& footing) {
-  const std::string finding = "only " + std::to_string(footing.matched) + " of " +
-                              std::to_string(footing.matched + footing.unmatched + footing.stood) +
-                              " pairs of scans could be matched" +
-                              few_readings(footing.readings, footing.beams) + while_it_stood(footing.stood) +
-                              "; drive where the lidar sees walls on all sides";
+  const std::string finding = matches_text(footing) + "; drive where the lidar sees walls on all sides";
   if (has_few_matches(footing)) return {refusal(finding)};
   if (share_of_matches(footing) < settings::kWarnMatched) return {warning(finding)};
   return {};
@@ -403,16 +429,9 @@ constexpr std::array kRules = {VerdictRule{"no_better_than_before", no_better_th
 
 }  // namespace
 
-std::string few_readings(std::size_t readings, std::size_t beams) {
-  if (!(static_cast<double>(readings) < settings::kFewReadings * static_cast<double>(beams))) return "";
-  return ", with " + std::to_string(readings) + " of " + std::to_string(beams) + " readings a scan";
-}
-
-std::string while_it_stood(std::size_t pairs) {
-  if (pairs == 0) return "";
-  return ", and in " + std::to_string(pairs) +
-         " the wheels turned and the scans show a robot that stood: it pushed against something, what the lidar "
-         "sees moves along with it, or scans came twice";
+std::optional<std::string> poor_matches(const Footing& footing) {
+  if (footing.unmatched + footing.stood > 0 && has_few_matches(footing)) return matches_text(footing);
+  return are_in_part(footing) ? std::optional(parts_text(footing)) : std::nullopt;
 }
 
 std::span<const VerdictRule> verdict_rules() { return kRules; }

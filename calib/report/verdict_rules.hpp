@@ -2,7 +2,7 @@
 // report prints too, and says what it objects to.
 #pragma once
 
-#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,11 +21,9 @@ struct VerdictRule {
   std::vector<Objection> (*objections)(const Calibration& calibration, const Footing& footing);
 };
 
-/// ", with 17 of 361 readings a scan" where so many beams met nothing that it matters; else nothing.
-std::string few_readings(std::size_t readings, std::size_t beams);
-
-/// ", and in 12 the wheels turned and the robot stood ..."; nothing where there are none.
-std::string while_it_stood(std::size_t pairs);
+/// How few pairs of scans gave a motion, or a whole one, where that alone undoes a fit; nothing where they are
+/// enough.
+std::optional<std::string> poor_matches(const Footing& footing);
 
 /// In the order in which reasons are listed.
 std::span<const VerdictRule> verdict_rules();

@@ -164,6 +164,16 @@ TEST(Gate, asks_for_more_matches_where_most_leave_a_direction_open) {
   EXPECT_EQ(judge(sound(), footing).verdict, Verdict::accepted);
 }
 
+TEST(Gate, asks_for_walls_where_lengths_are_open_because_matches_are) {
+  Footing footing{true, 60, 10, {}};
+  footing.partial = 58;
+  footing.missing_motion = "turns on the spot, both ways";
+  const GateResult gate = judge(with_track(0.4, 0.0121), footing);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("58 of 60 pairs of scans leave one direction open"), std::string::npos);
+  EXPECT_EQ(gate.reasons[0].find("turns on the spot"), std::string::npos) << gate.reasons[0];
+}
+
 TEST(Gate, names_no_cause_by_few_motions_and_says_how_few_readings_there_were) {
   for (const double track : {1.6, -0.4}) {
     Footing footing{true, 19, 0, {}};
