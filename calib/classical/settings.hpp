@@ -60,6 +60,11 @@ inline constexpr double kMostConditionOfRotation = 75.0;
 
 /// rad from its nominal value, of a lidar's yaw that is a fault of its own. Chosen: 20 degrees.
 inline constexpr double kFarYaw_rad = math::kPi / 9.0;
+/// Motions that a word about wires needs. Chosen: with fewer, two or three failed matches say the same.
+inline constexpr std::size_t kFewestForSigns = 20;
+/// Share of what is left of the rotation with the wires as they are, that other wires may leave. Chosen:
+/// exchanged sides leave all of it, and put right only noise.
+inline constexpr double kLeftByWires = 0.5;
 /// Deviations by which lengths stand clear of zero, on either side. Chosen.
 inline constexpr double kClearOfZero = 5.0;
 /// Share of what the wheels rolled, of a reference that stood. Chosen: a turn of four times the counts is

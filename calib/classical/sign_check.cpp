@@ -1,5 +1,7 @@
 #include "calib/classical/sign_check.hpp"
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -9,6 +11,7 @@
 
 #include "calib/classical/closed_form.hpp"
 #include "calib/classical/settings.hpp"
+#include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
 
 namespace odomcalib::calib::classical {
@@ -121,10 +124,38 @@ std::string text_of(const Explanation& one, bool of_base) {
   return out;
 }
 
+/// Of rotation = right gain * right - left gain * left.
+double rotation_left(std::span<const wheels::WheelMotion> motions, double left_gain, double right_gain) {
+  double sum = 0.0;
+  for (const wheels::WheelMotion& m : motions)
+    sum += std::abs(m.sensor_motion.yaw - right_gain * m.right + left_gain * m.left);
+  return sum;
+}
+
+/// Whether gains of any sign leave plainly less of the rotation than those of wheels that count ahead, left
+/// and right as they are called.
+bool other_signs_explain_more(std::span<const wheels::WheelMotion> motions) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right_side = Eigen::Vector2d::Zero();
+  for (const wheels::WheelMotion& m : motions) {
+    const Eigen::Vector2d turned(-m.left, m.right);
+    normal += turned * turned.transpose();
+    right_side += m.sensor_motion.yaw * turned;
+  }
+  const Eigen::Vector2d free = math::solve_symmetric(normal, right_side);
+  const double left_alone = std::max(right_side(0) / normal(0, 0), 0.0),
+               right_alone = std::max(right_side(1) / normal(1, 1), 0.0);
+  double as_they_are =
+      std::min(rotation_left(motions, left_alone, 0.0), rotation_left(motions, 0.0, right_alone));
+  if (free.minCoeff() >= 0.0) as_they_are = std::min(as_they_are, rotation_left(motions, free(0), free(1)));
+  return rotation_left(motions, free(0), free(1)) < settings::kLeftByWires * as_they_are;
+}
+
 }  // namespace
 
 std::optional<Error> wrong_signs(std::span<const wheels::WheelMotion> motions, const RobotDescription& robot,
                                  bool of_base) {
+  if (motions.size() < settings::kFewestForSigns || !other_signs_explain_more(motions)) return std::nullopt;
   // With wires as they should be nothing has to be put right but the heading, which is estimated.
   if (explanation(motions, Wires{}, robot, of_base)) return std::nullopt;
   const auto found = explanations(motions, robot, of_base);

@@ -157,9 +157,9 @@ class Look {
     const Direction counted = directions(recording_);
     if (counted.left && counted.right) return std::nullopt;
     const auto mended = with_direction(motions_, counted, recording_.robot);
-    const auto share = static_cast<double>(changed(motions_, mended, recording_.robot)) /
-                       std::max(static_cast<double>(motions_.size()), 1.0);
-    if (share < settings::kAgainstCounting) return std::nullopt;
+    const std::size_t against = changed(motions_, mended, recording_.robot);
+    const auto share = static_cast<double>(against) / std::max(static_cast<double>(motions_.size()), 1.0);
+    if (share < settings::kAgainstCounting || against < settings::kFewestAgainstCounting) return std::nullopt;
     const std::string whose = counted.left    ? "the right wheel"
                               : counted.right ? "the left wheel"
                                               : "both wheels";
@@ -243,6 +243,7 @@ class Look {
   }
 
   [[nodiscard]] std::optional<classical::LengthRatios> ratios(const std::vector<WheelMotion>& motions) const {
+    if (motions.size() < settings::kFewestMotions) return std::nullopt;
     const auto fit = classical::solve_closed_form(motions);
     const RobotDescription& robot = recording_.robot;
     if (!fit || !(robot.left_wheel_diameter > 0.0) || !(robot.track_width > 0.0)) return std::nullopt;

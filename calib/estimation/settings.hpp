@@ -30,6 +30,8 @@ inline constexpr double kClockStep_s = 0.1, kClockReach_s = 60.0;
 inline constexpr double kSpansApart = 0.05;
 /// Counts that a wheel may fall by and still count up only: an edge seen twice.
 inline constexpr int kEdge = 2;
+/// Such motions at least. Chosen: one match in a hundred fails.
+inline constexpr std::size_t kFewestAgainstCounting = 5;
 /// Share of the motions in which counts with a direction explain the rotation plainly better, of counts that
 /// have none. Chosen: now and then a match fails.
 inline constexpr double kAgainstCounting = 0.05;
@@ -105,6 +107,9 @@ inline constexpr double kBelievableDelay = 0.9;
 inline constexpr double kClocksApart_s = 0.06;
 /// Rounds of one reweighting each. Chosen.
 inline constexpr int kMisfitRounds = 3;
+/// s/s, of two clocks that drift apart. Chosen as kSpansApart: beyond it, halves of few pairs found each its
+/// own delay.
+inline constexpr double kMostClockRate = 0.05;
 
 // --- Clock that is set
 // -----------------------------------------------------------------------------------------

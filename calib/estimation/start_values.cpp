@@ -102,11 +102,11 @@ std::optional<Error> check_signs(const measurement::Dataset& rough, double delay
   const RobotDescription& robot = rough.recordings.front().robot;
   const bool of_base = rough.reference_is_base();
   for (std::size_t i = 0; data.size() > 1 && i < data.size(); ++i)
-    if (auto error = classical::check_signs(wheel_motions(data.subspan(i, 1), delay), robot, of_base)) {
+    if (auto error = classical::check_signs(whole_wheel_motions(data.subspan(i, 1), delay), robot, of_base)) {
       error->where = rough.recordings[i].name;
       return error;
     }
-  return classical::check_signs(wheel_motions(data, delay), robot, of_base);
+  return classical::check_signs(whole_wheel_motions(data, delay), robot, of_base);
 }
 
 }  // namespace
@@ -122,13 +122,15 @@ ClockStart search_clock(std::span<const measurement::FitData> data) {
   if (std::abs(apart) < settings::kClocksApart_s || !contradicts(early, first, second) ||
       !contradicts(late, second, first))
     return {search_delay(data).seconds, 0.0};
-  return {0.5 * (first.seconds + second.seconds), apart / (mean_time(late) - mean_time(early))};
+  const double rate = apart / (mean_time(late) - mean_time(early));
+  if (std::abs(rate) > settings::kMostClockRate) return {search_delay(data).seconds, 0.0};
+  return {0.5 * (first.seconds + second.seconds), rate};
 }
 
 wheels::BaseParameters start_values(const measurement::Dataset& dataset, double delay) {
   wheels::BaseParameters start = dataset.nominal;
   if (dataset.reference_is_base()) return start;
-  const auto closed = classical::solve_closed_form(wheel_motions(dataset.data, delay));
+  const auto closed = classical::solve_closed_form(whole_wheel_motions(dataset.data, delay));
   if (!closed || !plausible(closed.value().parameters)) return start;
   const RobotDescription& robot = dataset.recordings.front().robot;
   if (!robot.lidar_pose) start.mount = closed.value().parameters.mount;

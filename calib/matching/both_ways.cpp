@@ -39,7 +39,7 @@ void take_mean(MatchResult& result, const MatchResult& back) {
 MatchResult match_both_ways(const MatchReference& first, const MatchReference& second,
                             const math::Pose& guess, const MatchOptions& options) {
   MatchResult result = match_point_to_line(first, second.surface(), guess, options);
-  if (!result.is_usable()) return result;
+  if (!result.is_usable() && !(options.wants_part && result.is_partial())) return result;
   MatchOptions back_options = options;
   back_options.guess_information = information_of_inverse(guess, options.guess_information);
   // With a prior about the guess the way back has to begin there, too.
@@ -47,7 +47,7 @@ MatchResult match_both_ways(const MatchReference& first, const MatchReference& s
   const math::Pose start = inverse(has_prior ? guess : result.motion);
   back_options.guess_is_near = !has_prior;
   const MatchResult back = match_point_to_line(second, first.surface(), start, back_options);
-  if (back.is_usable()) take_mean(result, back);
+  if (back.status == result.status && back.converged) take_mean(result, back);
   return result;
 }
 

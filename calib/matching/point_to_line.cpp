@@ -155,6 +155,7 @@ void conclude(MatchResult& result, const Linearised& system, double scale, std::
   result.inliers = system.inliers;
   result.overlap = static_cast<double>(system.inliers) / static_cast<double>(lines);
   result.residual = scale;
+  result.converged = converged;
   const double variance = excess_variance(scale, system.inliers);
   result.information = system.information / variance;
   const Observability translation = observability(system.information);

@@ -30,6 +30,7 @@ struct MatchOptions {
   double min_eigenvalue_ratio = settings::kDegenerateRatio;
   int max_iterations = settings::kMostMatchSteps;
   bool guess_is_near = false;  ///< by a match before: the way from afar is spared
+  bool wants_part = false;  ///< a match that leaves a direction open is of use, too: both ways of it
   /// Of the guess: x, y, yaw, in 1/m^2, 1/(m rad), 1/rad^2. Zero: the guess is a start and no prior. With it
   /// a scan does not slide along a corridor.
   Eigen::Matrix3d guess_information = Eigen::Matrix3d::Zero();
@@ -47,7 +48,10 @@ struct MatchResult {
   Eigen::Vector2d weak_direction = Eigen::Vector2d::Zero();  ///< eigenvector of the smallest one
   double residual = 0.0;  ///< robust sigma of the point-to-line distances in units of their expectation
   int iterations = 0;
+  bool converged = false;
   [[nodiscard]] bool is_usable() const { return status == MatchStatus::ok; }
+  /// Usable, but for the weak direction.
+  [[nodiscard]] bool is_partial() const { return status == MatchStatus::degenerate && converged; }
 };
 
 /// Where a surface's beams end, in its frame.

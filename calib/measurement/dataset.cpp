@@ -47,6 +47,19 @@ Result<wheels::WheelTrack> track_of(const Recording& recording) {
   return track;
 }
 
+template <typename IsTaken>
+std::vector<wheels::WheelMotion> motions_of(std::span<const FitData> data, double delay, IsTaken is_taken) {
+  std::vector<wheels::WheelMotion> motions;
+  for (const FitData& d : data) {
+    const wheels::WheelTrack& track = d.model->track();
+    for (const SensorPair& pair : d.pairs)
+      if (is_taken(pair))
+        motions.push_back(
+            motion_between(track, pair.interval.begin - delay, pair.interval.end - delay, pair.motion));
+  }
+  return motions;
+}
+
 }  // namespace
 
 bool Dataset::reference_is_base() const { return !has_motions_alone() && !recordings.front().poses.empty(); }
@@ -120,14 +133,11 @@ Dataset located(Dataset dataset, std::span<const std::vector<vehicle::Fix>> fixe
 }
 
 std::vector<wheels::WheelMotion> wheel_motions(std::span<const FitData> data, double delay) {
-  std::vector<wheels::WheelMotion> motions;
-  for (const FitData& d : data) {
-    const wheels::WheelTrack& track = d.model->track();
-    for (const SensorPair& pair : d.pairs)
-      motions.push_back(
-          motion_between(track, pair.interval.begin - delay, pair.interval.end - delay, pair.motion));
-  }
-  return motions;
+  return motions_of(data, delay, [](const SensorPair&) { return true; });
+}
+
+std::vector<wheels::WheelMotion> whole_wheel_motions(std::span<const FitData> data, double delay) {
+  return motions_of(data, delay, [](const SensorPair& pair) { return !pair.is_partial; });
 }
 
 }  // namespace odomcalib::calib::measurement

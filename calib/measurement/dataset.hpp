@@ -63,4 +63,8 @@ Dataset located(Dataset dataset, std::span<const std::vector<vehicle::Fix>> fixe
 /// @param delay of the sensor against the encoders, s
 std::vector<wheels::WheelMotion> wheel_motions(std::span<const FitData> data, double delay);
 
+/// The same of those pairs alone that leave no direction open, for estimators that take all they get for
+/// measured.
+std::vector<wheels::WheelMotion> whole_wheel_motions(std::span<const FitData> data, double delay);
+
 }  // namespace odomcalib::calib::measurement

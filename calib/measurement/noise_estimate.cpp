@@ -177,10 +177,14 @@ std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseMod
   return correlation;
 }
 
+/// Of whole motions, where there are any: along an open direction the residual is none.
 double median_magnitude(const Observation& o, std::initializer_list<Eigen::Index> axes) {
+  const bool has_whole = std::any_of(o.pairs.begin(), o.pairs.end(),
+                                     [](const SensorPair& pair) { return !pair.is_partial; });
   std::vector<double> magnitudes;
-  for (const Eigen::Vector3d& r : o.residuals)
-    for (const Eigen::Index axis : axes) magnitudes.push_back(std::abs(r(axis)));
+  for (std::size_t k = 0; k < o.pairs.size(); ++k)
+    for (const Eigen::Index axis : axes)
+      if (!has_whole || !o.pairs[k].is_partial) magnitudes.push_back(std::abs(o.residuals[k](axis)));
   return math::median_of(std::move(magnitudes));
 }
 

@@ -17,6 +17,8 @@ struct SensorPair {
   Eigen::Matrix3d covariance;  ///< x, y, yaw of `motion`, as the matcher states it
   bool follows_previous =
       false;  ///< begins with the scan (or pose) the previous pair ends with: their errors are correlated
+  bool is_partial = false;  ///< along one direction the scans say nothing: `motion` is the guess there, the
+                            ///< deviation kOpenDirection_m
 };
 
 /// One recording: the model of its wheels and what the sensor saw.

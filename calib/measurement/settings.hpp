@@ -115,6 +115,26 @@ inline constexpr double kTurnedAtAll = 1e-3;
 /// The same of a pose reference, which does not drift and whose error does not grow with the baseline.
 /// Chosen: the customary keyframe spacing.
 inline constexpr double kPosePairDistance_m = 0.5, kPosePairRotation_rad = 0.5, kPosePairDuration_s = 10.0;
+/// Share of the pairs of scans with a whole motion, below which those count, too, that leave one direction
+/// open. Chosen: where most scans see walls all round, single walls add little.
+inline constexpr double kFewWholePairs = 0.8;
+/// m and rad, deviation of a guess that a match is held to where it leaves a direction open. Chosen: ten
+/// times and more what a match errs by in the directions that walls determine, so that it does not bend these.
+inline constexpr double kHeldGuess_m = 0.1, kHeldGuess_rad = 0.1;
+/// Times their expectation, that distances of a match scatter of which a part counts. Chosen: deviations
+/// that grow with the scatter stand for as much; by more, surfaces were taken for each other.
+inline constexpr double kMostScatterOfPart = 5.0;
+/// Share of what the wheels say, that scans saw of a robot that stood while its wheels turned. Chosen as
+/// classical's kHardlyMoved.
+inline constexpr double kStoodShare = 0.15;
+/// m, that wheels must have rolled to tell. Chosen: a third of a pair's.
+inline constexpr double kStoodRolled_m = 0.05;
+/// m, at which a turn counts as a way there. Chosen: half a usual track width.
+inline constexpr double kStoodArm_m = 0.15;
+/// Pairs in a row. Chosen: two last longer than any delay that is looked for, which one at a start does not.
+inline constexpr std::size_t kStoodInARow = 2;
+/// m, deviation of a motion along the direction that a match leaves open. Chosen: more than any guess errs.
+inline constexpr double kOpenDirection_m = 1.0;
 /// Share of the usable points that must find a partner. Chosen as matching's.
 inline constexpr double kPairOverlap = 0.4;
 

@@ -191,6 +191,26 @@ std::vector<std::string> remarks_in(const Findings& found, const SmoothTerms& sm
   return sentences;
 }
 
+/// Of these recordings the one whose scans have the fewest readings.
+const measurement::PairSet& thinnest_scans(std::span<const measurement::PairSet> sets) {
+  return *std::min_element(sets.begin(), sets.end(), [](const auto& a, const auto& b) {
+    return a.readings * b.beams < b.readings * a.beams;
+  });
+}
+
+/// What became of the pairs of scans.
+void count_matches(std::span<const measurement::PairSet> sets, Footing& footing) {
+  for (const measurement::PairSet& set : sets) {
+    footing.matched += set.pairs.size();
+    footing.partial += set.partial;
+    footing.unmatched += set.unmatched;
+    footing.stood += set.stood;
+  }
+  const measurement::PairSet& thinnest = thinnest_scans(sets);
+  footing.readings = thinnest.readings;
+  footing.beams = thinnest.beams;
+}
+
 /// What the verdict stands on.
 Footing footing(const Findings& found, const BaseEstimate& base, const ReportData& data,
                 const std::optional<Apart>& apart, std::vector<std::string> remarks) {
@@ -209,20 +229,18 @@ Footing footing(const Findings& found, const BaseEstimate& base, const ReportDat
   footing.measured = base.measured;
   footing.missing_motion = classical::missing_motion(measurement::wheel_motions(found.fit.dataset.data, 0.0));
   if (!found.fit.dataset.reference_is_scans() || found.every_scan_placed) return footing;
-  for (const measurement::PairSet& set : found.fit.dataset.pair_sets) {
-    footing.matched += set.pairs.size();
-    footing.unmatched += set.unmatched;
-  }
+  count_matches(found.fit.dataset.pair_sets, footing);
   return footing;
 }
 
-/// Where no scan matched, the fit has nothing to say but that.
+/// Where hardly any scan matched, a fit that failed has nothing to say but that.
 Error cause_of(const Error& error, std::span<const measurement::PairSet> sets) {
-  std::size_t unmatched = 0;
-  for (const measurement::PairSet& set : sets) unmatched += set.unmatched;
-  if (error.code != ErrorCode::empty || unmatched == 0) return error;
-  return {ErrorCode::refused, "none of " + std::to_string(unmatched) + " pairs of scans could be matched",
-          "scan matching", "drive where the lidar sees walls on all sides, not along a corridor"};
+  Footing footing;
+  count_matches(sets, footing);
+  const auto what = poor_matches(footing);
+  if (!what) return error;
+  return {ErrorCode::refused, *what, "scan matching",
+          "drive where the lidar sees walls on all sides, not along a corridor"};
 }
 
 Calibration begun(const ingest::Recordings& recordings, std::span<const measurement::PairSet> sets) {

@@ -49,6 +49,9 @@ struct Footing {
   MotionSource motion = MotionSource::ticks;  ///< what told the motion of the wheels
   /// What was hardly driven: classical::missing_motion.
   std::optional<std::string> missing_motion = std::nullopt;
+  std::size_t partial = 0;              ///< of the matched pairs, those that leave a direction open
+  std::size_t stood = 0;                ///< pairs left out: the wheels turned and the robot stood
+  std::size_t readings = 0, beams = 0;  ///< of a scan, medians: beams that met something, of all
 };
 
 /// Odometry over ten seconds errs by plainly more than the reference and the wheels' noise make of it.

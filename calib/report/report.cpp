@@ -141,7 +141,7 @@ std::vector<std::vector<double>> diameter_covariance(const Eigen::MatrixXd& cova
 std::vector<MethodResult> classical_methods(const measurement::Dataset& dataset, double delay,
                                             const classical::ClosedFormOptions& cuts,
                                             Calibration& calibration) {
-  const auto samples = wheel_motions(dataset.data, delay);
+  const auto samples = whole_wheel_motions(dataset.data, delay);
   std::vector<MethodResult> methods;
   methods.push_back(straight_method(samples, dataset.nominal));
   methods.push_back(spin_method(samples, dataset.nominal));

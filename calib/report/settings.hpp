@@ -27,6 +27,13 @@ inline constexpr double kGoodEnough = 5e-4;
 
 /// Share of the pairs that matched: of fewer the rest may say something else. Chosen.
 inline constexpr double kFewestMatched = 0.1, kWarnMatched = 0.5;
+/// The same where most pairs that matched leave a direction open. Chosen: each says less.
+inline constexpr double kFewestMatchedInPart = 0.5;
+/// Pairs that a word about wires, gears, units or lost counts needs. Chosen: fewer, and a few failed matches
+/// say the same.
+inline constexpr std::size_t kFewestForCause = 20;
+/// Share of the beams that met something, below which it is said. Chosen: half of the room.
+inline constexpr double kFewReadings = 0.5;
 /// Share of the pairs that contradict all others by more than five deviations, of a recording that a second
 /// look is worth. Measured: below 0.1 % in sound simulated recordings, 1 to 5 % in real ones.
 inline constexpr double kManyContradict = 0.1;

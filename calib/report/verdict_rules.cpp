@@ -106,6 +106,49 @@ Objections odometry_off(const Calibration&, const Footing& footing) {
                ratio / settings::kWarnResidual)};
 }
 
+// --- Matches ---------------------------------------------------------------------------------------------
+
+double share_of_matches(const Footing& footing) {
+  const auto all = static_cast<double>(footing.matched + footing.unmatched + footing.stood);
+  return all > 0.0 ? static_cast<double>(footing.matched) / all : 1.0;
+}
+
+bool are_in_part(const Footing& footing) { return 2 * footing.partial > footing.matched; }
+
+/// The rest may say something else.
+bool has_few_matches(const Footing& footing) {
+  return share_of_matches(footing) <
+         (are_in_part(footing) ? settings::kFewestMatchedInPart : settings::kFewestMatched);
+}
+
+/// ", with 17 of 361 readings a scan" where so many beams met nothing that it matters; else nothing.
+std::string few_readings(std::size_t readings, std::size_t beams) {
+  if (!(static_cast<double>(readings) < settings::kFewReadings * static_cast<double>(beams))) return "";
+  return ", with " + std::to_string(readings) + " of " + std::to_string(beams) + " readings a scan";
+}
+
+/// Nothing where there are none.
+std::string while_it_stood(std::size_t pairs) {
+  if (pairs == 0) return "";
+  return ", and in " + std::to_string(pairs) +
+         " the wheels turned and the scans show a robot that stood: it pushed against something, what the "
+         "lidar "
+         "sees moves along with it, or scans came twice";
+}
+
+std::string matches_text(const Footing& footing) {
+  const std::string some = footing.matched == 0 ? "none" : "only " + std::to_string(footing.matched);
+  return some + " of " + std::to_string(footing.matched + footing.unmatched + footing.stood) +
+         " pairs of scans could be matched" + few_readings(footing.readings, footing.beams) +
+         while_it_stood(footing.stood);
+}
+
+std::string parts_text(const Footing& footing) {
+  return std::to_string(footing.partial) + " of " + std::to_string(footing.matched) +
+         " pairs of scans leave one direction open" + few_readings(footing.readings, footing.beams) +
+         while_it_stood(footing.stood);
+}
+
 // --- Lengths ---------------------------------------------------------------------------------------------
 
 struct Length {
@@ -156,16 +199,31 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Footin
     if (length.is_determined()) continue;
     const std::string how = length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
                                                   : "is not determined";
-    found.push_back(
-        refusal(length.name + " " + how + "; to fix that, record " + motion_for(length.name, footing)));
+    const std::string way = are_in_part(footing)
+                                ? "drive where the lidar sees walls on all sides: " + parts_text(footing)
+                                : "record " + motion_for(length.name, footing);
+    found.push_back(refusal(length.name + " " + how + "; to fix that, " + way));
   }
   return found;
 }
 
+/// What is measured by few pairs may as well be a few failed matches.
+bool names_no_cause(const Footing& footing) {
+  return footing.pairs > 0 && footing.pairs < settings::kFewestForCause;
+}
+
+std::string by_so_few(const Footing& footing) {
+  return " by " + std::to_string(footing.pairs) + " measured motions only, too few to say why" +
+         few_readings(footing.readings, footing.beams) +
+         "; record longer, and drive where the lidar sees walls on all sides";
+}
+
 /// The joint fit starts at the nominal heading of the lidar: of one that looks backwards all lengths are
 /// negative.
-Objections negative_lengths(const std::vector<Length>& lengths) {
+Objections negative_lengths(const std::vector<Length>& lengths, const Footing& footing) {
   const auto negative = [](const Length& length) { return !length.is_positive(); };
+  if (names_no_cause(footing) && std::any_of(lengths.begin(), lengths.end(), negative))
+    return {refusal("a length comes out as none" + by_so_few(footing))};
   if (lengths.size() == 3 && std::all_of(lengths.begin(), lengths.end(), negative))
     return {
         refusal("the reference looks backwards by what lidar_pose says (by their yaw, of poses): all lengths "
@@ -219,9 +277,11 @@ std::optional<Objection> objection_to_deviation(const Length& length) {
   return std::nullopt;
 }
 
-std::optional<Objection> objection_to_change(const Length& length) {
+std::optional<Objection> objection_to_change(const Length& length, const Footing& footing) {
   if (!(length.nominal > 0.0)) return std::nullopt;
   const double ratio = length.quantity.value / length.nominal;
+  if (is_implausible(length) && names_no_cause(footing))
+    return refusal(length.name + " is " + percent(ratio) + " of its nominal value" + by_so_few(footing));
   if (is_implausible(length))
     return refusal(length.name + " is " + percent(ratio) +
                    " of its nominal value: check ticks per revolution, gear ratio and units");
@@ -233,24 +293,25 @@ std::optional<Objection> objection_to_change(const Length& length) {
 
 /// In the order of the parameters: what a length is not, how well it is known, how far it is from nominal.
 Objections lengths(const Calibration& calibration, const Footing& footing) {
+  if (has_few_matches(footing)) return {};  // which unmatched_pairs says
   const std::vector<Length> all = lengths_of(calibration, footing);
   if (Objections found = undetermined_lengths(all, footing); !found.empty()) return found;
-  if (Objections found = negative_lengths(all); !found.empty()) return found;
-  const auto factor = common_factor(calibration, footing, all);
+  if (Objections found = negative_lengths(all, footing); !found.empty()) return found;
+  const auto factor = names_no_cause(footing) ? std::nullopt : common_factor(calibration, footing, all);
   Objections found;
   if (factor) found.push_back(*factor);
   for (const Length& length : all) {
     if (const auto objection = objection_to_deviation(length)) found.push_back(*objection);
     if (factor) continue;
-    if (const auto objection = objection_to_change(length)) found.push_back(*objection);
+    if (const auto objection = objection_to_change(length, footing)) found.push_back(*objection);
   }
   return found;
 }
 
 /// Both may be right: what is called front decides.
-Objections lidar_yaw(const Calibration& calibration, const Footing&) {
+Objections lidar_yaw(const Calibration& calibration, const Footing& footing) {
   const auto yaw = calibration.parameter("lidar_yaw");
-  if (!yaw || !calibration.robot.lidar_pose) return {};
+  if (!yaw || !calibration.robot.lidar_pose || names_no_cause(footing)) return {};
   const double apart = math::wrap_angle(*yaw - (*calibration.robot.lidar_pose)[2]);
   if (!(std::abs(apart) > classical::settings::kFarYaw_rad)) return {};
   return {warning("lidar_yaw differs from its nominal value by " + math::fixed(apart * 180.0 / math::kPi, 0) +
@@ -267,14 +328,9 @@ Objections recordings_disagree(const Calibration&, const Footing& footing) {
 // --- Pairs -------------------------------------------------------------------------------------------------
 
 Objections unmatched_pairs(const Calibration&, const Footing& footing) {
-  const auto all = static_cast<double>(footing.matched + footing.unmatched);
-  const auto matched = static_cast<double>(footing.matched);
-  const std::string finding =
-      "only " + std::to_string(footing.matched) + " of " +
-      std::to_string(footing.matched + footing.unmatched) +
-      " pairs of scans could be matched; drive where the lidar sees walls on all sides";
-  if (matched < settings::kFewestMatched * all) return {refusal(finding)};
-  if (matched < settings::kWarnMatched * all) return {warning(finding)};
+  const std::string finding = matches_text(footing) + "; drive where the lidar sees walls on all sides";
+  if (has_few_matches(footing)) return {refusal(finding)};
+  if (share_of_matches(footing) < settings::kWarnMatched) return {warning(finding)};
   return {};
 }
 
@@ -286,6 +342,9 @@ Objections contradicting_pairs(const Calibration&, const Footing& footing) {
                               " measured motions contradict what the others say of the wheels";
   if (!(share > settings::kTooManyContradict))
     return {{false, finding, share / settings::kManyContradict, true}};
+  if (names_no_cause(footing))
+    return {refusal("motions contradict each other, " + std::to_string(footing.outliers) +
+                    " of them, measured" + by_so_few(footing))};
   return {refusal(finding +
                   ": one set of lengths does not describe this robot; check counts that get lost, slip, and "
                   "time stamps, and record again")};
@@ -448,6 +507,11 @@ constexpr std::array kRules = {VerdictRule{"much_left_out", much_left_out},
                                VerdictRule{"several_signs", several_signs}};
 
 }  // namespace
+
+std::optional<std::string> poor_matches(const Footing& footing) {
+  if (footing.unmatched + footing.stood > 0 && has_few_matches(footing)) return matches_text(footing);
+  return are_in_part(footing) ? std::optional(parts_text(footing)) : std::nullopt;
+}
 
 std::span<const VerdictRule> verdict_rules() { return kRules; }
 

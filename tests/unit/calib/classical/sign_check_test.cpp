@@ -126,5 +126,21 @@ TEST(SignCheck, leaves_four_times_the_counts_to_the_gate) {
   EXPECT_FALSE(check_signs(motions, described(kRobot), false));
 }
 
+TEST(SignCheck, accuses_nobody_by_few_motions) {
+  auto motions = recorded(kRobot, {.exchanged = true});
+  motions.resize(20);
+  EXPECT_TRUE(check_signs(motions, described(kRobot), false));
+  motions.resize(19);
+  EXPECT_FALSE(check_signs(motions, described(kRobot), false));
+}
+
+TEST(SignCheck, accuses_nobody_where_other_signs_explain_hardly_more) {
+  auto motions = recorded(kRobot, {.exchanged = true});
+  // Matches that failed: rotations that belong to no motion of the wheels.
+  for (std::size_t k = 0; k < motions.size(); ++k)
+    if (k % 4 != 0) motions[k].sensor_motion.yaw = k % 8 < 4 ? 1.5 : -1.5;
+  EXPECT_FALSE(check_signs(motions, described(kRobot), false));
+}
+
 }  // namespace
 }  // namespace odomcalib::calib::classical::sign_check_test

@@ -156,6 +156,57 @@ TEST(Gate, refuses_values_of_the_few_scans_that_happened_to_match) {
   EXPECT_EQ(judge(sound(), Footing{}).verdict, Verdict::accepted) << "places in a map, poses or tuples";
 }
 
+TEST(Gate, asks_for_more_matches_where_most_leave_a_direction_open) {
+  Footing footing{true, 45, 55, {}};
+  EXPECT_EQ(judge(sound(), footing).verdict, Verdict::accepted_with_warnings);
+  footing.partial = 30;
+  EXPECT_EQ(judge(sound(), footing).verdict, Verdict::refused);
+  footing = {true, 55, 45, {}};
+  footing.partial = 40;
+  EXPECT_EQ(judge(sound(), footing).verdict, Verdict::accepted);
+}
+
+TEST(Gate, asks_for_walls_where_lengths_are_open_because_matches_are) {
+  Footing footing{true, 60, 10, {}};
+  footing.partial = 58;
+  footing.missing_motion = "turns on the spot, both ways";
+  const GateResult gate = judge(with_track(0.4, 0.0121), footing);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("58 of 60 pairs of scans leave one direction open"), std::string::npos);
+  EXPECT_EQ(gate.reasons[0].find("turns on the spot"), std::string::npos) << gate.reasons[0];
+}
+
+TEST(Gate, names_no_cause_by_few_motions_and_says_how_few_readings_there_were) {
+  for (const double track : {1.6, -0.4}) {
+    Footing footing{true, 19, 0, {}};
+    footing.pairs = 19;
+    footing.readings = 17;
+    footing.beams = 361;
+    const GateResult few = judge(with_track(track, 1e-4), footing);
+    EXPECT_EQ(few.verdict, Verdict::refused);
+    ASSERT_EQ(few.reasons.size(), 1U);
+    EXPECT_NE(few.reasons[0].find("by 19 measured motions only"), std::string::npos) << few.reasons[0];
+    EXPECT_NE(few.reasons[0].find("17 of 361 readings"), std::string::npos) << few.reasons[0];
+    for (const char* accusation : {"ticks per revolution", "swapped", "direction of rotation"})
+      EXPECT_EQ(few.reasons[0].find(accusation), std::string::npos) << few.reasons[0];
+    footing.pairs = 20;
+    EXPECT_EQ(judge(with_track(track, 1e-4), footing).reasons[0].find("measured motions only"),
+              std::string::npos);
+  }
+}
+
+TEST(Gate, says_of_lengths_by_hardly_any_match_only_that) {
+  Footing footing{true, 5, 117, {}};
+  footing.pairs = 5;
+  footing.readings = 24;
+  footing.beams = 361;
+  footing.stood = 3;
+  const GateResult gate = judge(with_track(1.6, 1e-4), footing);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_NE(gate.reasons[0].find("only 5 of 125 pairs"), std::string::npos) << gate.reasons[0];
+  EXPECT_NE(gate.reasons[0].find("in 3 the wheels turned"), std::string::npos) << gate.reasons[0];
+}
+
 TEST(Gate, warns_of_a_residual_that_noise_does_not_explain) {
   Calibration calibration = sound();
   calibration.residual.noise_floor = {{1e-3, 1e-3, 5e-4}};
