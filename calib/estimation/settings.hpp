@@ -107,6 +107,9 @@ inline constexpr double kBelievableDelay = 0.9;
 inline constexpr double kClocksApart_s = 0.06;
 /// Rounds of one reweighting each. Chosen.
 inline constexpr int kMisfitRounds = 3;
+/// rad, from its nominal value, of a lidar that looks to the other side. Derived: a right angle, beyond which
+/// the fit's way to negative lengths is the shorter one.
+inline constexpr double kOtherSide_rad = 0.5 * math::kPi;
 /// s/s, of two clocks that drift apart. Chosen as kSpansApart: beyond it, halves of few pairs found each its
 /// own delay.
 inline constexpr double kMostClockRate = 0.05;

@@ -133,7 +133,10 @@ wheels::BaseParameters start_values(const measurement::Dataset& dataset, double 
   const auto closed = classical::solve_closed_form(whole_wheel_motions(dataset.data, delay));
   if (!closed || !plausible(closed.value().parameters)) return start;
   const RobotDescription& robot = dataset.recordings.front().robot;
-  if (!robot.lidar_pose) start.mount = closed.value().parameters.mount;
+  // From a heading on the other side the fit ends at negative lengths as easily as at the lidar's own.
+  const math::Pose& mount_found = closed.value().parameters.mount;
+  const double elsewhere = math::wrap_angle(mount_found.yaw - start.mount.yaw);
+  if (!robot.lidar_pose || std::abs(elsewhere) > settings::kOtherSide_rad) start.mount = mount_found;
   if (!(robot.left_wheel_diameter > 0.0)) {
     const math::Pose mount = start.mount;
     start = closed.value().parameters;
