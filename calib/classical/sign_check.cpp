@@ -145,7 +145,8 @@ bool other_signs_explain_more(std::span<const wheels::WheelMotion> motions) {
   const Eigen::Vector2d free = math::solve_symmetric(normal, right_side);
   const double left_alone = std::max(right_side(0) / normal(0, 0), 0.0),
                right_alone = std::max(right_side(1) / normal(1, 1), 0.0);
-  double as_they_are = std::min(rotation_left(motions, left_alone, 0.0), rotation_left(motions, 0.0, right_alone));
+  double as_they_are =
+      std::min(rotation_left(motions, left_alone, 0.0), rotation_left(motions, 0.0, right_alone));
   if (free.minCoeff() >= 0.0) as_they_are = std::min(as_they_are, rotation_left(motions, free(0), free(1)));
   return rotation_left(motions, free(0), free(1)) < settings::kLeftByWires * as_they_are;
 }

@@ -123,7 +123,8 @@ std::string few_readings(std::size_t readings, std::size_t beams) {
 std::string while_it_stood(std::size_t pairs) {
   if (pairs == 0) return "";
   return ", and in " + std::to_string(pairs) +
-         " the wheels turned and the scans show a robot that stood: it pushed against something, what the lidar "
+         " the wheels turned and the scans show a robot that stood: it pushed against something, what the "
+         "lidar "
          "sees moves along with it, or scans came twice";
 }
 
@@ -287,8 +288,7 @@ Objections lengths(const Calibration& calibration, const Footing& footing) {
   const std::vector<Length> all = lengths_of(calibration, footing);
   if (Objections found = undetermined_lengths(all, footing); !found.empty()) return found;
   if (Objections found = negative_lengths(all, footing); !found.empty()) return found;
-  const auto factor =
-      names_no_cause(footing) ? std::nullopt : common_factor(calibration, footing, all);
+  const auto factor = names_no_cause(footing) ? std::nullopt : common_factor(calibration, footing, all);
   Objections found;
   if (factor) found.push_back(*factor);
   for (const Length& length : all) {
@@ -329,8 +329,8 @@ Objections contradicting_pairs(const Calibration&, const Footing& footing) {
   const auto outliers = static_cast<double>(footing.outliers);
   if (!(outliers > settings::kTooManyContradict * static_cast<double>(footing.pairs))) return {};
   if (names_no_cause(footing))
-    return {refusal("motions contradict each other, " + std::to_string(footing.outliers) + " of them, measured" +
-                    by_so_few(footing))};
+    return {refusal("motions contradict each other, " + std::to_string(footing.outliers) +
+                    " of them, measured" + by_so_few(footing))};
   return {refusal(std::to_string(footing.outliers) + " of " + std::to_string(footing.pairs) +
                   " measured motions contradict what the others say of the wheels: one set of lengths does "
                   "not describe this robot; check counts that get lost, slip, and time stamps, and record "
