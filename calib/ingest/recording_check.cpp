@@ -143,9 +143,10 @@ std::optional<Error> no_readings(const Recording& recording) {
   if (!std::all_of(recording.scans.begin(), recording.scans.end(), is_blind)) return std::nullopt;
   const std::size_t outside = readings_outside(recording);
   if (outside == 0)
-    return Error{ErrorCode::empty, "no scan has a reading", recording.name,
-                 "check what covers the lidar, that nothing nearer than its range_min surrounds it, and that there "
-                 "are walls within its range_max"};
+    return Error{
+        ErrorCode::empty, "no scan has a reading", recording.name,
+        "check what covers the lidar, that nothing nearer than its range_min surrounds it, and that there "
+        "are walls within its range_max"};
   const Scan& scan = recording.scans.front();
   return Error{ErrorCode::format,
                "all " + std::to_string(outside) + " readings lie " + kOutsideLimits + ", " +

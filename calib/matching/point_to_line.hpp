@@ -30,7 +30,7 @@ struct MatchOptions {
   double min_eigenvalue_ratio = settings::kDegenerateRatio;
   int max_iterations = settings::kMostMatchSteps;
   bool guess_is_near = false;  ///< by a match before: the way from afar is spared
-  bool wants_part = false;  ///< a match that leaves a direction open is of use, too: both ways of it
+  bool wants_part = false;     ///< a match that leaves a direction open is of use, too: both ways of it
   /// Of the guess: x, y, yaw, in 1/m^2, 1/(m rad), 1/rad^2. Zero: the guess is a start and no prior. With it
   /// a scan does not slide along a corridor.
   Eigen::Matrix3d guess_information = Eigen::Matrix3d::Zero();

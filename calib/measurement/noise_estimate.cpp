@@ -179,8 +179,8 @@ std::array<double, 3> neighbour_correlation(const Observation& o, const NoiseMod
 
 /// Of whole motions, where there are any: along an open direction the residual is none.
 double median_magnitude(const Observation& o, std::initializer_list<Eigen::Index> axes) {
-  const bool has_whole = std::any_of(o.pairs.begin(), o.pairs.end(),
-                                     [](const SensorPair& pair) { return !pair.is_partial; });
+  const bool has_whole =
+      std::any_of(o.pairs.begin(), o.pairs.end(), [](const SensorPair& pair) { return !pair.is_partial; });
   std::vector<double> magnitudes;
   for (std::size_t k = 0; k < o.pairs.size(); ++k)
     for (const Eigen::Index axis : axes)

@@ -31,9 +31,9 @@ struct PairSet {
   std::map<std::string, std::size_t> rejected;  ///< reason -> number of pairs
   std::size_t unmatched = 0;                    ///< of these, scans that did not match
   std::size_t partial = 0;                      ///< of the pairs, those that leave a direction open
-  std::size_t stood = 0;  ///< left out: the wheels turned, the scans show a robot that stood
-  double range_noise = 0.0;                     ///< m; 0 for recordings without scans
-  std::size_t readings = 0, beams = 0;          ///< of a scan, medians: beams that met something, of all
+  std::size_t stood = 0;                ///< left out: the wheels turned, the scans show a robot that stood
+  double range_noise = 0.0;             ///< m; 0 for recordings without scans
+  std::size_t readings = 0, beams = 0;  ///< of a scan, medians: beams that met something, of all
 };
 
 /// Pairs of a recording. Scans are de-skewed and matched from guesses made with `parameters` and `effects`;

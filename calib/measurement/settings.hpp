@@ -119,7 +119,8 @@ inline constexpr double kPosePairDistance_m = 0.5, kPosePairRotation_rad = 0.5, 
 /// open. Chosen: where most scans see walls all round, single walls add little.
 inline constexpr double kFewWholePairs = 0.8;
 /// m and rad, deviation of a guess that a match is held to where it leaves a direction open. Chosen: ten
-/// times and more what a match errs by in the directions that walls determine, so that it does not bend these.
+/// times and more what a match errs by in the directions that walls determine, so that it does not bend
+/// these.
 inline constexpr double kHeldGuess_m = 0.1, kHeldGuess_rad = 0.1;
 /// Times their expectation, that distances of a match scatter of which a part counts. Chosen: deviations
 /// that grow with the scatter stand for as much; by more, surfaces were taken for each other.

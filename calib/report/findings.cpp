@@ -100,10 +100,35 @@ Agreement agreement(const Findings& found) {
   return {std::move(homogeneity), std::move(apart)};
 }
 
+/// rad, between the headings of a drive, of the recording that has the most.
+double span_of_headings(const Findings& found) {
+  const auto& [effects, fit] = found.outcome.model;
+  double widest = 0.0;
+  for (const auto& model : found.fit.dataset.models) {
+    const std::vector<math::Pose> path = model->trajectory(vehicle::as_span(fit.parameters), effects).poses();
+    const auto [right, left] = std::minmax_element(
+        path.begin(), path.end(), [](const math::Pose& a, const math::Pose& b) { return a.yaw < b.yaw; });
+    if (!path.empty()) widest = std::max(widest, left->yaw - right->yaw);
+  }
+  return widest;
+}
+
+/// Where a lidar sits shows in turns alone, by its lever: in a drive that hardly turns an error of the places
+/// that grows with the heading is taken for a lever.
+/// @return m^2, of either coordinate
+double variance_of_lever(const Findings& found) {
+  if (!found.fit.dataset.reference_is_scans()) return 0.0;
+  const double span = span_of_headings(found);
+  if (!(span > 0.0) || span > settings::kFewHeadings_rad) return 0.0;
+  const double error = settings::kErrorOfOneHeading_m / span;
+  return error * error;
+}
+
 BaseEstimate base_estimate(const Findings& found, const Agreement& agreement,
                            const estimation::GyroWitness& gyros) {
   const wheels::BaseParameters base = vehicle::to_base(vehicle::as_span(gyros.parameters));
   Eigen::MatrixXd covariance = with_scale_error(gyros.covariance, base, scale_deviation(found));
+  covariance.block<2, 2>(vehicle::kMountX, vehicle::kMountX).diagonal().array() += variance_of_lever(found);
   QuantityList measured = base_quantities(base, covariance);
   if (agreement.apart)
     covariance.topLeftCorner<vehicle::kBaseCount, vehicle::kBaseCount>().diagonal() +=

@@ -18,6 +18,11 @@ inline constexpr double kWarnChange = 0.10;
 /// Relative, of a scan matcher's metre; it depends on the room. Measured: 0.02 % over simulated rooms
 /// (tests/integration/accuracy_test.cpp).
 inline constexpr double kMatcherScale = 2e-4;
+/// rad, between the headings of a drive that hardly turns. Chosen: 20 degrees.
+inline constexpr double kFewHeadings_rad = 0.35;
+/// m, that places in a room err by for as long as the lidar looks the same way. Chosen as matching's
+/// kBeamFloor_m: unevenness of walls, and what wheels and rays are rounded to.
+inline constexpr double kErrorOfOneHeading_m = 1e-3;
 /// Relative deviation of a length that more driving hardly improves. Chosen: scan matching in one room is no
 /// better.
 inline constexpr double kGoodEnough = 5e-4;

@@ -24,8 +24,8 @@ struct VerdictRule {
   std::vector<Objection> (*objections)(const Calibration& calibration, const Footing& footing);
 };
 
-/// How few pairs of scans gave a motion, or a whole one, where that alone undoes a fit; nothing where they are
-/// enough.
+/// How few pairs of scans gave a motion, or a whole one, where that alone undoes a fit; nothing where they
+/// are enough.
 std::optional<std::string> poor_matches(const Footing& footing);
 
 /// In the order in which reasons are listed.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -72,6 +73,16 @@ TEST_F(Cases, counts_that_only_grow_are_refused_for_that_and_their_signed_twin_i
 TEST_F(Cases, beams_in_another_order_are_the_same_scan) {
   const Outcome ordered = solved("beam-order/in_time_order.jsonl.gz");
   expect_alike(solved("beam-order/reversed_order.jsonl.gz"), ordered, 1e-6);
+}
+
+TEST_F(Cases, where_the_lidar_sits_does_not_show_in_a_drive_that_hardly_turns) {
+  const Outcome outcome = solved("nearly-straight-drive/gazebo.jsonl.gz");
+  for (const auto& [name, quantity] : outcome.calibration.parameters)
+    if (name == "lidar_y") {
+      EXPECT_LT(std::abs(quantity.value), 2.0 * quantity.std);
+    } else if (name == "left_wheel_diameter" || name == "right_wheel_diameter") {
+      EXPECT_NEAR(quantity.value, 0.066, 3.0 * quantity.std);
+    }
 }
 
 TEST_F(Cases, stamps_that_are_not_in_s_are_told_by_their_unit) {

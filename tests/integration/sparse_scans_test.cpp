@@ -1,5 +1,5 @@
-// Real and simulated vacuum robots whose scans are nearly empty: what is accepted is right, what is refused is
-// refused for what is so. The files are not part of the repository.
+// Real and simulated vacuum robots whose scans are nearly empty: what is accepted is right, what is refused
+// is refused for what is so. The files are not part of the repository.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,25 +98,24 @@ TEST_P(SparseScans, are_calibrated_rightly_or_refused_for_what_is_so) {
     EXPECT_EQ(text.find(accusation), std::string::npos) << text;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Neato, SparseScans,
-    ::testing::Values(Drive{"robot-c2.bag", Robot::real, Answer::lengths},
-                      Drive{"robot-c4.bag", Robot::real, Answer::lengths},
-                      Drive{"robot-d3.db3", Robot::real, Answer::too_empty},
-                      Drive{"robot-e2.bag", Robot::simulated, Answer::too_empty},
-                      Drive{"robot-e3.bag", Robot::simulated, Answer::too_empty},
-                      Drive{"robot-e4.bag", Robot::simulated, Answer::either},
-                      Drive{"robot-e5.bag", Robot::simulated, Answer::lengths},
-                      Drive{"robot-e6.bag", Robot::simulated, Answer::lengths},
-                      Drive{"robot-h1.bag", Robot::simulated, Answer::too_empty},
-                      Drive{"robot-h2.bag", Robot::simulated, Answer::too_empty},
-                      Drive{"robot-h4.bag", Robot::simulated, Answer::lengths},
-                      Drive{"robot-i1.bag", Robot::simulated, Answer::too_empty},
-                      Drive{"robot-i2.bag", Robot::simulated, Answer::lengths},
-                      Drive{"robot-i4.bag", Robot::simulated, Answer::lengths},
-                      Drive{"robot-j2.db3", Robot::real, Answer::lengths},
-                      Drive{"robot-k2.db3", Robot::real, Answer::lengths}),
-    [](const auto& drive) { return std::string(drive.param.file).substr(6, 2); });
+INSTANTIATE_TEST_SUITE_P(Neato, SparseScans,
+                         ::testing::Values(Drive{"robot-c2.bag", Robot::real, Answer::lengths},
+                                           Drive{"robot-c4.bag", Robot::real, Answer::lengths},
+                                           Drive{"robot-d3.db3", Robot::real, Answer::too_empty},
+                                           Drive{"robot-e2.bag", Robot::simulated, Answer::too_empty},
+                                           Drive{"robot-e3.bag", Robot::simulated, Answer::too_empty},
+                                           Drive{"robot-e4.bag", Robot::simulated, Answer::either},
+                                           Drive{"robot-e5.bag", Robot::simulated, Answer::lengths},
+                                           Drive{"robot-e6.bag", Robot::simulated, Answer::lengths},
+                                           Drive{"robot-h1.bag", Robot::simulated, Answer::too_empty},
+                                           Drive{"robot-h2.bag", Robot::simulated, Answer::too_empty},
+                                           Drive{"robot-h4.bag", Robot::simulated, Answer::lengths},
+                                           Drive{"robot-i1.bag", Robot::simulated, Answer::too_empty},
+                                           Drive{"robot-i2.bag", Robot::simulated, Answer::lengths},
+                                           Drive{"robot-i4.bag", Robot::simulated, Answer::lengths},
+                                           Drive{"robot-j2.db3", Robot::real, Answer::lengths},
+                                           Drive{"robot-k2.db3", Robot::real, Answer::lengths}),
+                         [](const auto& drive) { return std::string(drive.param.file).substr(6, 2); });
 
 }  // namespace
 }  // namespace odomcalib::sparse_scans_test

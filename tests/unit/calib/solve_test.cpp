@@ -66,8 +66,9 @@ TEST(Solve, S1_14_a_corridor_is_refused_as_a_place_that_scans_cannot_tell) {
   const Calibration result = solve({&recording, 1}, {});
   EXPECT_EQ(result.verdict, Verdict::refused);
   ASSERT_FALSE(result.reasons.empty());
-  EXPECT_NE(result.reasons[0].find("pairs of scans leave one direction open; drive where the lidar sees walls"),
-            std::string::npos)
+  EXPECT_NE(
+      result.reasons[0].find("pairs of scans leave one direction open; drive where the lidar sees walls"),
+      std::string::npos)
       << result.reasons[0];
 }
 

@@ -121,7 +121,8 @@ Recording bending_recording(const std::vector<test_support::RoomWall>& walls, bo
         if (range > 5.0F) range = 0.0F;
       recording.scans.back().t = t;
     }
-    recording.ticks.push_back({t, std::llround(left / kTurns * kCounts), std::llround(right / kTurns * kCounts), 0});
+    recording.ticks.push_back(
+        {t, std::llround(left / kTurns * kCounts), std::llround(right / kTurns * kCounts), 0});
     left += (way - 0.5 * kTrack * turn) / kRadius;
     right += (way + 0.5 * kTrack * turn) / kRadius;
     if (!is_held) pose = compose(pose, math::exp_se2<double>(way, 0.0, turn));
