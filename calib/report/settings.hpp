@@ -36,7 +36,7 @@ inline constexpr double kFewestMatched = 0.1, kWarnMatched = 0.5;
 inline constexpr double kFewestMatchedInPart = 0.5;
 /// Pairs that a word about wires, gears, units or lost counts needs. Chosen: fewer, and a few failed matches
 /// say the same.
-inline constexpr std::size_t kFewestForCause = 20;
+inline constexpr double kFewestForCause = 20.0;
 /// Share of the beams that met something, below which it is said. Chosen: half of the room.
 inline constexpr double kFewReadings = 0.5;
 /// Share of the pairs that contradict all others by more than five deviations, of a recording that a second

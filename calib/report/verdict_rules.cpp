@@ -209,7 +209,7 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Footin
 
 /// What is measured by few pairs may as well be a few failed matches.
 bool names_no_cause(const Footing& footing) {
-  return footing.pairs > 0 && footing.pairs < settings::kFewestForCause;
+  return footing.pairs > 0 && static_cast<double>(footing.pairs) < settings::kFewestForCause;
 }
 
 std::string by_so_few(const Footing& footing) {
