@@ -205,9 +205,10 @@ bool names_no_cause(const Footing& footing) {
 }
 
 std::string by_so_few(const Footing& footing) {
-  return " by " + std::to_string(footing.pairs) + " measured motions only, too few to say why" +
-         few_readings(footing.readings, footing.beams) + "; record longer" +
-         (footing.of_poses ? "" : ", and drive where the lidar sees walls on all sides");
+  std::string text = " by " + std::to_string(footing.pairs) + " measured motions only, too few to say why";
+  text += few_readings(footing.readings, footing.beams) + "; record longer";
+  if (!footing.of_poses) text += ", and drive where the lidar sees walls on all sides";
+  return text;
 }
 
 /// The joint fit starts at the nominal heading of the lidar: of one that looks backwards all lengths are
