@@ -189,12 +189,13 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Footin
   Objections found;
   for (const Length& length : lengths) {
     if (length.is_determined()) continue;
-    const std::string how = length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
-                                                  : "is not determined";
-    const std::string way = are_in_part(footing)
-                                ? "drive where the lidar sees walls on all sides: " + parts_text(footing)
-                                : "record " + motion_for(length.name, footing);
-    found.push_back(refusal(length.name + " " + how + "; to fix that, " + way));
+    std::string reason = length.name + " " +
+                         (length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
+                                                : std::string("is not determined"));
+    reason += "; to fix that, ";
+    reason += are_in_part(footing) ? "drive where the lidar sees walls on all sides: " + parts_text(footing)
+                                   : "record " + motion_for(length.name, footing);
+    found.push_back(refusal(reason));
   }
   return found;
 }
