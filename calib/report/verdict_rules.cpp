@@ -197,12 +197,13 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Footin
   Objections found;
   for (const Length& length : lengths) {
     if (length.is_determined()) continue;
-    const std::string how = length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
-                                                  : "is not determined";
-    const std::string way = are_in_part(footing)
-                                ? "drive where the lidar sees walls on all sides: " + parts_text(footing)
-                                : "record " + motion_for(length.name, footing);
-    found.push_back(refusal(length.name + " " + how + "; to fix that, " + way));
+    std::string reason = length.name + " " +
+                         (length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
+                                                : std::string("is not determined"));
+    reason += "; to fix that, ";
+    reason += are_in_part(footing) ? "drive where the lidar sees walls on all sides: " + parts_text(footing)
+                                   : "record " + motion_for(length.name, footing);
+    found.push_back(refusal(reason));
   }
   return found;
 }
@@ -213,9 +214,10 @@ bool names_no_cause(const Footing& footing) {
 }
 
 std::string by_so_few(const Footing& footing) {
-  return " by " + std::to_string(footing.pairs) + " measured motions only, too few to say why" +
-         few_readings(footing.readings, footing.beams) + "; record longer" +
-         (footing.of_poses ? "" : ", and drive where the lidar sees walls on all sides");
+  std::string text = " by " + std::to_string(footing.pairs) + " measured motions only, too few to say why";
+  text += few_readings(footing.readings, footing.beams) + "; record longer";
+  if (!footing.of_poses) text += ", and drive where the lidar sees walls on all sides";
+  return text;
 }
 
 /// The joint fit starts at the nominal heading of the lidar: of one that looks backwards all lengths are
