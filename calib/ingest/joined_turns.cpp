@@ -32,6 +32,7 @@ bool goes_on(const Scan& before, const Scan& after) {
 std::size_t parts_of(const std::vector<Scan>& scans) {
   if (scans.size() < settings::kFewestParts || !has_grid(scans.front())) return 1;
   std::vector<double> widths;
+  widths.reserve(scans.size());
   for (const Scan& scan : scans) widths.push_back(width_of(scan));
   const double parts = kWholeTurn / std::max(math::median_of(std::move(widths)), 1e-6);
   if (parts < settings::kFewestPartsOfTurn) return 1;

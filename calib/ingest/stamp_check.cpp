@@ -1,8 +1,10 @@
 #include "calib/ingest/stamp_check.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "calib/ingest/settings.hpp"
+#include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"
 #include "proto/recording/stamp_units.hpp"
 
@@ -34,9 +36,12 @@ std::optional<Error> lost_digits(const Recording& recording, Form form) {
 
 std::optional<Error> clock_was_set(const Recording& recording, Form form) {
   const std::vector<double> stamps = stamps_of(recording, form);
+  if (stamps.size() < 2) return std::nullopt;
+  // Where every step is that long, times are in another unit.
+  const double usual = math::median_of(math::differences_of(stamps));
   for (std::size_t k = 1; k < stamps.size(); ++k) {
     const double step = stamps[k] - stamps[k - 1];
-    if (step < settings::kClockSet_s) continue;
+    if (step < std::max(settings::kClockSet_s, settings::kUnlikeOthers * usual)) continue;
     const bool since_boot =
         stamps[k - 1] < settings::kEarliestDate_s && stamps[k] >= settings::kEarliestDate_s;
     return Error{

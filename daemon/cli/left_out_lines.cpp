@@ -27,6 +27,7 @@ bool is_worth_a_line(const Discarded& one) {
 
 std::vector<std::string> lines_of(const std::vector<Discarded>& discarded, const auto& start) {
   std::vector<std::string> lines;
+  lines.reserve(discarded.size());
   for (const Discarded& one : discarded) lines.push_back("not used: " + to_text(one, start(one)));
   return lines;
 }

@@ -253,7 +253,8 @@ const std::vector<Mistake>& mistakes() {
       {"angles_a_third_wider", angles(4.0 / 3.0), "angles are stretched", "angle_increment"},
       {"angles_half_as_wide", angles(0.5), "0.5 times as wide as they are", "angle_increment"},
       {"lidar_turns_the_other_way", angles(-1.0), "angles run the other way", "put it right"},
-      {"lidar_backwards", angles(1.0, kPi), "looks backwards", "3.14 rad"},
+      {"lidar_backwards", angles(1.0, kPi),
+       "lidar_yaw differs from its nominal value by -?1[78][0-9] degrees", "correct lidar_pose", cli::kDone},
       {"no_return_is_4_m", no_return_is(4.0F, 4.0F), "exactly 4 m", "null says the same", cli::kDone},
       {"lidar_covered", of_scans([](Scan& s) { std::fill(s.ranges.begin(), s.ranges.end(), 0.0F); }),
        "no scan has a reading", "covers the lidar"},
@@ -261,7 +262,7 @@ const std::vector<Mistake>& mistakes() {
        [](Recording& r) {
          for (Scan& s : r.scans) s.ranges = r.scans[0].ranges;
        },
-       "hardly moved", "new each time"},
+       "same values as the one before, although the wheels turned", "lidar"},
       {"angles_missing", of_scans([](Scan& s) { s.angle_increment = 0.0; }),
        "left out, angle_min or angle_increment missing", "lidar"},
       // The robot.

@@ -41,8 +41,8 @@ void stretch_times(Samples& samples, double factor) {
 }
 
 const std::vector<Mistake> kMistakes = {
-    {"no_ticks", [](Recording& r) { r.ticks.clear(); }, ErrorCode::empty, "fewer than two tick samples",
-     "controller"},
+    {"no_ticks", [](Recording& r) { r.ticks.clear(); }, ErrorCode::empty, "fewer than two samples of ticks",
+     "motion of the wheels"},
     {"no_scans", [](Recording& r) { r.scans.clear(); }, ErrorCode::empty, "neither scans nor reference poses",
      "lidar"},
     {"one_pose",
