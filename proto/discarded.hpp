@@ -2,6 +2,7 @@
 // on.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -18,6 +19,20 @@ struct Discarded {
   std::optional<double> end = std::nullopt;    ///< s, of the last one
   std::size_t copies = 0;                      ///< of the count, what said the same as what was kept
 };
+
+/// Widens the time in which they lie.
+/// @param t s
+inline void include(Discarded& discarded, double t) {
+  discarded.begin = std::min(discarded.begin.value_or(t), t);
+  discarded.end = std::max(discarded.end.value_or(t), t);
+}
+
+/// One more of them.
+/// @param t s
+inline void count_one(Discarded& discarded, double t) {
+  ++discarded.count;
+  include(discarded, t);
+}
 
 /// What is called so was put right by a measurement, not by what the recording states.
 inline constexpr const char* kRepairedClock = "clock";

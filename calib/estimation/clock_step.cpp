@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/estimation/settings.hpp"
+#include "calib/ingest/form.hpp"
 #include "calib/math/linear_solve.hpp"
 #include "calib/math/median.hpp"
 #include "calib/math/number_text.hpp"
@@ -51,7 +52,7 @@ class Costs {
         right_side += weight * yaws_[k] * turned;
       }
       gains = math::solve_symmetric(normal, right_side);
-      bound = std::max(kGrossNoise * noise(delay_of_pair, gains), 1e-6);
+      bound = std::max(std::sqrt(settings::kGrossTurnSquared) * noise(delay_of_pair, gains), 1e-6);
     }
     return gains;
   }
@@ -61,8 +62,8 @@ class Costs {
                              const Eigen::Vector2d& gains) const {
     std::vector<double> misfits;
     for (std::size_t k = 0; k < pairs(); ++k)
-      misfits.push_back(std::abs(yaws_[k] - gains.dot(turns_[delay_of_pair[k]][k])));
-    return std::max(1.4826 * math::median_of(std::move(misfits)), settings::kLeastTurnNoise_rad);
+      misfits.push_back(yaws_[k] - gains.dot(turns_[delay_of_pair[k]][k]));
+    return std::max(math::deviation_about(0.0, std::move(misfits)), settings::kLeastTurnNoise_rad);
   }
 
   void weigh(const Eigen::Vector2d& gains, double noise) {
@@ -96,8 +97,6 @@ class Costs {
   }
 
  private:
-  static constexpr double kGrossNoise = 3.0;
-
   const std::vector<double>& delays_;
   std::vector<double> yaws_;
   std::vector<Turns> turns_;               // by delay, pair
@@ -177,19 +176,11 @@ double fine_delay(const measurement::FitData& one, std::size_t from, std::size_t
   return delays[costs.best(0, part.pairs.size()).delay];
 }
 
-const std::vector<double>& times_of(const Recording& recording, std::vector<double>& times) {
-  for (const Scan& scan : recording.scans) times.push_back(scan.t);
-  if (recording.poses.empty()) return times;
-  times.clear();
-  for (const PoseSample& pose : recording.poses) times.push_back(pose.t);
-  return times;
-}
-
 /// The first sample after the step: where the interval to the one before is least like the others, of those
 /// near.
 double first_after(const Recording& recording, const ClockStep& rough, double reach) {
-  std::vector<double> given;
-  const std::vector<double>& times = times_of(recording, given);
+  const auto form = recording.poses.empty() ? ingest::Form::scan : ingest::Form::pose;
+  const std::vector<double> times = stamps_of(recording, form);
   const double usual = math::median_of(math::differences_of(times));
   double best = rough.moment, most = 0.0;
   for (std::size_t k = 1; k < times.size(); ++k) {

@@ -67,11 +67,7 @@ class Turns {
     return std::abs(math::wrap_angle(part.angle_min - start_)) < 0.5 * width_of(part);
   }
 
-  void lose(const Scan& part) {
-    ++lost_.count;
-    if (!lost_.begin) lost_.begin = part.t;
-    lost_.end = part.t;
-  }
+  void lose(const Scan& part) { count_one(lost_, part.t); }
 
   void drop() {
     lost_.count += pieces_ - 1;

@@ -39,9 +39,7 @@ std::optional<Recording> of_one_sensor(const Recording& recording, const std::st
   Discarded others{"scan", kOfAnotherSensor, 0, one.scans.size()};
   for (const Scan& scan : one.scans) {
     if (!is_other(scan)) continue;
-    ++others.count;
-    if (!others.begin) others.begin = scan.t;
-    others.end = scan.t;
+    count_one(others, scan.t);
   }
   std::erase_if(one.scans, is_other);
   one.discarded.push_back(others);

@@ -96,9 +96,7 @@ std::optional<Recording> without(const Recording& recording, std::vector<Sample>
       (once.*stream).push_back(samples[k]);
       continue;
     }
-    ++dropped.count;
-    if (!dropped.begin) dropped.begin = samples[k].t;
-    dropped.end = samples[k].t;
+    count_one(dropped, samples[k].t);
   }
   if (dropped.count == 0) return std::nullopt;
   once.discarded.push_back(dropped);

@@ -16,11 +16,6 @@ std::string reason_in(std::span<const Recording> recordings, std::size_t k, cons
   return recordings.size() > 1 ? recordings[k].name + ": " + reason : reason;
 }
 
-void include(Discarded& one, const vehicle::Interval& interval) {
-  one.begin = std::min(one.begin.value_or(interval.begin), interval.begin);
-  one.end = std::max(one.end.value_or(interval.end), interval.end);
-}
-
 /// Whether the values of this recording stand on samples of this name.
 bool is_used(const Recording& recording, const std::string& what) {
   if (what == "scan") return recording.poses.empty();
@@ -86,7 +81,7 @@ std::vector<Discarded> outlier_pairs(const measurement::Dataset& dataset, const 
     for (const measurement::SensorPair& pair : dataset.data[k].pairs) {
       if (!fit.outlier[next++]) continue;
       ++one.count;
-      include(one, pair.interval);
+      for (const double t : {pair.interval.begin, pair.interval.end}) include(one, t);
     }
     if (one.count > 0) all.push_back(std::move(one));
   }

@@ -11,21 +11,21 @@ constexpr auto kWheels = MotionSource::wheels;
 constexpr auto kSpeeds = MotionSource::wheel_speeds;
 constexpr auto kOdometry = MotionSource::odometry;
 
-constexpr std::array kUnits = {MotionUnit{kWheels, "turns", "turns", kTurn},
-                               MotionUnit{kWheels, "degrees", "degrees", kTurn / 360.0},
-                               MotionUnit{kWheels, "m", "metres at the rim", 0.0, 1.0},
-                               MotionUnit{kWheels, "cm", "centimetres at the rim", 0.0, 1e-2},
-                               MotionUnit{kWheels, "mm", "millimetres at the rim", 0.0, 1e-3},
-                               MotionUnit{kSpeeds, "rpm", "rpm", kTurn / 60.0},
-                               MotionUnit{kSpeeds, "0.1rpm", "rpm times 10", kTurn / 600.0},
-                               MotionUnit{kSpeeds, "turns/s", "turns per second", kTurn},
-                               MotionUnit{kSpeeds, "degrees/s", "degrees per second", kTurn / 360.0},
-                               MotionUnit{kSpeeds, "m/s", "metres per second at the rim", 0.0, 1.0},
-                               MotionUnit{kSpeeds, "mm/s", "millimetres per second at the rim", 0.0, 1e-3},
-                               MotionUnit{kOdometry, "cm", "centimetres", 1e-2},
-                               MotionUnit{kOdometry, "mm", "millimetres", 1e-3},
-                               MotionUnit{kOdometry, "inches", "inches", 0.0254},
-                               MotionUnit{kOdometry, "feet", "feet", 0.3048}};
+constexpr std::array kUnits = {MotionUnit{kWheels, "turns", kTurn},
+                               MotionUnit{kWheels, "degrees", kTurn / 360.0},
+                               MotionUnit{kWheels, "metres at the rim", 0.0, 1.0},
+                               MotionUnit{kWheels, "centimetres at the rim", 0.0, 1e-2},
+                               MotionUnit{kWheels, "millimetres at the rim", 0.0, 1e-3},
+                               MotionUnit{kSpeeds, "rpm", kTurn / 60.0},
+                               MotionUnit{kSpeeds, "rpm times 10", kTurn / 600.0},
+                               MotionUnit{kSpeeds, "turns per second", kTurn},
+                               MotionUnit{kSpeeds, "degrees per second", kTurn / 360.0},
+                               MotionUnit{kSpeeds, "metres per second at the rim", 0.0, 1.0},
+                               MotionUnit{kSpeeds, "millimetres per second at the rim", 0.0, 1e-3},
+                               MotionUnit{kOdometry, "centimetres", 1e-2},
+                               MotionUnit{kOdometry, "millimetres", 1e-3},
+                               MotionUnit{kOdometry, "inches", 0.0254},
+                               MotionUnit{kOdometry, "feet", 0.3048}};
 
 }  // namespace
 

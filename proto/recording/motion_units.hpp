@@ -11,7 +11,6 @@ namespace odomcalib {
 
 struct MotionUnit {
   MotionSource source;
-  const char* name;     ///< as it is typed: "rpm", "degrees"
   const char* words;    ///< what it is called in a sentence
   double size;          ///< of the SI unit: numbers in it are 1 / size times as large; 0: see of_rim
   double of_rim = 0.0;  ///< m, of the way that the rim goes; 0: not told by its way

@@ -88,11 +88,6 @@ Values values_of(const TickSample& sample) {
 Values values_of(const WheelSample& sample) { return {sample.left, sample.right, 0.0}; }
 Values values_of(const PoseSample& sample) { return {sample.x, sample.y, sample.yaw}; }
 
-void include(Discarded& one, double t) {
-  one.begin = std::min(one.begin.value_or(t), t);
-  one.end = std::max(one.end.value_or(t), t);
-}
-
 }  // namespace
 
 RecordingBuilder::StreamClock::StreamClock() : newest(kNone) {}
@@ -191,22 +186,20 @@ void RecordingBuilder::add_wheel_speeds(WheelSample sample) {
     recording_.wheel_speeds.push_back(sample);
 }
 
-void RecordingBuilder::add_wheel(Side side, SideSample sample) {
+void RecordingBuilder::add_half(const char* what, Halves& halves, Side side, SideSample sample) {
   const auto at = static_cast<std::size_t>(side);
-  auto& stream = wheel_halves_.samples.at(at);
-  if (!is_angle(sample.value))
-    discard("wheels", kNoAngles);
-  else if (in_time("wheels", sample, wheel_halves_.clocks.at(at), stream))
-    stream.push_back(sample);
+  auto& stream = halves.samples.at(at);
+  if (in_time(what, sample, halves.clocks.at(at), stream)) stream.push_back(sample);
+}
+
+void RecordingBuilder::add_wheel(Side side, SideSample sample) {
+  if (!is_angle(sample.value)) return discard("wheels", kNoAngles);
+  add_half("wheels", wheel_halves_, side, sample);
 }
 
 void RecordingBuilder::add_wheel_speed(Side side, SideSample sample) {
-  const auto at = static_cast<std::size_t>(side);
-  auto& stream = speed_halves_.samples.at(at);
-  if (!is_wheel_speed(sample.value))
-    discard("wheel_speeds", kNoSpeeds);
-  else if (in_time("wheel_speeds", sample, speed_halves_.clocks.at(at), stream))
-    stream.push_back(sample);
+  if (!is_wheel_speed(sample.value)) return discard("wheel_speeds", kNoSpeeds);
+  add_half("wheel_speeds", speed_halves_, side, sample);
 }
 
 void RecordingBuilder::add_odometry(PoseSample sample) {

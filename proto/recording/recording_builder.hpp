@@ -71,6 +71,7 @@ class RecordingBuilder {
   bool in_time(const char* what, const Sample& sample, StreamClock& clock, std::vector<Sample>& stream);
   template <typename Sample>
   void forget_leap(const char* what, StreamClock& clock, std::vector<Sample>& stream);
+  void add_half(const char* what, Halves& halves, Side side, SideSample sample);
   [[nodiscard]] bool has_data() const;
   [[nodiscard]] Error nothing_usable(const std::string& where) const;
   template <typename Sample>
