@@ -290,6 +290,7 @@ Calibration refused(Calibration calibration, const ingest::Recordings& recording
   for (const Loss& loss : losses_of(recordings.view()))
     if (const auto refusing = too_much_left_out(loss)) calibration.reasons.push_back(refusing->reason);
   calibration.reasons.push_back(error.text());
+  calibration.next_step = calibration.reasons.size() > 1 ? kMendLosses : next_after(error);
   return calibration;
 }
 
@@ -343,6 +344,7 @@ Calibration calibrated(const Findings& found) {
       calibration, footing(found, base, data, together.apart, remarks_in(found, smooths, outliers, gyros)));
   calibration.verdict = gate.verdict;
   calibration.reasons = gate.reasons;
+  calibration.next_step = gate.next_step;
   return calibration;
 }
 

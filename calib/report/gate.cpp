@@ -28,6 +28,7 @@ Calibration refused_for(const Error& cause, Calibration calibration) {
   refused.robot = calibration.robot;
   refused.verdict = Verdict::refused;
   refused.reasons = {cause.text()};
+  refused.next_step = next_after(cause);
   refused.data = std::move(calibration.data);
   refused.discarded = std::move(calibration.discarded);
   refused.repairs = std::move(calibration.repairs);
@@ -37,14 +38,21 @@ Calibration refused_for(const Error& cause, Calibration calibration) {
 
 }  // namespace
 
+std::string next_after(const Error& error) {
+  return error.remedy.empty() ? "record again" : error.remedy + "; then solve again";
+}
+
 GateResult judge(const Calibration& calibration, const Footing& footing) {
-  std::vector<std::string> refusals, warnings;
+  GateResult refused{Verdict::refused, {}}, warned{Verdict::accepted_with_warnings, {}};
   for (const VerdictRule& rule : verdict_rules())
-    for (const Objection& objection : rule.objections(calibration, footing))
-      if (!objection.is_said) (objection.refuses ? refusals : warnings).push_back(objection.reason);
-  if (!refusals.empty()) return {Verdict::refused, refusals};
-  if (!warnings.empty()) return {Verdict::accepted_with_warnings, warnings};
-  return {Verdict::accepted, {}};
+    for (const Objection& objection : rule.objections(calibration, footing)) {
+      if (objection.is_said) continue;
+      GateResult& result = objection.refuses ? refused : warned;
+      result.reasons.push_back(objection.reason);
+      if (result.next_step.empty()) result.next_step = objection.next.empty() ? rule.next : objection.next;
+    }
+  if (!refused.reasons.empty()) return refused;
+  return warned.reasons.empty() ? GateResult{Verdict::accepted, {}} : warned;
 }
 
 Calibration explained(std::span<const Recording> recordings, Calibration calibration) {

@@ -16,6 +16,7 @@ namespace odomcalib::calib::report {
 struct GateResult {
   Verdict verdict = Verdict::refused;
   std::vector<std::string> reasons;
+  std::string next_step = {};  ///< of the first of the reasons; empty where there is none
 };
 
 /// Recordings that disagree about the robot.
@@ -60,6 +61,9 @@ bool odometry_is_off(const std::vector<DriveError>& errors);
 /// Every rule of the table in verdict_rules.hpp, in its order: refused if one refuses, for its reasons alone;
 /// accepted with warnings if one warns.
 GateResult judge(const Calibration& calibration, const Footing& footing);
+
+/// What to do about an error that refuses a calibration.
+std::string next_after(const Error& error);
 
 /// Why a calibration failed, where the recording itself shows it: only of what was refused or fits badly.
 /// Where a mistake in the recordings is likelier than a bad drive, each recording is looked at without the

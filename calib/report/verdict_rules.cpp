@@ -18,10 +18,16 @@ namespace {
 
 using Objections = std::vector<Objection>;
 
-Objection refusal(const std::string& reason) { return {true, reason}; }
-Objection warning(const std::string& reason) { return {false, reason}; }
+Objection refusal(const std::string& reason, const std::string& next = {}) {
+  return {true, reason, 0.0, false, next};
+}
+Objection warning(const std::string& reason, const std::string& next = {}) {
+  return {false, reason, 0.0, false, next};
+}
 /// @param weight times the limit of the rule
-Objection sign(const std::string& reason, double weight) { return {false, reason, weight}; }
+Objection sign(const std::string& reason, double weight, const std::string& next = {}) {
+  return {false, reason, weight, false, next};
+}
 
 std::string percent(double share) { return math::significant(100.0 * share, 3) + " %"; }
 
@@ -50,25 +56,37 @@ std::string amount(const DriveError& error, double value) {
   return error.unit == "rad" ? math::degrees_text(value) : math::millimetres_text(value);
 }
 
-bool is_no_better(const DriveError& error) {
-  if (!error.before || !error.after || !error.noise_floor) return false;
-  return error.after->value >= settings::kNoBetter * error.before->value &&
+/// The nominal values leave more than noise.
+bool could_gain(const DriveError& error) {
+  return error.before && error.after && error.noise_floor &&
          error.before->value > settings::kWorthGaining * *error.noise_floor;
 }
 
+bool is_no_better(const DriveError& error) {
+  return could_gain(error) && error.after->value >= settings::kNoBetter * error.before->value;
+}
+
+/// Of the figures that were off, none came nearer to the truth.
+bool is_nothing_gained(const std::vector<DriveError>& errors) {
+  return std::none_of(errors.begin(), errors.end(),
+                      [](const DriveError& error) { return could_gain(error) && !is_no_better(error); });
+}
+
 Objections no_better_than_before(const Calibration&, const Footing& footing) {
+  const bool refuses = is_nothing_gained(footing.drive_errors);
   Objections found;
   for (const DriveError& error : footing.drive_errors) {
     const auto words = std::find_if(kDriveFigures.begin(), kDriveFigures.end(),
                                     [&](const DriveFigure& figure) { return figure.name == error.name; });
     if (!is_no_better(error)) continue;
     found.push_back(
-        sign((words == kDriveFigures.end() ? "odometry over ten seconds" : std::string(words->words)) +
-                 " is no better than before on data that was not fitted: off by " +
-                 amount(error, error.before->value) + " with the nominal values, by " +
-                 amount(error, error.after->value) +
-                 " now; keep the old values unless something else speaks for the new ones",
-             error.after->value / (settings::kNoBetter * error.before->value)));
+        {refuses,
+         (words == kDriveFigures.end() ? "odometry over ten seconds" : std::string(words->words)) +
+             " is no better than before on data that was not fitted: off by " +
+             amount(error, error.before->value) + " with the nominal values, by " +
+             amount(error, error.after->value) + " now" +
+             (refuses ? "; nothing that was off is better: keep the old values" : ""),
+         error.after->value / (settings::kNoBetter * error.before->value)});
   }
   return found;
 }
@@ -186,6 +204,10 @@ std::vector<Length> lengths_of(const Calibration& calibration, const Footing& fo
   return lengths;
 }
 
+constexpr const char* kWalls = "drive where the lidar sees walls on all sides";
+constexpr const char* kCorrect =
+    "correct robot.toml, or the recording, as the first reason says, and solve again";
+
 std::string motion_for(const std::string& name, const Footing& footing) {
   if (footing.missing_motion) return *footing.missing_motion;
   return name == "track_width" ? "more turns on the spot, both ways"
@@ -201,9 +223,9 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Footin
                          (length.measured < 1.0 ? "is determined to " + percent(length.measured) + " only"
                                                 : std::string("is not determined"));
     reason += "; to fix that, ";
-    reason += are_in_part(footing) ? "drive where the lidar sees walls on all sides: " + parts_text(footing)
-                                   : "record " + motion_for(length.name, footing);
-    found.push_back(refusal(reason));
+    const std::string motion = "record " + motion_for(length.name, footing);
+    reason += are_in_part(footing) ? std::string(kWalls) + ": " + parts_text(footing) : motion;
+    found.push_back(refusal(reason, (are_in_part(footing) ? kWalls : motion) + ", and solve again"));
   }
   return found;
 }
@@ -234,14 +256,15 @@ Objections negative_lengths(const std::vector<Length>& lengths, const Footing& f
   Objections found;
   for (const Length& length : lengths)
     if (negative(length))
-      found.push_back(refusal(length.name +
-                              " came out as a non-positive length: left and right wheels may be swapped, or "
-                              "the lidar's direction of rotation is wrong"));
+      found.push_back(refusal(
+          length.name + " came out as a non-positive length: left and right wheels may be swapped, or "
+                        "the lidar's direction of rotation is wrong",
+          kCorrect));
   return found;
 }
 
 Objection objection_to(const classical::Cause& cause, bool refuses) {
-  return {refuses, cause.what + "; " + cause.remedy};
+  return {refuses, cause.what + "; " + cause.remedy, 0.0, false, kCorrect};
 }
 
 bool is_implausible(const Length& length) {
@@ -272,10 +295,12 @@ std::optional<Objection> common_factor(const Calibration& calibration, const Foo
 std::optional<Objection> objection_to_deviation(const Length& length) {
   if (length.measured > settings::kWarnRelativeDeviation)
     return warning(length.name + " is determined to " + percent(length.measured) +
-                   " only; a longer recording would help");
+                       " only; a longer recording would help",
+                   "record longer, and solve again");
   if (length.relative() > settings::kWarnRelativeDeviation)
     return warning(length.name + " without what was found is known to " + percent(length.relative()) +
-                   " only: how that goes on where it was not seen, this recording does not show");
+                       " only: how that goes on where it was not seen, this recording does not show",
+                   "use the lengths for motion like the recorded one only");
   return std::nullopt;
 }
 
@@ -286,10 +311,12 @@ std::optional<Objection> objection_to_change(const Length& length, const Footing
     return refusal(length.name + " is " + percent(ratio) + " of its nominal value" + by_so_few(footing));
   if (is_implausible(length))
     return refusal(length.name + " is " + percent(ratio) +
-                   " of its nominal value: check ticks per revolution, gear ratio and units");
+                       " of its nominal value: check ticks per revolution, gear ratio and units",
+                   kCorrect);
   // However far: nominal values may be somebody's guess.
   if (std::abs(ratio - 1.0) > settings::kWarnChange)
-    return sign(length.name + " differs from its nominal value by " + percent(ratio - 1.0), 1.0);
+    return sign(length.name + " differs from its nominal value by " + percent(ratio - 1.0), 1.0,
+                "measure it with a tape: where that agrees, correct robot.toml; where not, look for slip");
   return std::nullopt;
 }
 
@@ -490,23 +517,34 @@ Objections several_signs(const Calibration& calibration, const Footing& footing)
               "and what slips or moves the lidar, and record again")};
 }
 
-constexpr std::array kRules = {VerdictRule{"much_left_out", much_left_out},
-                               VerdictRule{"no_better_than_before", no_better_than_before},
-                               VerdictRule{"recordings_disagree", recordings_disagree},
-                               VerdictRule{"lengths", lengths},
-                               VerdictRule{"lidar_yaw", lidar_yaw},
-                               VerdictRule{"unmatched_pairs", unmatched_pairs},
-                               VerdictRule{"contradicting_pairs", contradicting_pairs},
-                               VerdictRule{"residual_beyond_noise", residual_beyond_noise},
-                               VerdictRule{"odometry_off", odometry_off},
-                               VerdictRule{"still_off", still_off},
-                               VerdictRule{"estimators_apart", estimators_apart},
-                               VerdictRule{"residual_in_rows", residual_in_rows},
-                               VerdictRule{"something_unexplained", something_unexplained},
-                               VerdictRule{"remarks", remarks},
-                               VerdictRule{"clock_put_right", clock_put_right},
-                               VerdictRule{"unsettled_fit", unsettled_fit},
-                               VerdictRule{"several_signs", several_signs}};
+constexpr std::array kRules = {
+    VerdictRule{"much_left_out", kMendLosses, much_left_out},
+    VerdictRule{"no_better_than_before", "keep the old values", no_better_than_before},
+    VerdictRule{"recordings_disagree",
+                "solve recordings before and after a change of tyres, load or lidar separately",
+                recordings_disagree},
+    VerdictRule{"lengths", "record more of the motion that the reason names, and solve again", lengths},
+    VerdictRule{"lidar_yaw", "correct lidar_pose in robot.toml, and solve again", lidar_yaw},
+    VerdictRule{"unmatched_pairs", "record where the lidar sees walls on all sides", unmatched_pairs},
+    VerdictRule{"contradicting_pairs", "look for lost counts, slip and wrong time stamps, and record again",
+                contradicting_pairs},
+    VerdictRule{"residual_beyond_noise", "record longer, with more kinds of motion", residual_beyond_noise},
+    VerdictRule{"odometry_off", "look for lost counts, slip, and what touches the robot, and record again",
+                odometry_off},
+    VerdictRule{"still_off",
+                "look for slip, loose wheels and a lidar that moves on its mount, and record again",
+                still_off},
+    VerdictRule{"estimators_apart", "look at \"Fitted without one fifth\" in the report", estimators_apart},
+    VerdictRule{"residual_in_rows", "look for what acts for a while: heat, a loose part, a slope",
+                residual_in_rows},
+    VerdictRule{"something_unexplained", "use the lengths for motion like the recorded one only",
+                something_unexplained},
+    VerdictRule{"remarks", "read what the reasons say of the recording", remarks},
+    VerdictRule{"clock_put_right", "let nothing set a clock while recording", clock_put_right},
+    VerdictRule{"unsettled_fit", "record longer, with more kinds of motion", unsettled_fit},
+    VerdictRule{"several_signs",
+                "check which wheels are counted, the clocks, slip, and a lidar that moves, and record again",
+                several_signs}};
 
 }  // namespace
 

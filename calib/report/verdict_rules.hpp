@@ -16,11 +16,13 @@ struct Objection {
   std::string reason;  ///< a sentence: what was found, then, after a colon or semicolon, what to do about it
   /// How many times the rule's limit was exceeded, of a sign that the model is wrong; 0: this is none.
   double weight = 0.0;
-  bool is_said = false;  ///< by a remark already: it only weighs
+  bool is_said = false;   ///< by a remark already: it only weighs
+  std::string next = {};  ///< what to do, where it differs from the rule's
 };
 
 struct VerdictRule {
   const char* name;
+  const char* next;  ///< what to do where this rule weighs most
   std::vector<Objection> (*objections)(const Calibration& calibration, const Footing& footing);
 };
 
@@ -28,7 +30,13 @@ struct VerdictRule {
 /// are enough.
 std::optional<std::string> poor_matches(const Footing& footing);
 
-/// In the order in which reasons are listed.
+/// What to do where a recording lost much.
+inline constexpr const char* kMendLosses =
+    "mend what sends these counts, stamps or scans: a second program on the topic, a counter that wraps "
+    "early, "
+    "a clock without its last digits";
+
+/// In the order in which reasons are listed: what weighs more first.
 std::span<const VerdictRule> verdict_rules();
 
 /// Why what was left out of a recording leaves too little to stand on; nullopt where it does not. Of scans or

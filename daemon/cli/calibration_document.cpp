@@ -202,10 +202,10 @@ std::string next_step(const Calibration& calibration) {
                ? "Next: odomcalibctl export --what diff_drive prints these values for ros2_control, --what "
                  "toml for other programs."
                : "Next: odomcalibctl apply writes these values to the controller.";
-  if (calibration.verdict == Verdict::refused)
-    return "Next: record again as the reasons say. Nothing was written.";
-  return "Next: usable; read the reasons first. A longer recording with more kinds of motion may remove "
-         "them.";
+  // Files of earlier versions state none.
+  const std::string step = calibration.next_step.empty() ? "do what the first reason says, and solve again"
+                                                         : calibration.next_step;
+  return "Next: " + step + (calibration.verdict == Verdict::refused ? ". Nothing was written." : ".");
 }
 
 Section parameters_section(const Calibration& calibration) {

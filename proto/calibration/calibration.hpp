@@ -95,6 +95,7 @@ struct Calibration {
   ResidualReport residual;
   Verdict verdict = Verdict::refused;
   std::vector<std::string> reasons = {"solve was not called"};
+  std::string next_step;  ///< by the weightiest reason, without a full stop; empty where there is none
   std::vector<DataUse> data;
   /// Whatever was left out before and in the fit, and what was put right or chosen. Of several recordings the
   /// reasons begin with the name of the file.

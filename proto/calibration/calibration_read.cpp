@@ -14,9 +14,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormat = "odomcalib-calibration/1";
-constexpr std::array<std::string_view, 14> kCalibrationMembers{
-    "format",  "verdict", "reasons",     "robot",    "parameters", "covariance", "linear_correction",
-    "methods", "effects", "unexplained", "residual", "data",       "discarded",  "repairs"};
+constexpr std::array<std::string_view, 15> kCalibrationMembers{
+    "format",     "verdict",           "reasons", "next_step", "robot",       "parameters",
+    "covariance", "linear_correction", "methods", "effects",   "unexplained", "residual",
+    "data",       "discarded",         "repairs"};
 constexpr int kDeepestCalibration = 64;
 
 /// One JSON value and its path. Wrong types are noted once, in `problem`, and read as empty values.
@@ -252,6 +253,7 @@ Calibration calibration(const Json& json, std::string& problem) {
   out.residual = read_residual(root["residual"]);
   out.verdict = verdict(root["verdict"]);
   out.reasons = texts(root["reasons"]);
+  out.next_step = root["next_step"].text();
   out.data = read_data_uses(root["data"]);
   out.discarded = read_discarded(root["discarded"]);
   out.repairs = read_repairs(root["repairs"]);

@@ -167,6 +167,7 @@ std::string to_json(const Calibration& calibration) {
       {"format", "odomcalib-calibration/1"},
       {"verdict", name_of(calibration.verdict)},
       {"reasons", calibration.reasons},
+      {"next_step", calibration.next_step.empty() ? Json() : Json(calibration.next_step)},
       {"robot", robot(calibration.robot)},
       {"parameters", parameters(calibration)},
       {"covariance", {{"order", calibration.covariance_order}, {"matrix", matrix(calibration.covariance)}}},

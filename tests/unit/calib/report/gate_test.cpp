@@ -91,25 +91,53 @@ TEST(Gate, warns_of_a_way_that_adds_up_to_more_than_noise) {
       << gate.reasons.front();
 }
 
-TEST(Gate, says_first_that_nothing_was_gained) {
+DriveError figure(const char* name, double before, double after) {
+  return {name, "m", 20, Bounded{before, 0.001, 0.2}, {}, Bounded{after, 0.001, 0.2}, 0.030};
+}
+
+GateResult driven(std::vector<DriveError> errors) {
   Footing footing = kFirm;
-  const auto driven = [&](double before, double after) {
-    footing.drive_errors = {{"straight_metre_length",
-                             "m",
-                             20,
-                             Bounded{before, 0.001, 0.2},
-                             {},
-                             Bounded{after, 0.001, 0.2},
-                             0.030}};
-    return judge(with_track(0.4, 0.0021), footing);
-  };
-  const GateResult gate = driven(0.0468, 0.0472);
-  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
-  ASSERT_EQ(gate.reasons.size(), 2U);
+  footing.drive_errors = std::move(errors);
+  return judge(with_track(0.4, 0.0021), footing);
+}
+
+TEST(Gate, refuses_where_nothing_that_was_off_is_better) {
+  const GateResult gate = driven({figure("straight_metre_length", 0.0468, 0.0472)});
+  EXPECT_EQ(gate.verdict, Verdict::refused);
+  ASSERT_EQ(gate.reasons.size(), 1U);
   EXPECT_NE(gate.reasons.front().find("straight metre is no better than before"), std::string::npos)
       << gate.reasons.front();
-  EXPECT_EQ(driven(0.0468, 0.0460).reasons.size(), 1U) << "better";
-  EXPECT_EQ(driven(0.0310, 0.0320).reasons.size(), 1U) << "there was nothing to gain";
+  EXPECT_EQ(gate.next_step, "keep the old values");
+  EXPECT_EQ(driven({figure("straight_metre_length", 0.0468, 0.0460)}).reasons.size(), 1U) << "better";
+  EXPECT_EQ(driven({figure("straight_metre_length", 0.0310, 0.0320)}).reasons.size(), 1U)
+      << "there was nothing to gain";
+}
+
+TEST(Gate, warns_of_one_figure_that_is_no_better_where_another_is) {
+  const GateResult gate = driven(
+      {figure("straight_metre_length", 0.0468, 0.0472), figure("open_loop_10s_position", 0.0900, 0.0400)});
+  EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+  ASSERT_EQ(gate.reasons.size(), 2U);
+  EXPECT_EQ(gate.reasons.front().find("keep the old values"), std::string::npos) << gate.reasons.front();
+}
+
+/// What to do follows from the weightiest reason, never from all of them.
+TEST(Gate, says_what_to_do_next_by_the_weightiest_reason) {
+  EXPECT_EQ(judge(sound(), kFirm).next_step, "");
+  Calibration half = with_track(0.81, 1e-4);  // which is measured from the middle
+  EXPECT_EQ(judge(half, kFirm).next_step,
+            "correct robot.toml, or the recording, as the first reason says, and solve again");
+  Footing footing = kFirm;
+  footing.remarks = {"stamps jitter"};
+  EXPECT_EQ(judge(sound(), footing).next_step, "read what the reasons say of the recording");
+  EXPECT_NE(judge(with_track(0.45, 1e-4), footing).next_step.find("measure it with a tape"),
+            std::string::npos)
+      << "lengths weigh more than remarks";
+  Calibration open = with_track(0.4, 0.1);
+  footing.missing_motion = "turns on the spot, both ways";
+  EXPECT_EQ(judge(open, footing).next_step, "record turns on the spot, both ways, and solve again");
+  EXPECT_EQ(next_after({ErrorCode::format, "yaw looks like degrees", "a.jsonl", "multiply yaw by pi / 180"}),
+            "multiply yaw by pi / 180; then solve again");
 }
 
 TEST(Gate, says_that_something_has_no_name) {
