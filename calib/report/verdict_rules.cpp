@@ -214,8 +214,19 @@ std::string motion_for(const std::string& name, const Footing& footing) {
                                : "longer straight lines, forward and backward";
 }
 
+/// What is measured by few pairs may as well be a few failed matches.
+bool names_no_cause(const Footing& footing) {
+  return footing.pairs > 0 && static_cast<double>(footing.pairs) < settings::kFewestForCause;
+}
+
 /// Of a length that the motion does not determine its value says nothing.
 Objections undetermined_lengths(const std::vector<Length>& lengths, const Footing& footing) {
+  const auto open = [](const Length& length) { return !length.is_determined(); };
+  if (names_no_cause(footing) && std::all_of(lengths.begin(), lengths.end(), open))
+    return {refusal("too short: " + std::to_string(footing.pairs) +
+                        " measured motions determine no length; record a minute or more, straight lines and "
+                        "turns on the spot, both ways",
+                    "record a minute or more, straight lines and turns on the spot, both ways")};
   Objections found;
   for (const Length& length : lengths) {
     if (length.is_determined()) continue;
@@ -228,11 +239,6 @@ Objections undetermined_lengths(const std::vector<Length>& lengths, const Footin
     found.push_back(refusal(reason, (are_in_part(footing) ? kWalls : motion) + ", and solve again"));
   }
   return found;
-}
-
-/// What is measured by few pairs may as well be a few failed matches.
-bool names_no_cause(const Footing& footing) {
-  return footing.pairs > 0 && static_cast<double>(footing.pairs) < settings::kFewestForCause;
 }
 
 std::string by_so_few(const Footing& footing) {

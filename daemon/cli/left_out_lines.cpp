@@ -21,8 +21,8 @@ std::optional<double> begin_of(const Calibration& calibration, const Discarded& 
 
 /// What is damaged in a file counts however little it is: nobody knows how much that was.
 bool is_worth_a_line(const Discarded& one) {
-  return is_loss(one) &&
-         (one.of == 0 ? one.what == "file" || one.what == "chunk" : share_of(one) >= settings::kTrace);
+  return is_loss(one) && (one.of == 0 ? one.what == "file" || one.what == "chunk" || is_end_of_file(one)
+                                      : share_of(one) >= settings::kTrace);
 }
 
 std::vector<std::string> lines_of(const std::vector<Discarded>& discarded, const auto& start) {
@@ -40,8 +40,12 @@ std::optional<double> begin_of(const Recording& recording) {
 
 std::vector<std::string> left_out_lines(const Calibration& calibration) {
   std::vector<const Discarded*> told;
+  bool has_end = false;  // which is told once, whatever it broke
   for (const Discarded& one : calibration.discarded)
-    if (is_worth_a_line(one)) told.push_back(&one);
+    if (is_worth_a_line(one) && !(has_end && is_end_of_file(one))) {
+      told.push_back(&one);
+      has_end = has_end || is_end_of_file(one);
+    }
   std::stable_sort(told.begin(), told.end(),
                    [](const auto* a, const auto* b) { return share_of(*a) > share_of(*b); });
   std::vector<std::string> lines;

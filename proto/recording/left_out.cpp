@@ -52,6 +52,20 @@ std::string percent_text(double share) {
 
 }  // namespace
 
+bool is_end_of_file(const Discarded& one) { return one.reason.ends_with("cut off"); }
+
+void tell_where_it_ends(Recording& recording) {
+  std::optional<double> last;
+  const auto look = [&](const auto& samples) {
+    if (!samples.empty()) last = std::max(last.value_or(samples.back().t), samples.back().t);
+  };
+  look(recording.ticks);
+  look(recording.scans);
+  look(recording.poses);
+  for (Discarded& one : recording.discarded)
+    if (last && is_end_of_file(one) && !one.begin) include(one, *last);
+}
+
 std::vector<Discarded> left_out_of(const Recording& recording) {
   std::vector<Discarded> all = recording.discarded;
   for (Discarded& one : all)
@@ -62,16 +76,21 @@ std::vector<Discarded> left_out_of(const Recording& recording) {
 bool is_loss(const Discarded& one) {
   const bool is_replaced = one.reason.ends_with(kFinerDecides) || one.reason.ends_with(kOfSecondProgram) ||
                            one.reason.ends_with(kOfAnotherSensor);
-  return one.count > one.copies && kind_of(one) != nullptr && !is_replaced;
+  return one.count > one.copies && (kind_of(one) != nullptr || is_end_of_file(one)) && !is_replaced;
 }
 
-bool is_loss_of_motion(const Discarded& one) { return is_loss(one) && kind_of(one)->motion; }
+bool is_loss_of_motion(const Discarded& one) {
+  const Kind* kind = kind_of(one);
+  return is_loss(one) && kind != nullptr && kind->motion;
+}
 
 double share_of(const Discarded& one) {
   return one.of > 0 ? static_cast<double>(one.count - one.copies) / static_cast<double>(one.of) : 0.0;
 }
 
 std::string to_text(const Discarded& one, std::optional<double> start) {
+  if (is_end_of_file(one) && one.begin)
+    return "the file from " + seconds_text(*one.begin - start.value_or(0.0)) + " s on: " + one.reason;
   const Kind* kind = kind_of(one);
   std::string text = std::to_string(one.count);
   if (one.of > 0) text += " of " + std::to_string(one.of);

@@ -13,6 +13,12 @@ namespace odomcalib {
 /// Name of what lies between two samples of counts.
 inline constexpr const char* kInterval = "interval";
 
+/// Whether the file ends in it: whatever followed is gone, and nobody knows how much that was.
+bool is_end_of_file(const Discarded& one);
+
+/// Gives what the file ends in the time of the last sample that could be read.
+void tell_where_it_ends(Recording& recording);
+
 /// Of a recording, with ways between counts by their own name.
 std::vector<Discarded> left_out_of(const Recording& recording);
 
@@ -26,7 +32,7 @@ bool is_loss_of_motion(const Discarded& one);
 /// Share of what there was, without copies of what was kept; 0 where that is not known.
 double share_of(const Discarded& one);
 
-/// "363 of 1916 intervals between counts (19 %), from 3.2 to 71 s: REASON"
+/// "363 of 1916 intervals between counts (19 %), from 3.2 to 71 s: REASON"; "the file from 71 s on: cut off"
 /// @param start s, of the recording: times are told from there on
 std::string to_text(const Discarded& one, std::optional<double> start);
 

@@ -1,6 +1,7 @@
 #include "proto/recording/recording.hpp"
 
 #include "proto/file_bytes.hpp"
+#include "proto/recording/left_out.hpp"
 #include "proto/recording/recording_readers.hpp"
 #include "proto/recording/ros/choice.hpp"
 #include "proto/recording/ros/containers.hpp"
@@ -138,6 +139,7 @@ Result<Recording> read_recording_bytes(const std::string& bytes, const std::file
   if (!recording) return recording;
   recording.value().name = name.filename().string();
   recording.value().sha256 = sha256_hex(bytes);
+  tell_where_it_ends(recording.value());
   return recording;
 }
 
@@ -165,6 +167,7 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDe
   const auto name = folder.has_filename() ? folder : folder.parent_path();
   recording.value().name = name.filename().string();
   recording.value().sha256 = sha256_hex(hashes);
+  tell_where_it_ends(recording.value());
   return recording;
 }
 

@@ -121,6 +121,19 @@ TEST(Gate, warns_of_one_figure_that_is_no_better_where_another_is) {
   EXPECT_EQ(gate.reasons.front().find("keep the old values"), std::string::npos) << gate.reasons.front();
 }
 
+TEST(Gate, says_of_a_recording_that_determines_nothing_that_it_is_too_short) {
+  Calibration nothing = sound();
+  for (auto& [name, quantity] : nothing.parameters)
+    if (!name.starts_with("lidar_")) quantity.std = 0.2 * quantity.value;
+  Footing footing = kFirm;
+  footing.pairs = 19;
+  const GateResult gate = judge(nothing, footing);
+  ASSERT_EQ(gate.reasons.size(), 1U);
+  EXPECT_EQ(gate.reasons.front().find("too short: 19 measured motions"), 0U) << gate.reasons.front();
+  footing.pairs = 20;
+  EXPECT_EQ(judge(nothing, footing).reasons.size(), 3U) << "long enough to say of each what is missing";
+}
+
 /// What to do follows from the weightiest reason, never from all of them.
 TEST(Gate, says_what_to_do_next_by_the_weightiest_reason) {
   EXPECT_EQ(judge(sound(), kFirm).next_step, "");

@@ -15,6 +15,8 @@ TEST(LeftOut, is_told_with_its_share_and_its_times_from_the_start) {
   EXPECT_EQ(to_text(kBroken, 1000.0),
             std::string("363 of 1916 intervals between counts (19 %), from 3.2 to 71 s: ") + kUncontinued);
   EXPECT_EQ(to_text({"file", "cut off", 1}, std::nullopt), "1 file: cut off");
+  EXPECT_EQ(to_text({"file", "compressed data is cut off", 1, 0, 1071.2, 1071.2}, 1000.0),
+            "the file from 71 s on: compressed data is cut off");
   EXPECT_EQ(to_text({"scan", "no ranges", 2, 8, 5.0, 5.0}, 1.0), "2 of 8 scans (25 %), at 4.0 s: no ranges");
   EXPECT_EQ(to_text({"robot", "differs", 1}, std::nullopt), "1 robot: differs") << "a kind without a name";
 }
@@ -26,6 +28,9 @@ TEST(LeftOut, is_a_loss_where_a_calibration_would_have_used_it) {
   EXPECT_FALSE(is_loss_of_motion({"scan", kRepeatedStamp, 1, 9}));
   EXPECT_FALSE(is_loss({"beam", kOutsideLimits, 5, 9}));
   EXPECT_FALSE(is_loss({"message", "/tf was not taken", 5}));
+  EXPECT_FALSE(is_loss({"event", "unknown fingerprint 0x1", 5}));
+  EXPECT_TRUE(is_loss({"event", "cut off", 1})) << "nobody knows how much followed";
+  EXPECT_FALSE(is_loss_of_motion({"event", "cut off", 1}));
   EXPECT_FALSE(is_loss({"odometry", std::string("ticks") + kFinerDecides, 9, 9}));
   EXPECT_FALSE(is_loss({"wheels", std::string("always 0, 0") + kOfSecondProgram, 9, 20}));
   EXPECT_FALSE(is_loss({"scan", kOfAnotherSensor, 9, 20}));

@@ -287,6 +287,10 @@ TEST(Recording, uses_what_can_be_unpacked_of_a_cut_off_or_damaged_gzip_file) {
   EXPECT_GT(cut.ticks.size(), 100U);
   EXPECT_LT(cut.ticks.size(), 2000U);
   EXPECT_EQ(discarded(cut, "file", "compressed data is cut off"), 1U) << list_discarded(cut);
+  for (const Discarded& one : cut.discarded) {
+    if (one.what != "file") continue;
+    EXPECT_EQ(one.begin, cut.ticks.back().t) << "where the file ends";
+  }
   packed[packed.size() - 6] = static_cast<char>(packed[packed.size() - 6] ^ 1);  // check sum
   const auto damaged = value_of(read_text(packed));
   EXPECT_EQ(discarded(damaged, "file", "compressed data is damaged"), 1U);
