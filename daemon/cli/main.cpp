@@ -11,7 +11,7 @@
 #include "daemon/cli/interrupts.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "daemon/config/large_pages.hpp"
-#include "daemon/config/near_miss.hpp"
+#include "proto/near_miss.hpp"
 #include "odomcalib_version.hpp"
 
 namespace {

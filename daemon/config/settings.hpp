@@ -30,9 +30,4 @@ inline constexpr double kShortestCountdown_s = 1.0;
 /// MB of recordings that are kept. Chosen: one recording; a terabyte.
 inline constexpr Bounds kRecordings_MB{1.0, 1e6};
 
-/// Letters for each of which one may be wrong in a key that is still recognised. Chosen: "trackwidht" is.
-inline constexpr std::size_t kLettersPerError = 3;
-/// Letters. Derived: no key is longer; it bounds the work on hostile files.
-inline constexpr std::size_t kLongestKey = 64;
-
 }  // namespace odomcalib::config::settings

@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "daemon/config/near_miss.hpp"
+#include "proto/near_miss.hpp"
 #include "proto/file_bytes.hpp"
 
 namespace odomcalib {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/config/near_miss.hpp"
+#include "proto/near_miss.hpp"
 #include "tests/value_of.hpp"
 
 namespace odomcalib::robot_file_test {

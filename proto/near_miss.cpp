@@ -1,14 +1,15 @@
-#include "daemon/config/near_miss.hpp"
+#include "proto/near_miss.hpp"
 
 #include <algorithm>
 #include <vector>
 
-#include "daemon/config/settings.hpp"
-
 namespace odomcalib {
 namespace {
 
-namespace settings = config::settings;
+/// Letters for each of which one may be wrong in a word that is still recognised. Chosen: "trackwidht" is.
+constexpr std::size_t kLettersPerError = 3;
+/// Letters. Derived: no key is longer; it bounds the work on hostile files.
+constexpr std::size_t kLongestWord = 64;
 
 std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
@@ -33,9 +34,9 @@ std::size_t distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::optional<std::string> near_miss(const std::string& word, const std::set<std::string>& known) {
-  if (word.empty() || word.size() > settings::kLongestKey) return std::nullopt;
+  if (word.empty() || word.size() > kLongestWord) return std::nullopt;
   std::optional<std::string> nearest;
-  std::size_t least = word.size() / settings::kLettersPerError + 1;
+  std::size_t least = word.size() / kLettersPerError + 1;
   for (const std::string& candidate : known) {
     const bool elsewhere = last_part(candidate) == last_part(word);
     const std::size_t errors = elsewhere ? 0 : distance(word, candidate);
