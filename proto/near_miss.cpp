@@ -10,6 +10,8 @@ namespace {
 constexpr std::size_t kLettersPerError = 3;
 /// Letters. Derived: no key is longer; it bounds the work on hostile files.
 constexpr std::size_t kLongestWord = 64;
+/// Letters of a word that may stand for a longer one. Chosen: "track" for "track_width", not "l" for "lidar".
+constexpr std::size_t kShortestBegin = 4;
 
 std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
 
@@ -39,7 +41,8 @@ std::optional<std::string> near_miss(const std::string& word, const std::set<std
   std::size_t least = word.size() / kLettersPerError + 1;
   for (const std::string& candidate : known) {
     const bool elsewhere = last_part(candidate) == last_part(word);
-    const std::size_t errors = elsewhere ? 0 : distance(word, candidate);
+    const bool begins = word.size() >= kShortestBegin && candidate.starts_with(word + "_");
+    const std::size_t errors = elsewhere ? 0 : begins ? 1 : distance(word, candidate);
     if (errors >= least) continue;
     least = errors;
     nearest = candidate;

@@ -4,6 +4,7 @@
 
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/lidar_effect.hpp"
+#include "proto/near_miss.hpp"
 
 namespace odomcalib::calib::terms {
 namespace {
@@ -16,6 +17,11 @@ Error wrong(const std::string& what) {
   std::string remedy = "auto, none, or of these, separated by commas:";
   for (const std::string& name : effect_names()) remedy += " " + name;
   return {ErrorCode::usage, what, "--effects", remedy};
+}
+
+std::string meant(const std::string& name, const std::vector<std::string>& known) {
+  const auto word = near_miss(name, {known.begin(), known.end()});
+  return word ? ", did you mean \"" + *word + "\"?" : "";
 }
 
 }  // namespace
@@ -52,7 +58,8 @@ std::optional<Error> wrong_effects(const std::vector<std::string>& wanted) {
     const std::string& name = wanted[i];
     const bool alone = name == "auto" || name == "none";
     if (alone && wanted.size() > 1) return wrong("\"" + name + "\" stands alone");
-    if (!alone && !is_among(known, name)) return wrong("there is no effect named \"" + name + "\"");
+    if (!alone && !is_among(known, name))
+      return wrong("there is no effect named \"" + name + "\"" + meant(name, known));
     if (is_among({wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(i)}, name))
       return wrong("\"" + name + "\" is named twice");
   }

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/help.hpp"
 #include "daemon/cli/interrupts.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "daemon/config/large_pages.hpp"
-#include "proto/near_miss.hpp"
 #include "odomcalib_version.hpp"
+#include "proto/near_miss.hpp"
 
 namespace {
 
@@ -27,7 +28,6 @@ void add_common_options(CLI::App& app, odomcalib::cli::Session& session, std::st
       "--no-pager", [] {}, "accepted for scripts; no pager is ever started");
   app.set_version_flag("--version", odomcalib::kVersion);
   app.add_option("--socket", session.socket, "control socket of the daemon")->capture_default_str();
-  app.footer(odomcalib::cli::exit_status_help());
 }
 
 JsonMode mode_of(const std::string& text) {
@@ -79,6 +79,7 @@ int run(int argc, char** argv) {
   CLI::App app{"Calibrates the odometry of differential-drive robots.", "odomcalibctl"};
   odomcalib::cli::Session session;
   std::string json = "off";
+  odomcalib::cli::lay_out_help(app);
   add_common_options(app, session, json);
   app.fallthrough();
   app.require_subcommand(0, 1);

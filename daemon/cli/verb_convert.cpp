@@ -36,7 +36,17 @@ void print_summary(const Recording& recording, const std::string& out) {
   for (const std::string& line : evidence_lines(recording)) print_line("  " + line);
 }
 
+/// Whoever asks for a bag would find JSON in it.
+std::optional<Error> other_form(const std::string& out) {
+  for (const char* suffix : {".bag", ".db3", ".mcap", ".lcm", ".log", ".csv", ".g2o"})
+    if (out.ends_with(suffix))
+      return Error{ErrorCode::usage, "convert writes JSON Lines only", out,
+                   "name the file .jsonl, or .jsonl.gz to pack it"};
+  return std::nullopt;
+}
+
 int convert_recording(const ConvertOptions& options, const Session& session) {
+  if (const auto error = other_form(options.out)) return report_error(*error, session.json);
   if (const auto files = check_outputs({{"--out", options.out}}, {{"the recording", options.recording},
                                                                   {"--robot", options.reading.robot_file}});
       !files)

@@ -7,6 +7,7 @@
 #include "drivers/decode/decode.hpp"
 #include "odomcalib_paths.hpp"
 #include "proto/file_bytes.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -18,6 +19,10 @@ struct DecodeOptions {
 int decode_file(const DecodeOptions& options, const Session& session) {
   const auto bytes = read_file_bytes(options.file);
   if (!bytes) return report_error(bytes.error(), session.json);
+  if (is_recording(bytes.value()))
+    return report_error({ErrorCode::format, "is a recording, not what a device sent", options.file,
+                         "odomcalibctl solve, predict and convert read it"},
+                        session.json);
   const auto lines = [&] {
     const Meanwhile shown("decoding " + options.file);
     return drivers::decode(options.driver, bytes.value(), options.profiles, options.file);
@@ -36,7 +41,8 @@ void add_decode(CLI::App& app, Session& session) {
                    "a lidar type (ld06, rplidar, ydlidar:x4, hokuyo, sick, xv11, ...), "
                    "or a controller: PROTOCOL:PROFILE (canopen:zlac8015d, agilex, vesc, ...)")
       ->required();
-  verb->add_option("FILE", options->file)->required();
+  verb->add_option("FILE", options->file, "bytes as the device sent them, or what candump -L wrote")
+      ->required();
   verb->add_option("--profiles", options->profiles, "folder of the profiles")->capture_default_str();
   verb->callback(
       [&session, options] { session.run = [&session, options] { return decode_file(*options, session); }; });

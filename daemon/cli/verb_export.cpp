@@ -55,7 +55,7 @@ int export_calibration(const ExportOptions& options, const Session& session) {
 void add_export(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("export", "A calibration file for other programs: CSV, TOML, ros2_control");
   auto options = std::make_shared<ExportOptions>();
-  verb->add_option("CALIBRATION", options->calibration)->required();
+  verb->add_option("CALIBRATION", options->calibration, "file that solve or calibrate wrote")->required();
   verb->add_option(
           "--what", options->what,
           "CSV: parameters, effects, errors, residual, paths, traces; robot.toml: toml; parameters of "

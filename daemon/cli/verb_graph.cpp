@@ -154,7 +154,7 @@ void add_info(CLI::App& parent, Session& session) {
 void add_build(CLI::App& parent, Session& session) {
   auto* verb = parent.add_subcommand("build", "Make a graph and a map of the scans and ticks of a recording");
   auto options = std::make_shared<BuildOptions>();
-  verb->add_option("RECORDING", options->recording)->required();
+  verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
   verb->add_option("--out", options->out, "g2o file to write: poses of the lidar at keyframes");
   verb->add_option("--svg", options->picture, "picture to write: map, trajectory before and after, loops");
   add_reading_options(*verb, options->reading);

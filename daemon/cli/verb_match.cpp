@@ -110,6 +110,10 @@ int match_file(const std::string& path, calib::Matcher matcher, const Session& s
   if (!bytes) return report_error(bytes.error(), session.json);
   const Unpacked text = is_gzip(bytes.value()) ? gunzip(bytes.value()) : Unpacked{bytes.value(), true, ""};
   if (!text.whole) warn(path + ": " + text.problem);
+  if (is_recording(text.bytes))
+    return report_error({ErrorCode::format, "is a recording, not pairs of scans", path,
+                         "odomcalibctl solve matches its scans; --pairs writes the motions"},
+                        session.json);
   std::istringstream file(text.bytes);
   std::size_t pairs = 0, read = 0;
   ProgressLine progress;
@@ -132,7 +136,8 @@ int match_file(const std::string& path, calib::Matcher matcher, const Session& s
 void add_match(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("match", "Motion between pairs of scans, JSON Lines in and out");
   auto path = std::make_shared<std::string>();
-  verb->add_option("PAIRS", *path, R"(lines {"reference":scan,"scan":scan,"guess":[x,y,yaw],"sigma":m})")
+  verb->add_option("PAIRS", *path,
+                   R"(lines {"reference": scan, "scan": scan, "guess": [x,y,yaw], "sigma": m})")
       ->required();
   auto matcher = std::make_shared<std::string>("lines");
   verb->add_option("--matcher", *matcher, "lines: point to line; brute: best of a grid; fast: hill climb")

@@ -175,8 +175,7 @@ int apply(const Session& session, const MotionOptions& options) {
   const auto bytes = read_file_bytes(options.file);
   if (!bytes) return report_error(bytes.error(), session.json);
   auto body = ordered_json::parse(bytes.value(), nullptr, false);
-  if (!body.is_object())
-    return report_error({ErrorCode::format, "no calibration file", options.file, ""}, session.json);
+  if (!body.is_object()) return report_error(read_calibration(options.file).error(), session.json);
   body.erase(kPictureMember);
   return print_result(session, "write-back",
                       run_method(session, options.consent, "Apply", {{"calibration", body}}));

@@ -138,7 +138,7 @@ int predict_trajectory(const PredictOptions& options, const Session& session) {
 void add_predict(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("predict", "Dead reckoning from the ticks of a recording");
   auto options = std::make_shared<PredictOptions>();
-  verb->add_option("RECORDING", options->recording)->required();
+  verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
   verb->add_option("--calibration", options->calibration, "calibration file, or \"nominal\"")->required();
   verb->add_option("--trajectory", options->trajectory, "file to write, TUM format")->required();
   verb->add_option("--noise", options->noise,

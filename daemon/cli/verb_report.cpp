@@ -40,7 +40,7 @@ int show_report(const ReportOptions& options, const Session& session) {
 void add_report(CLI::App& app, Session& session) {
   auto* verb = app.add_subcommand("report", "A calibration file as text, JSON or HTML");
   auto options = std::make_shared<ReportOptions>();
-  verb->add_option("CALIBRATION", options->calibration)->required();
+  verb->add_option("CALIBRATION", options->calibration, "file that solve or calibrate wrote")->required();
   verb->add_option("--html,--out", options->html, "HTML page to write");
   verb->callback(
       [&session, options] { session.run = [&session, options] { return show_report(*options, session); }; });

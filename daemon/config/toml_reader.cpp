@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <set>
+#include <sstream>
 #include <vector>
 
-#include "proto/near_miss.hpp"
 #include "proto/file_bytes.hpp"
+#include "proto/near_miss.hpp"
 
 namespace odomcalib {
 
@@ -63,6 +65,29 @@ void collect_leaves(const toml::table& table, const std::string& prefix, std::se
   }
 }
 
+/// What people write who know another format.
+std::string syntax_remedy(const std::string& text, std::size_t line) {
+  std::istringstream lines(text);
+  std::string wrong;
+  for (std::size_t k = 0; k < line && std::getline(lines, wrong); ++k) {
+  }
+  std::smatch found;
+  if (std::regex_match(wrong, found, std::regex(R"(\s*([A-Za-z_.]+)\s*:\s*(\S.*))")))
+    return "this is YAML; write TOML: " + found[1].str() + " = " + found[2].str();
+  if (std::regex_match(wrong, found, std::regex(R"((\s*[A-Za-z_.]+\s*=\s*-?[0-9]+),([0-9]+)\s*(#.*)?)")))
+    return "write a decimal point: " + found[1].str() + "." + found[2].str();
+  return "correct the TOML syntax";
+}
+
+/// "; 150 looks like mm: write 0.15" of a length that a millimetre's factor makes one.
+std::string in_mm(const std::string& key, double value, const config::settings::Bounds& allowed) {
+  constexpr double kMetresInMm = 1e-3;
+  const bool is_length = key.ends_with("diameter") || key.ends_with("track_width");
+  const double metres = kMetresInMm * value;
+  if (!is_length || !(value > allowed.most) || metres < allowed.least || metres > allowed.most) return "";
+  return fmt::format(" m; {} looks like mm: write {}", value, metres);
+}
+
 }  // namespace
 
 TomlReader::TomlReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -86,7 +111,7 @@ Result<TomlReader> TomlReader::parse(const std::string& text, const std::string&
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
     return Error{ErrorCode::format, std::string(error.description()),
-                 fmt::format("{}:{}:{}", where, at.line, at.column), "correct the TOML syntax"};
+                 fmt::format("{}:{}:{}", where, at.line, at.column), syntax_remedy(text, at.line)};
   }
   return TomlReader(std::move(state));
 }
@@ -96,7 +121,8 @@ double TomlReader::number(const std::string& key, double otherwise, const config
   if (!node) return otherwise;
   const auto value = node.value<double>();
   if (value && std::isfinite(*value) && *value >= allowed.least && *value <= allowed.most) return *value;
-  state_->complain(key, fmt::format("a number from {} to {}", allowed.least, allowed.most));
+  state_->complain(key, fmt::format("a number from {} to {}{}", allowed.least, allowed.most,
+                                    value ? in_mm(key, *value, allowed) : ""));
   return otherwise;
 }
 

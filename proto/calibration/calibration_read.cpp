@@ -7,6 +7,7 @@
 
 #include "proto/calibration/calibration.hpp"
 #include "proto/file_bytes.hpp"
+#include "proto/recording/recording.hpp"
 
 namespace odomcalib {
 namespace {
@@ -310,7 +311,11 @@ Result<Calibration> calibration_from(const Json& json, const std::string& where)
 Result<Calibration> read_calibration(const std::filesystem::path& path) {
   auto bytes = read_file_bytes(path);
   if (!bytes) return bytes.error();
-  return calibration_from_json(bytes.value(), path.string());
+  auto calibration = calibration_from_json(bytes.value(), path.string());
+  if (!calibration && is_recording(bytes.value()))
+    return Error{ErrorCode::format, "is a recording, not a calibration", path.string(),
+                 "solve it first: odomcalibctl solve " + path.string() + " --out cal.json"};
+  return calibration;
 }
 
 }  // namespace odomcalib

@@ -12,10 +12,15 @@
 namespace odomcalib {
 namespace {
 
-enum class Form { unknown, nothing, event_log, jsonl, tuples, carmen, pose_graph, ros };
+/// Bytes of a packed file that tell its form. Derived: recognise looks at less.
+constexpr std::size_t kRecognised_bytes = std::size_t{1} << 20;
+
+enum class Form { unknown, nothing, event_log, jsonl, tuples, carmen, pose_graph, ros, calibration };
 
 Form recognise_json(std::string_view text) {
   const auto begin = text.substr(0, 4096);
+  if (begin.substr(0, begin.find(',')).find("\"odomcalib-calibration/") != std::string_view::npos)
+    return Form::calibration;
   const bool tuples =
       begin.find("\"phi_l\"") != std::string_view::npos && begin.find("\"type\"") == std::string_view::npos;
   return tuples ? Form::tuples : Form::jsonl;
@@ -70,6 +75,9 @@ Result<Recording> read_content(std::string_view bytes, const std::string& where,
       break;
     case Form::nothing:
       return Error{ErrorCode::empty, "holds no data", where, "record again"};
+    case Form::calibration:
+      return Error{ErrorCode::format, "is a calibration, not a recording", where,
+                   "odomcalibctl report shows it; solve the recording that it was made from"};
     case Form::pose_graph:
       return Error{ErrorCode::format, "is a pose graph, not a recording", where,
                    "use \"odomcalibctl graph\""};
@@ -101,6 +109,25 @@ Error not_understood(const std::string& text) {
 }
 
 }  // namespace
+
+bool is_recording(std::string_view bytes) {
+  Unpacked unpacked;
+  if (is_gzip(bytes)) {
+    unpacked = gunzip(bytes, kRecognised_bytes);
+    bytes = unpacked.bytes;
+  }
+  switch (recognise(bytes)) {
+    case Form::event_log:
+    case Form::ros:
+    case Form::tuples:
+    case Form::carmen:
+      return true;
+    case Form::jsonl:
+      return bytes.substr(0, bytes.find('\n')).find("\"type\"") != std::string_view::npos;
+    default:
+      return false;
+  }
+}
 
 Result<TopicChoice> parse_topic_choice(const std::string& text) {
   const auto equals = text.find('=');

@@ -437,6 +437,8 @@ const std::vector<WrongFile>& wrong_files() {
       {"picture", "\x89PNG\r\n\x1a\n....", "known format", "JSON Lines"},
       {"xml", "<xml></xml>", "known format", "JSON Lines"},
       {"robot_file", "[robot]\nwheel_diameter = 0.15\n", "known format", "JSON Lines"},
+      {"calibration", "{\n  \"format\": \"odomcalib-calibration/1\",\n  \"verdict\": \"accepted\"\n}\n",
+       "is a calibration, not a recording", "odomcalibctl report"},
       {"pose_graph", "VERTEX_SE2 0 0 0 0\n", "is a pose graph", "odomcalibctl graph"},
       {"one_json_list", "[{\"type\":\"ticks\",\"t\":0,\"left\":0,\"right\":0}]\n", "known format",
        "JSON Lines"},

@@ -5,6 +5,7 @@ that no call shows.
 
 usage: tests/integration/verbs_table.py ODOMCALIBCTL SCHEMAS SAMPLE"""
 
+import gzip
 import json
 import math
 import os
@@ -16,7 +17,7 @@ import tempfile
 
 import live_verbs
 from schemas import Schemas
-from text_width import too_wide
+from text_width import COLUMNS, too_wide
 
 DONE, FAILURE, USAGE, REFUSED, NO_DAEMON = 0, 1, 2, 3, 9
 ABSENT = "/nonexistent/file"
@@ -31,16 +32,21 @@ TABLE = [
     ("solve", "sample.jsonl.gz --out good.json", DONE, "calibration"),
     ("solve", "drive.jsonl --rounds 2 --cut 0.02 --pairs motions.csv", REFUSED, "calibration"),
     ("solve", ABSENT, FAILURE, "error"),
+    ("solve", "good.json", FAILURE, "error"),
+    ("solve", "drive.jsonl --effects backlsh", USAGE, "error"),
     ("predict", "drive.jsonl --calibration nominal --trajectory path.tum", DONE, "prediction"),
     ("predict", "drive.jsonl --calibration nominal --trajectory path.tum --noise 0.01,0.001,0.01", DONE, "prediction"),
     ("predict", "drive.jsonl --trajectory path.tum --calibration " + ABSENT, FAILURE, "error"),
     ("convert", "drive.jsonl --out copy.jsonl", DONE, "conversion"),
     ("convert", ABSENT + " --out copy.jsonl", FAILURE, "error"),
-    ("decode", "ld06 drive.jsonl", DONE, "decoded"),
-    ("decode", "no_such_driver drive.jsonl", USAGE, "error"),
+    ("convert", "drive.jsonl --out copy.bag", USAGE, "error"),
+    ("decode", "ld06 lidar.bin", DONE, "decoded"),
+    ("decode", "ld06 drive.jsonl", FAILURE, "error"),
+    ("decode", "no_such_driver lidar.bin", USAGE, "error"),
     ("match", "pairs.jsonl", DONE, "match"),
     ("match", "pairs.jsonl --matcher brute", DONE, "match"),
     ("match", ABSENT, FAILURE, "error"),
+    ("match", "drive.jsonl", FAILURE, "error"),
     ("report", "cal.json", DONE, "calibration"),
     ("report", "good.json", DONE, "calibration"),
     ("report", "drive.jsonl", FAILURE, "error"),
@@ -125,17 +131,42 @@ def prepare(folder, sample):
         file.write("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n")
     with open(os.path.join(folder, "pairs.jsonl"), "w", encoding="utf-8") as file:
         file.write(json.dumps({"reference": room(0.0), "scan": room(0.1), "guess": [0.0, 0.0, 0.0]}) + "\n")
+    with open(os.path.join(folder, "lidar.bin"), "wb") as file:
+        file.write(bytes(range(256)))
+    with gzip.open(sample, "rt", encoding="utf-8") as file:
+        robot = json.loads(file.readline())
+    with open(os.path.join(folder, "robot.toml"), "w", encoding="utf-8") as file:
+        file.writelines("%s = %r\n" % (key, robot[key]) for key in ("wheel_diameter", "track_width", "ticks_per_rev"))
     shutil.copy(sample, os.path.join(folder, "sample.jsonl.gz"))
 
 
 def check_help(program, verb):
     done = program.run(*verb.split(), "--help")
     program.demand(done.returncode == DONE and not done.stderr, "%s --help: status %d" % (verb, done.returncode))
-    for said in ("Usage: odomcalibctl " + verb, "Exit status:"):
+    for said in ("Usage: odomcalibctl " + verb, "Examples:", "Exit statuses:"):
         program.demand(said in done.stdout, '%s --help does not say "%s"' % (verb, said))
+    for line in done.stdout.splitlines():
+        program.demand(len(line) <= COLUMNS, "%s --help: %d columns: %s" % (verb, len(line), line))
     wrong = program.run(*verb.split(), "--no-such-option", "--json=short")
     program.demand(wrong.returncode == USAGE, "%s --no-such-option: status %d" % (verb, wrong.returncode))
     check_json(program, verb + " --no-such-option", wrong.stdout, "error")
+
+
+def examples(program, verb):
+    """Calls that --help shows."""
+    text = program.run(*verb.split(), "--help").stdout.partition("Examples:\n")[2]
+    return [line.split() for line in text.splitlines() if line.startswith("  odomcalibctl ")]
+
+
+def check_examples(program, verb):
+    """They run as they stand, here without a daemon: a robot is asked for, not a better command line."""
+    shown = examples(program, verb)
+    program.demand(len(shown) == 2, "%s --help: %d examples" % (verb, len(shown)))
+    for _, *words in shown:
+        done = program.run("--socket", "/nonexistent/control", *words)
+        if done.returncode == USAGE and "consent" in done.stderr:  # on a terminal it asks
+            done = program.run("--socket", "/nonexistent/control", *words, "--yes")
+        program.demand(done.returncode in (DONE, NO_DAEMON), "%s: status %d: %s" % (" ".join(words), done.returncode, done.stderr))
 
 
 def check_json(program, call, text, schema):
@@ -188,6 +219,11 @@ def main(path, schema_folder, sample):
         program.demand(listed == known, "not in both table and program: %s" % sorted(listed ^ known))
         for verb in sorted(listed & known):
             check_help(program, verb)
+        shutil.copy(os.path.join(folder, "sample.jsonl.gz"), os.path.join(folder, "drive.jsonl.gz"))
+        for verb in ("solve", "graph build"):  # what others read
+            check_examples(program, verb)
+        for verb in sorted(listed & known - {"solve", "graph build"}):
+            check_examples(program, verb)
         for row in TABLE:
             check_call(program, *row)
             check_text(program, *row)

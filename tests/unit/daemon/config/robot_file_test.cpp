@@ -92,6 +92,18 @@ TEST(RobotFile, in_the_words_of_others_is_translated) {
   expect_names("[robot]\nticks_per_revolution = 4096\n", "robot.ticks_per_revolution", "write ticks_per_rev");
 }
 
+TEST(RobotFile, of_another_format_says_how_the_line_is_written_here) {
+  const auto says = [](const char* text, const char* words) {
+    const std::string error = error_of(text);
+    EXPECT_NE(error.find(words), std::string::npos) << error;
+  };
+  says("wheel_diameter: 0.15\n", "this is YAML; write TOML: wheel_diameter = 0.15");
+  says("track_width = 0.4\nwheel_diameter = 0,15\n", "write a decimal point: wheel_diameter = 0.15");
+  says("track_width = 0.4 m\n", "correct the TOML syntax");
+  says("wheel_diameter = 150\n", "150 looks like mm: write 0.15");
+  EXPECT_EQ(error_of("wheel_diameter = 150000\n").find("looks like"), std::string::npos);
+}
+
 TEST(RobotFile, with_a_word_that_is_near_to_nothing_points_to_the_page) {
   const std::string error = error_of("colour = \"red\"\n");
   EXPECT_EQ(error.find("did you mean"), std::string::npos) << error;
@@ -114,6 +126,7 @@ TEST(NearMiss, is_at_most_a_third_of_the_letters_away) {
   EXPECT_EQ(near_miss("trackwidth", known), "track_width");
   EXPECT_EQ(near_miss("pose", known), "lidar.pose");
   EXPECT_EQ(near_miss("tracks", known), std::nullopt);
+  EXPECT_EQ(near_miss("track", known), "track_width");
   EXPECT_EQ(near_miss("", known), std::nullopt);
   EXPECT_EQ(near_miss(std::string(100000, 'a'), known), std::nullopt);
 }
