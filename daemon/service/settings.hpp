@@ -38,6 +38,8 @@ inline constexpr double kLongestWrite_s = 8.0;
 /// s over which a quick stop without the service is sent. Derived: identity of a drive, four answers of 50 ms
 /// each at worst.
 inline constexpr double kQuickStop_s = 0.5;
+/// s until then in which an adapter may be set up. Derived: one that answers nothing takes 0.9 s.
+inline constexpr double kQuickStopSetUp_s = 1.0;
 /// ms between two looks in it. Chosen.
 inline constexpr std::chrono::milliseconds kQuickStopPause{5};
 
@@ -93,6 +95,11 @@ inline constexpr double kEventsAtOnce = 20.0, kEventPause_s = 5.0;
 inline constexpr double kRobotPeriod_s = 10.0, kStatusPeriod_s = 1.0, kProgressPeriod_s = 0.2;
 /// s between attempts to open the network. Chosen.
 inline constexpr double kPublisherRetry_s = 5.0;
+/// Messages, and bytes of them, that wait for the network. Derived: a second of a usual robot (counts at 50
+/// to 100 Hz in three messages each, ten scans); the largest message is a calibration with its paths (1 MB).
+inline constexpr std::size_t kMostUnsent = 512, kMostUnsent_bytes = std::size_t{4} << 20;
+/// How long what waits may take to leave when the daemon ends. Chosen: a network that works takes no time.
+inline constexpr std::chrono::milliseconds kPublisherEnd{200};
 
 // --- Recordings ------------------------------------------------------------------------------------------
 

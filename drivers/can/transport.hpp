@@ -30,6 +30,10 @@ class CanTransport {
   virtual ~CanTransport() = default;
   /// File descriptor to poll for reading; -1 when closed.
   [[nodiscard]] virtual int fd() const = 0;
+  /// False while an adapter is still being set up: call it every few ms until then, and nothing else. Never
+  /// blocks. Error device: refused, unplugged.
+  /// @param now s on the caller's clock
+  virtual Result<bool> ready(double /*now*/) { return true; }
   /// Queues or sends one frame; never blocks. Error device: the bus or port is gone, or the queue is full.
   virtual Result<void> send(const CanFrame& frame) = 0;
   /// Everything received up to now. Error device: unplugged, interface down, bus-off.
@@ -40,8 +44,8 @@ class CanTransport {
   [[nodiscard]] virtual std::string note() const { return {}; }
 };
 
-/// Opens a device string. Errors: usage (bad string), device (cannot open; the remedy names the command to
-/// try).
+/// Opens a device string without waiting for what is behind it: see CanTransport::ready(). Errors: usage (bad
+/// string), device (cannot open; the remedy names the command to try).
 Result<std::unique_ptr<CanTransport>> open_can(const std::string& device);
 
 }  // namespace odomcalib::drivers
