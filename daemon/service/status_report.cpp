@@ -174,6 +174,10 @@ ordered_json client_report(const ControlServer& server) {
           {"too_many", server.counters().too_many}};
 }
 
+ordered_json lcm_report(const Publisher::Counters& counters) {
+  return {{"sent", counters.sent}, {"failed", counters.failed}, {"dropped", counters.dropped}};
+}
+
 ordered_json loop_report(const Bench& bench) {
   return {{"turns", bench.loop.turns()},
           {"late_steps", bench.late_steps},
@@ -221,7 +225,7 @@ ordered_json status_report(const Bench& bench, const Task* task) {
   body["calibrated"] = bench.applied.get().has_value();
   body["operator_needed"] = bench.write_back.operator_needed;
   body["last_stop"] = bench.last_run.last_stop();
-  body["lcm"] = {{"sent", telemetry.publisher.sent()}, {"failed", telemetry.publisher.failed()}};
+  body["lcm"] = lcm_report(telemetry.publisher.counters());
   body["clients"] = client_report(bench.outbox.server);
   body["loop"] = loop_report(bench);
   body["recording_bytes"] = telemetry.recorder.bytes();
