@@ -26,6 +26,8 @@ int BaseLink::fd() const {
 
 void BaseLink::lose(const Error& error, double now) {
   problem_ = error;
+  ++lost_;
+  if (transport_) taken_ += transport_->taken();
   transport_.reset();
   port_.reset();
   connected_ = false;
@@ -89,6 +91,7 @@ void BaseLink::receive_bytes(const Clock& clock) {
   const auto bytes = port_->read();
   const double now = clock.now();
   if (!bytes) return lose(bytes.error(), now);
+  taken_ += bytes.value().size();
   controller_->on_bytes(bytes.value(), now);
 }
 

@@ -39,6 +39,10 @@ class BaseLink {
   [[nodiscard]] const std::optional<Error>& problem() const { return problem_; }
   [[nodiscard]] drivers::Counters counters() const;
   [[nodiscard]] const std::string& device() const { return device_; }
+  /// Bytes or frames that were taken from the line so far, and how often it was lost.
+  [[nodiscard]] std::uint64_t taken() const {
+    return taken_ + lost_ + (transport_ ? transport_->taken() : 0);
+  }
   [[nodiscard]] std::uint64_t reconnects() const { return opened_ > 0 ? opened_ - 1 : 0; }
 
  private:
@@ -62,7 +66,7 @@ class BaseLink {
   std::optional<unsigned> baud_;  // bit/s, of a serial line
   bool connected_ = false;
   double next_try_ = 0.0, now_ = 0.0;
-  std::uint64_t opened_ = 0;
+  std::uint64_t opened_ = 0, lost_ = 0, taken_ = 0;
 };
 
 }  // namespace odomcalib

@@ -19,9 +19,13 @@ inline constexpr double kIdleStep_s = 0.020;
 /// s for calls of clients in one turn. Derived: what is left of the 20 ms between two motion commands (M2)
 /// beside the longest single call, a dry run of a calibration (12 ms on two cores of 2.5 GHz).
 inline constexpr double kCallTime_s = 0.004;
-/// Turns in a row that do not wait because calls wait, and serve none. Chosen: half a second of them at
-/// least.
+/// Turns in a row that do not wait because calls wait, and serve none, or that are woken by something and
+/// take nothing from it. Chosen: some 10 ms of a loop that turns as fast as it can, and no chance.
 inline constexpr std::size_t kMostIdleTurns = 1000;
+/// s without a wait that had nothing to do, and ms of rest after them. Derived: a fifth of the unit's
+/// LimitRTTIME; a hundredth of the processor for others.
+inline constexpr double kLongestAwake_s = 0.100;
+inline constexpr int kRest_ms = 1;
 /// ms that a turn waits otherwise, and while the daemon ends. Chosen.
 inline constexpr int kTurn_ms = 20, kEndingTurn_ms = 5;
 /// s between status lines for the service manager where there is no watchdog. Chosen.

@@ -75,6 +75,7 @@ class SlcanTransport final : public CanTransport {
     all["unacknowledged"] = silent_ ? 1 : 0;
     return all;
   }
+  [[nodiscard]] std::uint64_t taken() const override { return parser_.bytes_in(); }
 
  private:
   enum class Step { draining, setting_rate, asking_stamps, opening, open };

@@ -40,6 +40,8 @@ class CanTransport {
   /// @param now s on the caller's clock; used for stamps where the kernel gives none
   virtual Result<std::vector<CanFrame>> receive(double now) = 0;
   [[nodiscard]] virtual Counters counters() const = 0;
+  /// Bytes or frames that were taken from the line so far, whatever became of them.
+  [[nodiscard]] virtual std::uint64_t taken() const = 0;
   /// What a person should know of a bus that is open all the same; empty: nothing.
   [[nodiscard]] virtual std::string note() const { return {}; }
 };
