@@ -22,7 +22,7 @@ inline constexpr double kCallTime_s = 0.004;
 /// Turns in a row that do not wait because calls wait, and serve none, or that are woken by something and
 /// take nothing from it. Chosen: some 10 ms of a loop that turns as fast as it can, and no chance.
 inline constexpr std::size_t kMostIdleTurns = 1000;
-/// s without a wait that had nothing to do, and ms of rest after them. Derived: a fifth of the unit's
+/// s without a wait that had nothing to do, and ms of rest after them. Derived: a tenth of the unit's
 /// LimitRTTIME; a hundredth of the processor for others.
 inline constexpr double kLongestAwake_s = 0.100;
 inline constexpr int kRest_ms = 1;
