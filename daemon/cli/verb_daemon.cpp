@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -81,6 +82,8 @@ void print_status(const ordered_json& status, const Session& session) {
                                       text_of(lidar["device"])},
                         {"calibrated", status["calibrated"] == true ? "yes" : "no"},
                         {"last stop", text_of(status["last_stop"])}};
+  if (const auto lost = status["lcm"].value("dropped", std::uint64_t{0}); lost > 0)
+    section.table.rows.push_back({"LCM", fmt::format("{} messages dropped: the network is too slow", lost)});
   if (status["recording_bytes"] > 0)
     for (auto& row : motion_rows(status["recorded_motion"])) section.table.rows.push_back(std::move(row));
   for (const auto* device : {&controller, &lidar})

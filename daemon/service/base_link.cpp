@@ -26,16 +26,31 @@ int BaseLink::fd() const {
 
 void BaseLink::lose(const Error& error, double now) {
   problem_ = error;
+  ++lost_;
+  if (transport_) taken_ += transport_->taken();
   transport_.reset();
   port_.reset();
+  connected_ = false;
   next_try_ = now + service::settings::kBaseRetry_s;
 }
 
 void BaseLink::open_when_due(double now) {
-  if (connected() || now < next_try_) return;
-  if (auto opened = open(); !opened) return lose(opened.error(), now);
+  if (transport_ || port_ || now < next_try_) return;
+  if (auto opened = open(); !opened) lose(opened.error(), now);
+}
+
+// An adapter is set up in steps, a look at it each turn: the loop does not wait for its answers.
+void BaseLink::finish_opening(double now) {
+  if (connected_ || (!transport_ && !port_)) return;
+  if (transport_) {
+    const auto ready = transport_->ready(now);
+    if (!ready) return lose(ready.error(), now);
+    if (!ready.value()) return;
+  }
+  connected_ = true;
   problem_.reset();
   ++opened_;
+  controller_->on_connected(baud_);
 }
 
 Result<void> BaseLink::open() {
@@ -43,7 +58,6 @@ Result<void> BaseLink::open() {
   auto opened = drivers::open_can(device_);
   if (!opened) return opened.error();
   transport_ = std::move(opened).value();
-  controller_->on_connected(std::nullopt);
   return {};
 }
 
@@ -55,14 +69,14 @@ Result<void> BaseLink::open_port() {
   auto opened = drivers::open_serial(device.value().path, baud.value());
   if (!opened) return opened.error();
   port_ = std::move(opened).value();
-  controller_->on_connected(baud.value());
+  baud_ = baud.value();
   return {};
 }
 
 // What arrived is dated by a clock that is read as it is read: a turn that was held up in between would date
 // it wrongly.
 void BaseLink::receive(const Clock& clock) {
-  if (!transport_) return;
+  if (!transport_ || !connected_) return;
   const double now = clock.now();
   auto frames = transport_->receive(now);
   if (!frames) return lose(frames.error(), now);
@@ -77,6 +91,7 @@ void BaseLink::receive_bytes(const Clock& clock) {
   const auto bytes = port_->read();
   const double now = clock.now();
   if (!bytes) return lose(bytes.error(), now);
+  taken_ += bytes.value().size();
   controller_->on_bytes(bytes.value(), now);
 }
 
@@ -95,7 +110,7 @@ void BaseLink::note(const Result<void>& sent) {
 void BaseLink::flush() {
   flush_bytes();
   for (auto& frame : controller_->take_frames()) {
-    if (!transport_) continue;
+    if (!transport_ || !connected_) continue;
     frame.t = now_;
     if (watcher_) watcher_(frame);
     // A full queue drops the frame: the controller repeats what matters, and late commands are worse than
@@ -107,6 +122,7 @@ void BaseLink::flush() {
 void BaseLink::step(const Clock& clock) {
   const double now = now_ = clock.now();
   open_when_due(now);
+  finish_opening(now);
   receive(clock);
   receive_bytes(clock);
   controller_->on_time(now);

@@ -32,16 +32,23 @@ class BaseLink {
   void flush();
 
   [[nodiscard]] drivers::Controller& controller() const { return *controller_; }
-  [[nodiscard]] bool connected() const { return transport_ != nullptr || port_ != nullptr; }
+  [[nodiscard]] bool connected() const { return connected_; }
+  /// The line is open, its adapter is being set up.
+  [[nodiscard]] bool opening() const { return transport_ != nullptr && !connected_; }
   /// Why the bus is away, or what was sent last could not be; empty while all is well.
   [[nodiscard]] const std::optional<Error>& problem() const { return problem_; }
   [[nodiscard]] drivers::Counters counters() const;
   [[nodiscard]] const std::string& device() const { return device_; }
+  /// Bytes or frames that were taken from the line so far, and how often it was lost.
+  [[nodiscard]] std::uint64_t taken() const {
+    return taken_ + lost_ + (transport_ ? transport_->taken() : 0);
+  }
   [[nodiscard]] std::uint64_t reconnects() const { return opened_ > 0 ? opened_ - 1 : 0; }
 
  private:
   BaseLink(std::string device, std::unique_ptr<drivers::Controller> controller);
   void open_when_due(double now);
+  void finish_opening(double now);
   Result<void> open();
   Result<void> open_port();
   void receive(const Clock& clock);
@@ -56,8 +63,10 @@ class BaseLink {
   std::unique_ptr<drivers::ByteStream> port_;
   std::optional<Error> problem_;
   std::function<void(const drivers::CanFrame&)> watcher_;
+  std::optional<unsigned> baud_;  // bit/s, of a serial line
+  bool connected_ = false;
   double next_try_ = 0.0, now_ = 0.0;
-  std::uint64_t opened_ = 0;
+  std::uint64_t opened_ = 0, lost_ = 0, taken_ = 0;
 };
 
 }  // namespace odomcalib

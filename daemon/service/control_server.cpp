@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <grp.h>
-#include <pwd.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -72,13 +71,47 @@ bool answers(const sockaddr_un& address) {
   return alive;
 }
 
-void give_to_group(const std::filesystem::path& path, const std::string& group) {
-  const struct group* entry = getgrnam(group.c_str());
-  // Without the group, or without the right to give files away, the daemon's own user keeps the socket.
-  if (entry != nullptr && chown(path.c_str(), static_cast<uid_t>(-1), entry->gr_gid) != 0) errno = 0;
+// Asked before the loop begins: a directory may take seconds to answer.
+std::optional<gid_t> number_of_group(const std::string& name) {
+  const struct group* entry = getgrnam(name.c_str());
+  return entry == nullptr ? std::nullopt : std::optional(entry->gr_gid);
 }
 
-Result<int> listen_at(const std::filesystem::path& path, const std::string& group) {
+/// Why members of the group cannot use the socket; empty: they can.
+std::string give_to_group(const std::filesystem::path& path, const std::string& name,
+                          std::optional<gid_t> group) {
+  if (!group)
+    return fmt::format("there is no group \"{}\": only root and the daemon's user may use the control socket",
+                       name);
+  struct stat now {};
+  if (stat(path.c_str(), &now) == 0 && now.st_gid == *group) return {};
+  if (chown(path.c_str(), static_cast<uid_t>(-1), *group) == 0) return {};
+  return fmt::format(
+      "the control socket cannot be given to the group \"{0}\": {1}; only root and the daemon's user may use "
+      "it; let "
+      "the service have the group: systemctl edit odomcalib, [Service] Group={0}",
+      name, std::strerror(errno));
+}
+
+/// Groups of whoever is at the other end, in numbers: the kernel knows them, no directory has to be asked.
+std::vector<gid_t> groups_of(int fd, gid_t first) {
+  std::vector<gid_t> groups(64);
+  socklen_t size = 0;
+  const auto ask = [&] {
+    size = static_cast<socklen_t>(groups.size() * sizeof(gid_t));
+    return getsockopt(fd, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) == 0;
+  };
+  bool known = ask();
+  if (!known && errno == ERANGE) {
+    groups.resize(size / sizeof(gid_t));
+    known = ask();
+  }
+  groups.resize(known ? size / sizeof(gid_t) : 0);  // before Linux 4.13 the first one alone
+  groups.push_back(first);
+  return groups;
+}
+
+Result<int> listen_at(const std::filesystem::path& path) {
   const auto address = address_of(path);
   if (!address) return address.error();
   if (answers(address.value()))
@@ -96,28 +129,21 @@ Result<int> listen_at(const std::filesystem::path& path, const std::string& grou
     close(fd);
     return error;
   }
-  give_to_group(path, group);
   return fd;
 }
 
 }  // namespace
 
-bool may_connect(uid_t uid, gid_t gid, const std::string& group) {
-  if (uid == 0 || uid == geteuid()) return true;
-  const struct group* entry = getgrnam(group.c_str());
-  if (entry == nullptr) return false;
-  if (entry->gr_gid == gid) return true;
-  const struct passwd* user = getpwuid(uid);
-  if (user == nullptr) return false;
-  for (char** member = entry->gr_mem; *member != nullptr; ++member)
-    if (std::strcmp(*member, user->pw_name) == 0) return true;
-  return false;
+bool may_connect(uid_t user, std::span<const gid_t> groups, std::optional<gid_t> group) {
+  if (user == 0 || user == geteuid()) return true;
+  return group && std::find(groups.begin(), groups.end(), *group) != groups.end();
 }
 
 struct ControlServer::State {
   int listener = -1;
   std::filesystem::path path;
-  std::string group;
+  std::string group, warning;
+  std::optional<gid_t> group_id;
   std::map<ClientId, Client> clients;
   ClientId next = 1;
   ClientId served_last = 0;
@@ -154,11 +180,11 @@ void ControlServer::State::accept_one(int fd) {
   ucred peer{};
   socklen_t size = sizeof(peer);
   const bool known = getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
-  if (!known || !may_connect(peer.uid, peer.gid, group)) {
+  if (!known || !may_connect(peer.uid, groups_of(fd, peer.gid), group_id)) {
     ++counters.not_permitted;
     const std::string frame =
         control::encode_error({ErrorCode::not_permitted, "you are not in group \"" + group + "\"",
-                               path.string(), "ask the administrator"});
+                               path.string(), "ask the administrator to add you, then log in again"});
     (void)!write(fd, frame.data(), frame.size());
     close(fd);
     return;
@@ -212,6 +238,7 @@ void ControlServer::State::read_from(Client& client) {
   const ssize_t got = read(client.fd, buffer.data(), buffer.size());
   if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) client.gone = true;
   if (got <= 0) return;
+  counters.bytes += static_cast<std::uint64_t>(got);
   client.decoder.feed({buffer.data(), static_cast<std::size_t>(got)});
   take_frames(client);
   if (client.decoder.counters().oversized > 0) {
@@ -263,7 +290,10 @@ std::optional<control::Call> ControlServer::State::answer_some(Client& client, c
 void ControlServer::State::write_to(Client& client) {
   if (client.output.empty()) return;
   const ssize_t put = send(client.fd, client.output.data(), client.output.size(), MSG_NOSIGNAL);
-  if (put > 0) client.output.erase(0, static_cast<std::size_t>(put));
+  if (put > 0) {
+    counters.bytes += static_cast<std::uint64_t>(put);
+    client.output.erase(0, static_cast<std::size_t>(put));
+  }
   if (put < 0 && errno != EAGAIN && errno != EINTR) client.gone = true;
   if (client.output.size() <= kMostOutput) return;
   if (!client.gone) ++counters.too_slow;
@@ -296,12 +326,14 @@ ControlServer::~ControlServer() {
 }
 
 Result<ControlServer> ControlServer::create(const std::filesystem::path& path, const std::string& group) {
-  const auto fd = listen_at(path, group);
+  const auto fd = listen_at(path);
   if (!fd) return fd.error();
   auto state = std::make_unique<State>();
   state->listener = fd.value();
   state->path = path;
   state->group = group;
+  state->group_id = number_of_group(group);
+  state->warning = give_to_group(path, group, state->group_id);
   return ControlServer(std::move(state));
 }
 
@@ -360,6 +392,7 @@ std::string ControlServer::name_of(ClientId client) const {
 
 bool ControlServer::connected(ClientId client) const { return state_->clients.contains(client); }
 std::size_t ControlServer::clients() const { return state_->clients.size(); }
+const std::string& ControlServer::warning() const { return state_->warning; }
 const ControlServer::Counters& ControlServer::counters() const { return state_->counters; }
 
 }  // namespace odomcalib

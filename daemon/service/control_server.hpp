@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,11 +45,12 @@ class ControlServer {
   struct Counters {
     std::uint64_t accepted = 0, too_many = 0 /* beyond kMostClients */, not_permitted = 0, malformed = 0,
                   too_slow = 0, flooded = 0 /* beyond kMostWaiting */,
-                  served = 0 /* calls taken, whatever became of them */;
+                  served = 0 /* calls taken, whatever became of them */, bytes = 0 /* read and written */;
   };
 
-  /// Binds the socket (mode 0660, of the group where it exists). An orphaned socket is replaced; a live one
-  /// is an error. Errors: io, usage (path too long).
+  /// Binds the socket (mode 0660, of the group where it exists: see warning()). An orphaned socket is
+  /// replaced; a live one is an error. Looks the group up, which may take as long as a directory of users
+  /// does: nothing later does. Errors: io, usage (path too long).
   static Result<ControlServer> create(const std::filesystem::path& path, const std::string& group);
   ~ControlServer();
   ControlServer(ControlServer&&) noexcept;
@@ -76,6 +78,8 @@ class ControlServer {
   [[nodiscard]] std::string name_of(ClientId client) const;
   [[nodiscard]] std::size_t clients() const;
   [[nodiscard]] const Counters& counters() const;
+  /// Why members of the group cannot use the socket, and what helps; empty: they can.
+  [[nodiscard]] const std::string& warning() const;
 
  private:
   struct State;
@@ -83,8 +87,9 @@ class ControlServer {
   std::unique_ptr<State> state_;
 };
 
-/// Whether a process of this user and group may use the socket: root, the daemon's own user, or a member of
-/// the group.
-bool may_connect(uid_t uid, gid_t gid, const std::string& group);
+/// Whether a process of this user and these groups may use the socket: root, the daemon's own user, or a
+/// member of the group.
+/// @param group nullopt: there is none
+bool may_connect(uid_t user, std::span<const gid_t> groups, std::optional<gid_t> group);
 
 }  // namespace odomcalib

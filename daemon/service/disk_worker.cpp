@@ -51,9 +51,12 @@ void DiskWorker::run() {
 }
 
 void DiskWorker::serve() {
-  if (state_.load(std::memory_order_acquire) != State::done) return;
+  // First: the thread may be put aside between "done" and its signal, which then comes when the work has been
+  // taken long ago, and would wake the loop for ever.
   std::uint64_t count = 0;
   (void)!read(done_fd_, &count, sizeof(count));
+  if (state_.load(std::memory_order_acquire) != State::done) return;
+  ++taken_;
   const Job job = std::exchange(running_, {});
   set(State::idle);
   hand_over();

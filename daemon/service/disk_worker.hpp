@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <thread>
@@ -19,6 +20,7 @@ class DiskWorker final : public Background {
   void post(std::function<void()> work, std::function<void()> done) override;
   void serve() override;
   [[nodiscard]] int fd() const override { return done_fd_; }
+  [[nodiscard]] std::uint64_t taken() const override { return taken_; }
   void finish() override;
 
  private:
@@ -35,6 +37,7 @@ class DiskWorker final : public Background {
   Job running_;
   std::atomic<State> state_ = State::idle;
   int done_fd_ = -1;
+  std::uint64_t taken_ = 0;
   std::thread thread_;  // last: everything it uses exists
 };
 

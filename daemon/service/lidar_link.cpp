@@ -64,6 +64,7 @@ Result<LidarLink> LidarLink::create(const std::string& device, const std::string
 
 void LidarLink::lose(const Error& error, double now) {
   problem_ = error;
+  ++taken_;
   stream_.reset();
   connected_ = false;
   lidar_->reset();
@@ -119,6 +120,7 @@ bool LidarLink::finish_connecting(double now) {
   if (!done.value()) return false;
   connected_ = true;
   problem_.reset();
+  ++taken_;
   ++opened_;
   const auto counters = lidar_->counters();
   watch_ = {now, counters.at("bytes_in"), counters.at("good")};
@@ -155,6 +157,7 @@ void LidarLink::step(const Clock& clock) {
   if (!stream_ || !finish_connecting(now)) return;
   const auto bytes = stream_->read();
   if (!bytes) return lose(bytes.error(), now);
+  taken_ += bytes.value().size();
   // Read after the bytes: with a time from before, a pause in between would make them earlier than they were
   // sent, and drivers that trust the least delay ever seen would date every scan by it for a minute.
   lidar_->on_bytes(bytes.value(), clock.now());

@@ -30,6 +30,8 @@ class LidarLink {
   std::vector<Scan> take_scans();
 
   [[nodiscard]] bool connected() const { return connected_; }
+  /// Bytes that were taken from the line so far, and how often it was made or lost.
+  [[nodiscard]] std::uint64_t taken() const { return taken_; }
   [[nodiscard]] std::optional<Error> problem() const;
   [[nodiscard]] drivers::Counters counters() const;
   [[nodiscard]] const std::string& device() const { return device_; }
@@ -74,7 +76,7 @@ class LidarLink {
   Watch watch_;
   double next_try_ = 0.0, opened_at_ = 0.0;
   unsigned failures_ = 0;
-  std::uint64_t opened_ = 0;
+  std::uint64_t opened_ = 0, taken_ = 0;
 };
 
 }  // namespace odomcalib

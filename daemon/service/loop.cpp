@@ -33,11 +33,22 @@ void Loop::wait(int timeout_ms) {
   at_once_ = bench_.outbox.server.calls_wait();
   const int limit = at_once_ ? 0 : most;
   bench_.loop.begin(bench_.clock.now(), 1e-3 * limit);
-  const bool any = poll(polled_.data(), polled_.size(), limit) > 0;
-  if (any) guard_.polled(polled_);
+  if (timeout_ms > 0) rest();
+  const int count = poll(polled_.data(), polled_.size(), limit);
+  if (count == 0 && limit > 0) slept_ = bench_.clock.now();
+  guard_.polled(polled_, count);
+  const bool any = count > 0;
   lidar_woke_ = any && polled_[1].revents != 0;
   clients_woke_ = any && std::any_of(polled_.begin() + clients, polled_.end(),
                                      [](const pollfd& file) { return file.revents != 0; });
+}
+
+// Where there is always something to do, as urgent a loop would leave its processor to nobody, and the kernel
+// ends one that never sleeps (LimitRTTIME).
+void Loop::rest() {
+  if (bench_.clock.now() - slept_ < service::settings::kLongestAwake_s) return;
+  (void)poll(nullptr, 0, service::settings::kRest_ms);
+  slept_ = bench_.clock.now();
 }
 
 // A counter that reports every millisecond must not make everything else turn as often.
@@ -78,8 +89,11 @@ void Loop::report(const char* line, const std::optional<LinkWatch::News>& news) 
 }
 
 void Loop::see_that_it_gets_on() {
-  const std::uint64_t served = bench_.outbox.server.counters().served;
-  guard_.turned(at_once_, served != std::exchange(served_, served));
+  const auto& clients = bench_.outbox.server.counters();
+  const std::array<std::uint64_t, kPolled.size()> taken = {
+      bench_.drive.link.taken(), bench_.surroundings.link.taken(), bench_.disk->taken(),
+      clients.accepted + clients.not_permitted, clients.bytes};
+  guard_.turned(at_once_, clients.served != std::exchange(served_, clients.served), taken);
   if (guard_.hangs_at().empty()) return;
   stop_drive(bench_);
   spdlog::critical("the loop hangs at {}", guard_.hangs_at());

@@ -29,6 +29,7 @@ class Loop {
   [[nodiscard]] const Task* task() const { return task_.get(); }
 
  private:
+  void rest();
   /// Whether this woke the loop, or was not looked at for a while; then `next` is set anew.
   bool due(bool woke, double& next) const;
   void serve_drive();
@@ -53,6 +54,7 @@ class Loop {
   bool at_once_ = false;      // the last wait was none: calls were waiting
   bool lidar_woke_ = false, clients_woke_ = false;
   double next_lidar_ = 0.0, next_clients_ = 0.0;
+  double slept_ = 0.0;  // s, when the last wait had nothing to do
 };
 
 }  // namespace odomcalib

@@ -21,6 +21,7 @@
 #include "daemon/service/service.hpp"
 #include "daemon/service/settings.hpp"
 #include "daemon/service/solver_process.hpp"
+#include "daemon/service/urgency.hpp"
 #include "odomcalib_paths.hpp"
 #include "odomcalib_version.hpp"
 
@@ -29,9 +30,14 @@ namespace {
 using odomcalib::Service;
 namespace settings = odomcalib::service::settings;
 
-volatile sig_atomic_t stop_requested = 0;
+volatile sig_atomic_t stop_requested = 0, hung_up = 0;
 
-void on_signal(int /*number*/) { stop_requested = 1; }
+void on_signal(int number) {
+  if (number == SIGHUP)
+    hung_up = 1;
+  else
+    stop_requested = 1;
+}
 
 void catch_signals() {
   struct sigaction action {};
@@ -67,21 +73,29 @@ class Log {
   odomcalib::DiskWorker worker_;
 };
 
-// Fed from the loop itself: a loop that hangs starves it.
+// What systemd is told. Asked for by the loop itself: a loop that hangs asks for nothing. Sent beside it: a
+// manager that is busy takes messages late.
 class Watchdog {
  public:
   Watchdog() { enabled_ = sd_watchdog_enabled(0, &interval_us_) > 0; }
+  void tell(const std::string& text) {
+    worker_.post([text] { sd_notify(0, text.c_str()); }, [] {});
+  }
   void turned(double now, const Service& service) {
-    if (now < next_) return;
+    worker_.serve();
+    if (now < next_ || untold_) return;
     next_ = now + (enabled_ ? 0.5e-6 * static_cast<double>(interval_us_) : settings::kStatusLine_s);
+    untold_ = true;
     const std::string text = (enabled_ ? "WATCHDOG=1\nSTATUS=" : "STATUS=") + service.status_line();
-    sd_notify(0, text.c_str());
+    worker_.post([text] { sd_notify(0, text.c_str()); }, [this] { untold_ = false; });
   }
 
  private:
   std::uint64_t interval_us_ = 0;
   bool enabled_ = false;
+  bool untold_ = false;  // the last one is still on its way
   double next_ = 0.0;
+  odomcalib::DiskWorker worker_;  // last: what its work uses exists
 };
 
 // The controller sends the stop again and takes the torque off before the bus is closed, from motion after
@@ -92,16 +106,25 @@ bool may_end(const Service& service, double elapsed) {
   return elapsed >= settings::kLongestWrite_s || !service.writing();
 }
 
+// A robot that may move is not configured anew, and a service does not end because somebody logs out.
+void refuse_to_reload(Log& log) {
+  if (hung_up == 0) return;
+  hung_up = 0;
+  log.write(odomcalib::messages::Severity::warning, "hangup",
+            "SIGHUP changes nothing: the configuration is read at the start; systemctl restart odomcalib");
+}
+
 void run(Service& service, const odomcalib::Clock& clock, Log& log) {
   Watchdog watchdog;
-  sd_notify(0, "READY=1");
+  watchdog.tell("READY=1");
   while (stop_requested == 0) {
     service.poll_once(settings::kTurn_ms);
+    refuse_to_reload(log);
     log.serve();
     watchdog.turned(clock.now(), service);
   }
   service.stop_all("the daemon ends");
-  sd_notify(0, "STOPPING=1");
+  watchdog.tell("STOPPING=1");
   for (const double begin = clock.now(); !may_end(service, clock.now() - begin);) {
     service.poll_once(settings::kEndingTurn_ms);
     log.serve();
@@ -148,13 +171,15 @@ int serve(const std::string& path) {
   const auto config = odomcalib::read_config(path);
   if (!config) return refuse(config.error(), path);
   if (const auto devices = check_devices(config.value()); !devices) return refuse(devices.error(), path);
+  const auto urgency = odomcalib::made_urgent();
   odomcalib::SystemClock clock;
   auto calibrator = odomcalib::make_calibrator();
   calibrator.solve = odomcalib::solve_in_process({});
   Log log;
   auto service = Service::create(
       config.value(), clock, calibrator, nullptr,
-      [&log](auto severity, const auto& code, const auto& text) { log.write(severity, code, text); });
+      [&log](auto severity, const auto& code, const auto& text) { log.write(severity, code, text); },
+      urgency);
   if (!service) {
     spdlog::error("{}", service.error().text());
     return kFailure;

@@ -1,5 +1,6 @@
 #include "daemon/service/quick_stop.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -13,9 +14,12 @@ Result<void> quick_stop(const Config& config, const Clock& clock) {
   if (!base) return base.error();
   BaseLink& link = base.value();
   bool sent = false;
-  for (const double end = clock.now() + service::settings::kQuickStop_s; clock.now() < end;
-       std::this_thread::sleep_for(service::settings::kQuickStopPause)) {
+  const double limit = clock.now() + service::settings::kQuickStopSetUp_s;
+  double end = clock.now() + service::settings::kQuickStop_s;
+  for (; clock.now() < end; std::this_thread::sleep_for(service::settings::kQuickStopPause)) {
     link.step(clock);
+    // Its time begins when the adapter is set up.
+    if (link.opening()) end = std::min(limit, clock.now()) + service::settings::kQuickStop_s;
     link.controller().quick_stop(clock.now());
     link.flush();
     sent = sent || (link.connected() && !link.problem());

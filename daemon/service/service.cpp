@@ -11,7 +11,8 @@ Service::Service(std::unique_ptr<Loop> loop) : loop_(std::move(loop)) {}
 Service::~Service() { stop_all("the daemon ends"); }
 
 Result<std::unique_ptr<Service>> Service::create(const Config& config, Clock& clock, Calibrator calibrator,
-                                                 std::unique_ptr<Background> disk, EventLog log) {
+                                                 std::unique_ptr<Background> disk, EventLog log,
+                                                 Urgency urgency) {
   auto base = BaseLink::create(config.controller_device, config.controller_profile);
   if (!base) return base.error();
   auto lidar = LidarLink::create(config.lidar_device, config.lidar_type);
@@ -24,8 +25,8 @@ Result<std::unique_ptr<Service>> Service::create(const Config& config, Clock& cl
   auto server = ControlServer::create(config.socket, config.group);
   if (!server) return server.error();
   if (!disk) disk = std::make_unique<DiskWorker>();
-  Opened opened{std::move(base).value(), std::move(lidar).value(), std::move(server).value(),
-                std::move(folder).value(), std::move(journal).value()};
+  Opened opened{std::move(base).value(),   std::move(lidar).value(),   std::move(server).value(),
+                std::move(folder).value(), std::move(journal).value(), std::move(urgency)};
   auto loop = std::make_unique<Loop>(config, clock, std::move(calibrator), std::move(opened), std::move(disk),
                                      std::move(log));
   return std::unique_ptr<Service>(new Service(std::move(loop)));

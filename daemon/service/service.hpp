@@ -8,6 +8,7 @@
 #include "daemon/service/calibrator.hpp"
 #include "daemon/service/clock.hpp"
 #include "daemon/service/event_log.hpp"
+#include "daemon/service/urgency.hpp"
 #include "daemon/writeback/background.hpp"
 #include "proto/result.hpp"
 
@@ -21,9 +22,10 @@ class Service {
   /// Errors: io, usage, format (configuration, profile).
   /// @param disk null: a thread of its own
   /// @param log empty: events are not logged
+  /// @param urgency of the thread that calls poll_once(), for `check`
   static Result<std::unique_ptr<Service>> create(const Config& config, Clock& clock, Calibrator calibrator,
                                                  std::unique_ptr<Background> disk = nullptr,
-                                                 EventLog log = {});
+                                                 EventLog log = {}, Urgency urgency = {});
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;

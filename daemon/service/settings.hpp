@@ -19,9 +19,13 @@ inline constexpr double kIdleStep_s = 0.020;
 /// s for calls of clients in one turn. Derived: what is left of the 20 ms between two motion commands (M2)
 /// beside the longest single call, a dry run of a calibration (12 ms on two cores of 2.5 GHz).
 inline constexpr double kCallTime_s = 0.004;
-/// Turns in a row that do not wait because calls wait, and serve none. Chosen: half a second of them at
-/// least.
+/// Turns in a row that do not wait because calls wait, and serve none, or that are woken by something and
+/// take nothing from it. Chosen: some 10 ms of a loop that turns as fast as it can, and no chance.
 inline constexpr std::size_t kMostIdleTurns = 1000;
+/// s without a wait that had nothing to do, and ms of rest after them. Derived: a tenth of the unit's
+/// LimitRTTIME; a hundredth of the processor for others.
+inline constexpr double kLongestAwake_s = 0.100;
+inline constexpr int kRest_ms = 1;
 /// ms that a turn waits otherwise, and while the daemon ends. Chosen.
 inline constexpr int kTurn_ms = 20, kEndingTurn_ms = 5;
 /// s between status lines for the service manager where there is no watchdog. Chosen.
@@ -38,6 +42,8 @@ inline constexpr double kLongestWrite_s = 8.0;
 /// s over which a quick stop without the service is sent. Derived: identity of a drive, four answers of 50 ms
 /// each at worst.
 inline constexpr double kQuickStop_s = 0.5;
+/// s until then in which an adapter may be set up. Derived: one that answers nothing takes 0.9 s.
+inline constexpr double kQuickStopSetUp_s = 1.0;
 /// ms between two looks in it. Chosen.
 inline constexpr std::chrono::milliseconds kQuickStopPause{5};
 
@@ -93,6 +99,11 @@ inline constexpr double kEventsAtOnce = 20.0, kEventPause_s = 5.0;
 inline constexpr double kRobotPeriod_s = 10.0, kStatusPeriod_s = 1.0, kProgressPeriod_s = 0.2;
 /// s between attempts to open the network. Chosen.
 inline constexpr double kPublisherRetry_s = 5.0;
+/// Messages, and bytes of them, that wait for the network. Derived: a second of a usual robot (counts at 50
+/// to 100 Hz in three messages each, ten scans); the largest message is a calibration with its paths (1 MB).
+inline constexpr std::size_t kMostUnsent = 512, kMostUnsent_bytes = std::size_t{4} << 20;
+/// How long what waits may take to leave when the daemon ends. Chosen: a network that works takes no time.
+inline constexpr std::chrono::milliseconds kPublisherEnd{200};
 
 // --- Recordings ------------------------------------------------------------------------------------------
 

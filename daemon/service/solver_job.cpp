@@ -111,8 +111,10 @@ SolverJob::SolverJob(const Calibrator& calibrator, std::vector<std::filesystem::
 SolverJob::~SolverJob() = default;
 
 std::pair<std::string, double> SolverJob::progress() const {
-  const std::lock_guard lock(state_->mutex);
-  return {state_->phase, state_->fraction};
+  // The solver's thread may be put aside while it has the lock: the loop does not wait for it.
+  const std::unique_lock lock(state_->mutex, std::try_to_lock);
+  if (lock) shown_ = {state_->phase, state_->fraction};
+  return shown_;
 }
 
 std::optional<Error> SolverJob::not_kept() const {
@@ -121,8 +123,8 @@ std::optional<Error> SolverJob::not_kept() const {
 }
 
 std::optional<Result<Solution>> SolverJob::take_result() {
-  const std::lock_guard lock(state_->mutex);
-  return std::exchange(state_->result, std::nullopt);
+  const std::unique_lock lock(state_->mutex, std::try_to_lock);
+  return lock ? std::exchange(state_->result, std::nullopt) : std::nullopt;
 }
 
 }  // namespace odomcalib

@@ -40,6 +40,7 @@ class SolverJob {
 
  private:
   std::shared_ptr<State> state_;
+  mutable std::pair<std::string, double> shown_{"reading", 0.0};
 };
 
 }  // namespace odomcalib

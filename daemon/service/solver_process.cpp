@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "daemon/service/settings.hpp"
+#include "daemon/service/urgency.hpp"
 #include "proto/control/control.hpp"
 
 namespace odomcalib {
@@ -165,7 +166,7 @@ std::vector<std::string> arguments_of(const SolverProcess& process,
 
 void limit_own_means(std::uint32_t memory) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  (void)setpriority(PRIO_PROCESS, 0, service::settings::kLessUrgent);
+  step_back();
   std::ofstream("/proc/self/oom_score_adj") << 1000;  // where memory is short for all, this one goes first
   const rlim_t bytes = memory * kMiB;
   const rlimit limit{.rlim_cur = bytes, .rlim_max = bytes};

@@ -85,6 +85,14 @@ ordered_json check_disk(const Bench& bench) {
                "remove old recordings");
 }
 
+/// No failure: on a machine that does nothing else the loop is in time all the same.
+ordered_json scheduling_check(const Urgency& urgency) {
+  return {{"name", "scheduling"},
+          {"outcome", urgency.remedy.empty() ? "ok" : "warn"},
+          {"found", urgency.found},
+          {"remedy", urgency.remedy}};
+}
+
 ordered_json json_of(const LoopWatch::Longest& turn) {
   return {{"seconds", turn.seconds}, {"part", turn.part}};
 }
@@ -174,8 +182,13 @@ ordered_json client_report(const ControlServer& server) {
           {"too_many", server.counters().too_many}};
 }
 
+ordered_json lcm_report(const Publisher::Counters& counters) {
+  return {{"sent", counters.sent}, {"failed", counters.failed}, {"dropped", counters.dropped}};
+}
+
 ordered_json loop_report(const Bench& bench) {
-  return {{"turns", bench.loop.turns()},
+  return {{"scheduling", bench.urgency.found},
+          {"turns", bench.loop.turns()},
           {"late_steps", bench.late_steps},
           {"longest_turn", json_of(bench.loop.since_start())},
           {"longest_turn_in_motion", json_of(bench.loop.in_motion())}};
@@ -221,7 +234,7 @@ ordered_json status_report(const Bench& bench, const Task* task) {
   body["calibrated"] = bench.applied.get().has_value();
   body["operator_needed"] = bench.write_back.operator_needed;
   body["last_stop"] = bench.last_run.last_stop();
-  body["lcm"] = {{"sent", telemetry.publisher.sent()}, {"failed", telemetry.publisher.failed()}};
+  body["lcm"] = lcm_report(telemetry.publisher.counters());
   body["clients"] = client_report(bench.outbox.server);
   body["loop"] = loop_report(bench);
   body["recording_bytes"] = telemetry.recorder.bytes();
@@ -276,6 +289,7 @@ ordered_json check_report(const Bench& bench) {
             write_back.operator_needed ? write_back.problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
   list.push_back(check_disk(bench));
+  if (!bench.urgency.found.empty()) list.push_back(scheduling_check(bench.urgency));
   if (auto configuration = config_check(bench.config)) list.push_back(*configuration);
   return list;
 }

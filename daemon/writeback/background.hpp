@@ -2,6 +2,7 @@
 // which they were posted.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 namespace odomcalib {
@@ -20,6 +21,8 @@ class Background {
   virtual void serve() {}
   /// To poll for reading: work is done. -1: there is none.
   [[nodiscard]] virtual int fd() const { return -1; }
+  /// Pieces of work of which `done` was called.
+  [[nodiscard]] virtual std::uint64_t taken() const { return 0; }
   /// Waits until all work is done; nobody is called any more.
   virtual void finish() {}
 };

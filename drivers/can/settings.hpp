@@ -17,12 +17,11 @@ inline constexpr double kOldest_s = 1.0;
 inline constexpr double kStep_s = 0.005;
 
 // Lawicel adapters.
-/// ms of silence that end what a previous user had left. Chosen: several
-/// times the latency timer of a USB adapter (16 ms).
-inline constexpr int kDrain_ms = 100;
-/// ms until the answer to a set-up command is overdue. Chosen: as kDrain_ms, and time
-/// for the adapter.
-inline constexpr int kAnswer_ms = 250;
+/// s in which what a previous user had left comes to its end. Chosen: several times the latency timer of a
+/// USB adapter (16 ms).
+inline constexpr double kDrain_s = 0.100;
+/// s until the answer to a set-up command is overdue. Chosen: as kDrain_s, and time for the adapter.
+inline constexpr double kAnswer_s = 0.250;
 /// Characters of a line. Derived: FD frames of 64 bytes have 142.
 inline constexpr std::size_t kLongestLine = 150;
 /// bit/s for USB-CDC devices, which ignore it. Chosen.

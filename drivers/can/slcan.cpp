@@ -1,10 +1,9 @@
 #include "drivers/can/slcan.hpp"
 
-#include <poll.h>
-
 #include <algorithm>
-#include <chrono>
-#include <deque>
+#include <array>
+#include <optional>
+#include <utility>
 
 #include "drivers/can/settings.hpp"
 #include "drivers/can/slcan_parser.hpp"
@@ -29,14 +28,15 @@ std::string bitrate_command(unsigned bitrate) {
 
 class SlcanTransport final : public CanTransport {
  public:
-  SlcanTransport(std::unique_ptr<ByteStream> port, std::string name, const SlcanOptions& options)
-      : port_(std::move(port)), name_(std::move(name)), options_(options) {}
+  SlcanTransport(std::unique_ptr<ByteStream> port, std::string name, std::string rate,
+                 const SlcanOptions& options)
+      : port_(std::move(port)), name_(std::move(name)), rate_(std::move(rate)), options_(options) {}
 
   ~SlcanTransport() override { (void)port_->write(as_bytes("C\r")); }
   SlcanTransport(const SlcanTransport&) = delete;
   SlcanTransport& operator=(const SlcanTransport&) = delete;
 
-  Result<void> set_up();
+  Result<bool> ready(double now) override;
 
   [[nodiscard]] int fd() const override { return port_->fd(); }
 
@@ -59,12 +59,10 @@ class SlcanTransport final : public CanTransport {
   Result<std::vector<CanFrame>> receive(double now) override {
     auto bytes = port_->read();
     if (!bytes) return bytes.error();
-    std::vector<CanFrame> out;
+    std::vector<CanFrame> out = std::exchange(early_, {});
     for (SlcanItem& item : parser_.on_bytes(bytes.value())) {
       if (item.kind == SlcanItem::Kind::bus_state) note_bus_state(item, now, out);
-      if (item.kind != SlcanItem::Kind::frame) continue;
-      item.frame.t = time_of(item, now);
-      out.push_back(item.frame);
+      if (item.kind == SlcanItem::Kind::frame) take(item, now, out);
     }
     return out;
   }
@@ -77,49 +75,19 @@ class SlcanTransport final : public CanTransport {
     all["unacknowledged"] = silent_ ? 1 : 0;
     return all;
   }
+  [[nodiscard]] std::uint64_t taken() const override { return parser_.bytes_in(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  enum class Step { draining, setting_rate, asking_stamps, opening, open };
+  enum class Answer { done, refused, none };
 
   Error refuse(const std::string& what, const std::string& remedy) const {
     return {ErrorCode::device, what, name_, remedy};
   }
-
-  /// Waits for bytes until the deadline; false when there were none.
-  Result<bool> await_bytes(Clock::time_point deadline, std::vector<SlcanItem>& out) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    pollfd state{port_->fd(), POLLIN, 0};
-    if (left <= 0 || poll(&state, 1, static_cast<int>(left)) <= 0) return false;
-    auto bytes = port_->read();
-    if (!bytes) return bytes.error();
-    for (auto& item : parser_.on_bytes(bytes.value())) out.push_back(std::move(item));
-    return true;
-  }
-
-  Result<void> drain() {
-    const auto deadline = Clock::now() + std::chrono::milliseconds(kDrain_ms);
-    for (std::vector<SlcanItem> ignored;;) {
-      const auto more = await_bytes(deadline, ignored);
-      if (!more) return more.error();
-      if (!more.value()) return {};
-    }
-  }
-
-  enum class Answer { done, refused, none };
-  Result<Answer> ask(const std::string& command, SlcanItem::Kind wanted) {
-    if (auto sent = port_->write(as_bytes(command)); !sent) return sent.error();
-    const auto deadline = Clock::now() + std::chrono::milliseconds(kAnswer_ms);
-    for (;;) {
-      std::vector<SlcanItem> items;
-      const auto more = await_bytes(deadline, items);
-      if (!more) return more.error();
-      for (const SlcanItem& item : items) {
-        if (item.kind == wanted) return Answer::done;
-        if (item.kind == SlcanItem::Kind::refused) return Answer::refused;
-      }
-      if (!more.value()) return Answer::none;
-    }
-  }
+  Result<void> begin(Step step, double now, const std::string& command, double patience);
+  /// What has arrived for the step that is under way; nullopt: not yet.
+  Result<std::optional<Answer>> answer(double now);
+  Result<void> next(Answer given, double now);
 
   /// From the line's first byte to the end of the read, 10 bits a byte: the frame was over before it began.
   double line_time(const SlcanItem& item) const {
@@ -130,6 +98,11 @@ class SlcanTransport final : public CanTransport {
   double time_of(const SlcanItem& item, double now) {
     const double seen = now - line_time(item);
     return item.stamp_ms ? clock_.to_host(*item.stamp_ms, seen) : seen;
+  }
+
+  void take(SlcanItem& item, double now, std::vector<CanFrame>& out) {
+    item.frame.t = time_of(item, now);
+    out.push_back(item.frame);
   }
 
   /// "sb...": bus-off is passed on like SocketCAN's error frame, so that there is one way to learn of it.
@@ -149,45 +122,85 @@ class SlcanTransport final : public CanTransport {
   }
 
   std::unique_ptr<ByteStream> port_;
-  std::string name_;
+  std::string name_, rate_;
   SlcanOptions options_;
+  Step step_ = Step::draining;
+  std::optional<double> deadline_;  // s, of this step; unset: nothing was asked yet
+  std::vector<CanFrame> early_;     // came with the answer that the channel is open
   SlcanParser parser_;
   DeviceClock clock_{60'000};
   bool silent_ = false;  // acknowledged none of the set-up commands
   std::uint64_t sent_ = 0, send_failed_ = 0, bus_states_ = 0;
 };
 
-Result<void> SlcanTransport::set_up() {
-  const std::string rate = bitrate_command(options_.bitrate);
-  if (rate.empty())
-    return Error{ErrorCode::usage, "no command for " + std::to_string(options_.bitrate) + " bit/s", name_,
-                 "use 10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000 or 1000000"};
-  if (auto sent = port_->write(as_bytes("\r\r\rC\r")); !sent) return sent.error();
-  if (auto drained = drain(); !drained) return drained.error();
-  const auto rate_set = ask(rate, SlcanItem::Kind::done);
-  if (!rate_set) return rate_set.error();
-  if (rate_set.value() == Answer::refused)
-    return refuse("adapter refuses the bit rate " + std::to_string(options_.bitrate), "check ?bitrate=...");
-  if (options_.timestamps) {
-    const auto stamps = ask("Z1\r", SlcanItem::Kind::done);  // may be refused: then arrival times serve
-    if (!stamps) return stamps.error();
+Result<void> SlcanTransport::begin(Step step, double now, const std::string& command, double patience) {
+  step_ = step;
+  deadline_ = now + patience;
+  return port_->write(as_bytes(command));
+}
+
+Result<std::optional<SlcanTransport::Answer>> SlcanTransport::answer(double now) {
+  auto bytes = port_->read();
+  if (!bytes) return bytes.error();
+  std::optional<Answer> given;
+  for (SlcanItem& item : parser_.on_bytes(bytes.value())) {
+    if (step_ == Step::draining) continue;  // of whoever had the adapter before
+    if (item.kind == SlcanItem::Kind::done && !given) given = Answer::done;
+    if (item.kind == SlcanItem::Kind::refused && !given) given = Answer::refused;
+    if (item.kind == SlcanItem::Kind::frame) take(item, now, early_);
   }
-  const auto opened = ask("O\r", SlcanItem::Kind::done);
-  if (!opened) return opened.error();
-  if (opened.value() == Answer::refused)
-    return refuse("adapter does not open the channel", "unplug it, check the CAN wiring, plug it in again");
-  // Some adapters acknowledge nothing and work; python-can and the kernel's slcan ask for nothing either.
-  silent_ = rate_set.value() == Answer::none && opened.value() == Answer::none;
-  return {};
+  if (!given && now >= deadline_) given = Answer::none;
+  return given;
+}
+
+Result<void> SlcanTransport::next(Answer given, double now) {
+  const bool refused = given == Answer::refused;
+  switch (step_) {
+    case Step::draining:
+      return begin(Step::setting_rate, now, rate_, kAnswer_s);
+    case Step::setting_rate:
+      if (refused)
+        return refuse("adapter refuses the bit rate " + std::to_string(options_.bitrate),
+                      "check ?bitrate=...");
+      silent_ = given == Answer::none;
+      if (options_.timestamps) return begin(Step::asking_stamps, now, "Z1\r", kAnswer_s);
+      [[fallthrough]];
+    case Step::asking_stamps:  // may be refused: then arrival times serve
+      return begin(Step::opening, now, "O\r", kAnswer_s);
+    default:
+      if (refused)
+        return refuse("adapter does not open the channel",
+                      "unplug it, check the CAN wiring, plug it in again");
+      // Some adapters acknowledge nothing and work; python-can and the kernel's slcan ask for nothing either.
+      silent_ = silent_ && given == Answer::none;
+      step_ = Step::open;
+      return {};
+  }
+}
+
+Result<bool> SlcanTransport::ready(double now) {
+  if (step_ == Step::open) return true;
+  if (!deadline_) {
+    if (auto begun = begin(Step::draining, now, "\r\r\rC\r", kDrain_s); !begun) return begun.error();
+    return false;
+  }
+  const auto given = answer(now);
+  if (!given) return given.error();
+  if (!given.value()) return false;
+  if (auto done = next(*given.value(), now); !done) return done.error();
+  return step_ == Step::open;
 }
 
 }  // namespace
 
 Result<std::unique_ptr<CanTransport>> open_slcan(std::unique_ptr<ByteStream> port, const std::string& name,
                                                  const SlcanOptions& options) {
-  auto transport = std::make_unique<SlcanTransport>(std::move(port), name, options);
-  if (auto ready = transport->set_up(); !ready) return ready.error();
-  return std::unique_ptr<CanTransport>(std::move(transport));
+  const std::string rate = bitrate_command(options.bitrate);
+  if (rate.empty())
+    return Error{ErrorCode::usage, "no command for " + std::to_string(options.bitrate) + " bit/s", name,
+                 "use 10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000 or 1000000"};
+  return std::unique_ptr<CanTransport>(
+      std::make_unique<SlcanTransport>(std::move(port), name, rate, options));
 }
 
 }  // namespace odomcalib::drivers

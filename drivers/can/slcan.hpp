@@ -18,9 +18,10 @@ struct SlcanOptions {
   bool timestamps = false;  ///< ask the adapter for its own millisecond stamps
 };
 
-/// Closes the adapter's channel, sets the bit rate and opens it again. Takes 0.1 s, at most 1.2 s with an
-/// adapter that acknowledges nothing: it is used, with a note(). Errors: usage (bit rate that the protocol
-/// has no command for), device (refused, unplugged).
+/// Its ready() closes the adapter's channel, sets the bit rate and opens it again, step by step and without
+/// waiting: in 0.1 s, at most 0.9 s with an adapter that acknowledges nothing, which is used, with a note().
+/// Errors: usage (bit rate that the protocol has no command for); those of ready(): device (refused,
+/// unplugged).
 Result<std::unique_ptr<CanTransport>> open_slcan(std::unique_ptr<ByteStream> port, const std::string& name,
                                                  const SlcanOptions& options);
 

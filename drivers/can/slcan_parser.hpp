@@ -37,6 +37,7 @@ class SlcanParser {
   void reset();
   /// bytes_in = good + skipped + buffered, always; skipped splits into the kinds of rejection by lines.
   [[nodiscard]] Counters counters() const;
+  [[nodiscard]] std::uint64_t bytes_in() const { return bytes_in_; }
 
  private:
   void finish_line(std::vector<SlcanItem>& out, std::size_t bytes_after);

@@ -132,6 +132,7 @@ class SocketCan final : public CanTransport {
             {"bad_frame", bad_frame_},
             {"buffered", 0}};
   }
+  [[nodiscard]] std::uint64_t taken() const override { return bytes_in_; }
 
  private:
   /// s; 0 for a frame without stamp.

@@ -65,8 +65,8 @@ HostLookup::HostLookup(const std::string& address) : shared_(std::make_shared<Sh
 }
 
 std::optional<Result<std::string>> HostLookup::answer() const {
-  const std::scoped_lock lock(shared_->mutex);
-  return shared_->answer;
+  const std::unique_lock lock(shared_->mutex, std::try_to_lock);
+  return lock ? shared_->answer : std::nullopt;
 }
 
 }  // namespace odomcalib::drivers

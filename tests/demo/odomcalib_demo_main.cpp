@@ -104,7 +104,6 @@ class Demo {
         Service::create(config_, clock_, std::move(functions), std::make_unique<odomcalib::Foreground>());
     if (!service) return service.error();
     service_ = std::move(service).value();
-    linked_ = false;
     return {};
   }
 
@@ -112,13 +111,7 @@ class Demo {
     robot_->step(kStep);
     clock_.advance(kStep);
     relay_->serve(real_now(), clock_.now());
-    if (linked_) {
-      service_->poll_once(0);
-    } else {
-      // Whoever opens the adapter waits for its answer.
-      robot_->serve_during([this] { service_->poll_once(0); });
-      linked_ = nlohmann::json::parse(service_->status_json())["controller"]["connected"] == true;
-    }
+    service_->poll_once(0);
     relay_->serve(real_now(), clock_.now());
     if (clock_.now() < truth_due_) return;
     truth_due_ = clock_.now() + 0.2;
@@ -163,7 +156,6 @@ class Demo {
   std::unique_ptr<Service> service_;
   std::unique_ptr<odomcalib::demo::LeaseRelay> relay_;
   std::string pending_;
-  bool linked_ = false;
   double truth_due_ = 0.0;  // s of the service's time
   double due_ = 0.0;        // s of real time
 };

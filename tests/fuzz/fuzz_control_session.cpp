@@ -46,6 +46,7 @@ class MemoryBus final : public drivers::CanTransport {
     return robot_at_the_wires->take_frames(now);
   }
   [[nodiscard]] drivers::Counters counters() const override { return {}; }
+  [[nodiscard]] std::uint64_t taken() const override { return 0; }
 };
 
 class MemoryPort final : public drivers::ByteStream {

@@ -43,7 +43,7 @@ class Campaign : public WholeLoop {
   }
   void begin(unsigned seed) {
     seed_ = seed;
-    linked_ = renewing_ = false;
+    renewing_ = false;
     lease_.clear();
     WholeLoop::SetUp();
     acquire();

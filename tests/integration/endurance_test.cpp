@@ -96,7 +96,7 @@ class Cycles : public Endurance {
   }
   void restart_service() {
     service_.reset();
-    linked_ = renewing_ = false;
+    renewing_ = false;
     start_service();
     ASSERT_TRUE(run_until([this] { return ready(); }, 10.0)) << service_->status_json();
   }

@@ -30,7 +30,6 @@ TEST_P(StoppingFault, ends_in_a_named_state_in_time_and_nothing_restarts) {
   EXPECT_TRUE(stopped(end)) << end;
   EXPECT_NE(said.find(GetParam().said), std::string::npos) << said;
   GetParam().end(*robot_);
-  linked_ = false;  // opening an adapter again waits for its answer
   expect_no_restart(1.0);
   EXPECT_TRUE(run_until([this] { return usable(GetParam().state); }, GetParam().ready))
       << service_->status_json();

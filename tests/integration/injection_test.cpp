@@ -91,7 +91,6 @@ class Injection : public FaultLoop {
 
   void inject(std::uint64_t seed) {
     seed_ = seed;
-    linked_ = false;
     lease_.clear();
     FaultLoop::SetUp();
     acquire();

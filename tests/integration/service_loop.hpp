@@ -131,20 +131,14 @@ class ServiceLoop : public testing::Test {
     client_.reset();
     service_.reset();
     lease_.clear();
-    linked_ = renewing_ = false;
+    renewing_ = false;
   }
   void step() {
     robot_->step(0.002);
     clock_.time += 0.002;
-    turn_loop();
+    service_->poll_once(0);
     if (client_ && !lease_.empty() && renewing_ && ++steps_ % 10 == 0)
       client_->call("Renew", {{"lease", lease_}});
-  }
-  // Opening the adapter waits for its answer: the robot must go on meanwhile.
-  void turn_loop() {
-    if (linked_) return service_->poll_once(0);
-    robot_->serve_during([this] { service_->poll_once(0); });
-    linked_ = status()["controller"]["connected"] == true;
   }
   template <typename Condition>
   bool run_until(Condition condition, double seconds) {
@@ -208,7 +202,6 @@ class ServiceLoop : public testing::Test {
   std::string lease_;
   bool renewing_ = false;
   int steps_ = 0, asked_ = 0;
-  bool linked_ = false;
 };
 
 }  // namespace odomcalib

@@ -355,7 +355,6 @@ TEST_F(OtherWheels, than_those_of_the_configuration_do_not_turn) {
 TEST_F(ServiceLoop, nothing_moves_before_the_values_of_the_controller_were_read) {
   service_.reset();
   robot_->reset_drive();
-  linked_ = false;
   start_service();
   acquire();
   std::set<std::string> said;

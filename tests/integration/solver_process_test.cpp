@@ -2,9 +2,14 @@
 #include "daemon/service/solver_process.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <fstream>
 #include <set>
@@ -68,6 +73,53 @@ TEST_F(SolverOnItsOwn, is_gone_as_soon_as_its_progress_report_throws) {
   EXPECT_THROW((void)solve(stop), std::runtime_error);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
   EXPECT_TRUE(children().empty());
+}
+
+TEST_F(SolverOnItsOwn, is_less_urgent_than_any_loop) {
+  const sched_param urgent{.sched_priority = 3}, none{};
+  if (sched_setscheduler(0, SCHED_RR, &urgent) != 0)
+    GTEST_SKIP() << "NOT TESTED: no right to real-time priorities";
+  std::set<int> policies, niceness;
+  const auto look = [&](const std::string& phase, double) {
+    if (phase == "reading") return;  // what it is before it has told anything
+    for (const pid_t pid : children()) {
+      policies.insert(sched_getscheduler(pid));
+      niceness.insert(getpriority(PRIO_PROCESS, static_cast<id_t>(pid)));
+    }
+  };
+  const auto solved = solve(look);
+  ASSERT_EQ(sched_setscheduler(0, SCHED_OTHER, &none), 0);
+  ASSERT_TRUE(solved.ok()) << solved.error().text();
+  EXPECT_EQ(policies, std::set{SCHED_OTHER});
+  EXPECT_EQ(niceness, std::set{service::settings::kLessUrgent});
+}
+
+TEST_F(SolverOnItsOwn, does_not_outlive_the_process_that_started_it) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const pid_t service = fork();
+  if (service == 0) {
+    const auto tell = [&](const std::string& phase, double) {
+      for (const pid_t pid : children())
+        if (phase != "reading") (void)!write(ends[1], &pid, sizeof pid);
+    };
+    (void)solve(tell);
+    _exit(0);
+  }
+  pid_t solver = -1;
+  ASSERT_EQ(read(ends[0], &solver, sizeof solver), static_cast<ssize_t>(sizeof solver));
+  ASSERT_EQ(kill(solver, 0), 0);
+  kill(service, SIGKILL);
+  waitpid(service, nullptr, 0);
+  // An orphan becomes somebody else's child, who may let it lie: a process in state Z has ended.
+  const auto ended = [solver] {
+    std::ifstream file("/proc/" + std::to_string(solver) + "/stat");
+    std::string id, name, state;
+    return !(file >> id >> name >> state) || state == "Z";
+  };
+  for (int i = 0; i < 2000 && !ended(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_TRUE(ended());
+  for (const int end : ends) close(end);
 }
 
 TEST_F(SolverOnItsOwn, that_is_killed_is_an_error_that_says_so) {

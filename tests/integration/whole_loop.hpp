@@ -70,7 +70,7 @@ class WholeLoop : public ServiceLoop {
     robot_->reset_drive();
     client_.reset();
     service_.reset();
-    linked_ = renewing_ = false;
+    renewing_ = false;
     start_service();
     ASSERT_TRUE(run_until([this] { return ready(); }, 20.0)) << service_->status_json();
     acquire();

@@ -13,6 +13,7 @@
 #include "drivers/base/controller.hpp"
 #include "drivers/can/transport.hpp"
 #include "tests/integration/processes.hpp"
+#include "tests/unit/drivers/ready_can.hpp"
 
 namespace odomcalib::test_support {
 namespace {
@@ -34,7 +35,7 @@ class CanopenPeer : public ::testing::Test {
         std::vector<std::string>{ODOMCALIB_NODE, ODOMCALIB_PEER_SCRIPT, std::to_string(master_)},
         folder_ / "peer.log");
     ASSERT_TRUE(wait_until([this] { return told("ready"); }, 20.0)) << log();
-    auto bus = drivers::open_can("slcan:" + std::string(ptsname(master_)) + "?bitrate=500000");
+    auto bus = drivers::test::open_ready_can("slcan:" + std::string(ptsname(master_)) + "?bitrate=500000");
     ASSERT_TRUE(bus.ok()) << bus.error().text() << log();
     bus_ = std::move(bus).value();
     auto controller = drivers::make_controller(ODOMCALIB_PEER_PROFILE);

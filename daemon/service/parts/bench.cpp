@@ -9,6 +9,7 @@ Bench::Bench(const Config& configuration, Clock& time, Calibrator functions, Ope
       calibrator(std::move(functions)),
       now(time.now()),
       folder(std::move(opened.folder)),
+      urgency(std::move(opened.urgency)),
       disk(std::move(disk_worker)),
       outbox(std::move(opened.server), config, clock, std::move(log)),
       drive(std::move(opened.base), config),
@@ -19,6 +20,11 @@ Bench::Bench(const Config& configuration, Clock& time, Calibrator functions, Ope
   outbox.begin_turn(now);
   if (const auto& why = folder.read_only())
     outbox.event(messages::Severity::warning, "read_only", why->text());
+  if (!urgency.remedy.empty())
+    outbox.event(messages::Severity::warning, "not_urgent", urgency.found + ": " + urgency.remedy);
+  // Where nothing is installed there is no group of the usual name.
+  if (const auto& why = outbox.server.warning(); !why.empty() && config.group != Config{}.group)
+    outbox.event(messages::Severity::warning, "control_group", why);
   if (last_run.after_crash()) outbox.event(messages::Severity::warning, "restarted", last_run.last_stop());
   drive.link.watch_frames([this](const drivers::CanFrame& frame) { outbox.frame(frame); });
 }

@@ -15,6 +15,7 @@
 #include "daemon/service/parts/surroundings.hpp"
 #include "daemon/service/parts/write_back.hpp"
 #include "daemon/service/state_folder.hpp"
+#include "daemon/service/urgency.hpp"
 
 namespace odomcalib {
 
@@ -25,6 +26,7 @@ struct Opened {
   ControlServer server;
   StateFolder folder;
   Journal journal;
+  Urgency urgency;
 };
 
 struct Bench {
@@ -40,6 +42,7 @@ struct Bench {
   double now = 0.0;  ///< s, begin of this turn
   LoopWatch loop;
   StateFolder folder;
+  Urgency urgency;
   std::unique_ptr<Background> disk;  ///< waits for the disk
 
   Outbox outbox;

@@ -1,12 +1,14 @@
 // What clients send at once: who is served, in which order, and that a stop waits for nobody.
 #include "daemon/service/control_server.hpp"
 
+#include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <array>
 #include <functional>
+#include <numeric>
 
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/daemon/service/control_client.hpp"
@@ -170,22 +172,24 @@ TEST_F(Burst, a_client_that_does_not_read_is_dropped) {
 constexpr uid_t kNobody = 65534;  // of Debian: in no group of importance
 
 TEST(Permission, is_for_root_the_own_user_and_the_group_alone) {
-  const std::string ours = "root";  // group 0 exists everywhere
-  EXPECT_TRUE(may_connect(0, 0, "nobody-has-this-group"));
-  EXPECT_TRUE(may_connect(geteuid(), kNobody, "nobody-has-this-group"));
-  EXPECT_TRUE(may_connect(kNobody, 0, ours));
-  EXPECT_FALSE(may_connect(kNobody, kNobody, ours));
-  EXPECT_FALSE(may_connect(kNobody, 0, "nobody-has-this-group"));
-  EXPECT_FALSE(may_connect(4'000'000, kNobody, ours)) << "a user who is not in the system";
+  constexpr gid_t kOurs = 4711;
+  const std::vector<gid_t> member = {100, kOurs, 200}, other = {100, 200};
+  EXPECT_TRUE(may_connect(0, {}, std::nullopt));
+  EXPECT_TRUE(may_connect(geteuid(), other, std::nullopt));
+  EXPECT_TRUE(may_connect(kNobody, member, kOurs));
+  EXPECT_FALSE(may_connect(kNobody, other, kOurs));
+  EXPECT_FALSE(may_connect(kNobody, member, std::nullopt));
+  EXPECT_FALSE(may_connect(kNobody, {}, kOurs));
 }
 
 /// What a process of another user is told: the first answer, or nothing.
-std::string told_to(uid_t user, const std::filesystem::path& socket, const std::function<void()>& serve) {
+std::string told_to(uid_t user, const std::vector<gid_t>& groups, const std::filesystem::path& socket,
+                    const std::function<void()>& serve) {
   std::array<int, 2> ends{};
   EXPECT_EQ(pipe(ends.data()), 0);
   const pid_t child = fork();
   if (child == 0) {
-    if (setgid(user) != 0 || setuid(user) != 0) _exit(1);
+    if (setgroups(groups.size(), groups.data()) != 0 || setgid(user) != 0 || setuid(user) != 0) _exit(1);
     ControlClient client(socket);
     client.send(1, "Stop");
     for (int i = 0; i < 500; ++i) {
@@ -213,10 +217,50 @@ TEST_F(Burst, of_a_user_outside_the_group_is_refused) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
   std::filesystem::permissions(folder_, std::filesystem::perms::all);
   std::filesystem::permissions(folder_ / "control", std::filesystem::perms::all);
-  EXPECT_EQ(told_to(kNobody, folder_ / "control", [this] { step(); }),
+  EXPECT_EQ(told_to(kNobody, {}, folder_ / "control", [this] { step(); }),
             "org.odomcalib.Calibration.NotPermitted");
   EXPECT_FALSE(server_->take_stop());
   EXPECT_EQ(server_->counters().not_permitted, 1U);
+}
+
+// A group that a process has beside its first one, among more than fit into the first question.
+TEST_F(Burst, of_a_user_with_the_group_as_one_of_many_is_served) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+  const struct group* const ours = getgrnam("daemon");
+  ASSERT_NE(ours, nullptr) << "a group of every Debian";
+  server_.reset();
+  server_.emplace(value_of(ControlServer::create(folder_ / "control", "daemon")));
+  EXPECT_EQ(server_->warning(), "");
+  std::filesystem::permissions(folder_, std::filesystem::perms::all);
+  std::vector<gid_t> groups(200);
+  std::iota(groups.begin(), groups.end(), gid_t{70'000});
+  groups.back() = ours->gr_gid;
+  const auto serve = [this] {
+    step();
+    while (const auto call = server_->next_call()) server_->reply(call->client, control::encode_reply("{}"));
+  };
+  EXPECT_EQ(told_to(kNobody, groups, folder_ / "control", serve), "");
+  EXPECT_EQ(server_->counters().not_permitted, 0U);
+  EXPECT_EQ(server_->counters().served, 1U);
+  EXPECT_TRUE(server_->take_stop());
+}
+
+TEST(ControlSocket, whose_group_is_missing_or_cannot_be_set_says_so_with_a_remedy) {
+  TemporaryFolder folder;
+  const auto without = value_of(ControlServer::create(folder / "a", "nobody-has-this-group"));
+  EXPECT_NE(without.warning().find("there is no group \"nobody-has-this-group\""), std::string::npos);
+  if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (setgroups(0, nullptr) != 0 || setgid(kNobody) != 0 || setuid(kNobody) != 0) _exit(1);
+    const auto server = ControlServer::create(folder / "b", "daemon");
+    const bool told = server.ok() && server.value().warning().find("Group=daemon") != std::string::npos;
+    _exit(told ? 7 : 8);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 7);
 }
 
 TEST_F(Burst, of_more_than_eight_clients_is_for_a_stop_alone) {

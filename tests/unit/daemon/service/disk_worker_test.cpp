@@ -3,11 +3,32 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <future>
 #include <string>
+#include <thread>
 #include <vector>
+
+namespace {
+
+// The thread is put aside by the scheduler before it signals, until it is let go.
+std::atomic<bool> put_aside = false;
+std::atomic<int> signals_sent = 0;
+
+}  // namespace
+
+// In this program it comes before the function of the C library.
+extern "C" ssize_t write(int fd, const void* bytes, size_t size) {
+  const bool signal = size == sizeof(std::uint64_t);  // of an eventfd
+  while (signal && put_aside) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto done = syscall(SYS_write, fd, bytes, size);
+  if (signal) ++signals_sent;
+  return done;
+}
 
 namespace odomcalib::disk_worker_test {
 namespace {
@@ -77,6 +98,23 @@ TEST_F(Disk, takes_new_work_while_it_tells_of_the_last) {
   worker_.serve();
   turn_until(1);
   EXPECT_EQ(told_, (std::vector<std::string>{"next"}));
+}
+
+// A loop that it woke without end would turn as fast as the processor can.
+TEST_F(Disk, whose_thread_is_put_aside_before_it_signals_wakes_the_loop_once) {
+  const int before = signals_sent;
+  put_aside = true;
+  post("a");
+  for (int i = 0; i < 5000 && told_.empty(); ++i) {
+    worker_.serve();
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(told_, (std::vector<std::string>{"a"}));
+  put_aside = false;
+  for (int i = 0; i < 5000 && signals_sent == before; ++i) std::this_thread::sleep_for(1ms);
+  ASSERT_TRUE(wakes(0));
+  worker_.serve();
+  EXPECT_FALSE(wakes(0));
 }
 
 TEST_F(Disk, finishes_what_it_was_asked_for_and_calls_nobody_any_more) {

@@ -27,6 +27,20 @@ TEST(QuickStop, is_sent_more_than_once_and_nothing_that_moves) {
     EXPECT_EQ(sent.substr(at, 6), "m 0 0\r") << sent;
 }
 
+// Its set-up takes longer than the stop itself is sent.
+TEST(QuickStop, waits_for_an_adapter_that_answers_nothing) {
+  auto pty = std::move(sim::Pty::open()).value();
+  Config config;
+  config.controller_device = "slcan:" + pty->path() + "?bitrate=500000";
+  config.controller_profile = "drivers/base/profiles/vesc.toml";
+  const auto stopped = quick_stop(config, SystemClock());
+  ASSERT_TRUE(stopped.ok()) << stopped.error().text();
+  const std::string sent = pty->read();
+  const std::size_t open = sent.find("O\r");
+  ASSERT_NE(open, std::string::npos) << sent;
+  EXPECT_NE(sent.find('T', open), std::string::npos) << "no frame: " << sent;
+}
+
 TEST(QuickStop, of_a_line_that_is_away_says_so) {
   const auto stopped = quick_stop(config_of("/dev/odomcalib-no-such-port"), SystemClock());
   ASSERT_FALSE(stopped.ok());

@@ -244,32 +244,5 @@ TEST_F(RecordingOnDisk, has_a_name_within_its_folder) {
   EXPECT_EQ(recorder_->start("").error().code, ErrorCode::usage);
 }
 
-struct ListedOutlet final : Outlet {
-  explicit ListedOutlet(std::vector<std::string>& list) : channels(list) {}
-  bool publish(const std::string& channel, const std::string& /*message*/) override {
-    channels.push_back(channel);
-    return true;
-  }
-  std::vector<std::string>& channels;
-};
-
-// At start the network may not be up; the service must not have to be restarted for it.
-TEST(Publisher, that_could_not_be_opened_is_opened_later) {
-  int tries = 0;
-  std::vector<std::string> channels;
-  Publisher publisher("udpm://", "P_", [&](const std::string&) -> std::unique_ptr<Outlet> {
-    if (++tries < 3) return nullptr;
-    return std::make_unique<ListedOutlet>(channels);
-  });
-  for (double now = 100.0; now < 120.0; now += 1.0) {
-    publisher.serve(now);
-    publisher.send("TICKS", "bytes");
-  }
-  EXPECT_EQ(tries, 3);
-  EXPECT_EQ(publisher.failed(), 10U);
-  EXPECT_EQ(publisher.sent(), 10U);
-  EXPECT_EQ(channels.at(0), "P_TICKS");
-}
-
 }  // namespace
 }  // namespace odomcalib::recorder_test

@@ -18,6 +18,7 @@
 #include "tests/sim/wires/can_devices.hpp"
 #include "tests/sim/wires/can_port.hpp"
 #include "tests/sim/wires/serial_devices.hpp"
+#include "tests/unit/drivers/ready_can.hpp"
 
 namespace odomcalib::drivers::test {
 
@@ -100,7 +101,7 @@ class CanBench : public Bench {
     auto pty = sim::Pty::open();
     EXPECT_TRUE(pty.ok());
     port_ = std::make_unique<sim::SlcanPort>(std::move(pty).value());
-    std::thread opening([this] { transport_ = open_can(port_->device()).value(); });
+    std::thread opening([this] { transport_ = test::open_ready_can(port_->device()).value(); });
     for (int i = 0; i < 2000 && !port_->adapter().is_open(); ++i) {
       port_->deliver({}, now);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -5,12 +5,14 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <thread>
 
 #include "drivers/can/transport.hpp"
 #include "drivers/serial/port.hpp"
+#include "tests/unit/drivers/ready_can.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
 namespace odomcalib::drivers::port_test {
@@ -182,7 +184,7 @@ Result<std::unique_ptr<CanTransport>> open_slcan(const Pty& pty, const std::stri
                                                  const std::string& to_rate, const std::string& to_open) {
   std::string heard;
   std::thread adapter([&] { play_adapter(pty, to_rate, to_open, heard); });
-  auto can = open_can("slcan:" + pty.path + options);
+  auto can = test::open_ready_can("slcan:" + pty.path + options);
   adapter.join();
   return can;
 }
@@ -197,7 +199,7 @@ TEST(SlcanPort, sets_up_the_adapter_and_passes_frames) {
   Pty pty;
   std::string heard;
   std::thread adapter([&] { play_adapter(pty, "\r", "\r", heard); });
-  auto can = open_can("slcan:" + pty.path + "?bitrate=500000");
+  auto can = test::open_ready_can("slcan:" + pty.path + "?bitrate=500000");
   adapter.join();
   ASSERT_TRUE(can.ok()) << can.error().text();
   EXPECT_EQ(heard, "\r\r\rC\rS6\rO\r");
@@ -235,12 +237,55 @@ TEST(SlcanPort, an_adapter_that_refuses_is_named_as_such) {
 
 TEST(SlcanPort, an_adapter_that_acknowledges_nothing_is_used_and_told_until_it_passes_frames) {
   Pty silent;
-  const auto can = value_of(open_can("slcan:" + silent.path));
+  const auto can = value_of(test::open_ready_can("slcan:" + silent.path));
   EXPECT_NE(can->note().find("acknowledges nothing"), std::string::npos);
   EXPECT_EQ(can->counters().at("unacknowledged"), 1U);
   silent.say("t1232AABB\r");
   EXPECT_EQ(frames_soon(*can).size(), 1U);
   EXPECT_EQ(can->note(), "");
+}
+
+// Opening and each look at it return at once, whatever the adapter does: the loop that steers waits for
+// nothing.
+TEST(SlcanPort, an_adapter_is_set_up_in_steps_and_nobody_waits_for_it) {
+  Pty silent;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto can = value_of(open_can("slcan:" + silent.path));
+  double opened = 0.0;
+  for (double now = 100.0; now < 110.0 && opened == 0.0; now += 0.001)
+    if (value_of(can->ready(now))) opened = now - 100.0;
+  EXPECT_NEAR(opened, 0.6, 0.01) << "what was there before, and two commands without an answer";
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(200)) << "it was waited for";
+  EXPECT_EQ(silent.hear(), "\r\r\rC\rS6\rO\r");
+  EXPECT_EQ(can->counters().at("unacknowledged"), 1U);
+}
+
+TEST(SlcanPort, frames_that_come_with_the_last_answer_are_kept) {
+  Pty pty;
+  const auto can = value_of(open_can("slcan:" + pty.path));
+  double now = 0.0;
+  const auto said = [&](const std::string& command, const std::string& answer) {
+    std::string heard;
+    for (const double end = now + 1.0; now < end && heard.find(command) == std::string::npos; now += 0.01) {
+      EXPECT_FALSE(value_of(can->ready(now)));
+      heard += pty.hear(5);
+    }
+    pty.say(answer);
+  };
+  said("S6\r", "\r");
+  said("O\r", "\rt1232AABB\r");
+  while (now < 10.0 && !value_of(can->ready(now))) now += 0.01;
+  const auto frames = value_of(can->receive(now));
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].id, 0x123U);
+}
+
+TEST(SlcanPort, an_adapter_that_leaves_while_it_is_set_up_is_told) {
+  auto pty = std::make_unique<Pty>();
+  const auto can = value_of(open_can("slcan:" + pty->path));
+  ASSERT_FALSE(value_of(can->ready(0.0)));
+  pty.reset();
+  EXPECT_FALSE(can->ready(0.01).ok());
 }
 
 TEST(SlcanPort, an_adapter_that_acknowledges_needs_no_note) {

@@ -9,6 +9,7 @@
 
 #include "drivers/base/controller.hpp"
 #include "tests/sim/wires/sim_robot.hpp"
+#include "tests/unit/drivers/ready_can.hpp"
 #include "tests/value_of.hpp"
 
 namespace odomcalib::drivers::tick_dates_test {
@@ -28,7 +29,7 @@ class TickDates : public testing::TestWithParam<Wire> {
     sim::SimRobotOptions options;
     options.truth = options.nominal;
     robot_ = value_of(sim::SimRobot::create(options));
-    robot_->serve_during([&] { bus_ = open_can(robot_->can_device()).value(); });
+    robot_->serve_during([&] { bus_ = test::open_ready_can(robot_->can_device()).value(); });
     controller_ = make_controller("drivers/base/profiles/sim-dual.toml").value();
   }
 
