@@ -264,6 +264,7 @@ const Foreign kForeign[] = {
     {"SDO upload", 0x601, {0x40, 0x18, 0x10, 1, 0, 0, 0, 0}, false},
     {"SDO upload segment", 0x601, {0x60, 0, 0, 0, 0, 0, 0, 0}, false},
     {"SDO abort", 0x601, {0x80, 0x18, 0x10, 1, 0, 0, 0, 0}, false},
+    {"speeds by process data that the profile does not list", 0x401, {1, 0, 0, 0, 1, 0, 0, 0}, true},
     {"speeds to another node", 0x302, {1, 0, 0, 0, 1, 0, 0, 0}, false},
 };
 
