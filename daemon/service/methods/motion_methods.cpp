@@ -18,6 +18,7 @@
 #include "daemon/service/motion_gate.hpp"
 #include "daemon/service/settings.hpp"
 #include "daemon/service/tasks/motion_task.hpp"
+#include "daemon/service/tasks/reading_task.hpp"
 #include "daemon/service/tasks/recording_task.hpp"
 
 namespace odomcalib {
@@ -141,16 +142,23 @@ Outcome begin_motion(Bench& bench, const Caller& caller, MotionTask::Order order
   if (const auto error = motion_forbidden(bench, preview)) return *error;
   const auto blind = bench.surroundings.cover.blind(bench.now);
   const auto unseen = safety::unseen_moves(plan, blind, bench.surroundings.obstacles.options());
-  if (dry_run) return Answer{{{"result", plan_report(bench, plan, preview, unseen, blind.sectors())}}};
+  if (dry_run) {
+    if (auto wrong = bench.drive.geometry_forbidden()) return *wrong;
+    return Answer{{{"result", plan_report(bench, plan, preview, unseen, blind.sectors())}}};
+  }
   if (!unseen.empty())
     bench.outbox.event(messages::Severity::warning, "lidar_blind",
                        fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
                                    safety::text_of(blind.sectors()), fmt::join(unseen, "\", \"")));
   for (const auto& text : routines::limited(plan))
     bench.outbox.event(messages::Severity::info, "limited", text);
-  auto task = MotionTask::begin(bench, caller, std::move(order));
-  if (!task) return task.error();
-  return std::move(task).value();
+  return std::make_unique<ReadingTask>(
+      caller, bench.now,
+      [caller, order = std::move(order), preview](Bench& read) -> Result<std::unique_ptr<Task>> {
+        if (const auto error = motion_forbidden(read, preview)) return *error;
+        if (const auto wrong = read.drive.geometry_forbidden()) return *wrong;
+        return MotionTask::begin(read, caller, order);
+      });
 }
 
 Reading motion_request(Context& context, const Call& call, routines::Plan plan, MotionPurpose purpose) {
