@@ -69,8 +69,9 @@ void SdoSequence::leave_out_the_row() {
 
 bool SdoSequence::to_be_confirmed(const SdoResult& result) const {
   const SdoStep& step = steps_[outcomes_.size()];
-  return step.kind == SdoStep::Kind::check && !again_at_ && !result.error &&
-         decode(result.data, step.type) != step.value;
+  if (step.kind != SdoStep::Kind::check || again_at_) return false;
+  if (result.error) return result.abort && !step.optional;
+  return decode(result.data, step.type) != step.value;
 }
 
 bool SdoSequence::advance(SdoClient& client, double now) {

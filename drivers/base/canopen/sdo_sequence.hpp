@@ -34,8 +34,8 @@ struct SdoOutcome {
 void add_checked_write(std::vector<SdoStep>& steps, const ObjectAddress& object, NumberType type,
                        std::int64_t value, bool optional = false, const std::string& tag = "");
 
-/// A value that is not what a check expects may be the late answer to an earlier request: it is read again
-/// when none can come any more.
+/// A value, or a refusal, that is not what a check expects may be the late answer to an earlier request: it
+/// is read again when none can come any more.
 class SdoSequence {
  public:
   void start(std::vector<SdoStep> steps);

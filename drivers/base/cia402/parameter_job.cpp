@@ -174,7 +174,7 @@ void ParameterJob::note_change() {
                  : "reads " + std::to_string(last.value) + ", not " + std::to_string(last.step.value);
   change_ = failed(ErrorCode::device,
                    "object " + canopen::to_text(last.step.object) + " " + found +
-                       " as it was set up: another program changed it",
+                       " as it was set up: another program may have changed it",
                    "it is set up again; end the other program, then start again");
 }
 

@@ -14,6 +14,7 @@
 
 #include "drivers/base/controller.hpp"
 #include "tests/sim/wires/drive_node.hpp"
+#include "tests/sim/wires/frame_line.hpp"
 
 namespace odomcalib::drivers::drive_bench {
 
@@ -104,7 +105,7 @@ class Bench {
   std::vector<TickSample> ticks;
   std::vector<CanFrame> sent;
   bool link_to_node = true, link_from_node = true, wheels_turn = true;
-  bool doubled = false;  ///< what the node sends arrives twice
+  sim::FrameLine from_node{{}, 1}, to_node{{}, 2};
   double now = 0.0;
 
  private:
@@ -117,12 +118,14 @@ class Bench {
     }
     node.advance(now, wheels_);
     for (const sim::Frame& frame : node.take_frames(now))
-      for (int i = 0; link_from_node && i < (doubled ? 2 : 1); ++i) controller->on_frame(to_can(frame, now));
+      if (link_from_node) from_node.send(frame, now);
+    for (const sim::Frame& frame : from_node.take(now)) controller->on_frame(to_can(frame, now));
     controller->on_time(now);
     for (const CanFrame& frame : controller->take_frames()) {
       sent.push_back(frame);
-      if (link_to_node) node.receive(to_sim(frame), now);
+      if (link_to_node) to_node.send(to_sim(frame), now);
     }
+    for (const sim::Frame& frame : to_node.take(now)) node.receive(frame, now);
     for (auto& event : controller->take_events()) events.push_back(event);
     for (auto& tick : controller->take_ticks()) ticks.push_back(tick);
   }
