@@ -126,8 +126,10 @@ TEST_F(Touched, a_little_is_no_less_and_is_put_back_or_kept_by_name) {
 }
 
 TEST_F(Touched, a_part_of_the_values_leaves_the_others_known) {
+  ASSERT_EQ(set({{"left_wheel_diameter", 0.151}}).error, "");
   robot_->node().sdo_faults().abort_on_write[{0x2100, 3}] = sim::abort_code::kHardware;
   EXPECT_NE(set({{"track_width", 0.4033}}).error, "");
+  EXPECT_NEAR(status()["robot"]["left_wheel_diameter"].get<double>(), 0.151, 1e-9);
   EXPECT_EQ(straight().error, "") << "the old values are in force";
   EXPECT_EQ(status()["robot"]["in_controller"], true);
   change(kLeftDiameter, 152000);

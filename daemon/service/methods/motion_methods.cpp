@@ -152,13 +152,13 @@ Outcome begin_motion(Bench& bench, const Caller& caller, MotionTask::Order order
                                    safety::text_of(blind.sectors()), fmt::join(unseen, "\", \"")));
   for (const auto& text : routines::limited(plan))
     bench.outbox.event(messages::Severity::info, "limited", text);
-  return std::make_unique<ReadingTask>(
-      caller, bench.now,
-      [caller, order = std::move(order), preview](Bench& read) -> Result<std::unique_ptr<Task>> {
-        if (const auto error = motion_forbidden(read, preview)) return *error;
-        if (const auto wrong = read.drive.geometry_forbidden()) return *wrong;
-        return MotionTask::begin(read, caller, order);
-      });
+  ReadingTask::Next next = [caller, order = std::move(order),
+                            preview](Bench& read) -> Result<std::unique_ptr<Task>> {
+    if (const auto error = motion_forbidden(read, preview)) return *error;
+    if (const auto wrong = read.drive.geometry_forbidden()) return *wrong;
+    return MotionTask::begin(read, caller, order);
+  };
+  return std::make_unique<ReadingTask>(caller, bench.now, std::move(next));
 }
 
 Reading motion_request(Context& context, const Call& call, routines::Plan plan, MotionPurpose purpose) {

@@ -50,12 +50,11 @@ Outcome begin_write(Bench& bench, const Caller& caller, const Wish& wish, bool d
   const RoundedParameters rounded = round_together(wish.values, bench.drive.in_force);
   if (dry_run) return Answer{{{"result", dry_run_report(bench, present, rounded, wish)}}};
   const WriteTask::Order order{wish.label, rounded, wish.calibration, wish.replaces_calibration, wish.prove};
-  return std::make_unique<ReadingTask>(caller, bench.now,
-                                       [caller, order](Bench& read) -> Result<std::unique_ptr<Task>> {
-                                         if (auto changed = read.drive.changed_besides(order.rounded.values))
-                                           return *changed;
-                                         return WriteTask::begin(read, caller, order);
-                                       });
+  ReadingTask::Next next = [caller, order](Bench& read) -> Result<std::unique_ptr<Task>> {
+    if (auto changed = read.drive.changed_besides(order.rounded.values)) return *changed;
+    return WriteTask::begin(read, caller, order);
+  };
+  return std::make_unique<ReadingTask>(caller, bench.now, std::move(next));
 }
 
 /// Where the configuration names this robot, a calibration names the same one.
