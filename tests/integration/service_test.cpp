@@ -311,6 +311,18 @@ TEST_F(ServiceLoop, a_stop_does_not_spoil_a_write_back) {
   EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
 }
 
+// Rule M15: everyone may stop what turns, also where this daemon does not drive it.
+TEST_F(ServiceLoop, a_stop_reaches_the_drive_though_nothing_runs_here) {
+  for (const int word : {0x06, 0x07, 0x0F}) {
+    robot_->inject(sim::make_frame(0x201, {word, 0}));
+    run(0.05);
+  }
+  robot_->inject(sim::make_frame(0x301, {0xE8, 3, 0, 0, 0xE8, 3, 0, 0}));  // 10 rpm
+  ASSERT_TRUE(run_until([this] { return robot_->fastest_rim() > 0.05; }, 3.0));
+  EXPECT_EQ(ask("Stop", json::object(), 1.0).error, "");
+  EXPECT_LT(time_to_rest(), 0.5);
+}
+
 // Fault F34: a motion of which nothing is kept is for nothing.
 TEST_F(ServiceLoop, a_recording_that_fails_ends_the_motion) {
   acquire();
