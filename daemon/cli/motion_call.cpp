@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <pwd.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -65,6 +66,12 @@ std::string unseen_question(const ordered_json& plan) {
       where, fmt::join(unseen, "\", \""));
 }
 
+/// Whoever gave the consent.
+std::string user_name() {
+  const struct passwd* user = getpwuid(getuid());
+  return user != nullptr ? user->pw_name : "user " + std::to_string(getuid());
+}
+
 // What the motion would be, from the daemon that would drive it.
 Result<Prospect> prospect_of(const Session& session, const std::string& method, ordered_json parameters) {
   auto client = Client::connect(session.socket);
@@ -90,6 +97,7 @@ Result<ordered_json> run_method(const Session& session, const Consent& given, co
   }
   if (auto agreed = ask(given, method, prospect); !agreed) return agreed.error();
   if (given.dry_run) parameters["dry_run"] = true;
+  if (!prospect.besides.empty()) parameters["vouched_by"] = user_name();
   ProgressLine line;
   const auto progress = [&line](const std::string& text) {
     const auto body = ordered_json::parse(text, nullptr, false);

@@ -155,7 +155,7 @@ void Loop::serve_disk() {
 
 void Loop::serve_write_back() {
   Drive& drive = bench_.drive;
-  const bool may_begin = !task_ || !task_->moves();
+  const bool may_begin = !task_ || !task_->uses_controller();
   if (const auto report = bench_.write_back.serve(drive.controller(), drive.values_known, may_begin,
                                                   bench_.now, bench_.clock.wall_us()))
     settle_write(bench_, *report);

@@ -11,13 +11,16 @@ Error forbidden(ErrorCode code, const std::string& what, const std::string& reme
   return {code, what, "motion", remedy};
 }
 
-std::optional<Error> controller_forbids(const drivers::Controller& controller) {
+std::optional<Error> controller_forbids(const Drive& drive) {
   using drivers::ControllerState;
+  const drivers::Controller& controller = drive.controller();
   const auto state = controller.state();
   // A drive in fault that is configured may be started again: enabling it by hand resets the fault.
   const bool faulty = state == ControllerState::fault && controller.watchdog_armed();
   if (state != ControllerState::disabled && state != ControllerState::enabled && !faulty)
-    return forbidden(ErrorCode::device, "controller is " + name_of(state), "see odomcalibctl check");
+    return forbidden(ErrorCode::device,
+                     "controller is " + name_of(state) + (drive.trouble.empty() ? "" : ": " + drive.trouble),
+                     "see odomcalibctl check");
   if (!controller.watchdog_armed())
     return forbidden(ErrorCode::device, "the controller would not stop by itself if this program died",
                      "use a profile with a watchdog (heartbeat consumer or communication-loss time)");
@@ -42,12 +45,12 @@ std::optional<Error> motion_forbidden(const Bench& bench, const routines::Previe
                      "connect the controller and restart odomcalibd, then see odomcalibctl params get");
   if (bench.write_back.going_back())
     return forbidden(ErrorCode::busy, "values that were not proven are taken back first", "wait for its end");
-  if (auto wrong = controller_forbids(bench.drive.controller())) return wrong;
+  if (auto wrong = controller_forbids(bench.drive)) return wrong;
   if (const auto stale = bench.drive.encoders.stale(bench.now))
     return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
   if (const auto stale = bench.surroundings.scans.stale(bench.now))
     return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
-  if (auto wrong = bench.drive.geometry_forbidden()) return wrong;
+  if (auto why = bench.drive.unread()) return why;
   if (const auto way = safety::occupied(bench.surroundings.points, preview, bench.config.footprint,
                                         bench.config.clearance))
     return forbidden(ErrorCode::refused, *way, "clear the area, or move the robot");

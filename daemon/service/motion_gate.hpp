@@ -11,7 +11,8 @@ namespace odomcalib {
 std::optional<Error> too_long(const routines::Plan& plan);
 
 /// Why the robot must not drive this now: interrupted write-back, controller, its watchdog, stale sensors,
-/// unknown dimensions, something on the way.
+/// values that were not read, something on the way. The dimensions themselves are judged when they were read
+/// again: Drive::geometry_forbidden.
 std::optional<Error> motion_forbidden(const Bench& bench, const routines::Preview& preview);
 
 }  // namespace odomcalib

@@ -162,6 +162,9 @@ inline constexpr double kSmallTurn_rad = 1.0;
 inline constexpr double kComesToRest_s = 2.0;
 /// s after a reading that may have failed. Chosen.
 inline constexpr double kReadAgain_s = 2.0;
+/// s since somebody else was last seen to change the controller, until it is read again. Chosen: longer than
+/// any program pauses that sets up a drive; a person who asks for a motion then waits no longer.
+inline constexpr double kOthersQuiet_s = 1.0;
 /// s until a recovery may follow on one that failed, each time twice as long. Derived: a recovery may store;
 /// permanent memory is good for 100 000 stores, at one each ten minutes for two years.
 inline constexpr double kRecoverAgain_s = 2.0, kLongestRecoverAgain_s = 600.0;

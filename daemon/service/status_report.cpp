@@ -23,7 +23,7 @@ ordered_json view_check(const std::vector<safety::Sector>& blind) {
   return {{"name", "lidar view"},
           {"outcome", "warn"},
           {"found", "blind from " + safety::text_of(blind) + " (0 is ahead, 90 left)"},
-          {"remedy", "moves that go there need consent: see that this area is free"}};
+          {"remedy", "moves that go there need somebody who vouches for them: see that this area is free"}};
 }
 
 /// What was edited since counts from the next start on: a robot that moves is not configured anew.

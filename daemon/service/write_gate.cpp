@@ -26,10 +26,7 @@ std::optional<Error> write_forbidden(const Bench& bench) {
     return Error{ErrorCode::busy, "other values wait for their proof", "write-back",
                  "wait for its end, or take them back: odomcalibctl rollback"};
   if (state != drivers::ControllerState::disabled && !comes_to_rest(bench)) return axes_not_off(bench);
-  if (!bench.drive.values_known)
-    return Error{ErrorCode::device, "the controller's values were not read yet", "write-back",
-                 "wait, or check the bus"};
-  return std::nullopt;
+  return bench.drive.unread();
 }
 
 std::optional<Error> implausible(const ParameterMap& values, const ParameterMap& present) {

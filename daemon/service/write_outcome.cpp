@@ -8,10 +8,12 @@ namespace {
 void learn(Bench& bench, const WriteReport& report) {
   const bool unknown = report.outcome == WriteOutcome::unknown;
   const bool was_read = !report.in_force.empty() || !report.error;
-  if (was_read) bench.drive.in_force = report.in_force;
+  // Where nothing was touched, it was a reading.
+  const ParameterMap written = report.steps.empty() ? ParameterMap{} : report.before;
+  if (unknown) bench.drive.forget_values();
+  if (was_read) settle_reading(bench, report.in_force, written);
   bench.drive.values_known = !unknown && (bench.drive.values_known || was_read);
   bench.write_back.learn(report);
-  bench.outbox.send_robot_soon();
 }
 
 // A recovery that fails in the same way at every start tells nothing new, and must not push out what could be
@@ -73,6 +75,15 @@ std::optional<Error> take_over(Bench& bench, const Settlement& end) {
 }
 
 }  // namespace
+
+void settle_reading(Bench& bench, const std::vector<drivers::StoredParameter>& found,
+                    const ParameterMap& written) {
+  if (bench.drive.take(found, written))
+    bench.outbox.event(messages::Severity::warning, "values_changed",
+                       bench.drive.changed_besides({})->text());
+  bench.drive.values_known = true;
+  bench.outbox.send_robot_soon();
+}
 
 void settle_write(Bench& bench, const WriteReport& report) {
   learn(bench, report);

@@ -10,6 +10,11 @@ namespace odomcalib {
 /// calibration that comes into force with a commit. WriteBack::ended says when that is done.
 void settle_write(Bench& bench, const WriteReport& report);
 
+/// Takes over what was read of the controller, and says where somebody else has changed it.
+/// @param written quantities that were written by us since the last time
+void settle_reading(Bench& bench, const std::vector<drivers::StoredParameter>& found,
+                    const ParameterMap& written = {});
+
 /// Puts the calibration of this id in force at once, at the start; see CalibrationInForce::settle.
 void settle_calibration(Bench& bench, const std::string& id);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "daemon/writeback/settings.hpp"
 
@@ -111,6 +112,7 @@ Result<void> Transaction::begin(Task task, const std::string& label) {
   task_ = task;
   interrupted_ = journal_.unfinished();
   store_begun_ = false;
+  stored_again_ = false;
   old_known_ = true;
   unproven_ = false;
   proof_.reset();
@@ -290,6 +292,8 @@ void Transaction::on_result(const Job& job, drivers::Controller& controller, dou
       return on_old_written(job, controller, now);
     case Phase::store_old:
       if (!job.error) return start(Phase::verify_old, controller, now);
+      // A lost answer must not be the reason why nobody knows what is stored.
+      if (!std::exchange(stored_again_, true)) return start(Phase::store_old, controller, now);
       report_.error = *job.error;
       return finish(WriteOutcome::unknown, controller, now);
     case Phase::verify_old:

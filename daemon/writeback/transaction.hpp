@@ -127,9 +127,10 @@ class Transaction {
   std::deque<JournalState> announced_;  // records that are not on the disk yet, the first is on its way
   bool announcing_ = false;             // `after_` waits for them
   After after_ = After::report;
-  bool store_begun_ = false;  // permanent memory may hold other values than the old ones
-  bool old_known_ = true;     // the old values are a whole set, not what was read of a mixture
-  bool unproven_ = false;     // the new values are to be proven before they are stored
+  bool store_begun_ = false;   // permanent memory may hold other values than the old ones
+  bool stored_again_ = false;  // the old values were to be stored once already
+  bool old_known_ = true;      // the old values are a whole set, not what was read of a mixture
+  bool unproven_ = false;      // the new values are to be proven before they are stored
   std::optional<Result<void>> proof_;
   double entered_ = 0.0, now_ = 0.0;
   std::int64_t wall_us_ = 0;

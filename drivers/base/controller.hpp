@@ -109,10 +109,17 @@ class Controller {
   /// The wheels have stood for at least 0.1 s: parameters may be written and stored.
   [[nodiscard]] virtual bool at_rest() const = 0;
 
+  /// s, when somebody else was last seen to do something that may have changed the device, since it was last
+  /// read; nullopt: nobody was. Not every bus shows what others send.
+  [[nodiscard]] virtual std::optional<double> touched() const { return std::nullopt; }
+
   // Parameters: one job at a time, refused while the axes are not disabled; a write or a store, which may
   // change how far the robot goes, also unless at_rest(). A job that was started ends with a result, whatever
   // the device does: the driver bounds its time. What an earlier job left behind is not given for a later
   // one.
+  /// Reads them, and, where the device lets it, whether the rest is as it was set up: its watchdog, its
+  /// process data. A difference ends the job with an error that names the object, and the device is set up
+  /// again.
   virtual Result<void> start_read_parameters(double now) = 0;
   virtual Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) = 0;
   virtual Result<void> start_store(double now) = 0;

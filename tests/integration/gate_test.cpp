@@ -1,5 +1,7 @@
 // What must be true before the robot moves or values are written, each condition alone: nothing happens, and
 // the client is told why.
+#include "daemon/routines/plans.hpp"
+#include "daemon/service/motion_gate.hpp"
 #include "tests/integration/service_loop.hpp"
 
 namespace odomcalib::gate_test {
@@ -66,6 +68,54 @@ TEST_F(Gate, says_what_a_motion_would_be_and_learns_how_the_drive_brakes) {
   EXPECT_NEAR(after["stopping_distance"].get<double>() - before["stopping_distance"].get<double>(), 0.025,
               0.015);
 }
+
+TEST(TooLong, is_a_plan_of_more_than_half_an_hour) {
+  routines::Plan plan = routines::spin_plan({});
+  const routines::Move turn = plan.moves.at(0);
+  const double one = routines::expected_duration(turn, plan.limits);
+  ASSERT_LT(one, 60.0);
+  plan.moves.assign(static_cast<std::size_t>(1800.0 / one), turn);
+  EXPECT_FALSE(too_long(plan));
+  plan.moves.push_back(turn);
+  ASSERT_TRUE(too_long(plan));
+  EXPECT_EQ(too_long(plan)->code, ErrorCode::usage);
+}
+
+/// What the configuration says, where the controller holds 0.150, 0.150 and 0.400 m: 15 % either way.
+struct Nominal {
+  const char* name;
+  double RobotDescription::*length;
+  double value;
+  bool moves;
+};
+
+class OtherLengths : public ServiceLoop, public testing::WithParamInterface<Nominal> {
+ protected:
+  void adjust(Config& config) override { config.robot.*GetParam().length = GetParam().value; }
+};
+
+TEST_P(OtherLengths, forbid_motion_beyond_15_percent) {
+  const auto reply = ask("Straight", {{"distance", 0.5}, {"dry_run", true}}, 2.0);
+  EXPECT_EQ(reply.error.empty(), GetParam().moves) << reply.parameters;
+  if (!GetParam().moves) {
+    EXPECT_NE(reply.parameters.find("the configuration says"), std::string::npos) << reply.parameters;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Config, OtherLengths,
+    testing::Values(Nominal{"left_is_shorter", &RobotDescription::left_wheel_diameter, 0.1765, false},
+                    Nominal{"left_is_a_little_shorter", &RobotDescription::left_wheel_diameter, 0.1760, true},
+                    Nominal{"left_is_longer", &RobotDescription::left_wheel_diameter, 0.1300, false},
+                    Nominal{"left_is_a_little_longer", &RobotDescription::left_wheel_diameter, 0.1310, true},
+                    Nominal{"right_is_shorter", &RobotDescription::right_wheel_diameter, 0.1765, false},
+                    Nominal{"right_is_a_little_longer", &RobotDescription::right_wheel_diameter, 0.1310,
+                            true},
+                    Nominal{"track_is_shorter", &RobotDescription::track_width, 0.4710, false},
+                    Nominal{"track_is_a_little_shorter", &RobotDescription::track_width, 0.4700, true},
+                    Nominal{"track_is_longer", &RobotDescription::track_width, 0.3470, false},
+                    Nominal{"track_is_a_little_longer", &RobotDescription::track_width, 0.3490, true}),
+    [](const auto& one) { return one.param.name; });
 
 TEST_F(Gate, of_a_way_that_is_not_clear) {
   robot_->room().add_pillar({robot_->pose().x + 0.9, robot_->pose().y}, 0.08);

@@ -1,7 +1,10 @@
 // Motions, stops and write-back of the service, in virtual time.
+#include <sys/resource.h>
+
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <map>
 #include <numbers>
@@ -308,10 +311,46 @@ TEST_F(ServiceLoop, a_stop_does_not_spoil_a_write_back) {
   EXPECT_EQ(robot_->node().geometry_stored()[2], 403300U);
 }
 
+// Rule M15: everyone may stop what turns, also where this daemon does not drive it.
+TEST_F(ServiceLoop, a_stop_reaches_the_drive_though_nothing_runs_here) {
+  for (const int word : {0x06, 0x07, 0x0F}) {
+    robot_->inject(sim::make_frame(0x201, {word, 0}));
+    run(0.05);
+  }
+  robot_->inject(sim::make_frame(0x301, {0xE8, 3, 0, 0, 0xE8, 3, 0, 0}));  // 10 rpm
+  ASSERT_TRUE(run_until([this] { return robot_->fastest_rim() > 0.05; }, 3.0));
+  EXPECT_EQ(ask("Stop", json::object(), 1.0).error, "");
+  EXPECT_LT(time_to_rest(), 0.5);
+}
+
+// Fault F34: a motion of which nothing is kept is for nothing.
+TEST_F(ServiceLoop, a_recording_that_fails_ends_the_motion) {
+  acquire();
+  Mover mover(*this);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit full = before;
+  full.rlim_cur = 1;
+  const auto ignored = signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &full);
+  std::optional<control::Reply> got;
+  for (int i = 0; i < 500 && !got; ++i) {  // the recording has a thread of its own, in real time
+    run(0.01);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    got = mover.reply();
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, ignored);
+  ASSERT_TRUE(got) << "it went on";
+  EXPECT_EQ(got->error, "org.odomcalib.Calibration.Io") << got->parameters;
+  EXPECT_LT(time_to_rest(), 0.5);
+}
+
 // The robot carries something that hides what is behind it: beams end on it.
 class HalfBlind : public ServiceLoop {
  protected:
-  void adjust(sim::SimRobotOptions& options) override { options.room.add_wall({-0.2, -0.2}, {-0.2, 0.2}); }
+  void adjust(sim::SimRobotOptions& options) override { load(options.room); }
+  static void load(sim::Room& room) { room.add_wall({-0.12, -0.15}, {-0.12, 0.15}); }
 };
 
 TEST_F(HalfBlind, what_the_lidar_does_not_see_is_told_before_anything_moves) {
@@ -331,6 +370,36 @@ TEST_F(HalfBlind, what_the_lidar_does_not_see_is_told_before_anything_moves) {
       return;
     }
   FAIL() << "no row about the view";
+}
+
+// Rule M10, whatever client it is: somebody stands for it, by name and for one motion.
+TEST_F(HalfBlind, nothing_goes_where_the_lidar_sees_nothing_unless_somebody_vouches_for_it) {
+  acquire();
+  // What stands behind the robot does not move along, in this room.
+  const auto drive = [this](const json& vouched_by) {
+    TestClient mover(folder_ / "control");
+    mover.call("Straight", {{"lease", lease_}, {"distance", 0.3}, {"vouched_by", vouched_by}});
+    const bool begins =
+        run_until([this] { return status()["state"].get<std::string>().starts_with("moving"); }, 0.5);
+    if (begins) robot_->room() = sim::furnished_room();
+    const auto reply = wait_reply(mover, 20.0);
+    EXPECT_EQ(begins, reply.error.empty()) << reply.parameters;
+    return reply;
+  };
+  for (const json& nobody : {json(), json(""), json(" ")}) {
+    const auto refused = drive(nobody);
+    EXPECT_EQ(refused.error, "org.odomcalib.Calibration.Refused") << refused.parameters;
+    EXPECT_NE(refused.parameters.find("straight backward"), std::string::npos) << refused.parameters;
+  }
+  EXPECT_EQ(drive(true).error, "org.varlink.service.InvalidParameter");
+  const auto vouched = drive("Erika\nMustermann");
+  ASSERT_EQ(vouched.error, "") << vouched.parameters;
+  std::ifstream file(json::parse(vouched.parameters)["result"]["recording"].get<std::string>());
+  const std::string recording((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_NE(recording.find("Erika?Mustermann vouches for this motion, asked for by "), std::string::npos);
+  load(robot_->room());
+  run(2.0);
+  EXPECT_EQ(drive(json()).error, "org.odomcalib.Calibration.Refused") << "it was for that motion";
 }
 
 TEST_F(ServiceLoop, a_lidar_that_sees_all_around_has_nothing_to_ask) {

@@ -18,7 +18,9 @@
 #include "daemon/service/motion_gate.hpp"
 #include "daemon/service/settings.hpp"
 #include "daemon/service/tasks/motion_task.hpp"
+#include "daemon/service/tasks/reading_task.hpp"
 #include "daemon/service/tasks/recording_task.hpp"
+#include "drivers/clean_text.hpp"
 
 namespace odomcalib {
 namespace {
@@ -131,6 +133,30 @@ ordered_json plan_report(const Bench& bench, const routines::Plan& plan, const r
                                                       bench.config.footprint, bench.config.clearance))}};
 }
 
+struct View {
+  safety::BlindArea blind;
+  std::vector<std::string> unseen;  ///< moves that go there
+};
+
+View view_of(const Bench& bench, const routines::Plan& plan) {
+  const safety::BlindArea blind = bench.surroundings.cover.blind(bench.now);
+  return {blind, safety::unseen_moves(plan, blind, bench.surroundings.obstacles.options())};
+}
+
+/// Where the lidar sees nothing, nothing but a person stops the robot: one has to stand for it, in this call
+/// and for this motion (rule M10). Notes in the order what it is.
+std::optional<Error> not_vouched_for(const Bench& bench, MotionTask::Order& order) {
+  const View view = view_of(bench, order.plan);
+  order.unseen.clear();
+  if (view.unseen.empty()) return std::nullopt;
+  order.unseen = fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
+                             safety::text_of(view.blind.sectors()), fmt::join(view.unseen, "\", \""));
+  if (!order.vouched_by.empty()) return std::nullopt;
+  return Error{ErrorCode::refused, order.unseen, "motion",
+               "another motion; or somebody watches that area and vouches for it: odomcalibctl asks, other "
+               "clients say who (vouched_by)"};
+}
+
 Outcome begin_motion(Bench& bench, const Caller& caller, MotionTask::Order order, bool dry_run) {
   routines::Plan& plan = order.plan;
   if (bench.drive.controller().watchdog_armed())
@@ -139,27 +165,34 @@ Outcome begin_motion(Bench& bench, const Caller& caller, MotionTask::Order order
   if (const auto error = too_long(plan)) return *error;
   const auto preview = routines::preview(plan);
   if (const auto error = motion_forbidden(bench, preview)) return *error;
-  const auto blind = bench.surroundings.cover.blind(bench.now);
-  const auto unseen = safety::unseen_moves(plan, blind, bench.surroundings.obstacles.options());
-  if (dry_run) return Answer{{{"result", plan_report(bench, plan, preview, unseen, blind.sectors())}}};
-  if (!unseen.empty())
-    bench.outbox.event(messages::Severity::warning, "lidar_blind",
-                       fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
-                                   safety::text_of(blind.sectors()), fmt::join(unseen, "\", \"")));
+  if (dry_run) {
+    if (auto wrong = bench.drive.geometry_forbidden()) return *wrong;
+    const View view = view_of(bench, plan);
+    return Answer{{{"result", plan_report(bench, plan, preview, view.unseen, view.blind.sectors())}}};
+  }
+  if (const auto refused = not_vouched_for(bench, order)) return *refused;
   for (const auto& text : routines::limited(plan))
     bench.outbox.event(messages::Severity::info, "limited", text);
-  auto task = MotionTask::begin(bench, caller, std::move(order));
-  if (!task) return task.error();
-  return std::move(task).value();
+  ReadingTask::Next next = [caller, order = std::move(order),
+                            preview](Bench& read) mutable -> Result<std::unique_ptr<Task>> {
+    if (const auto error = motion_forbidden(read, preview)) return *error;
+    if (const auto wrong = read.drive.geometry_forbidden()) return *wrong;
+    if (const auto refused = not_vouched_for(read, order)) return *refused;
+    return MotionTask::begin(read, caller, order);
+  };
+  return std::make_unique<ReadingTask>(caller, bench.now, std::move(next));
 }
 
 Reading motion_request(Context& context, const Call& call, routines::Plan plan, MotionPurpose purpose) {
   CallParameters given(call.parameters);
   const std::string lease = given.text("lease", "");
   const bool dry_run = given.flag("dry_run");
+  const std::string vouched_by = drivers::clean_text(given.text("vouched_by", ""));
+  if (given.wrong()) return WrongParameter{*given.wrong()};
+  MotionTask::Order order{std::move(plan), lease, std::move(purpose),
+                          vouched_by.substr(0, service::settings::kLongestName)};
   return Request{lease, dry_run,
-                 [&bench = context.bench, caller = call.caller, dry_run,
-                  order = MotionTask::Order{std::move(plan), lease, std::move(purpose)}] {
+                 [&bench = context.bench, caller = call.caller, dry_run, order = std::move(order)] {
                    return begin_motion(bench, caller, order, dry_run);
                  }};
 }

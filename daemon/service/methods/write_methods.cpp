@@ -3,6 +3,7 @@
 #include "daemon/service/methods/methods.hpp"
 #include "daemon/service/status_report.hpp"
 #include "daemon/service/tasks/proof_task.hpp"
+#include "daemon/service/tasks/reading_task.hpp"
 #include "daemon/service/tasks/write_task.hpp"
 #include "daemon/service/write_gate.hpp"
 #include "proto/calibration/report_data.hpp"
@@ -48,10 +49,12 @@ Outcome begin_write(Bench& bench, const Caller& caller, const Wish& wish, bool d
   if (auto wrong = implausible(wish.values, present)) return *wrong;
   const RoundedParameters rounded = round_together(wish.values, bench.drive.in_force);
   if (dry_run) return Answer{{{"result", dry_run_report(bench, present, rounded, wish)}}};
-  auto task = WriteTask::begin(
-      bench, caller, {wish.label, rounded, wish.calibration, wish.replaces_calibration, wish.prove});
-  if (!task) return task.error();
-  return std::move(task).value();
+  const WriteTask::Order order{wish.label, rounded, wish.calibration, wish.replaces_calibration, wish.prove};
+  ReadingTask::Next next = [caller, order](Bench& read) -> Result<std::unique_ptr<Task>> {
+    if (auto changed = read.drive.changed_besides(order.rounded.values)) return *changed;
+    return WriteTask::begin(read, caller, order);
+  };
+  return std::make_unique<ReadingTask>(caller, bench.now, std::move(next));
 }
 
 /// Where the configuration names this robot, a calibration names the same one.
@@ -132,7 +135,12 @@ Reading end_proof(Context& context, const Call& call, bool proven) {
                    if (proven ? !values.proving() : !values.busy() && !values.proving() && !values.ended)
                      return Error{ErrorCode::refused, "no values wait for their proof", "write-back",
                                   "odomcalibctl params get"};
-                   return std::make_unique<ProofTask>(caller, proven, bench.now);
+                   if (!proven) return std::make_unique<ProofTask>(caller, proven, bench.now);
+                   return std::make_unique<ReadingTask>(
+                       caller, bench.now, [caller](Bench& read) -> Result<std::unique_ptr<Task>> {
+                         if (auto changed = read.drive.changed_besides({})) return *changed;
+                         return std::unique_ptr<Task>(std::make_unique<ProofTask>(caller, true, read.now));
+                       });
                  }};
 }
 

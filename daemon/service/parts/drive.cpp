@@ -30,6 +30,7 @@ Drive::News Drive::serve(const Clock& clock, double now) {
   for (const TickSample& sample : news.ticks) encoders.seen(sample, now);
   if (!news.ticks.empty()) newest_ticks = news.ticks.back();
   tick_count += news.ticks.size();
+  if (controller().touched()) values_known = false;
   const auto state = controller().state();
   if (state != state_) news.state = state;
   state_ = state;
@@ -77,14 +78,67 @@ routines::WheelGeometry Drive::geometry() const {
   return {all.left_wheel_diameter, all.right_wheel_diameter, all.track_width};
 }
 
+std::optional<Error> Drive::unread() const {
+  const auto held = controller().capabilities();
+  const bool readable = std::any_of(held.begin(), held.end(), [](const auto& one) { return one.readable; });
+  if (values_known || !readable) return std::nullopt;
+  if (controller().touched())
+    return Error{ErrorCode::device, "another program changed the controller, which was not read again yet",
+                 "controller", "end the other program, and wait two seconds"};
+  return Error{ErrorCode::device, "the controller's values were not read yet", "controller",
+               "wait two seconds; if it stays, check the bus"};
+}
+
+bool Drive::take(const std::vector<drivers::StoredParameter>& found, const ParameterMap& written) {
+  if (const std::string device = device_of(controller()); device != device_) {
+    forget_values();
+    device_ = device;
+  }
+  const auto before = changed_.size();
+  for (const drivers::StoredParameter& one : found) compare(one, written.contains(one.quantity));
+  return changed_.size() > before;
+}
+
+void Drive::compare(const drivers::StoredParameter& found, bool written) {
+  const auto same = [&](const drivers::StoredParameter& one) { return one.quantity == found.quantity; };
+  std::erase_if(in_force, same);
+  in_force.push_back(found);
+  if (written) expected_[found.quantity] = found;
+  const auto& expected = expected_.try_emplace(found.quantity, found).first->second;
+  changed_.erase(found.quantity);
+  if (expected.raw != found.raw) changed_[found.quantity] = {expected, found};
+}
+
+void Drive::forget_values() {
+  in_force.clear();
+  expected_.clear();
+  changed_.clear();
+}
+
+std::optional<Error> Drive::changed_besides(const ParameterMap& values) const {
+  const auto besides = std::find_if(changed_.begin(), changed_.end(),
+                                    [&](const auto& one) { return !values.contains(one.first); });
+  if (besides == changed_.end()) return std::nullopt;
+  const auto& [name, change] = *besides;
+  const auto held = controller().capabilities();
+  const auto where = std::find_if(held.begin(), held.end(),
+                                  [&, quantity = name](const auto& one) { return one.quantity == quantity; });
+  return Error{
+      ErrorCode::refused,
+      fmt::format("the controller holds {} = {:.6g} m, not {:.6g} m as before: another program wrote "
+                  "it, or it restarted",
+                  name, change.found.value, change.expected.value),
+      where == held.end() ? "controller" : "controller, object " + where->object,
+      fmt::format("odomcalibctl params set {}={:.6g} puts it back, {}={:.6g} keeps it; or apply a "
+                  "calibration",
+                  name, change.expected.value, name, change.found.value)};
+}
+
 // Speeds are wheel rates times diameters: with wrong diameters the cap of M7 is none. What the controller
 // holds goes before the configuration, so it has to be known and likely.
 std::optional<Error> Drive::geometry_forbidden() const {
-  const auto held = controller().capabilities();
-  const bool readable = std::any_of(held.begin(), held.end(), [](const auto& one) { return one.readable; });
-  if (readable && !values_known)
-    return write_forbidden(ErrorCode::device, "the controller's values were not read yet",
-                           "wait two seconds; if it stays, check the bus");
+  if (auto why = unread()) return why;
+  if (auto changed = changed_besides({})) return changed;
   const RobotDescription expected = nominal(), all = robot();
   if (!(all.left_wheel_diameter > 0.0 && all.right_wheel_diameter > 0.0 && all.track_width > 0.0))
     return write_forbidden(ErrorCode::missing_units, "wheel diameters or track width are not known",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "daemon/safety/freshness.hpp"
 #include "daemon/service/base_link.hpp"
 #include "daemon/service/parts/link_watch.hpp"
+#include "daemon/writeback/transaction.hpp"
 
 namespace odomcalib {
 
@@ -38,8 +40,18 @@ class Drive {
   /// The same with what the controller holds.
   [[nodiscard]] RobotDescription robot() const;
   [[nodiscard]] routines::WheelGeometry geometry() const;
-  /// Why the wheels' dimensions are no base for a speed.
+  /// Why the wheels' dimensions are no base for a speed, as they were last read.
   [[nodiscard]] std::optional<Error> geometry_forbidden() const;
+  /// Why it is not known what the controller holds; nullopt also of one that holds nothing.
+  [[nodiscard]] std::optional<Error> unread() const;
+
+  /// What the controller holds, as it was just read. @param written quantities that were written by us since
+  /// the last time. @return somebody else has changed one of the others
+  bool take(const std::vector<drivers::StoredParameter>& found, const ParameterMap& written);
+  /// Nobody knows what it should hold.
+  void forget_values();
+  /// What somebody else has changed and is not among the values that are about to be written.
+  [[nodiscard]] std::optional<Error> changed_besides(const ParameterMap& values) const;
 
   BaseLink link;
   safety::EncoderFreshness encoders;
@@ -50,9 +62,17 @@ class Drive {
   std::string trouble;  ///< why the controller is not configured, in its driver's words; empty: it is
 
  private:
+  /// A quantity of which the controller holds something else than it was left with.
+  struct Change {
+    drivers::StoredParameter expected, found;
+  };
   void note_trouble(const News& news);
+  void compare(const drivers::StoredParameter& found, bool written);
 
   const Config& config_;
+  std::map<std::string, drivers::StoredParameter> expected_;  // by quantity, as it was left or first found
+  std::map<std::string, Change> changed_;                     // by quantity
+  std::string device_;                                        // whose they are, see device_of()
   LinkWatch watch_;
   drivers::ControllerState state_ = drivers::ControllerState::absent;
 };

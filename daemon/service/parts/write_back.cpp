@@ -74,6 +74,10 @@ void WriteBack::forget(ClientId gone) {
 void WriteBack::begin_reading(const drivers::Controller& controller, bool values_known, double now) {
   const bool recover = operator_needed && !recovery_tried_ && now >= next_recovery_;
   if (recover ? !controller.at_rest() : values_known) return;
+  // Who writes to it now would do so while it is read.
+  if (const auto touched = controller.touched();
+      touched && now - *touched < service::settings::kOthersQuiet_s)
+    return;
   next_read_ = now + service::settings::kReadAgain_s;
   if (recover) {
     next_recovery_ = now + recovery_pause_;

@@ -18,6 +18,11 @@ Result<std::unique_ptr<Task>> MotionTask::begin(Bench& bench, const Caller& call
   bench.last_run.begins(order.plan.name);
   bench.surroundings.braking.begins();
   const std::string name = order.plan.name;
+  // Recorded with the motion, and over with it.
+  if (!order.unseen.empty())
+    outbox.event(messages::Severity::warning, "vouched",
+                 fmt::format("{} vouches for this motion, asked for by {}: {}", order.vouched_by,
+                             outbox.server.name_of(caller.client), order.unseen));
   std::unique_ptr<Task> task(new MotionTask(bench, caller, std::move(order)));
   outbox.event(messages::Severity::info, "motion",
                name + " begins, for " + outbox.server.name_of(caller.client));

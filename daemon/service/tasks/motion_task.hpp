@@ -35,6 +35,8 @@ class MotionTask final : public Task {
     routines::Plan plan;
     std::string lease;
     MotionPurpose purpose;
+    std::string vouched_by = {};  ///< who watches what the lidar does not see; empty: nobody
+    std::string unseen = {};      ///< what that is, and which moves go there; empty: nothing
   };
   /// The robot may move; motion_gate.hpp was asked. Errors: those of Recorder::start
   static Result<std::unique_ptr<Task>> begin(Bench& bench, const Caller& caller, Order order);

@@ -59,6 +59,8 @@ class Task {
   virtual TaskTurn daemon_ends(Bench& /*bench*/, const Error& /*why*/) { return Running{}; }
 
   [[nodiscard]] virtual bool moves() const { return false; }
+  /// Nothing else may be asked of the controller meanwhile.
+  [[nodiscard]] virtual bool uses_controller() const { return moves(); }
   /// Of the robot now.
   [[nodiscard]] virtual routines::Twist twist() const { return {}; }
 

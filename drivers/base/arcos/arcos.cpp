@@ -144,11 +144,17 @@ void Arcos::on_configuration(Bytes data, double t) {
   }
   identity_ = Identity{0, 0, 0, 0, type + " " + subtype + " " + name + " " + serial};
   timeout_s_ = 1e-3 * watchdog_ms;
+  ++configurations_;
   tell({t,
         "configuration",
         {field("type", type), field("subtype", subtype), field("serial", serial), field("name", name),
          field("RevCount", rev_count), field("watchdog_ms", watchdog_ms), field("DriftFactor", drift),
          field("TicksMM", ticks_per_mm)}});
+}
+
+bool Arcos::ask_settings() {
+  if (phase_ == Phase::open) send_command(kConfiguration);
+  return true;
 }
 
 /// The base stops when nothing was heard for its watchdog time.

@@ -28,6 +28,8 @@ class Arcos final : public SpeedProtocol {
   [[nodiscard]] std::optional<Identity> identity() const override { return identity_; }
   [[nodiscard]] DeviceState device_state() const override { return state_; }
   [[nodiscard]] std::optional<double> reported_timeout_s() const override { return timeout_s_; }
+  bool ask_settings() override;
+  [[nodiscard]] std::uint64_t settings_told() const override { return configurations_; }
   [[nodiscard]] Counters counters() const override;
 
  private:
@@ -49,7 +51,7 @@ class Arcos final : public SpeedProtocol {
   DeviceState state_;
   std::optional<double> timeout_s_;
   double pulse_due_ = 0.0;
-  std::uint64_t short_packets_ = 0, other_packets_ = 0;
+  std::uint64_t short_packets_ = 0, other_packets_ = 0, configurations_ = 0;
 };
 
 }  // namespace odomcalib::drivers

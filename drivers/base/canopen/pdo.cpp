@@ -10,7 +10,6 @@ namespace {
 constexpr NumberType kU8{1, false};
 constexpr NumberType kU16{2, false};
 constexpr NumberType kU32{4, false};
-constexpr std::uint32_t kDisabled = 0x80000000;
 
 std::optional<std::size_t> offset_of(const Pdo& pdo, const ObjectAddress& object, std::size_t& bytes) {
   std::size_t offset = 0;
@@ -41,7 +40,7 @@ void add_pdo_configuration(std::vector<SdoStep>& steps, const Pdo& pdo) {
   steps.push_back({SdoStep::Kind::write,
                    {communication, 1},
                    kU32,
-                   std::int64_t{pdo.cob_id} | kDisabled,
+                   std::int64_t{pdo.cob_id | kPdoDisabled},
                    false,
                    kSdoTimeout_s,
                    ""});

@@ -14,6 +14,9 @@ struct PdoEntry {
   std::uint8_t bits = 32;  ///< 8, 16, 24, 32 or 64
 };
 
+/// Bits of a COB-ID of process data (1400h ff., sub 1). Published: CiA 301.
+inline constexpr std::uint32_t kPdoDisabled = 0x80000000, kPdoIdentifier = 0x7FF;
+
 struct Pdo {
   bool transmit = true;      ///< by the drive
   std::uint16_t number = 1;  ///< 1..512: 1 is 1800h/1A00h or 1400h/1600h

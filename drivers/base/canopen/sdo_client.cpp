@@ -9,9 +9,7 @@
 namespace odomcalib::drivers::canopen {
 namespace {
 
-constexpr std::uint32_t kAbortToggle = 0x05030000;
 constexpr std::uint32_t kAbortTimeout = 0x05040000;
-constexpr std::uint32_t kAbortCommand = 0x05040001;
 constexpr std::uint32_t kAbortMemory = 0x05040005;
 constexpr std::uint32_t kAbortLength = 0x06070010;
 constexpr std::size_t kSegment = 7;
@@ -100,16 +98,26 @@ bool SdoClient::addressed_to_request(const CanFrame& frame) const {
   return index == request_.object.index && frame.data[3] == request_.object.sub;
 }
 
+/// A bus, and what lies between it and us, may deliver a frame twice, late, and after a newer one. What
+/// answers another kind of request, or has the toggle bit of the segment before, belongs to what is over.
+bool SdoClient::answers_request(std::uint8_t command) const {
+  const unsigned specifier = command & 0xE0u;
+  if (!segmented_) return specifier == (request_.write ? 0x60u : 0x40u);
+  const bool toggle = (command & 0x10u) != 0;
+  return specifier == (request_.write ? 0x20u : 0x00u) && toggle == toggle_;
+}
+
 bool SdoClient::on_frame(const CanFrame& frame, double now) {
   if (frame.extended || frame.remote || frame.error || frame.id != 0x580u + node_) return false;
   if (frame.length != 8) return ++bad_, true;
   const bool block_transfer = (frame.data[0] & 0xE0) == 0xA0 || (frame.data[0] & 0xE0) == 0xC0;
   const bool has_address = !segmented_ || frame.data[0] == kAbort;
   if (!busy_ || block_transfer || (has_address && !addressed_to_request(frame))) return ++unexpected_, true;
+  if (frame.data[0] != kAbort && !answers_request(frame.data[0])) return ++unexpected_, true;
   if (frame.data[0] == kAbort) {
     on_abort(u32_at(frame, 4));
   } else if (request_.write) {
-    on_write_answer(frame, now);
+    on_write_answer(now);
   } else if (segmented_) {
     on_read_segment(frame, now);
   } else {
@@ -120,7 +128,6 @@ bool SdoClient::on_frame(const CanFrame& frame, double now) {
 
 void SdoClient::on_read_start(const CanFrame& frame, double now) {
   const std::uint8_t command = frame.data[0];
-  if ((command & 0xE0) != 0x40) return refuse(kAbortCommand, "answer with an unknown command", now);
   const bool expedited = (command & 2) != 0;
   const bool sized = (command & 1) != 0;
   if (expedited) {
@@ -137,9 +144,6 @@ void SdoClient::on_read_start(const CanFrame& frame, double now) {
 
 void SdoClient::on_read_segment(const CanFrame& frame, double now) {
   const std::uint8_t command = frame.data[0];
-  if ((command & 0xE0) != 0) return refuse(kAbortCommand, "segment with an unknown command", now);
-  if (((command & 0x10) != 0) != toggle_)
-    return refuse(kAbortToggle, "segment with the wrong toggle bit", now);
   const std::size_t n = kSegment - ((command >> 1) & 7u);
   if (received_.size() + n > announced_.value_or(kSdoMostBytes))
     return refuse(kAbortLength, "more bytes than announced", now);
@@ -152,17 +156,12 @@ void SdoClient::on_read_segment(const CanFrame& frame, double now) {
   finish();
 }
 
-void SdoClient::on_write_answer(const CanFrame& frame, double now) {
-  const std::uint8_t command = frame.data[0];
+void SdoClient::on_write_answer(double now) {
   if (!segmented_) {
-    if ((command & 0xE0) != 0x60) return refuse(kAbortCommand, "answer with an unknown command", now);
     if (request_.data.size() <= 4) return finish();
     segmented_ = true;
     return send_next_segment(now);
   }
-  if ((command & 0xE0) != 0x20) return refuse(kAbortCommand, "answer with an unknown command", now);
-  if (((command & 0x10) != 0) != toggle_)
-    return refuse(kAbortToggle, "answer with the wrong toggle bit", now);
   sent_bytes_ += segment_bytes_;
   toggle_ = !toggle_;
   if (sent_bytes_ == request_.data.size()) return finish();

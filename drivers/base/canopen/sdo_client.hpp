@@ -45,8 +45,8 @@ class SdoClient {
 
   std::vector<CanFrame> take_frames();
   std::optional<SdoResult> take_result();
-  /// sdo_transfers, sdo_aborts, sdo_timeouts, sdo_unexpected (late answers, or another client on the bus),
-  /// sdo_bad
+  /// sdo_transfers, sdo_aborts, sdo_timeouts, sdo_unexpected (answers that came late or twice, or to another
+  /// client on the bus), sdo_bad
   [[nodiscard]] Counters counters() const;
 
  private:
@@ -57,9 +57,10 @@ class SdoClient {
   void send_next_segment(double now);
   void on_read_start(const CanFrame& frame, double now);
   void on_read_segment(const CanFrame& frame, double now);
-  void on_write_answer(const CanFrame& frame, double now);
+  void on_write_answer(double now);
   void on_abort(std::uint32_t code);
   [[nodiscard]] bool addressed_to_request(const CanFrame& frame) const;
+  [[nodiscard]] bool answers_request(std::uint8_t command) const;
   void finish();
   void fail(ErrorCode code, const std::string& what, const std::string& remedy = "");
   void refuse(std::uint32_t code, const std::string& what, double now);

@@ -1,5 +1,6 @@
 #include "drivers/base/canopen/sdo_sequence.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace odomcalib::drivers::canopen {
@@ -18,7 +19,7 @@ SdoRequest request_of(const SdoStep& step) {
 }
 
 std::optional<Error> difference(const SdoStep& step, const SdoOutcome& outcome) {
-  if (step.kind != SdoStep::Kind::check || outcome.value == step.value) return std::nullopt;
+  if (step.kind != SdoStep::Kind::check || step.any || outcome.value == step.value) return std::nullopt;
   return Error{
       ErrorCode::device,
       "reads " + std::to_string(outcome.value) + " after " + std::to_string(step.value) + " was written",
@@ -39,6 +40,7 @@ void SdoSequence::start(std::vector<SdoStep> steps) {
   error_.reset();
   running_ = true;
   waiting_ = false;
+  again_at_.reset();
 }
 
 void SdoSequence::cancel() {
@@ -55,7 +57,21 @@ void SdoSequence::note(const SdoResult& result) {
   outcome.error = result.error;
   if (!outcome.error) outcome.error = difference(outcome.step, outcome);
   if (outcome.error && !outcome.step.optional) error_ = outcome.error;
+  const bool ends_row = outcome.error && outcome.step.one_of_row;
   outcomes_.push_back(std::move(outcome));
+  if (ends_row) leave_out_the_row();
+}
+
+void SdoSequence::leave_out_the_row() {
+  const auto next = steps_.begin() + static_cast<std::ptrdiff_t>(outcomes_.size());
+  steps_.erase(next, std::find_if(next, steps_.end(), [](const SdoStep& step) { return !step.one_of_row; }));
+}
+
+bool SdoSequence::to_be_confirmed(const SdoResult& result) const {
+  const SdoStep& step = steps_[outcomes_.size()];
+  if (step.kind != SdoStep::Kind::check || again_at_) return false;
+  if (result.error) return result.abort && !step.optional;
+  return decode(result.data, step.type) != step.value;
 }
 
 bool SdoSequence::advance(SdoClient& client, double now) {
@@ -64,8 +80,14 @@ bool SdoSequence::advance(SdoClient& client, double now) {
     const auto result = client.take_result();
     if (!result) return false;
     waiting_ = false;
-    note(*result);
+    if (to_be_confirmed(*result)) {
+      again_at_ = now + kSdoSettles_s;
+    } else {
+      again_at_.reset();
+      note(*result);
+    }
   }
+  if (again_at_ && now < *again_at_) return false;
   if (error_ || outcomes_.size() == steps_.size()) {
     running_ = false;
     return true;

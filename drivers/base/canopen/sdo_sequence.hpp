@@ -17,7 +17,9 @@ struct SdoStep {
   std::int64_t value = 0;  ///< write: what to write; check: what must be read
   bool optional = false;   ///< an abort or a difference is recorded and the sequence goes on
   double timeout_s = kSdoTimeout_s;
-  std::string tag;  ///< finds the outcome again
+  std::string tag;   ///< finds the outcome again
+  bool any = false;  ///< check: another value is none the worse, but is believed when it was read twice
+  bool one_of_row = false;  ///< an error ends the row: what follows it of the row is left out
 };
 
 struct SdoOutcome {
@@ -32,6 +34,8 @@ struct SdoOutcome {
 void add_checked_write(std::vector<SdoStep>& steps, const ObjectAddress& object, NumberType type,
                        std::int64_t value, bool optional = false, const std::string& tag = "");
 
+/// A value, or a refusal, that is not what a check expects may be the late answer to an earlier request: it
+/// is read again when none can come any more.
 class SdoSequence {
  public:
   void start(std::vector<SdoStep> steps);
@@ -47,12 +51,15 @@ class SdoSequence {
 
  private:
   void note(const SdoResult& result);
+  void leave_out_the_row();
+  [[nodiscard]] bool to_be_confirmed(const SdoResult& result) const;
 
   std::vector<SdoStep> steps_;
   std::vector<SdoOutcome> outcomes_;
   std::optional<Error> error_;
   bool running_ = false;
   bool waiting_ = false;
+  std::optional<double> again_at_;  ///< s, when the present step is tried again
 };
 
 }  // namespace odomcalib::drivers::canopen

@@ -160,8 +160,13 @@ Result<void> AxisPair::begin(Job job) {
   if (job_)
     return Error{ErrorCode::refused, "another parameter job is in progress",
                  "controller " + robot_.controller, "wait for it"};
+  // A drive in fault may be read: it is, before a person starts it again.
+  const auto allowed = [&](ControllerState state) {
+    return state == ControllerState::disabled ||
+           (job.kind == ParameterJobResult::Kind::read && state == ControllerState::fault);
+  };
   for (const DualAxis& drive : drives_)
-    if (drive.state() != ControllerState::disabled)
+    if (!allowed(drive.state()))
       return Error{ErrorCode::refused, "both drives must be configured and disabled",
                    "controller " + robot_.controller, "stop and disable first"};
   job_ = std::move(job);

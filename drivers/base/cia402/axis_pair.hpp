@@ -2,6 +2,7 @@
 // Each is a DualAxis with one axis; together they are one controller.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -36,6 +37,9 @@ class AxisPair final : public Controller {
   Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) override;
   Result<void> start_store(double now) override;
   std::optional<ParameterJobResult> take_job_result() override;
+  [[nodiscard]] std::optional<double> touched() const override {
+    return std::max(drives_[0].touched(), drives_[1].touched());
+  }
 
   [[nodiscard]] std::optional<Identity> identity() const override;
   [[nodiscard]] std::vector<Identity> devices() const override;

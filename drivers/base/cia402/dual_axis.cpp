@@ -51,6 +51,12 @@ void DualAxis::on_frame(const CanFrame& frame) {
   if (frame.id == 0x000 || frame.id == 0x600u + profile_.node) return on_other_master(frame);
   for (const canopen::Pdo& pdo : profile_.pdos)
     if (pdo.cob_id == frame.id) return pdo.transmit ? on_process_data(pdo, frame) : on_other_master(frame);
+  if (receives(frame.id)) on_other_master(frame);
+}
+
+bool DualAxis::receives(std::uint32_t cob_id) const {
+  return std::any_of(unlisted_.begin(), unlisted_.end(),
+                     [&](const auto& pdo) { return (pdo.value & canopen::kPdoIdentifier) == cob_id; });
 }
 
 void DualAxis::on_error_frame(const CanFrame& frame) {
@@ -120,7 +126,10 @@ void DualAxis::on_other_master(const CanFrame& frame) {
   double& last = is_client || is_nmt ? last_other_master_ : last_foreign_data_;
   const bool first = now_ - last > motion::kOtherMasterAgain_s;
   last = now_;
-  const bool stops = motion_.active() && commands_node(frame);
+  const bool commands = commands_node(frame);
+  if (commands) ++foreign_commands_;
+  if (commands && (is_client || is_nmt)) touched_at_ = now_;
+  const bool stops = motion_.active() && commands;
   if (!first && !stops) return;
   event("other_master",
         is_nmt      ? "another program sends NMT commands on this bus"
@@ -187,11 +196,20 @@ void DualAxis::send_own_heartbeat() {
   out_.push_back(frame);
 }
 
+/// A drive that is not as it was set up is set up again; until then its state is not that of one that may
+/// move.
+void DualAxis::advance_job() {
+  const bool reading = job_.reading();
+  job_.advance(sdo_, now_);
+  if (const auto change = job_.take_change()) return lose("drive_changed", change->what);
+  if (reading && !job_.running() && touched_at_ && *touched_at_ < read_since_) touched_at_.reset();
+}
+
 void DualAxis::on_time(double now) {
   now_ = std::max(now_, now);
   sdo_.on_time(now_);
   advance_setup();
-  if (phase_ == Phase::ready) job_.advance(sdo_, now_);
+  if (phase_ == Phase::ready) advance_job();
   if (job_.take_reset_request()) restart_to_verify();
   if (job_.resetting() && now_ - restarted_at_ > kRestart_s) job_.abandon();
   send_own_heartbeat();
@@ -279,7 +297,8 @@ Result<void> DualAxis::change_allowed(double now) {
 Result<void> DualAxis::start_read_parameters(double now) {
   now_ = std::max(now_, now);
   if (auto allowed = job_allowed(); !allowed) return allowed;
-  return job_.start_read();
+  read_since_ = now_;
+  return job_.start_read(as_set_up_);
 }
 
 Result<void> DualAxis::start_write_parameters(const std::vector<ParameterValue>& values, double now) {

@@ -45,6 +45,7 @@ class DualAxis final : public Controller, private MotionDevice {
   Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) override;
   Result<void> start_store(double now) override;
   std::optional<ParameterJobResult> take_job_result() override { return job_.take_result(); }
+  [[nodiscard]] std::optional<double> touched() const override { return touched_at_; }
 
   [[nodiscard]] std::optional<Identity> identity() const override { return identity_; }
   [[nodiscard]] RobotDescription description() const override { return profile_.robot; }
@@ -66,6 +67,8 @@ class DualAxis final : public Controller, private MotionDevice {
   void on_life_sign(const CanFrame& frame);
   void on_other_master(const CanFrame& frame);
   [[nodiscard]] bool commands_node(const CanFrame& frame) const;
+  [[nodiscard]] bool receives(std::uint32_t cob_id) const;
+  void advance_job();
   void check_life();
   void lose(const std::string& code, const std::string& text);
   void on_boot_up();
@@ -83,6 +86,7 @@ class DualAxis final : public Controller, private MotionDevice {
   void begin_configuration();
   void end_configuration();
   void note_safety_objects();
+  void note_as_set_up();
   void check_started();
 
   // dual_axis_motion.cpp: process data
@@ -120,6 +124,10 @@ class DualAxis final : public Controller, private MotionDevice {
   std::optional<double> look_after_;  // s, when to ask for the node (again)
   std::optional<Identity> identity_;
   bool watchdog_armed_ = false;
+  std::vector<canopen::SdoOutcome> unlisted_;  // receive PDOs (1400h ff.) that the profile does not list
+  std::vector<canopen::SdoStep> as_set_up_;    // checks of what was set up
+  std::optional<double> touched_at_;           // s, when somebody else was last seen to change the node
+  double read_since_ = 0.0;                    // s, begin of the reading in progress
 
   std::optional<double> heard_at_;  // s, last life sign
   bool fell_silent_ = false;        // was lost for want of life signs and has not booted since
@@ -143,6 +151,7 @@ class DualAxis final : public Controller, private MotionDevice {
   std::uint64_t frames_in_ = 0, frames_used_ = 0, emergencies_ = 0, boot_ups_ = 0, heartbeats_ = 0,
                 bad_frames_ = 0;
   std::uint64_t short_pdos_ = 0, other_master_ = 0, error_frames_ = 0;
+  std::uint64_t foreign_commands_ = 0;  // of other_master_, those that may have changed what the node does
 };
 
 }  // namespace odomcalib::drivers

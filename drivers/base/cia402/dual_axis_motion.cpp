@@ -172,9 +172,10 @@ void DualAxis::stop() { send_command(canopen::kQuickStop, 0.0, 0.0); }
 
 void DualAxis::release() { send_command(canopen::kDisableVoltage, 0.0, 0.0); }
 
-/// A late word may have enabled an axis after the motion had ended. With another master it may be his.
+/// A late word may have enabled an axis after the motion had ended. With another master it may be his; one
+/// that only reads has no part in it.
 double DualAxis::idle() {
-  const bool late = other_master_ == 0 && any_axis(DriveState::enabled);
+  const bool late = foreign_commands_ == 0 && any_axis(DriveState::enabled);
   if (profile_.watchdog.kind != ProfileWatchdog::Kind::object && !late) return 0.0;
   release();
   return kIdleCycle_s;

@@ -1,5 +1,6 @@
 // From "nothing heard" to "configured and sending": identity before any write, then what the profile says,
 // read back.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -57,9 +58,40 @@ void add_safety_readings(std::vector<SdoStep>& steps) {
   steps.push_back(read_step(0x605E, 0, kI16, true, "605E"));
 }
 
-std::vector<SdoStep> configuration(const Profile& profile) {
+/// What else the node takes process data by, one after the other until it has no more.
+void add_receive_pdo_readings(std::vector<SdoStep>& steps) {
+  for (std::uint16_t number = 0; number < kMostReceivePdos; ++number) {
+    SdoStep step = read_step(static_cast<std::uint16_t>(0x1400 + number), 1, kU32, true, "rpdo");
+    step.one_of_row = true;
+    steps.push_back(std::move(step));
+  }
+}
+
+/// Those of them that the profile does not list: what is read of 1400h ff.
+std::vector<canopen::SdoOutcome> unlisted_pdos(const Profile& profile,
+                                               std::vector<canopen::SdoOutcome> outcomes) {
+  const auto listed = [&](const canopen::SdoOutcome& outcome) {
+    return std::any_of(profile.pdos.begin(), profile.pdos.end(), [&](const canopen::Pdo& pdo) {
+      return !pdo.transmit && 0x1400 + pdo.number - 1 == outcome.step.object.index;
+    });
+  };
+  std::erase_if(outcomes, [&](const canopen::SdoOutcome& outcome) {
+    return outcome.step.tag != "rpdo" || outcome.error || listed(outcome);
+  });
+  return outcomes;
+}
+
+void add_disabling(std::vector<SdoStep>& steps, const canopen::SdoOutcome& pdo) {
+  const std::int64_t disabled = pdo.value | std::int64_t{canopen::kPdoDisabled};
+  if (pdo.value != disabled) steps.push_back(write_step(pdo.step.object, kU32, disabled, true));
+  steps.push_back(
+      {SdoStep::Kind::check, pdo.step.object, kU32, disabled, true, canopen::kSdoTimeout_s, "unlisted"});
+}
+
+std::vector<SdoStep> configuration(const Profile& profile, const std::vector<canopen::SdoOutcome>& unlisted) {
   std::vector<SdoStep> steps;
   add_rest(steps, profile);
+  for (const canopen::SdoOutcome& pdo : unlisted) add_disabling(steps, pdo);
   for (const ProfileWrite& init : profile.init) add_checked_write(steps, init.object, init.type, init.value);
   add_safety_readings(steps);
   const auto heartbeat = std::int64_t{std::llround(profile.heartbeat_ms / profile.heartbeat_unit_ms)};
@@ -77,7 +109,7 @@ std::vector<SdoStep> configuration(const Profile& profile) {
 }  // namespace
 
 void DualAxis::advance_setup() {
-  if (phase_ == Phase::ready) return job_.advance(sdo_, now_);
+  if (phase_ == Phase::ready) return advance_job();
   if (phase_ == Phase::absent) return look_for_node();
   if (phase_ == Phase::starting) return check_started();
   if (!setup_.advance(sdo_, now_)) return;
@@ -95,9 +127,12 @@ void DualAxis::begin_identification() {
   phase_ = Phase::identifying;
   phase_since_ = now_;
   sdo_.cancel();
-  setup_.start({read_step(0x1018, 1, kU32, false, "vendor"), read_step(0x1018, 2, kU32, false, "product"),
-                read_step(0x1018, 3, kU32, true, "revision"), read_step(0x1018, 4, kU32, true, "serial"),
-                read_step(0x1008, 0, kU32, true, "name")});
+  std::vector<SdoStep> steps = {
+      read_step(0x1018, 1, kU32, false, "vendor"), read_step(0x1018, 2, kU32, false, "product"),
+      read_step(0x1018, 3, kU32, true, "revision"), read_step(0x1018, 4, kU32, true, "serial"),
+      read_step(0x1008, 0, kU32, true, "name")};
+  add_receive_pdo_readings(steps);
+  setup_.start(std::move(steps));
   setup_.advance(sdo_, now_);
 }
 
@@ -132,8 +167,9 @@ void DualAxis::end_identification() {
 void DualAxis::begin_configuration() {
   phase_ = Phase::configuring;
   phase_since_ = now_;
+  unlisted_ = unlisted_pdos(profile_, setup_.outcomes());
   send_nmt(kNmtPreOperational);
-  setup_.start(configuration(profile_));
+  setup_.start(configuration(profile_, unlisted_));
   setup_.advance(sdo_, now_);
 }
 
@@ -145,6 +181,8 @@ void DualAxis::end_configuration() {
     return;
   }
   note_safety_objects();
+  note_as_set_up();
+  touched_at_.reset();
   phase_ = Phase::starting;
   phase_since_ = now_;
   positions_at_.reset();
@@ -155,6 +193,8 @@ void DualAxis::end_configuration() {
 void DualAxis::note_safety_objects() {
   watchdog_armed_ = profile_.watchdog.kind != ProfileWatchdog::Kind::none;
   for (const canopen::SdoOutcome& outcome : setup_.outcomes()) {
+    if (outcome.step.tag == "unlisted" && outcome.error)
+      event("process_data_not_disabled", outcome.error->text(), false);
     if (outcome.step.tag != "watchdog" || !outcome.error) continue;
     watchdog_armed_ = false;
     event("watchdog_refused", "the controller cannot watch this program: " + outcome.error->text(), false);
@@ -166,6 +206,22 @@ void DualAxis::note_safety_objects() {
   const auto* mode = setup_.find("mode");
   if (mode != nullptr && mode->error)
     event("mode_not_active", "mode of operation: " + mode->error->text(), false);
+}
+
+/// The last check of each object, and what was found of the reactions that are only read. What the node took
+/// otherwise was told when it was set up.
+void DualAxis::note_as_set_up() {
+  as_set_up_.clear();
+  for (const canopen::SdoOutcome& outcome : setup_.outcomes()) {
+    if (outcome.step.kind == SdoStep::Kind::write || outcome.error) continue;
+    SdoStep check = outcome.step;
+    check.kind = SdoStep::Kind::check;
+    check.value = outcome.value;
+    check.optional = false;
+    check.tag.clear();
+    std::erase_if(as_set_up_, [&](const SdoStep& one) { return one.object == check.object; });
+    as_set_up_.push_back(std::move(check));
+  }
 }
 
 void DualAxis::check_started() {

@@ -34,11 +34,11 @@ void ParameterJob::begin(ParameterJobResult::Kind kind) {
   result_.reset();
 }
 
-Result<void> ParameterJob::start_read() {
+Result<void> ParameterJob::start_read(std::vector<SdoStep> as_set_up) {
   wanted_.clear();
   for (const ProfileParameter& parameter : profile_.parameters) wanted_.push_back({&parameter, 0, 0});
   begin(ParameterJobResult::Kind::read);
-  start_reading(Stage::before);
+  start_reading(Stage::before, std::move(as_set_up));
   return {};
 }
 
@@ -77,17 +77,30 @@ Result<void> ParameterJob::start_store() {
   return {};
 }
 
-void ParameterJob::start_reading(Stage stage) {
+std::size_t ParameterJob::index_of(const ProfileParameter& parameter) const {
+  return static_cast<std::size_t>(&parameter - profile_.parameters.data());
+}
+
+SdoStep ParameterJob::reading_of(const ProfileParameter& parameter) const {
+  const std::optional<std::int64_t> known = known_[index_of(parameter)];
+  const auto kind = known ? SdoStep::Kind::check : SdoStep::Kind::read;
+  return {kind,  parameter.object,       parameter.type,     known.value_or(0),
+          false, canopen::kSdoTimeout_s, parameter.quantity, true};
+}
+
+/// Values that nobody knows are not read before all is settled: a late answer would tell of another time.
+void ParameterJob::start_reading(Stage stage, std::vector<SdoStep> steps) {
   stage_ = stage;
-  std::vector<SdoStep> steps;
-  for (const Wanted& wanted : wanted_)
-    steps.push_back({SdoStep::Kind::read, wanted.parameter->object, wanted.parameter->type, 0, false,
-                     canopen::kSdoTimeout_s, wanted.parameter->quantity});
+  const bool all_known = std::all_of(wanted_.begin(), wanted_.end(),
+                                     [&](const Wanted& one) { return known_[index_of(*one.parameter)]; });
+  begins_at_ = all_known ? now_ : settled_at_;
+  for (const Wanted& wanted : wanted_) steps.push_back(reading_of(*wanted.parameter));
   sequence_.start(std::move(steps));
 }
 
 void ParameterJob::start_writing(Stage stage) {
   stage_ = stage;
+  begins_at_ = stage == Stage::restore ? now_ + canopen::kSdoSettles_s : settled_at_;
   std::vector<SdoStep> steps;
   for (const Wanted& wanted : wanted_)
     add_checked_write(steps, wanted.parameter->object, wanted.parameter->type,
@@ -98,12 +111,30 @@ void ParameterJob::start_writing(Stage stage) {
 
 void ParameterJob::start_storing() {
   stage_ = Stage::store;
+  begins_at_ = now_;
   sequence_.start({{SdoStep::Kind::write, profile_.store->object, profile_.store->type, profile_.store->value,
                     false, profile_.store->wait_s, "store"}});
 }
 
 void ParameterJob::advance(canopen::SdoClient& sdo, double now) {
-  if (running_ && sequence_.advance(sdo, now)) end_stage();
+  now_ = now;
+  if (!running_ || now < begins_at_) return;
+  const Stage stage = stage_;
+  if (stage == Stage::write || stage == Stage::restore || stage == Stage::store)
+    settled_at_ = now + canopen::kSdoSettles_s;
+  if (!sequence_.advance(sdo, now)) return;
+  learn(stage);
+  end_stage();
+}
+
+/// What was read or written, whole or not at all.
+void ParameterJob::learn(Stage stage) {
+  if (stage == Stage::store) return;
+  for (const Wanted& wanted : wanted_) {
+    const auto* outcome = sequence_.find(wanted.parameter->quantity);
+    const bool known = !sequence_.error() && outcome != nullptr;
+    known_[index_of(*wanted.parameter)] = known ? std::optional(outcome->value) : std::nullopt;
+  }
 }
 
 void ParameterJob::end_stage() {
@@ -134,8 +165,24 @@ std::vector<StoredParameter> ParameterJob::read_values() const {
   return out;
 }
 
+/// Of the steps that read what else the node was given. One without an answer tells nothing.
+void ParameterJob::note_change() {
+  const canopen::SdoOutcome& last = sequence_.outcomes().back();
+  if (!last.step.tag.empty() || last.error->code == ErrorCode::timeout) return;
+  const std::string found =
+      last.abort ? last.error->what
+                 : "reads " + std::to_string(last.value) + ", not " + std::to_string(last.step.value);
+  change_ = failed(ErrorCode::device,
+                   "object " + canopen::to_text(last.step.object) + " " + found +
+                       " as it was set up: another program may have changed it",
+                   "it is set up again; end the other program, then start again");
+}
+
 void ParameterJob::after_reading_first() {
-  if (sequence_.error()) return finish(sequence_.error());
+  if (sequence_.error()) {
+    note_change();
+    return finish(change_ ? change_ : sequence_.error());
+  }
   read_back_ = read_values();
   for (std::size_t i = 0; i < wanted_.size(); ++i) wanted_[i].old_raw = read_back_[i].raw;
   switch (kind_) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "drivers/base/canopen/sdo_sequence.hpp"
@@ -13,16 +14,21 @@ namespace odomcalib::drivers {
 /// One job at a time. A write reads the old value first, writes, reads back and compares the raw numbers;
 /// when that fails the old values are written back. A store is sent once and never repeated; everything is
 /// read again after it, and where the profile says so once more after a reset of the node.
+///
+/// A request may reach the node late, and twice: nothing is written while an earlier write may still be under
+/// way, and a value that is not the one last known is believed when it was read twice.
 class ParameterJob {
  public:
-  explicit ParameterJob(const Profile& profile) : profile_(profile) {}
+  explicit ParameterJob(const Profile& profile) : profile_(profile), known_(profile.parameters.size()) {}
 
   [[nodiscard]] bool running() const { return running_; }
+  [[nodiscard]] bool reading() const { return running_ && kind_ == ParameterJobResult::Kind::read; }
   /// A store keeps the drive busy for seconds: its life signs may then be late.
   [[nodiscard]] bool storing() const { return running_ && stage_ == Stage::store; }
 
   // Errors: refused (the profile names no such parameter or no store, value out of range).
-  Result<void> start_read();
+  /// @param as_set_up checks of what else the node must hold; a difference ends the job with an error
+  Result<void> start_read(std::vector<canopen::SdoStep> as_set_up = {});
   Result<void> start_write(const std::vector<ParameterValue>& values);
   Result<void> start_store();
 
@@ -35,6 +41,8 @@ class ParameterJob {
   /// The node was lost: the job ends with an error that says what is known.
   void abandon();
   std::optional<ParameterJobResult> take_result();
+  /// What is not as it was set up, once.
+  std::optional<Error> take_change() { return std::exchange(change_, std::nullopt); }
 
  private:
   enum class Stage { before, write, restore, store, after, reset, after_reset };
@@ -45,8 +53,12 @@ class ParameterJob {
   };
 
   void begin(ParameterJobResult::Kind kind);
-  void start_reading(Stage stage);
+  void start_reading(Stage stage, std::vector<canopen::SdoStep> steps = {});
   void start_writing(Stage stage);
+  [[nodiscard]] std::size_t index_of(const ProfileParameter& parameter) const;
+  [[nodiscard]] canopen::SdoStep reading_of(const ProfileParameter& parameter) const;
+  void learn(Stage stage);
+  void note_change();
   void start_storing();
   void end_stage();
   void after_reading_first();
@@ -64,6 +76,11 @@ class ParameterJob {
   canopen::SdoSequence sequence_;
   bool running_ = false;
   bool reset_wanted_ = false;
+  double now_ = 0.0;
+  double begins_at_ = -1e9;   ///< s, not before it does the present stage begin
+  double settled_at_ = -1e9;  ///< s, when nothing that was written can be under way any more
+  std::vector<std::optional<std::int64_t>> known_;  ///< raw, by parameter of the profile
+  std::optional<Error> change_;
   Stage stage_ = Stage::before;
   ParameterJobResult::Kind kind_ = ParameterJobResult::Kind::read;
   std::vector<Wanted> wanted_;

@@ -16,6 +16,8 @@ inline constexpr double kPositionsLive_s = 0.1;
 /// s of listening for other masters before the first word. Chosen: two periods of the slowest usual
 /// heartbeat.
 inline constexpr double kListen_s = 0.2;
+/// Receive PDOs of a node that are looked for. Chosen: drives have four to eight; CiA 301 allows 512.
+inline constexpr std::uint16_t kMostReceivePdos = 32;
 /// s until a node that does not answer is asked again. Chosen: found within 2 s after it is switched on.
 inline constexpr double kAskAgain_s = 0.3;
 /// s until a node whose configuration failed is asked again. Chosen: the event must stay readable.

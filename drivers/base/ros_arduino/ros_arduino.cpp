@@ -27,6 +27,8 @@ std::optional<std::int64_t> cut_number(std::string_view& text) {
   return value;
 }
 
+bool is_counts(std::string_view line) { return cut_number(line) && cut_number(line) && line.empty(); }
+
 }  // namespace
 
 void RosArduino::on_connected(std::optional<unsigned> baud) {
@@ -104,13 +106,14 @@ void RosArduino::refuse(std::uint64_t& counter) {
 }
 
 /// The question that this line answers. Where it fits a later one and not the first, the answers before it
-/// were lost.
-RosArduino::Question RosArduino::answered(std::string_view line, double t) {
-  if (!asked_) return {line == kAccepted ? Question::Kind::speed : Question::Kind::counts, t};
+/// were lost. A whole answer that fits none has come before, or late; one that is garbled is the next one's.
+std::optional<RosArduino::Question> RosArduino::answered(std::string_view line, double t) {
+  if (!asked_) return Question{line == kAccepted ? Question::Kind::speed : Question::Kind::counts, t};
   const auto fits = [&](const Question& question) {
     return (question.kind == Question::Kind::counts) != (line == kAccepted);
   };
   auto found = std::find_if(waiting_.begin(), waiting_.end(), fits);
+  if (found == waiting_.end() && (line == kAccepted || is_counts(line))) return std::nullopt;
   if (found == waiting_.end() || line == kNotUnderstood) found = waiting_.begin();
   const Question question = *found;
   no_answer_ += static_cast<std::uint64_t>(found - waiting_.begin());
@@ -128,7 +131,9 @@ void RosArduino::on_line(double t) {
   std::string_view line(line_.data(), used_);
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
   if (waiting_.empty() && asked_) return refuse(unasked_);
-  const Question question = answered(line, t);
+  const auto answers = answered(line, t);
+  if (!answers) return refuse(unasked_);
+  const Question& question = *answers;
   if (line == kNotUnderstood) return refuse(invalid_);
   if (question.kind != Question::Kind::counts && line != kAccepted) return refuse(bad_line_);
   if (question.kind == Question::Kind::counts) {

@@ -33,7 +33,7 @@ class RosArduino final : public SpeedProtocol {
     double sent_at;
   };
 
-  [[nodiscard]] Question answered(std::string_view line, double t);
+  [[nodiscard]] std::optional<Question> answered(std::string_view line, double t);
   void on_line(double t);
   void on_counts(std::string_view line, double t);
   void refuse(std::uint64_t& counter);

@@ -85,6 +85,7 @@ void SpeedBase::on_time(double now) {
     greet_due_ = now_ + kGreet_s;
   }
   check_device();
+  serve_reading();
   if (motion_.motion() == Motion::on) motion_.check_encoders(now_);
   motion_.cycle(now_);
 }
@@ -181,8 +182,32 @@ Error SpeedBase::refused(const std::string& what, const std::string& remedy) con
 Result<void> SpeedBase::start_read_parameters(double now) {
   now_ = std::max(now_, now);
   if (!present_) return refused("controller does not answer", "wait until it does");
+  job_result_.reset();
+  if (protocol_->ask_settings()) {
+    reading_ = Reading{now_ + kSettings_s, protocol_->settings_told(), protocol_->reported_timeout_s()};
+    return {};
+  }
   job_result_ = ParameterJobResult{ParameterJobResult::Kind::read, std::nullopt, {}};
   return {};
+}
+
+/// What else it holds is not compared: counts do not depend on it.
+std::optional<Error> SpeedBase::timeout_changed() const {
+  const auto before = reading_->before, now = protocol_->reported_timeout_s();
+  if (!before || !now || *before == *now) return std::nullopt;
+  return refused("the controller reports a command time-out of " + std::to_string(std::lround(1e3 * *now)) +
+                     " ms, not " + std::to_string(std::lround(1e3 * *before)) + " ms as before",
+                 "it is taken over; see who changed it, then start again");
+}
+
+void SpeedBase::serve_reading() {
+  if (!reading_) return;
+  const bool told = protocol_->settings_told() > reading_->told;
+  if (!told && present_ && now_ < reading_->ends_at) return;
+  std::optional<Error> error = refused("the controller does not tell its settings", "look at its line");
+  if (told) error = timeout_changed();
+  job_result_ = ParameterJobResult{ParameterJobResult::Kind::read, error, {}};
+  reading_.reset();
 }
 
 Result<void> SpeedBase::start_write_parameters(const std::vector<ParameterValue>& /*values*/,

@@ -39,6 +39,7 @@ class SpeedBase final : public Controller, private MotionDevice {
   [[nodiscard]] bool at_rest() const override { return motion_.at_rest(now_); }
 
   /// These devices hold no geometry that this program could write: reading gives none, the rest is refused.
+  /// Where a device tells its command time-out, a reading asks for it again.
   Result<void> start_read_parameters(double now) override;
   Result<void> start_write_parameters(const std::vector<ParameterValue>& values, double now) override;
   Result<void> start_store(double now) override;
@@ -54,6 +55,8 @@ class SpeedBase final : public Controller, private MotionDevice {
   void take_news();
   void on_other_master();
   void on_count(const SideCount& count);
+  void serve_reading();
+  [[nodiscard]] std::optional<Error> timeout_changed() const;
   void check_presence();
   void check_device();
   [[nodiscard]] std::string enable_refusal() const override;
@@ -78,6 +81,12 @@ class SpeedBase final : public Controller, private MotionDevice {
   bool present_ = false;
   bool asked_ = false;  // for torque
   std::string last_fault_;
+  struct Reading {
+    double ends_at = 0.0;          ///< s
+    std::uint64_t told = 0;        ///< how often before
+    std::optional<double> before;  ///< s, the time-out
+  };
+  std::optional<Reading> reading_;
   std::optional<ParameterJobResult> job_result_;
 };
 

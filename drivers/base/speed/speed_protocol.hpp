@@ -55,6 +55,10 @@ class SpeedProtocol {
   [[nodiscard]] virtual DeviceState device_state() const { return {}; }
   /// The device was asked for its command time-out: what it answered, in s.
   [[nodiscard]] virtual std::optional<double> reported_timeout_s() const { return std::nullopt; }
+  /// Asks the device for its own settings, that time-out among them. @return false: it does not tell them
+  virtual bool ask_settings() { return false; }
+  /// How often it has told them.
+  [[nodiscard]] virtual std::uint64_t settings_told() const { return 0; }
   [[nodiscard]] virtual Counters counters() const = 0;
 
   std::vector<CanFrame> take_frames() { return std::exchange(frames_, {}); }

@@ -119,15 +119,15 @@ void PioneerBase::execute(const std::string& data, double now) {
   if (command == 21) turn_ = argument * kTurn_rad / 360.0;
   if (command == 55 || command == 29) speed_ = turn_ = 0.0;
   if (command == 19) encoders_ = argument == 2;
-  if (command == 18) send_configuration();
+  if (command == 18 && tells_configuration) send_configuration();
 }
 
 void PioneerBase::send_configuration() {
   const std::string zero(1, '\0');
   std::string data = "\x20" + std::string("Pioneer") + zero + "p3dx" + zero + "SN4242" + zero;
   data += std::string(11, '\0') + "Miss Agnes" + zero + std::string(10, '\0');
-  put(data, 16570, 2);            // RevCount
-  put(data, 2000, 2);             // watchdog
+  put(data, 16570, 2);  // RevCount
+  put(data, watchdog_ms, 2);
   data += std::string(39, '\0');  // to the gyro byte
   put(data, -120, 2);             // DriftFactor
   data += std::string(2, '\0');

@@ -47,6 +47,8 @@ class PioneerBase : public SerialDevice {
  public:
   void receive(const std::string& bytes, double now) override;
   bool emergency_stop = false;
+  bool tells_configuration = true;
+  int watchdog_ms = 2000;  ///< as it tells
   [[nodiscard]] unsigned bad_packets() const { return bad_packets_; }
 
  protected:

@@ -125,6 +125,20 @@ TEST(SpeedWatch, lets_a_drive_follow_its_command_late) {
   }
 }
 
+// What excuses a speed is a command of the last 0.5 s: the window of the measurement and the lag of a drive.
+TEST(SpeedWatch, a_command_of_earlier_excuses_nothing) {
+  SpeedWatch watch({});
+  for (int i = 0; i <= 100; ++i) {
+    const double t = 0.02 * i, since = t - 1.0;  // s since the last command to move
+    watch.seen(t, {0.2 * t, 0.0, 0.5 * t}, since <= 0.0 ? routines::Twist{0.2, 0.5} : routines::Twist{});
+    if (since < 0.49) {
+      EXPECT_FALSE(watch.too_fast()) << since;
+    } else if (since > 0.51) {
+      EXPECT_TRUE(watch.too_fast()) << since;
+    }
+  }
+}
+
 TEST(SpeedWatch, goes_by_the_limits_of_the_motion_and_never_beyond_the_caps) {
   EXPECT_TRUE(said_of(0.15, 0.0, 0.02, {.speed = 0.1}));
   EXPECT_FALSE(said_of(0.13, 0.0, 0.02, {.speed = 0.1}));
@@ -149,6 +163,21 @@ TEST(Envelope, of_a_straight_metre_is_1_3_m_and_half_as_long_again) {
   EXPECT_TRUE(envelope.violated({0.0, 0.0, 0.0}, 1.0, 5.0).has_value());
   EXPECT_TRUE(envelope.violated({0.0, 0.0, 0.0}, 0.0, 1.6 * preview.duration).has_value());
   EXPECT_TRUE(envelope.violated({std::nan(""), 0.0, 0.0}, 0.0, 0.0).has_value());
+}
+
+TEST(Envelope, is_as_wide_as_it_is_long) {
+  const Envelope envelope{.reach = 1.3, .turn = 1.0, .time = 10.0};
+  for (int deg = 0; deg < 360; deg += 15) {
+    const double c = std::cos(deg * std::numbers::pi / 180.0), s = std::sin(deg * std::numbers::pi / 180.0);
+    EXPECT_FALSE(envelope.violated({1.29 * c, 1.29 * s, 0.0}, 0.0, 1.0)) << deg;
+    EXPECT_TRUE(envelope.violated({1.31 * c, 1.31 * s, 0.0}, 0.0, 1.0)) << deg;
+  }
+  for (const double side : {-1.0, 1.0}) {
+    EXPECT_FALSE(envelope.violated({}, 0.99 * side, 1.0));
+    EXPECT_TRUE(envelope.violated({}, 1.01 * side, 1.0));
+  }
+  EXPECT_FALSE(envelope.violated({}, 0.0, 9.9));
+  EXPECT_TRUE(envelope.violated({}, 0.0, 10.1));
 }
 
 TEST(Envelope, of_one_full_turn_is_450_degrees) {
@@ -234,6 +263,31 @@ TEST(Braking, overrun_is_the_lag_of_the_drive_and_what_a_weaker_deceleration_add
   // v / (2 a) for 0.25 m/s^2 instead of 0.5: 0.4 s instead of 0.2 s.
   EXPECT_NEAR(overrun_of(0.0, 0.25), 0.2, 0.011);
   EXPECT_EQ(overrun_of(0.1, 10.0, 0.05), 0.0) << "a creep";
+}
+
+TEST(Braking, the_longest_of_the_last_ten_stops_counts) {
+  Braking braking;
+  double t = 0.0, x = 0.0;
+  const auto go = [&](double speed, double commanded, double seconds) {
+    for (const double end = t + seconds - 1e-9; t < end;) {
+      t += 0.01;
+      x += 0.01 * speed;
+      braking.seen(t, {x, 0.0, 0.0}, {commanded, 0.0});
+    }
+  };
+  const auto stop = [&](double lag) {
+    go(0.2, 0.2, 0.5);
+    go(0.2, 0.0, lag);
+    go(0.0, 0.0, 0.3);
+  };
+  stop(0.3);
+  EXPECT_NEAR(braking.overrun(), 0.3, 0.011);
+  for (int later = 1; later <= 9; ++later) {
+    stop(0.1);
+    EXPECT_NEAR(braking.overrun(), 0.3, 0.011) << later;
+  }
+  stop(0.1);
+  EXPECT_NEAR(braking.overrun(), 0.1, 0.011) << "long ago";
 }
 
 TEST(Braking, neither_a_slower_move_nor_a_turn_on_the_spot_is_a_stop) {

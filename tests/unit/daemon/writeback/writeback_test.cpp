@@ -28,6 +28,37 @@ TEST(Transaction, refuses_values_that_are_no_lengths) {
   EXPECT_FALSE(bench.transaction.write("apply", kNew).ok());
 }
 
+/// The answers to its first stores are lost.
+class UnansweredStores : public FakeController {
+ public:
+  UnansweredStores(Memory& memory, int lost) : FakeController(memory), lost_(lost) {}
+  std::optional<ParameterJobResult> take_job_result() override {
+    auto result = FakeController::take_job_result();
+    const bool lost = result && result->kind == ParameterJobResult::Kind::store && lost_-- > 0;
+    if (lost) result->error = Error{ErrorCode::write_unknown, "no answer", "store", ""};
+    return result;
+  }
+
+ private:
+  int lost_;
+};
+
+TEST(Transaction, old_values_whose_store_was_not_answered_are_stored_once_more) {
+  for (const int lost : {2, 3}) {
+    const TemporaryFolder folder;
+    Memory memory;
+    UnansweredStores controller(memory, lost);
+    Journal journal = value_of(Journal::open(folder / "journal"));
+    Transaction transaction(journal);
+    ASSERT_TRUE(transaction.write("apply", kNew).ok());
+    const auto report = run(transaction, controller);
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->outcome, lost == 2 ? WriteOutcome::rolled_back : WriteOutcome::unknown);
+    EXPECT_TRUE(is_old(memory.ram) && is_old(memory.stored));
+    EXPECT_EQ(controller.stores, 3);
+  }
+}
+
 class EveryMishap : public testing::TestWithParam<std::tuple<int, Mishap>>, public WriteBackBench<> {};
 
 TEST_P(EveryMishap, leaves_wholly_old_or_wholly_new_values_and_says_which) {

@@ -162,13 +162,43 @@ TEST(Sdo, tells_the_node_when_it_gives_up) {
   EXPECT_EQ(frames[1].data[0], 0x2F);
 }
 
-TEST(Sdo, a_wrong_toggle_ends_the_transfer) {
+// A bus may deliver a frame twice: the second one has the toggle bit of the segment before.
+TEST(Sdo, segments_that_come_twice_are_taken_once) {
   SdoClient client(kNode);
   (void)client.start(read_of(0x1008, 0), 0.0);
-  client.on_frame(answer({0x41, 0x08, 0x10, 0x00, 15}), 0.0);
-  client.on_frame(answer({0x10, 'a'}), 0.0);
-  EXPECT_TRUE(client.take_result()->error.has_value());
-  EXPECT_EQ(client.take_frames().back().data[0], 0x80);
+  for (const auto& frame :
+       {answer({0x41, 0x08, 0x10, 0x00, 15, 0, 0, 0}), answer({0x00, 'a', 'b', 'c', 'd', 'e', 'f', 'g'}),
+        answer({0x10, 'h', 'i', 'j', 'k', 'l', 'm', 'n'}), answer({0x0D, 'o'})})
+    for (int twice = 0; twice < 2; ++twice) client.on_frame(frame, 0.0);
+  const auto result = client.take_result();
+  ASSERT_TRUE(result && !result->error);
+  EXPECT_EQ(std::string(result->data.begin(), result->data.end()), "abcdefghijklmno");
+  EXPECT_EQ(client.counters()["sdo_unexpected"], 4U);
+
+  (void)client.start(write_of(0x2000, 1, std::vector<std::uint8_t>(10, 7)), 0.0);
+  for (const auto& frame : {answer({0x60, 0x00, 0x20, 0x01}), answer({0x20}), answer({0x30})})
+    for (int twice = 0; twice < 2; ++twice) client.on_frame(frame, 0.0);
+  const auto written = client.take_result();
+  ASSERT_TRUE(written && !written->error);
+  EXPECT_EQ(client.counters()["sdo_unexpected"], 7U);
+}
+
+// What is over may be answered once more: of a read while the object is written, of a write while it is read.
+TEST(Sdo, a_late_answer_of_another_kind_for_the_same_object_is_not_taken) {
+  SdoClient client(kNode);
+  const CanFrame of_read = answer({0x43, 0x00, 0x21, 0x01, 1}), of_write = answer({0x60, 0x00, 0x21, 0x01});
+  (void)client.start(write_of(0x2100, 1, {2, 0, 0, 0}), 0.0);
+  client.on_frame(of_read, 0.0);
+  EXPECT_TRUE(client.busy());
+  client.on_frame(of_write, 0.0);
+  ASSERT_FALSE(client.take_result()->error.has_value());
+  (void)client.start(read_of(0x2100, 1), 0.0);
+  client.on_frame(of_write, 0.0);
+  EXPECT_TRUE(client.busy());
+  client.on_frame(of_read, 0.0);
+  ASSERT_FALSE(client.take_result()->error.has_value());
+  EXPECT_EQ(client.counters()["sdo_unexpected"], 2U);
+  EXPECT_EQ(client.counters()["sdo_bad"], 0U);
 }
 
 TEST(Sdo, announced_and_received_sizes_must_agree) {

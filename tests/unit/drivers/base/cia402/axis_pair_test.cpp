@@ -125,6 +125,37 @@ TEST_F(AxisPair, a_fault_of_one_drive_stops_both) {
   EXPECT_NE(bench_.story().find("right drive: emergency"), std::string::npos);
 }
 
+TEST_F(AxisPair, either_drive_that_somebody_changed_is_found_and_set_up_again) {
+  ready();
+  for (const std::size_t side : {0U, 1U}) {
+    sim::ObjectDictionary& held = drives_.node[side]->dictionary();
+    const std::uint32_t watchdog = held.value({0x1016, 1});
+    held.set({0x1016, 1}, 0);
+    ASSERT_TRUE(bench_.controller->start_read_parameters(bench_.now).ok());
+    const auto result = job();
+    ASSERT_TRUE(result.error) << side;
+    EXPECT_NE(result.error->text().find("1016:01 reads 0"), std::string::npos) << result.error->text();
+    EXPECT_NE(bench_.story().find(side == 0 ? "left drive: object 1016" : "right drive: object 1016"),
+              std::string::npos)
+        << bench_.story();
+    EXPECT_FALSE(bench_.controller->watchdog_armed());
+    ready();
+    EXPECT_EQ(held.value({0x1016, 1}), watchdog);
+    ASSERT_TRUE(bench_.controller->start_read_parameters(bench_.now).ok());
+    EXPECT_FALSE(job().error);
+  }
+}
+
+// Before a person starts it again it is read, as any other.
+TEST_F(AxisPair, a_drive_in_fault_is_read_but_not_written) {
+  ready();
+  drives_.node[1]->emergency(0x2310, 0x02, bench_.now);
+  ASSERT_TRUE(bench_.run_until(ControllerState::fault)) << bench_.story();
+  EXPECT_FALSE(bench_.controller->start_write_parameters({{"left_wheel_diameter", 0.151}}, bench_.now).ok());
+  ASSERT_TRUE(bench_.controller->start_read_parameters(bench_.now).ok());
+  EXPECT_FALSE(job().error);
+}
+
 TEST_F(AxisPair, a_quick_stop_is_on_its_way_before_anything_else_happens) {
   moving();
   ASSERT_NE(drives_.rate[0], 0.0);

@@ -4,132 +4,14 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <functional>
-#include <stdexcept>
 
-#include "drivers/base/controller.hpp"
-#include "tests/sim/wires/drive_node.hpp"
+#include "tests/unit/drivers/base/cia402/drive_bench.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
 namespace odomcalib::drivers::dual_axis_test {
 namespace {
 
-constexpr double kStep = 0.001;
-constexpr double kTicksPerRad = 16384.0 / (2.0 * 3.14159265358979323846);
-
-CanFrame to_can(const sim::Frame& frame, double t) {
-  CanFrame out;
-  out.id = frame.id;
-  out.extended = frame.extended;
-  out.remote = frame.remote;
-  out.length = frame.length;
-  out.data = frame.data;
-  out.t = t;
-  return out;
-}
-
-sim::Frame to_sim(const CanFrame& frame) {
-  return {frame.id, frame.extended, frame.remote, frame.length, frame.data};
-}
-
-class Bench {
- public:
-  explicit Bench(const std::string& profile = "drivers/base/profiles/sim-dual.toml") : node({}) {
-    auto made = make_controller(profile);
-    EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().text());
-    controller = std::move(made).value();
-    node.reset(0.0);
-  }
-
-  void run(double duration) {
-    for (const double end = now + duration; now < end;) step();
-  }
-
-  bool run_until(const std::function<bool()>& done, double longest) {
-    for (const double end = now + longest; now < end && !done();) step();
-    return done();
-  }
-
-  bool ready() {
-    return run_until([&] { return controller->state() == ControllerState::disabled; }, 5.0);
-  }
-
-  bool enabled() {
-    if (!ready()) return false;
-    controller->enable(now);
-    return enabled_within(2.0);
-  }
-
-  bool enabled_within(double longest) {
-    return run_until([&] { return controller->state() == ControllerState::enabled; }, longest);
-  }
-
-  void drive(double left, double right, double duration) {
-    for (const double end = now + duration; now < end;) {
-      (void)controller->command(left, right, now);
-      run(0.02);
-    }
-  }
-
-  ParameterJobResult job() {
-    std::optional<ParameterJobResult> out;
-    const auto arrived = [&] {
-      if (!out) out = controller->take_job_result();
-      return out.has_value();
-    };
-    EXPECT_TRUE(run_until(arrived, 10.0));
-    return out.value_or(ParameterJobResult{});
-  }
-
-  [[nodiscard]] const ControllerEvent* find(const std::string& code) const {
-    for (const ControllerEvent& event : events)
-      if (event.code == code) return &event;
-    return nullptr;
-  }
-
-  sim::DriveNode node;
-  std::unique_ptr<Controller> controller;
-  std::vector<ControllerEvent> events;
-  std::vector<TickSample> ticks;
-  std::vector<CanFrame> sent;
-  bool link_to_node = true, link_from_node = true, wheels_turn = true;
-  double now = 0.0;
-
- private:
-  void step() {
-    now += kStep;
-    for (std::size_t side = 0; side < 2; ++side) {
-      wheels_.rate[side] = node.order().torque ? node.order().rate[side] : 0.0;
-      if (wheels_turn) angle_[side] += wheels_.rate[side] * kStep;
-      wheels_.counts[side] = std::llround(angle_[side] * kTicksPerRad);
-    }
-    node.advance(now, wheels_);
-    for (const sim::Frame& frame : node.take_frames(now))
-      if (link_from_node) controller->on_frame(to_can(frame, now));
-    controller->on_time(now);
-    for (const CanFrame& frame : controller->take_frames()) {
-      sent.push_back(frame);
-      if (link_to_node) node.receive(to_sim(frame), now);
-    }
-    for (auto& event : controller->take_events()) events.push_back(event);
-    for (auto& tick : controller->take_ticks()) ticks.push_back(tick);
-  }
-
-  sim::WheelState wheels_;
-  std::array<double, 2> angle_{};
-};
-
-/// A test ends here where the drive does not get so far.
-struct Ready : Bench {
-  Ready() {
-    if (!ready()) throw std::runtime_error("not ready");
-  }
-};
-struct Enabled : Bench {
-  Enabled() {
-    if (!enabled()) throw std::runtime_error("not enabled");
-  }
-};
+using namespace drive_bench;
 
 /// A copy of a profile with one piece of text changed.
 std::string changed_profile(const std::string& from, const std::string& to, const std::string& name) {
@@ -382,6 +264,7 @@ const Foreign kForeign[] = {
     {"SDO upload", 0x601, {0x40, 0x18, 0x10, 1, 0, 0, 0, 0}, false},
     {"SDO upload segment", 0x601, {0x60, 0, 0, 0, 0, 0, 0, 0}, false},
     {"SDO abort", 0x601, {0x80, 0x18, 0x10, 1, 0, 0, 0, 0}, false},
+    {"speeds by process data that the profile does not list", 0x401, {1, 0, 0, 0, 1, 0, 0, 0}, true},
     {"speeds to another node", 0x302, {1, 0, 0, 0, 1, 0, 0, 0}, false},
 };
 

@@ -26,6 +26,18 @@ TEST(TickUnwrap, any_motion_is_followed_across_the_wrap) {
   }
 }
 
+// One and a half times the highest speed, and eight counts; between two counts at least 5 ms.
+TEST(TickUnwrap, a_count_that_is_farther_than_a_wheel_turns_is_wild) {
+  for (const auto& [seconds, farthest] : {std::pair{0.02, 308}, {0.1, 1508}, {0.001, 83}})
+    for (const int sign : {-1, 1})
+      for (const int more : {0, 1}) {
+        TickUnwrap unwrap(10'000.0);
+        (void)unwrap.on_count(5'000, 0.0);
+        const auto reading = unwrap.on_count(5'000 + sign * (farthest + more), seconds);
+        EXPECT_EQ(reading.kind, more == 0 ? Kind::motion : Kind::wild) << seconds << " " << sign * farthest;
+      }
+}
+
 TEST(TickUnwrap, a_counter_that_begins_anew_is_told_and_the_total_goes_on) {
   TickUnwrap unwrap(10'000.0);
   const auto before = unwrap.on_count(5'000'000, 0.0);

@@ -201,13 +201,25 @@ TYPED_TEST(Devices, what_is_not_a_number_is_refused_and_stops) {
   EXPECT_TRUE(bench.happened("bad_command"));
 }
 
+/// What a reading comes to.
+ParameterJobResult read(Bench& bench) {
+  EXPECT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
+  auto result = bench.controller->take_job_result();
+  for (int i = 0; i < 2000 && !result; ++i) {
+    bench.turn();
+    result = bench.controller->take_job_result();
+  }
+  EXPECT_TRUE(result) << "it does not end";
+  return result.value_or(ParameterJobResult{});
+}
+
 TYPED_TEST(Devices, geometry_stays_on_the_host_and_that_is_said) {
   TypeParam rig;
   Bench& bench = *rig.bench;
   ASSERT_TRUE(bench.run_until(ControllerState::disabled));
   for (const Capability& one : bench.controller->capabilities()) EXPECT_FALSE(one.writable) << one.quantity;
-  ASSERT_TRUE(bench.controller->start_read_parameters(bench.now).ok());
-  EXPECT_TRUE(bench.controller->take_job_result()->parameters.empty());
+  const auto held = read(bench);
+  EXPECT_TRUE(!held.error && held.parameters.empty());
   EXPECT_EQ(bench.controller->start_write_parameters({{"track_width", 0.4}}, bench.now).error().code,
             ErrorCode::refused);
 }
@@ -257,6 +269,63 @@ TEST(Arcos, tells_who_it_is_and_its_watchdog) {
   EXPECT_EQ(bench.controller->identity()->name, "Pioneer p3dx Miss Agnes SN4242");
   EXPECT_EQ(device.bad_packets(), 0U);
   test::expect_accounted(bench.controller->counters());
+}
+
+// The one thing of its settings that a motion depends on: asked for again before each.
+TEST(Arcos, a_reading_asks_for_its_watchdog_again) {
+  sim::PioneerBase device;
+  SerialBench bench(shipped("arcos"), device);
+  ASSERT_TRUE(bench.run_until(ControllerState::disabled)) << bench.story();
+  bench.run(0.5);
+  EXPECT_FALSE(read(bench).error);
+  device.watchdog_ms = 1500;
+  const auto changed = read(bench);
+  ASSERT_TRUE(changed.error);
+  EXPECT_NE(changed.error->text().find("1500 ms, not 2000 ms"), std::string::npos) << changed.error->text();
+  EXPECT_DOUBLE_EQ(bench.controller->watchdog_time(), 1.5);
+  EXPECT_FALSE(read(bench).error) << "it is known now";
+  device.tells_configuration = false;
+  EXPECT_TRUE(read(bench).error);
+}
+
+/// A line that delivers everything twice.
+class Echoing : public sim::ArduinoBoard {
+ protected:
+  void talk(double now, std::string& out) override {
+    sim::ArduinoBoard::talk(now, out);
+    out += out;
+  }
+};
+
+TEST(RosArduino, answers_that_come_twice_are_taken_once) {
+  Echoing device;
+  SerialBench bench(shipped("ros_arduino"), device);
+  ASSERT_TRUE(bench.run_until(ControllerState::disabled)) << bench.story();
+  bench.controller->enable(bench.now);
+  ASSERT_TRUE(bench.run_until(ControllerState::enabled)) << bench.story();
+  bench.ticks.clear();
+  bench.drive(3.0, 3.0, 1.0);
+  EXPECT_EQ(bench.controller->state(), ControllerState::enabled) << bench.story();
+  EXPECT_GE(bench.ticks.size(), 20U);
+  const Counters counters = bench.controller->counters();
+  test::expect_accounted(counters);
+  EXPECT_EQ(counters.at("bad_line") + counters.at("no_answer"), 0U);
+  EXPECT_GT(counters.at("unasked_line"), 20U);
+}
+
+// "OK" twice while counts are asked for, counts twice while a speed is answered.
+TEST(RosArduino, a_whole_answer_of_another_kind_leaves_the_question_waiting) {
+  auto controller = shipped("ros_arduino");
+  const auto tell = [&](const std::string& line, double t) {
+    controller->on_bytes({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()}, t);
+  };
+  controller->on_time(1.0);
+  ASSERT_EQ(controller->take_bytes().size(), 2U);  // "e"
+  tell("OK\r\n", 1.005);
+  EXPECT_EQ(controller->counters().at("unasked_line"), 1U);
+  tell("12 34\r\n", 1.010);
+  EXPECT_EQ(controller->counters().at("bad_line") + controller->counters().at("no_answer"), 0U);
+  EXPECT_EQ(controller->take_ticks().size(), 1U);
 }
 
 TEST(RosArduino, accounts_for_every_byte) {

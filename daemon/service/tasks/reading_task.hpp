@@ -1,0 +1,38 @@
+// Before a motion or a write: the controller is read again, since others may have changed it, on a bus that
+// does not show them too. What differs refuses what was to follow.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "daemon/service/tasks/task.hpp"
+
+namespace odomcalib {
+
+class ReadingTask final : public Task {
+ public:
+  using Next = std::function<Result<std::unique_ptr<Task>>(Bench& bench)>;
+  /// @param next makes what follows, or says why it may not
+  ReadingTask(const Caller& waits, double now, Next next)
+      : Task(waits), asked_at_(now), next_(std::move(next)) {}
+
+  [[nodiscard]] const char* part() const override { return "reading"; }
+  [[nodiscard]] std::string activity(const Bench& /*bench*/) const override {
+    return "reading the controller";
+  }
+  TaskTurn turn(Bench& bench) override;
+  void stop(Bench& /*bench*/) override { cancelled_ = "stopped on request"; }
+  void abandoned(Bench& /*bench*/) override { cancelled_ = "the client closed its connection"; }
+  [[nodiscard]] bool uses_controller() const override { return true; }
+
+ private:
+  TaskTurn begin(Bench& bench);
+
+  double asked_at_;  // s
+  Next next_;
+  bool reading_ = false;  // the controller's job has begun; it ends by itself
+  const char* cancelled_ = nullptr;
+};
+
+}  // namespace odomcalib
