@@ -19,6 +19,9 @@ Bench::Bench(const Config& configuration, Clock& time, Calibrator functions, Ope
   outbox.begin_turn(now);
   if (const auto& why = folder.read_only())
     outbox.event(messages::Severity::warning, "read_only", why->text());
+  if (drive.nominal().robot_id.empty())
+    outbox.event(messages::Severity::warning, "robot_id",
+                 "robot.id is not configured: this daemon cannot tell robots apart, and asks at each apply");
   if (last_run.after_crash()) outbox.event(messages::Severity::warning, "restarted", last_run.last_stop());
   drive.link.watch_frames([this](const drivers::CanFrame& frame) { outbox.frame(frame); });
 }
