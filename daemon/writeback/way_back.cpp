@@ -44,10 +44,8 @@ const HistoryEntry* WayBack::following(const HistoryEntry& entry) const {
 
 WayBack::Values WayBack::after(const HistoryEntry& entry) const {
   Values values;
-  for (auto one = own_.rbegin(); one != own_.rend() && (*one)->id <= entry.id; ++one) {
-    values.insert((*one)->before.begin(), (*one)->before.end());
+  for (auto one = own_.rbegin(); one != own_.rend() && (*one)->id <= entry.id; ++one)
     for (const auto& [name, value] : (*one)->after) values[name] = value;
-  }
   return values;
 }
 

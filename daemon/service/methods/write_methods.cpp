@@ -65,11 +65,13 @@ Error not_vouched_for(const std::string& what) {
       "state robot.id in the configuration, or say that it is: odomcalibctl apply asks (\"of_this_robot\")"};
 }
 
-Outcome begin_write(Bench& bench, const Caller& caller, const Wish& wish, bool dry_run) {
+Outcome begin_write(Bench& bench, const Caller& caller, Wish wish, bool dry_run) {
   const ParameterMap present = present_lengths(bench.drive.robot());
   const NominalLengths nominal = nominal_lengths(bench);
-  if (wish.verified.empty())
-    if (auto wrong = implausible(wish.values, nominal)) return *wrong;
+  if (const auto wrong = implausible(wish.values, nominal)) {
+    if (wish.verified.empty()) return *wrong;
+    wish.place += "; " + wrong->what;  // what was verified may come back all the same, and it is said
+  }
   const RoundedParameters rounded = round_together(wish.values, bench.drive.in_force);
   if (dry_run) return Answer{{{"result", dry_run_report(bench, present, rounded, wish)}}};
   if (!wish.asks.empty()) return not_vouched_for(wish.asks.front());
