@@ -17,7 +17,8 @@ struct RobotDescription {
   double ticks_per_rev = 0.0;                       ///< counts per wheel turn
   std::optional<std::array<double, 3>> lidar_pose;  ///< x, y [m], yaw [rad] of the lidar in the base frame
   std::string robot_id;
-  std::string controller;
+  std::string controller;          ///< profile or kind
+  std::string controller_id = {};  ///< vendor/product/serial number of each device; empty: not known
 };
 
 /// Cumulative wheel counts at one instant; forward motion counts up on both sides.

@@ -72,7 +72,21 @@ std::string user_name() {
   return user != nullptr ? user->pw_name : "user " + std::to_string(getuid());
 }
 
-// What the motion would be, from the daemon that would drive it.
+/// What would be in force afterwards, and what whoever consents vouches for.
+std::string write_question(const ordered_json& plan) {
+  std::string text;
+  if (plan.contains("goes_to")) text = "It goes back to " + plan.value("goes_to", "") + ":";
+  const ordered_json after = plan.value("after", ordered_json::object());
+  for (const auto& [name, value] : after.items())
+    if (!text.empty() && value.is_number())
+      text += fmt::format(" {} {:.3f} mm", name, 1e3 * value.get<double>());
+  if (!text.empty()) text += ". ";
+  for (const auto& what : plan.value("asks", std::vector<std::string>()))
+    text += what + ". Is it of this robot? ";
+  return text;
+}
+
+// What the motion would be, or the write-back, from the daemon that would do it.
 Result<Prospect> prospect_of(const Session& session, const std::string& method, ordered_json parameters) {
   auto client = Client::connect(session.socket);
   if (!client) return client.error();
@@ -81,6 +95,7 @@ Result<Prospect> prospect_of(const Session& session, const std::string& method, 
   if (!answer) return answer.error();
   const auto plan =
       ordered_json::parse(answer.value(), nullptr, false).value("result", ordered_json::object());
+  if (!moves(method)) return Prospect{"", write_question(plan), false};
   return Prospect{to_text(describe_plan(plan), true, text_columns()), unseen_question(plan),
                   plan.value("first_motion", false)};
 }
@@ -90,14 +105,17 @@ Result<Prospect> prospect_of(const Session& session, const std::string& method, 
 Result<ordered_json> run_method(const Session& session, const Consent& given, const std::string& method,
                                 ordered_json parameters) {
   Prospect prospect;
-  if (moves(method) && !given.dry_run) {
+  const bool applies = method == "Apply";
+  if ((moves(method) || applies || method == "Rollback") && !given.dry_run) {
     auto expected = prospect_of(session, method, parameters);
     if (!expected) return expected.error();
     prospect = std::move(expected).value();
   }
   if (auto agreed = ask(given, method, prospect); !agreed) return agreed.error();
   if (given.dry_run) parameters["dry_run"] = true;
-  if (!prospect.besides.empty()) parameters["vouched_by"] = user_name();
+  if (moves(method) && !prospect.besides.empty()) parameters["vouched_by"] = user_name();
+  if (applies && !given.dry_run)
+    parameters["of_this_robot"] = true;  // whoever consented was told of which it is
   ProgressLine line;
   const auto progress = [&line](const std::string& text) {
     const auto body = ordered_json::parse(text, nullptr, false);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/display.hpp"
@@ -63,6 +65,32 @@ std::string change_of(const ordered_json& entry, const char* name) {
   return side("before") + " -> " + side("after");
 }
 
+std::string moment_of(std::int64_t us) {
+  const std::time_t seconds = us / 1'000'000;
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday,
+                     parts.tm_hour, parts.tm_min);
+}
+
+std::string user_of(const ordered_json& entry) {
+  const auto found = entry.find("user");
+  if (found == entry.end() || !found->is_number_unsigned()) return "-";
+  const std::string name = entry.value("user_name", "");
+  return (name.empty() ? "" : name + " ") + fmt::format("({})", found->get<std::uint32_t>());
+}
+
+std::string action_of(const ordered_json& entry) {
+  const std::string restores = entry.value("restores", "");
+  return entry.value("action", "") + (restores.empty() ? "" : " before " + restores);
+}
+
+std::string outcome_of(const ordered_json& entry) {
+  const std::string outcome = entry.value("outcome", "");
+  if (outcome != "committed" || !entry.contains("proven")) return outcome;
+  return outcome + (entry["proven"] == true ? ", proven" : ", unproven");
+}
+
 // What was written, or would be, in place of what.
 Section change_section(const ordered_json& result) {
   Section section{"", {}, {{"", "old -> new, mm"}, {}}};
@@ -79,11 +107,11 @@ Document describe_parameters(const ordered_json& parameters) {
 }
 
 Document describe_history(const ordered_json& entries) {
-  Section section{"", {}, {{"id", "action", "outcome"}, {}}};
+  Section section{"", {}, {{"id", "when (UTC)", "by", "action", "outcome"}, {}}};
   for (const char* name : kQuantities) section.table.head.push_back(readable(name) + " mm");
   for (const auto& entry : entries) {
-    section.table.rows.push_back(
-        {entry.value("id", ""), entry.value("action", ""), entry.value("outcome", "")});
+    section.table.rows.push_back({entry.value("id", ""), moment_of(entry.value("time", std::int64_t{0})),
+                                  user_of(entry), action_of(entry), outcome_of(entry)});
     for (const char* name : kQuantities) section.table.rows.back().push_back(change_of(entry, name));
   }
   return {"Write-backs, newest first", {section}};
@@ -97,6 +125,11 @@ Document describe_write_back(const ordered_json& result) {
   if (dry) steps = "would be written:";
   Document document{dry ? "dry run, nothing was written" : readable(result.value("outcome", "")),
                     {{"", {steps}, {}}, change_section(result)}};
+  if (result.contains("goes_to"))
+    document.sections.front().lines.insert(document.sections.front().lines.begin(),
+                                           "goes back to " + result.value("goes_to", ""));
+  for (const auto& what : result.value("asks", ordered_json::array()))
+    document.sections.front().lines.push_back("to be vouched for: " + what.get<std::string>());
   document.sections.push_back(parameter_section(result.value("parameters", ordered_json::array())));
   return document;
 }

@@ -3,15 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
+#include <utility>
 
 #include "daemon/cli/output.hpp"
-#include "daemon/cli/settings.hpp"
 #include "proto/angles.hpp"
 #include "proto/calibration/report_data.hpp"
 
@@ -20,24 +16,19 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-struct Judged {
+struct ShownError {
   const char* name;
   const char* words;
   double DriveErrors::*value;
-  double noise;
-  double shown;  ///< factor
+  double factor;
   const char* unit;
 };
 
-constexpr std::array kJudgeds = {
-    Judged{"straight_metre_length", "straight metre: length", &DriveErrors::metre_length,
-           settings::kLengthNoise_m, 1e3, "mm"},
-    Judged{"straight_metre_heading", "straight metre: heading", &DriveErrors::metre_heading,
-           settings::kHeadingNoise_rad, kDegrees, "deg"},
-    Judged{"full_turn_heading", "full turn: heading", &DriveErrors::turn, settings::kHeadingNoise_rad,
-           kDegrees, "deg"}};
+constexpr std::array kShownErrors = {
+    ShownError{"straight_metre_length", "straight metre: length", &DriveErrors::metre_length, 1e3, "mm"},
+    ShownError{"straight_metre_heading", "straight metre: heading", &DriveErrors::metre_heading, kDegrees,
+               "deg"},
+    ShownError{"full_turn_heading", "full turn: heading", &DriveErrors::turn, kDegrees, "deg"}};
 
 /// A failed write has left the old values, as far as the daemon could see to it and say so.
 bool is_final(const Error& failed) {
@@ -50,47 +41,9 @@ Error unseen_drive() {
           "drive where it sees walls on all sides, not along a corridor"};
 }
 
-/// A move from rest to rest.
-struct Move {
-  double distance_error, yaw_error;  ///< m, rad
-  double distance, yaw;              ///< m, rad, by the lidar
-};
-
-std::optional<Move> move_of(const ordered_json& body) {
-  const ordered_json& error = body.value("error", ordered_json());
-  const ordered_json& lidar = body.value("lidar", ordered_json());
-  if (!error.is_object() || !lidar.is_array() || lidar.size() != 3) return std::nullopt;
-  const Move move{error.value("distance", kUnknown), error.value("yaw", kUnknown),
-                  std::hypot(lidar[0].get<double>(), lidar[1].get<double>()),
-                  std::abs(lidar[2].get<double>())};
-  const bool known = std::isfinite(move.distance_error + move.yaw_error + move.distance + move.yaw);
-  return known ? std::optional(move) : std::nullopt;
-}
-
-Result<std::vector<Move>> moves_of(const RunMethod& run, const char* method, const ordered_json& parameters) {
-  const auto driven = run(method, parameters);
-  if (!driven) return driven.error();
-  std::vector<Move> moves;
-  for (const auto& body : driven.value().value("moves", ordered_json::array())) {
-    const auto move = move_of(body);
-    if (!move) return unseen_drive();
-    moves.push_back(*move);
-  }
-  if (moves.empty()) return unseen_drive();
-  return moves;
-}
-
-/// Root mean square of `error(move)`.
-template <typename ErrorOf>
-double rms(const std::vector<Move>& moves, ErrorOf error) {
-  double sum = 0.0;
-  for (const Move& move : moves) sum += std::pow(error(move), 2);
-  return std::sqrt(sum / static_cast<double>(moves.size()));
-}
-
 ordered_json json_of(const DriveErrors& errors) {
   ordered_json body = ordered_json::object();
-  for (const Judged& one : kJudgeds) body[one.name] = errors.*one.value;
+  for (const ShownError& one : kShownErrors) body[one.name] = errors.*one.value;
   return body;
 }
 
@@ -147,14 +100,16 @@ ProvenApply store(const RunMethod& run, const RunMethod& always, ProvenApply app
 }  // namespace
 
 Result<DriveErrors> drive_errors(const RunMethod& run) {
-  const auto straight = moves_of(run, "Straight", {{"distance", 1.0}});
-  if (!straight) return straight.error();
-  const auto spin = moves_of(run, "Spin", {{"turns", 1.0}});
-  if (!spin) return spin.error();
-  return DriveErrors{
-      rms(straight.value(), [](const Move& move) { return move.distance_error / move.distance; }),
-      rms(straight.value(), [](const Move& move) { return move.yaw_error / move.distance; }),
-      rms(spin.value(), [](const Move& move) { return 2.0 * std::numbers::pi * move.yaw_error / move.yaw; })};
+  DrivenErrors seen;
+  for (const auto& [method, parameters] :
+       {std::pair<const char*, ordered_json>{"Straight", {{"distance", 1.0}}},
+        std::pair<const char*, ordered_json>{"Spin", {{"turns", 1.0}}}}) {
+    const auto driven = run(method, parameters);
+    if (!driven) return driven.error();
+    if (!seen.add(driven.value())) return unseen_drive();
+  }
+  const auto errors = seen.all();
+  return errors ? Result<DriveErrors>(*errors) : unseen_drive();
 }
 
 std::optional<Error> needs_a_person(const Calibration& calibration) {
@@ -176,16 +131,6 @@ std::optional<Error> unprovable(const ordered_json& parameters) {
                    "the controller does not hold " + one.value("name", "") +
                        ", so that its odometry after a write-back proves nothing",
                    "calibrate --apply", "odomcalibctl calibrate --out FILE, then odomcalibctl apply FILE"};
-  return std::nullopt;
-}
-
-std::optional<std::string> worse(const DriveErrors& before, const DriveErrors& after) {
-  for (const Judged& one : kJudgeds) {
-    const double was = before.*one.value, is = after.*one.value;
-    if (is <= std::max(was, one.noise)) continue;
-    return fmt::format("{} is off by {:.2f} {} with the new values, by {:.2f} {} with the old ones",
-                       one.words, one.shown * is, one.unit, one.shown * was, one.unit);
-  }
   return std::nullopt;
 }
 
@@ -217,9 +162,9 @@ Document describe(const ProvenApply& applied) {
                                      "taken back, the old values are in force",
                                      "IN DOUBT: not proven, and what is in force was not seen"};
   Section section{"", {}, {{"odometry off by", "before", "after", "unit"}, {}}};
-  for (const Judged& one : kJudgeds) {
+  for (const ShownError& one : kShownErrors) {
     const auto text = [&](const DriveErrors& errors) {
-      return fmt::format("{:.2f}", one.shown * errors.*one.value);
+      return fmt::format("{:.2f}", one.factor * errors.*one.value);
     };
     section.table.rows.push_back(
         {one.words, text(applied.before), applied.after ? text(*applied.after) : "-", one.unit});

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "daemon/cli/document.hpp"
+#include "daemon/writeback/drive_proof.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/result.hpp"
 
@@ -16,13 +17,6 @@ namespace odomcalib::cli {
 /// Runs a method of the daemon with its lease: name and parameters to "result" of the answer.
 using RunMethod = std::function<Result<nlohmann::ordered_json>(const std::string& method,
                                                                nlohmann::ordered_json parameters)>;
-
-/// What odometry is off by against the lidar, root mean squares over the moves.
-struct DriveErrors {
-  double metre_length = 0.0;   ///< m per metre of a straight
-  double metre_heading = 0.0;  ///< rad per metre of a straight
-  double turn = 0.0;           ///< rad per full turn on the spot
-};
 
 /// Drives a straight and a spin, out and back each. Errors: those of the methods; refused where the lidar did
 /// not recognise the place after one of the moves.
@@ -33,9 +27,6 @@ std::optional<Error> needs_a_person(const Calibration& calibration);
 
 /// Why a motion cannot prove what would be written. @param parameters those of GetParameters
 std::optional<Error> unprovable(const nlohmann::ordered_json& parameters);
-
-/// What is worse than before, by more than the comparison can tell; nullopt: nothing.
-std::optional<std::string> worse(const DriveErrors& before, const DriveErrors& after);
 
 struct ProvenApply {
   enum class End {
@@ -50,7 +41,8 @@ struct ProvenApply {
   std::optional<Error> error;  ///< why it was not stored
 };
 
-/// Writes the calibration without storing it, drives again, and stores it only when that has proven it.
+/// Writes the calibration without storing it, drives again, and has it stored when that has proven it, as the
+/// daemon judges by the same drives.
 /// @param before drive_errors() with the values that are in force
 /// @param always runs what takes it back; unlike `run` it asks nobody and is not given up
 ProvenApply apply_and_prove(const RunMethod& run, const RunMethod& always, const Calibration& calibration,

@@ -1,4 +1,4 @@
-// Numbers that decide how the command line waits, what it calls proven and how much it shows, each once, with
+// Numbers that decide how the command line waits and how much it shows, each once, with
 // its unit and its origin: derived (from what), or chosen (for what reason; where none is given, no
 // comparison with other values is known).
 #pragma once
@@ -9,12 +9,6 @@
 #include <numbers>
 
 namespace odomcalib::cli::settings {
-
-// --- Proof of a calibration by a fresh motion ------------------------------------------------------------
-
-/// What a comparison of scans at rest cannot tell: m over a metre, rad over a turn. Chosen: two to three
-/// times the largest error after a calibration in simulated campaigns, and below what a wheel of 0.3 % makes.
-inline constexpr double kLengthNoise_m = 0.002, kHeadingNoise_rad = 0.1 * std::numbers::pi / 180.0;
 
 // --- Measuring by hand -----------------------------------------------------------------------------------
 

@@ -1,5 +1,6 @@
 // Verbs that ask the daemon and print its answer.
 #include <fmt/format.h>
+#include <pwd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
@@ -45,12 +46,22 @@ int status_of(const ordered_json& body, const Question& question) {
   return kDone;
 }
 
+/// The daemon knows numbers only: a directory service may take its time.
+void name_users(ordered_json& entries) {
+  for (auto& entry : entries) {
+    if (!entry.is_object() || !entry.contains("user") || !entry["user"].is_number_unsigned()) continue;
+    const passwd* const user = getpwuid(entry["user"].get<uid_t>());
+    if (user != nullptr) entry["user_name"] = user->pw_name;
+  }
+}
+
 int ask(const Session& session, const Question& question) {
   auto client = Client::connect(session.socket);
   if (!client) return report_error(client.error(), session.json);
   const auto answer = client.value().call(question.method);
   if (!answer) return report_error(answer.error(), session.json);
-  const auto body = ordered_json::parse(answer.value(), nullptr, false);
+  auto body = ordered_json::parse(answer.value(), nullptr, false);
+  if (question.document == "history") name_users(body[question.member]);
   if (session.json != JsonMode::off)
     print_document(question.document, document_of(body, question), session.json);
   else
@@ -72,6 +83,14 @@ std::vector<std::vector<std::string>> motion_rows(const ordered_json& motion) {
   return rows;
 }
 
+/// Whether what was written last was proven by a motion belongs to it.
+std::string calibrated_text(const ordered_json& status) {
+  const std::string calibrated = status["calibrated"] == true ? "yes" : "no";
+  if (!status.contains("proven") || !status["proven"].is_boolean()) return calibrated;
+  return calibrated +
+         (status["proven"] == true ? ", proven by a motion" : "; what was written last is unproven");
+}
+
 void print_status(const ordered_json& status, const Session& session) {
   Document document{"odomcalibd: " + text_of(status["state"]), {}};
   const auto& controller = status["controller"];
@@ -80,7 +99,7 @@ void print_status(const ordered_json& status, const Session& session) {
   section.table.rows = {{"controller", text_of(controller["state"]) + "  " + text_of(controller["device"])},
                         {"lidar", (lidar["stale"] == "" ? "scans arrive" : text_of(lidar["stale"])) + "  " +
                                       text_of(lidar["device"])},
-                        {"calibrated", status["calibrated"] == true ? "yes" : "no"},
+                        {"calibrated", calibrated_text(status)},
                         {"last stop", text_of(status["last_stop"])}};
   if (const auto lost = status["lcm"].value("dropped", std::uint64_t{0}); lost > 0)
     section.table.rows.push_back({"LCM", fmt::format("{} messages dropped: the network is too slow", lost)});
@@ -88,6 +107,8 @@ void print_status(const ordered_json& status, const Session& session) {
     for (auto& row : motion_rows(status["recorded_motion"])) section.table.rows.push_back(std::move(row));
   for (const auto* device : {&controller, &lidar})
     if ((*device)["problem"] != "") section.lines.push_back(text_of((*device)["problem"]));
+  if (status.value("replaced_controller", "") != "")
+    section.lines.push_back(status.value("replaced_controller", "") + ": odomcalibctl check");
   document.sections.push_back(section);
   print_text(document, session.legend);
 }

@@ -33,7 +33,8 @@ using nlohmann::ordered_json;
 struct MotionOptions {
   Consent consent;
   std::string file, id;
-  bool quick = false, one_drive = false, nudge = false, apply = false;
+  std::string to;
+  bool quick = false, one_drive = false, nudge = false, apply = false, replaced = false;
   std::vector<std::string> assignments;
 };
 
@@ -177,8 +178,10 @@ int apply(const Session& session, const MotionOptions& options) {
   auto body = ordered_json::parse(bytes.value(), nullptr, false);
   if (!body.is_object()) return report_error(read_calibration(options.file).error(), session.json);
   body.erase(kPictureMember);
+  ordered_json parameters = {{"calibration", std::move(body)}};
+  if (options.replaced) parameters["replaced"] = true;
   return print_result(session, "write-back",
-                      run_method(session, options.consent, "Apply", {{"calibration", body}}));
+                      run_method(session, options.consent, "Apply", std::move(parameters)));
 }
 
 // A wire in the wrong place is a failure, one that could not be determined is none.
@@ -220,6 +223,8 @@ int set_parameters(const Session& session, const MotionOptions& options) {
 int rollback(const Session& session, const MotionOptions& options) {
   ordered_json parameters = ordered_json::object();
   if (!options.id.empty()) parameters["id"] = options.id;
+  if (!options.to.empty()) parameters["to"] = options.to;
+  if (options.replaced) parameters["replaced"] = true;
   return print_result(session, "write-back", run_method(session, options.consent, "Rollback", parameters));
 }
 
@@ -248,15 +253,20 @@ void add_motions(CLI::App& app, Session& session) {
   all->add_flag("--apply", options->apply,
                 "try it, drive straight and spin again, and store it only if odometry is better");
   all->add_option("--out", options->file, "calibration file to write");
-  add_action(app, session, options, "apply", "Write a calibration to the controller", apply)
-      ->add_option("CALIBRATION", options->file)
-      ->required();
+  constexpr const char* kReplaced = "the controller took the place of the one that these values are of";
+  auto* write = add_action(app, session, options, "apply", "Write a calibration to the controller", apply);
+  write->add_option("CALIBRATION", options->file)->required();
+  write->add_flag("--replaced", options->replaced, kReplaced);
   add_action(*app.get_subcommand("params"), session, options, "set", "Write values to the controller",
              set_parameters)
       ->add_option("NAME=VALUE", options->assignments, "in m, e.g. track_width=0.4033")
       ->required();
-  add_action(app, session, options, "rollback", "Restore the values before a write-back", rollback)
-      ->add_option("ID", options->id, "history entry, default: the newest that was committed");
+  auto* back =
+      add_action(app, session, options, "rollback", "Restore the values before a write-back", rollback);
+  auto* before = back->add_option("ID", options->id,
+                                  "history entry before which it goes, default: one further back each time");
+  back->add_option("--to", options->to, "history entry whose values it restores")->excludes(before);
+  back->add_flag("--replaced", options->replaced, kReplaced);
 }
 
 }  // namespace odomcalib::cli

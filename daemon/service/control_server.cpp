@@ -33,7 +33,8 @@ struct Client {
   std::size_t waiting_bytes = 0;
   std::size_t served = 0;  // calls in this turn
   std::string output;
-  std::string name;    // for people
+  std::string name;  // for people
+  std::uint32_t user = 0;
   bool spare = false;  // came when all places were taken
   bool gone = false;
 };
@@ -196,6 +197,7 @@ void ControlServer::State::accept_one(int fd) {
   Client& client = clients[next];
   client.fd = fd;
   client.name = fmt::format("user {}, process {}", peer.uid, peer.pid);
+  client.user = peer.uid;
   client.spare = spare;
   // What it came with counts at once: it may be a stop.
   read_from(client);
@@ -388,6 +390,11 @@ void ControlServer::reply(ClientId client, const std::string& frame) {
 std::string ControlServer::name_of(ClientId client) const {
   const auto found = state_->clients.find(client);
   return found == state_->clients.end() ? "" : found->second.name;
+}
+
+std::optional<std::uint32_t> ControlServer::user_of(ClientId client) const {
+  const auto found = state_->clients.find(client);
+  return found == state_->clients.end() ? std::nullopt : std::optional(found->second.user);
 }
 
 bool ControlServer::connected(ClientId client) const { return state_->clients.contains(client); }

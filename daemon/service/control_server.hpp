@@ -76,6 +76,8 @@ class ControlServer {
   [[nodiscard]] bool connected(ClientId client) const;
   /// Its user and process, for people; empty when it has gone.
   [[nodiscard]] std::string name_of(ClientId client) const;
+  /// The number of its user; nullopt when it has gone.
+  [[nodiscard]] std::optional<std::uint32_t> user_of(ClientId client) const;
   [[nodiscard]] std::size_t clients() const;
   [[nodiscard]] const Counters& counters() const;
   /// Why members of the group cannot use the socket, and what helps; empty: they can.

@@ -17,9 +17,7 @@ Loop::Loop(const Config& configuration, Clock& clock, Calibrator functions, Open
            std::unique_ptr<Background> disk, EventLog log)
     : bench_(configuration, clock, std::move(functions), std::move(opened), std::move(disk), std::move(log)) {
   // The end of a write-back may have been written down and nothing after it.
-  const auto& last = bench_.write_back.transaction.journal().last();
-  const bool committed = last && last->state == JournalState::commit;
-  settle_calibration(bench_, committed ? last->calibration : "");
+  settle_from_journal(bench_);
 }
 
 void Loop::wait(int timeout_ms) {
@@ -179,7 +177,7 @@ void Loop::settle(TaskTurn turn) {
 }
 
 void Loop::serve_telemetry() {
-  if (bench_.outbox.robot_due()) bench_.outbox.send_robot(bench_.drive.robot());
+  if (bench_.outbox.robot_due()) bench_.outbox.send_robot(bench_.drive.described());
   if (bench_.outbox.status_due()) bench_.outbox.send_status(status_report(bench_, task_.get()));
 }
 

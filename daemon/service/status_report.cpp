@@ -159,6 +159,29 @@ ordered_json lidar_report(const Bench& bench) {
           {"counters", lidar.counters()}};
 }
 
+/// A controller that took the place of another: what it holds is not what was verified. Empty: it is no
+/// other.
+std::string replaced_text(const Bench& bench) {
+  const std::string ours = device_of(bench.drive.controller());
+  const auto former = bench.write_back.of_former_controller(ours);
+  if (!former) return "";
+  return fmt::format(
+      "this controller (\"{}\") is another than that of the newest write-back, entry {} (\"{}\")", ours,
+      former->id, former->device);
+}
+
+/// No failure: the robot goes by what the controller holds, as far as that is likely.
+std::optional<ordered_json> replaced_check(const Bench& bench) {
+  const std::string found = replaced_text(bench);
+  if (found.empty()) return std::nullopt;
+  const auto former = bench.write_back.of_former_controller(device_of(bench.drive.controller()));
+  return ordered_json{
+      {"name", "replaced"},
+      {"outcome", "warn"},
+      {"found", found},
+      {"remedy", "the last verified values: odomcalibctl rollback --to " + former->id + " --replaced"}};
+}
+
 ordered_json robot_report(const Drive& drive) {
   const RobotDescription all = drive.robot();
   return {{"left_wheel_diameter", all.left_wheel_diameter},
@@ -232,6 +255,9 @@ ordered_json status_report(const Bench& bench, const Task* task) {
   body["robot"] = robot_report(bench.drive);
   body["odometry"] = {pose.x, pose.y, routines::wrapped(pose.yaw)};
   body["calibrated"] = bench.applied.get().has_value();
+  const auto proven = bench.write_back.proven();
+  body["proven"] = proven ? ordered_json(*proven) : ordered_json(nullptr);
+  body["replaced_controller"] = replaced_text(bench);
   body["operator_needed"] = bench.write_back.operator_needed;
   body["last_stop"] = bench.last_run.last_stop();
   body["lcm"] = lcm_report(telemetry.publisher.counters());
@@ -288,6 +314,7 @@ ordered_json check_report(const Bench& bench) {
       check("write-back", !write_back.operator_needed,
             write_back.operator_needed ? write_back.problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
+  if (auto replaced = replaced_check(bench)) list.push_back(*replaced);
   list.push_back(check_disk(bench));
   if (!bench.urgency.found.empty()) list.push_back(scheduling_check(bench.urgency));
   if (auto configuration = config_check(bench.config)) list.push_back(*configuration);

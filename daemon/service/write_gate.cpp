@@ -29,18 +29,75 @@ std::optional<Error> write_forbidden(const Bench& bench) {
   return bench.drive.unread();
 }
 
-std::optional<Error> implausible(const ParameterMap& values, const ParameterMap& present) {
+NominalLengths nominal_lengths(const Bench& bench) {
+  const RobotDescription& given = bench.config.robot;
+  const std::string file = bench.config.file.empty() ? "the configuration" : bench.config.file.string();
+  const std::string profile = "profile " + bench.config.controller_profile;
+  NominalLengths nominal{present_lengths(bench.drive.nominal()), {}};
+  for (const auto& [name, value] : present_lengths(given))
+    nominal.from[name] = value > 0.0 ? "robot." + name + " of " + file : profile;
+  return nominal;
+}
+
+std::optional<Error> implausible(const ParameterMap& values, const NominalLengths& nominal) {
   for (const auto& [name, value] : values) {
-    const auto known = present.find(name);
-    if (known == present.end())
+    const auto known = nominal.values.find(name);
+    if (known == nominal.values.end())
       return Error{ErrorCode::usage, "unknown parameter \"" + name + "\"", "", "odomcalibctl params get"};
+    if (!(known->second > 0.0))
+      return Error{ErrorCode::refused, name + " has no nominal value that it could be held to", "write-back",
+                   "state robot." + name + " in the configuration, as it was built"};
     const bool plausible =
         std::isfinite(value) && std::abs(value / known->second - 1.0) <= service::settings::kPlausibleLength;
     if (!plausible)
       return Error{ErrorCode::refused,
-                   fmt::format("{} = {} m is more than 15 % from {} m", name, value, known->second),
-                   "write-back", "check the nominal values"};
+                   fmt::format("{} = {} m is more than 15 % from the nominal {} m ({})", name, value,
+                               known->second, nominal.from.at(name)),
+                   "write-back", "check the nominal values; what was once committed: odomcalibctl rollback"};
   }
+  return std::nullopt;
+}
+
+namespace {
+
+Error absurd_member(const std::string& path, const std::string& why) {
+  return {ErrorCode::refused, "\"" + path + "\" " + why, "calibration",
+          "solve a recording of this robot again"};
+}
+
+std::optional<Error> absurd_quantity(const std::string& path, const Quantity& quantity, const char* unit,
+                                     double most, double most_std) {
+  if (quantity.unit.empty()) return absurd_member(path + ".unit", "is missing");
+  if (unit != nullptr && quantity.unit != unit)
+    return absurd_member(path + ".unit", fmt::format("is \"{}\", not \"{}\"", quantity.unit, unit));
+  if (!std::isfinite(quantity.value)) return absurd_member(path + ".value", "is no finite number");
+  if (std::abs(quantity.value) > most)
+    return absurd_member(path + ".value",
+                         fmt::format("is {}: more than {} {}", quantity.value, most, quantity.unit));
+  if (!(quantity.std <= most_std))
+    return absurd_member(path + ".std", fmt::format("is {}: with more than {:.3g} {} the value says nothing",
+                                                    quantity.std, most_std, quantity.unit));
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Error> absurd(const Calibration& calibration, const NominalLengths& nominal) {
+  namespace settings = service::settings;
+  for (const auto& [name, quantity] : calibration.parameters) {
+    const bool angle = name == "lidar_yaw";
+    const auto length = nominal.values.find(name);
+    const double known = length != nominal.values.end() ? length->second : 0.0;
+    const double most = angle ? settings::kMostAngle_rad : settings::kMostLength_m;
+    const double most_std = known > 0.0 ? settings::kPlausibleLength * known : settings::kMostLidarStd;
+    if (auto wrong = absurd_quantity("parameters." + name, quantity, angle ? "rad" : "m", most, most_std))
+      return wrong;
+  }
+  for (const EffectResult& effect : calibration.effects)
+    for (const auto& [name, quantity] : effect.parameters)
+      if (auto wrong = absurd_quantity("effects." + effect.name + ".parameters." + name, quantity, nullptr,
+                                       settings::kMostOfEffect, settings::kMostOfEffect))
+        return wrong;
   return std::nullopt;
 }
 

@@ -14,8 +14,20 @@ Error axes_not_off(const Bench& bench);
 /// Why nothing may be written now. Axes that come to rest are waited for, by whoever writes.
 std::optional<Error> write_forbidden(const Bench& bench);
 
-/// Why these values are not this robot's.
-std::optional<Error> implausible(const ParameterMap& values, const ParameterMap& present);
+/// The robot's own lengths, by which values are judged, and where each is stated.
+struct NominalLengths {
+  ParameterMap values;  ///< m, by quantity; 0: not stated
+  std::map<std::string, std::string> from;
+};
+NominalLengths nominal_lengths(const Bench& bench);
+
+/// Why these values are not this robot's: one band around what is nominal, none around what is present. A
+/// controller that was replaced is no dead end, and small steps do not walk away.
+std::optional<Error> implausible(const ParameterMap& values, const NominalLengths& nominal);
+
+/// The first parameter of a calibration that no controller and no host may be given, by its path, and why: a
+/// unit that is missing or another one, a value or a deviation that is no number or beyond what a robot has.
+std::optional<Error> absurd(const Calibration& calibration, const NominalLengths& nominal);
 
 /// Lengths in force, by the names of the parameters.
 ParameterMap present_lengths(const RobotDescription& robot);

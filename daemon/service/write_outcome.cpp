@@ -28,15 +28,18 @@ bool known_already(const History& history, const HistoryEntry& entry) {
 /// What the history gets; nullopt: nothing was touched, or it says so already.
 std::optional<HistoryEntry> entry_of(const Bench& bench, const WriteReport& report) {
   if (report.steps.empty()) return std::nullopt;
-  HistoryEntry entry;
-  entry.time = bench.clock.wall_us();
-  entry.action = report.label;
-  entry.outcome = name_of(report.outcome);
-  entry.before = report.before;
-  entry.after = report.after;
-  entry.device = report.device;
   const History& history = bench.write_back.history;
-  return known_already(history, entry) ? std::nullopt : std::optional(history.numbered(std::move(entry)));
+  HistoryEntry entry{.id = report.origin.entry,
+                     .time = bench.clock.wall_us(),
+                     .action = report.label,
+                     .outcome = name_of(report.outcome),
+                     .calibration = std::nullopt,
+                     .before = report.before,
+                     .after = report.after,
+                     .device = report.device,
+                     .origin = report.origin};
+  if (known_already(history, entry)) return std::nullopt;
+  return entry.id.empty() ? history.numbered(std::move(entry)) : std::move(entry);
 }
 
 /// What an end leaves on the disk, filled in beside the loop.
@@ -60,7 +63,9 @@ void settle_on_disk(const History& history, const AppliedCalibration& applied, S
 /// one
 std::optional<Error> take_over(Bench& bench, const Settlement& end) {
   Outbox& outbox = bench.outbox;
-  if (end.entry && end.noted) bench.write_back.history.keep(*end.entry);
+  // The journal has it, whether its file could be written or not.
+  if (end.entry) bench.write_back.history.keep(*end.entry);
+  if (end.entry && !end.noted) bench.write_back.unwritten.push_back(*end.entry);
   if (!end.noted) outbox.event(messages::Severity::warning, "history", end.noted.error().text());
   bench.applied.take(end.in_force);
   if (!end.in_force) outbox.event(messages::Severity::warning, "active", end.in_force.error().text());
@@ -110,10 +115,21 @@ void settle_write(Bench& bench, const WriteReport& report) {
                    });
 }
 
-void settle_calibration(Bench& bench, const std::string& id) {
+void settle_from_journal(Bench& bench) {
+  WriteBack& values = bench.write_back;
+  for (const JournalRecord& record : values.history.missing(values.journal_ends())) {
+    Settlement end;
+    end.entry = entry_of(record);
+    const bool committed = record.state == JournalState::commit;
+    if (committed) end.entry->calibration = bench.applied.file.announced(record.calibration);
+    if (!bench.folder.read_only()) end.noted = values.history.write(*end.entry);
+    values.history.keep(*end.entry);
+    if (!end.noted) values.unwritten.push_back(*end.entry);
+  }
+  const auto& last = values.transaction.journal().last();
   Settlement end;
-  end.calibration = id;
-  settle_on_disk(bench.write_back.history, bench.applied, end);
+  end.calibration = last && last->state == JournalState::commit ? last->calibration : "";
+  settle_on_disk(values.history, bench.applied, end);
   (void)take_over(bench, end);
 }
 

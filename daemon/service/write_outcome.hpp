@@ -15,7 +15,8 @@ void settle_write(Bench& bench, const WriteReport& report);
 void settle_reading(Bench& bench, const std::vector<drivers::StoredParameter>& found,
                     const ParameterMap& written = {});
 
-/// Puts the calibration of this id in force at once, at the start; see CalibrationInForce::settle.
-void settle_calibration(Bench& bench, const std::string& id);
+/// At the start, at once: the journal is what counts. Entries that the history lacks are made of it, and the
+/// calibration that came with the last commit comes into force.
+void settle_from_journal(Bench& bench);
 
 }  // namespace odomcalib

@@ -26,6 +26,7 @@ std::optional<HistoryEntry> entry_from(const std::filesystem::path& path) {
     entry.before = body.at("before").get<std::map<std::string, double>>();
     entry.after = body.at("after").get<std::map<std::string, double>>();
     entry.device = body.value("device", "");
+    entry.origin = read_provenance(body);
     if (body.contains("calibration") && body["calibration"].is_object())
       entry.calibration = body["calibration"].dump();
     return entry;
@@ -34,19 +35,37 @@ std::optional<HistoryEntry> entry_from(const std::filesystem::path& path) {
   }
 }
 
-unsigned number_of(const std::filesystem::path& path) {
+unsigned number_of(const std::string& id) {
   unsigned number = 0;
-  const std::string stem = path.stem().string();
-  std::from_chars(stem.data(), stem.data() + stem.size(), number);
+  std::from_chars(id.data(), id.data() + id.size(), number);
   return number;
 }
 
+unsigned number_of(const std::filesystem::path& path) { return number_of(path.stem().string()); }
+
 }  // namespace
+
+HistoryEntry entry_of(const JournalRecord& end) {
+  HistoryEntry entry{.id = end.origin.entry,
+                     .time = end.wall_us,
+                     .action = end.label,
+                     .outcome = "unknown",
+                     .calibration = std::nullopt,
+                     .before = end.before,
+                     .after = end.after,
+                     .device = end.device,
+                     .origin = end.origin};
+  if (end.state == JournalState::commit) entry.outcome = "committed";
+  if (end.state == JournalState::rolled_back) entry.outcome = "rolled_back";
+  return entry;
+}
 
 std::string to_json(const HistoryEntry& entry, bool with_calibration) {
   ordered_json body = {{"id", entry.id},           {"time", entry.time},     {"action", entry.action},
                        {"outcome", entry.outcome}, {"before", entry.before}, {"after", entry.after},
                        {"device", entry.device}};
+  write_provenance(entry.origin, body);
+  body.erase("entry");  // its id
   if (with_calibration && entry.calibration)
     body["calibration"] = ordered_json::parse(*entry.calibration, nullptr, false);
   return body.dump(2, ' ', false, ordered_json::error_handler_t::replace);
@@ -86,8 +105,26 @@ Result<void> History::write(const HistoryEntry& entry) const {
 
 void History::keep(HistoryEntry entry) {
   newest_ = std::max(newest_, number_of(entry.id));
-  entries_.insert(entries_.begin(), std::move(entry));
+  std::erase_if(entries_, [&](const HistoryEntry& one) { return one.id == entry.id; });
+  const auto older = std::find_if(entries_.begin(), entries_.end(), [&](const HistoryEntry& one) {
+    return number_of(one.id) < number_of(entry.id);
+  });
+  entries_.insert(older, std::move(entry));
   if (entries_.size() > kKept) entries_.resize(kKept);
+}
+
+// The id was given when the write-back began: a record of an earlier version has none, and had its entry
+// written.
+std::vector<JournalRecord> History::missing(const std::vector<JournalRecord>& ends) const {
+  std::vector<JournalRecord> out;
+  for (const JournalRecord& end : ends) {
+    const auto known = find(end.origin.entry);
+    const bool kept = number_of(end.origin.entry) + kKept > newest_;
+    std::erase_if(out, [&](const JournalRecord& one) { return one.origin.entry == end.origin.entry; });
+    if (!end.origin.entry.empty() && kept && (!known || known->outcome != entry_of(end).outcome))
+      out.push_back(end);
+  }
+  return out;
 }
 
 std::optional<HistoryEntry> History::find(const std::string& id) const {

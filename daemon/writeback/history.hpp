@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/writeback/journal.hpp"
+#include "daemon/writeback/provenance.hpp"
 #include "daemon/writeback/settings.hpp"
 #include "proto/result.hpp"
 
@@ -22,7 +24,11 @@ struct HistoryEntry {
   std::optional<std::string> calibration;  ///< JSON text of the calibration applied
   std::map<std::string, double> before, after;
   std::string device;  ///< the controller, see device_of(); empty: not known
+  Provenance origin = {};
 };
+
+/// What a record with which a write-back ended says of it, but for the calibration's text.
+HistoryEntry entry_of(const JournalRecord& end);
 
 std::string to_json(const HistoryEntry& entry, bool with_calibration);
 
@@ -39,8 +45,10 @@ class History {
   /// Puts a numbered entry on the disk and removes the oldest ones beyond kKept there. Changes nothing else:
   /// may run beside the loop. Error: io.
   [[nodiscard]] Result<void> write(const HistoryEntry& entry) const;
-  /// Takes over a numbered entry that is on the disk.
+  /// Takes over a numbered entry, in the place of one with the same id.
   void keep(HistoryEntry entry);
+  /// Of the journal's ends those of which there is no entry, or another one, as far back as entries are kept.
+  [[nodiscard]] std::vector<JournalRecord> missing(const std::vector<JournalRecord>& ends) const;
 
   /// Newest first.
   [[nodiscard]] const std::vector<HistoryEntry>& entries() const { return entries_; }

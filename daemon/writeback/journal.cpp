@@ -43,39 +43,42 @@ Error failed(const std::filesystem::path& path) {
 }
 
 int open_file(const std::filesystem::path& path) {
-  return ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0640);
+  return ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0640);
 }
 
-// The last good record, and how many bytes the good lines have.
-std::pair<std::optional<JournalRecord>, std::size_t> last_good(const std::string& bytes) {
-  std::optional<JournalRecord> last;
-  std::size_t good = 0;
-  for (std::size_t begin = 0; begin < bytes.size();) {
-    const std::size_t end = bytes.find('\n', begin);
-    if (end == std::string::npos) break;
-    if (auto record = from_line(bytes.substr(begin, end - begin))) last = std::move(record);
-    begin = end + 1;
-    good = begin;
-  }
-  return {last, good};
+bool is_end(JournalState state) {
+  return state == JournalState::commit || state == JournalState::rolled_back ||
+         state == JournalState::needs_operator;
 }
+
+/// @param visit called with each good record. @return how many bytes the lines have
+template <typename Visit>
+std::size_t visit_lines(const std::string& bytes, Visit visit) {
+  std::size_t good = 0;
+  for (std::size_t end = 0; (end = bytes.find('\n', good)) != std::string::npos; good = end + 1)
+    if (auto record = from_line(bytes.substr(good, end - good))) visit(std::move(*record));
+  return good;
+}
+
+std::filesystem::path older_file(const std::filesystem::path& path) { return path.string() + ".1"; }
 
 }  // namespace
 
 std::string name_of(JournalState state) { return kNames.at(static_cast<std::size_t>(state)); }
 
 std::string to_line(const JournalRecord& record) {
-  const json body = {{"seq", record.seq},
-                     {"monotonic", record.monotonic},
-                     {"wall_us", record.wall_us},
-                     {"state", name_of(record.state)},
-                     {"label", record.label},
-                     {"before", record.before},
-                     {"after", record.after},
-                     {"device", record.device},
-                     {"calibration", record.calibration},
-                     {"store_begun", record.store_begun},
-                     {"unproven", record.unproven}};
+  json body = {{"seq", record.seq},
+               {"monotonic", record.monotonic},
+               {"wall_us", record.wall_us},
+               {"state", name_of(record.state)},
+               {"label", record.label},
+               {"before", record.before},
+               {"after", record.after},
+               {"device", record.device},
+               {"calibration", record.calibration},
+               {"store_begun", record.store_begun},
+               {"unproven", record.unproven}};
+  write_provenance(record.origin, body);
   const std::string text = body.dump(-1, ' ', true, json::error_handler_t::replace);
   return crc_of(text) + " " + text + "\n";
 }
@@ -99,7 +102,8 @@ std::optional<JournalRecord> from_line(const std::string& line) {
                          .device = body.value("device", ""),
                          .calibration = body.value("calibration", ""),
                          .store_begun = body.value("store_begun", may_have_stored(*state)),
-                         .unproven = body.value("unproven", false)};
+                         .unproven = body.value("unproven", false),
+                         .origin = read_provenance(body)};
   } catch (const json::exception&) {
     return std::nullopt;
   }
@@ -113,7 +117,9 @@ Journal::Journal(Journal&& other) noexcept
     : path_(std::move(other.path_)),
       fd_(std::exchange(other.fd_, -1)),
       size_(other.size_),
-      last_(std::move(other.last_)) {}
+      uncut_(other.uncut_),
+      last_(std::move(other.last_)),
+      ends_(std::move(other.ends_)) {}
 
 Result<Journal> Journal::open(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -123,13 +129,11 @@ Result<Journal> Journal::open(const std::filesystem::path& path) {
   Journal journal(path, fd);
   // A file that was just made is lost with its records unless its folder is on the disk too.
   if (auto synced = sync_folder(path); !synced) return synced.error();
-  const auto bytes = read_file_bytes(path);
+  const auto bytes = journal.read_lines();
   if (!bytes) return bytes.error();
-  const auto [last, good] = last_good(bytes.value());
-  journal.last_ = last;
-  journal.size_ = good;
-  // A torn end would swallow the next record.
-  if (good < bytes.value().size() && ftruncate(fd, static_cast<off_t>(good)) != 0) return failed(path);
+  // What the records of an unfinished one need is left to them: they are written over it.
+  const bool needless = !journal.unfinished() && journal.size_ < bytes.value();
+  if (needless && ftruncate(fd, static_cast<off_t>(journal.size_)) != 0) return failed(path);
   return journal;
 }
 
@@ -137,15 +141,26 @@ Result<Journal> Journal::open_read_only(const std::filesystem::path& path) {
   Journal journal(path, -1);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return journal;
-  const auto bytes = read_file_bytes(path);
-  if (!bytes) return bytes.error();
-  journal.last_ = last_good(bytes.value()).first;
+  if (const auto bytes = journal.read_lines(); !bytes) return bytes.error();
   return journal;
+}
+
+/// @return how many bytes there are
+Result<std::size_t> Journal::read_lines() {
+  const auto note = [this](JournalRecord record) {
+    if (is_end(record.state)) ends_.push_back(record);
+    last_ = std::move(record);
+  };
+  if (const auto older = read_file_bytes(older_file(path_))) visit_lines(older.value(), note);
+  const auto bytes = read_file_bytes(path_);
+  if (!bytes) return bytes.error();
+  size_ = visit_lines(bytes.value(), note);
+  return bytes.value().size();
 }
 
 // A new file whose folder is not on the disk would be lost with the write-back that it announces.
 Result<void> Journal::rotate() {
-  const std::filesystem::path full = path_.string() + ".1";
+  const std::filesystem::path full = older_file(path_);
   if (::rename(path_.c_str(), full.c_str()) != 0) return failed(path_);
   const int fd = open_file(path_);
   auto begun = fd < 0 ? Result<void>(failed(path_)) : sync_folder(path_);
@@ -157,29 +172,42 @@ Result<void> Journal::rotate() {
 }
 
 bool Journal::write_whole(const std::string& line) const {
-  return ::write(fd_, line.data(), line.size()) == static_cast<ssize_t>(line.size()) && fdatasync(fd_) == 0;
+  return ::pwrite(fd_, line.data(), line.size(), static_cast<off_t>(size_)) ==
+             static_cast<ssize_t>(line.size()) &&
+         fdatasync(fd_) == 0;
 }
+
+/// Takes the space from the disk before anything is done that a record would have to follow.
+Result<void> Journal::reserve() {
+  errno = posix_fallocate(fd_, static_cast<off_t>(size_), static_cast<off_t>(kReserved));
+  return errno == 0 ? Result<void>() : failed(path_);
+}
+
+/// After a failure the disk may be too full or too broken for this, too.
+void Journal::cut() { uncut_ = ftruncate(fd_, static_cast<off_t>(size_)) != 0; }
 
 Result<void> Journal::append(JournalRecord record) {
   if (fd_ < 0)
     return Error{ErrorCode::io, "nothing can be written to the journal", path_.string(),
                  "check the state directory, then restart the daemon"};
   // Only between write-backs: the records of one stay together, and one that is unfinished is not put away.
-  const bool may_rotate = record.state == JournalState::begin && !unfinished();
-  if (may_rotate && size_ >= kRotateAt)
+  const bool begins = record.state == JournalState::begin;
+  if (begins && !unfinished() && size_ >= kRotateAt)
     if (auto rotated = rotate(); !rotated) return rotated;
   record.seq = last_ ? last_->seq + 1 : 1;
   const std::string line = to_line(record);
-  const auto end = static_cast<off_t>(size_);
-  // Once more before writing: after a failure the disk may have been too full or too broken to cut the end.
-  if (ftruncate(fd_, end) != 0) return failed(path_);
-  if (!write_whole(line)) {
-    const Error error = failed(path_);
-    (void)!ftruncate(fd_, end);
-    return error;
+  if (uncut_) cut();
+  if (uncut_) return failed(path_);
+  auto written = begins ? reserve() : Result<void>();
+  if (written && !write_whole(line)) written = failed(path_);
+  if (!written) {
+    cut();
+    if (unfinished()) (void)reserve();
+    return written;
   }
   size_ += line.size();
   last_ = std::move(record);
+  if (!unfinished()) cut();
   return {};
 }
 

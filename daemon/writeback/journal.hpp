@@ -1,4 +1,5 @@
 // What a write-back was about to do, on the disk before it does it: append-only lines, each with its CRC.
+// Until one has ended, zeros behind the last line hold the space for the records that may follow.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/writeback/provenance.hpp"
 #include "daemon/writeback/settings.hpp"
 #include "proto/result.hpp"
 
@@ -42,6 +44,7 @@ struct JournalRecord {
   std::string calibration;   ///< id of the one in force with `after`, see CalibrationInForce
   bool store_begun = false;  ///< permanent memory may hold other values than `before`
   bool unproven = false;     ///< `after` is to be proven by a motion first: until then `before` comes back
+  Provenance origin = {};
 };
 
 /// One line: CRC-32 (zlib's) as hex, a space, a JSON object, a newline.
@@ -55,8 +58,9 @@ std::optional<JournalRecord> unfinished_of(const std::optional<JournalRecord>& l
 class Journal {
  public:
   static constexpr std::uintmax_t kRotateAt = writeback::settings::kRotateAt_bytes;
+  static constexpr std::uintmax_t kReserved = writeback::settings::kReserved_bytes;
 
-  /// Reads what is there; a torn last line is dropped. Errors: io.
+  /// Reads what is there; a torn last line is dropped, space that is reserved is kept. Errors: io.
   static Result<Journal> open(const std::filesystem::path& path);
   /// Reads what is there; append() is an error. Errors: io, it is there and cannot be read.
   static Result<Journal> open_read_only(const std::filesystem::path& path);
@@ -65,22 +69,31 @@ class Journal {
   Journal& operator=(Journal&&) = delete;
 
   /// On the disk when it returns. seq is given by the journal. Error: io; then the action must not be taken.
-  /// A record that could not be written whole leaves no trace: the next one is not spoiled by it.
+  /// A record that could not be written whole leaves no trace: the next one is not spoiled by it. A record
+  /// `begin` is written when there is space for all that may follow it, too.
   Result<void> append(JournalRecord record);
   /// The newest record, if any.
   [[nodiscard]] const std::optional<JournalRecord>& last() const { return last_; }
   /// The newest record when its write-back was not brought to an end.
   [[nodiscard]] std::optional<JournalRecord> unfinished() const { return unfinished_of(last_); }
+  /// How the write-backs ended that were there when it was opened, in this file and the one before it, oldest
+  /// first: what the history is made of where an entry is missing.
+  [[nodiscard]] const std::vector<JournalRecord>& ends() const { return ends_; }
 
  private:
   Journal(std::filesystem::path path, int fd) : path_(std::move(path)), fd_(fd) {}
+  [[nodiscard]] Result<std::size_t> read_lines();
   [[nodiscard]] bool write_whole(const std::string& line) const;
+  [[nodiscard]] Result<void> reserve();
+  void cut();
   Result<void> rotate();
 
   std::filesystem::path path_;
   int fd_ = -1;
   std::uintmax_t size_ = 0;  // bytes, of whole records
+  bool uncut_ = false;       // a record that failed may still be behind them
   std::optional<JournalRecord> last_;
+  std::vector<JournalRecord> ends_;
 };
 
 }  // namespace odomcalib

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 
 namespace odomcalib::writeback::settings {
 
@@ -18,5 +19,21 @@ inline constexpr double kWaitForController_s = 5.0;
 inline constexpr std::size_t kKeptEntries = 50;
 /// Bytes of a journal from which a new one begins. Chosen.
 inline constexpr std::uintmax_t kRotateAt_bytes = std::uintmax_t{1} << 20;
+/// Bytes that the disk holds ready from the first record of a write-back to its last. Derived: a dozen
+/// records of 2 kB at most; and the space that becomes free with the last one takes its entry in the history
+/// and the calibration in force, of some 100 kB each.
+inline constexpr std::uintmax_t kReserved_bytes = std::uintmax_t{256} << 10;
+
+/// Steps of a controller, and m beside them, within which two values are the same to it. Derived: it rounds
+/// to half a step; the rest is room for rounding.
+inline constexpr double kSameStep = 0.51, kSame_m = 1e-9;
+
+// --- Proof by a drive ------------------------------------------------------------------------------------
+
+/// What a comparison of scans at rest cannot tell: m over a metre, rad over a turn. Chosen: two to three
+/// times the largest error after a calibration in simulated campaigns, and below what a wheel of 0.3 % makes.
+inline constexpr double kLengthNoise_m = 0.002, kHeadingNoise_rad = 0.1 * std::numbers::pi / 180.0;
+/// m and rad of a move that counts. Chosen: nearly half of what `calibrate --apply` drives.
+inline constexpr double kLeastProofWay_m = 0.45, kLeastProofTurn_rad = 0.9 * std::numbers::pi;
 
 }  // namespace odomcalib::writeback::settings

@@ -101,7 +101,9 @@ std::string device_of(const drivers::Controller& controller) {
 bool holds(const std::vector<drivers::StoredParameter>& stored, const ParameterMap& wanted) {
   return !wanted.empty() && std::all_of(wanted.begin(), wanted.end(), [&](const auto& entry) {
     const auto* parameter = find(stored, entry.first);
-    return parameter != nullptr && std::abs(parameter->value - entry.second) <= 0.51 * parameter->step + 1e-9;
+    return parameter != nullptr &&
+           std::abs(parameter->value - entry.second) <=
+               writeback::settings::kSameStep * parameter->step + writeback::settings::kSame_m;
   });
 }
 
@@ -125,7 +127,7 @@ Result<void> Transaction::read() { return begin(Task::read, "read"); }
 Result<void> Transaction::recover() { return begin(Task::recover, "recovery"); }
 
 Result<void> Transaction::write(const std::string& label, const ParameterMap& values,
-                                const std::string& calibration, Proof proof) {
+                                const std::string& calibration, Proof proof, const Provenance& origin) {
   for (const auto& [name, value] : values)
     if (!std::isfinite(value) || value <= 0.0)
       return Error{ErrorCode::refused, fmt::format("{} = {} is no length", name, value), label,
@@ -133,6 +135,7 @@ Result<void> Transaction::write(const std::string& label, const ParameterMap& va
   if (auto begun = begin(Task::write, label); !begun) return begun;
   report_.after = values;
   report_.calibration = calibration;
+  report_.origin = origin;
   unproven_ = proof == Proof::wanted;
   return {};
 }
@@ -155,7 +158,8 @@ JournalRecord Transaction::record_of(JournalState state) const {
           .device = report_.device,
           .calibration = report_.calibration,
           .store_begun = store_begun_ || state == JournalState::store_begin,
-          .unproven = unproven_};
+          .unproven = unproven_,
+          .origin = report_.origin};
 }
 
 void Transaction::announce(std::deque<JournalState> states, After after, drivers::Controller& controller,
@@ -364,6 +368,7 @@ void Transaction::on_proof(drivers::Controller& controller, double now) {
   if (!proof_) return;
   if (!*proof_) return go_back(proof_->error(), controller, now);
   unproven_ = false;
+  report_.origin.proven = true;
   keep({JournalState::proof_ok}, controller, now);
 }
 
@@ -413,6 +418,7 @@ void Transaction::decide_recovery(drivers::Controller& controller, double now) {
   report_.before = interrupted_->before;
   report_.after = interrupted_->after;
   report_.calibration = interrupted_->calibration;
+  report_.origin = interrupted_->origin;
   store_begun_ = interrupted_->store_begun;
   const bool forward = interrupted_->state != JournalState::rollback && !interrupted_->unproven;
   if (forward && holds(report_.in_force, report_.after)) return store_again(controller, now);

@@ -34,8 +34,9 @@ struct WriteReport {
   ParameterMap before, after;                      ///< after: what was asked for
   std::string device;                              ///< who holds them, see device_of(); empty: not known
   std::string calibration;                         ///< id of the one in force with `after`
-  std::optional<Error> error;                      ///< why it was not committed
-  std::vector<std::string> steps;                  ///< what was journaled; empty: nothing was touched
+  Provenance origin;
+  std::optional<Error> error;      ///< why it was not committed
+  std::vector<std::string> steps;  ///< what was journaled; empty: nothing was touched
 };
 
 /// Drives one controller through one transaction at a time. Holds no clock and no descriptor.
@@ -56,8 +57,10 @@ class Transaction {
   /// unfinished, what counts as old is what the journal says, and all of its quantities must be among the
   /// values: what the controller holds may be a mixture.
   /// @param calibration id of the one that is in force with these values (see CalibrationInForce)
+  /// @param origin is kept with what becomes of them
   Result<void> write(const std::string& label, const ParameterMap& values,
-                     const std::string& calibration = "", Proof proof = Proof::none);
+                     const std::string& calibration = "", Proof proof = Proof::none,
+                     const Provenance& origin = {});
 
   /// New values wait for their proof: there was a report of them, and there will be one of their end.
   [[nodiscard]] bool proving() const { return phase_ == Phase::proving && !proof_; }

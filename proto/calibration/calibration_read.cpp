@@ -116,6 +116,7 @@ RobotDescription read_robot(const Node& node) {
   if (!node["lidar_pose"].is_null()) out.lidar_pose = triple(node["lidar_pose"]);
   out.robot_id = node["robot_id"].text();
   out.controller = node["controller"].text();
+  out.controller_id = node["controller_id"].text();
   return out;
 }
 

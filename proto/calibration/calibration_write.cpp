@@ -58,6 +58,7 @@ Json robot(const RobotDescription& robot) {
            {"lidar_pose", robot.lidar_pose ? numbers(*robot.lidar_pose) : Json(nullptr)}};
   if (!robot.robot_id.empty()) out["robot_id"] = robot.robot_id;
   if (!robot.controller.empty()) out["controller"] = robot.controller;
+  if (!robot.controller_id.empty()) out["controller_id"] = robot.controller_id;
   return out;
 }
 

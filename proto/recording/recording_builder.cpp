@@ -334,6 +334,7 @@ void RecordingBuilder::merge_robot(const RobotDescription* fallback) {
   if (!robot.lidar_pose) robot.lidar_pose = fallback->lidar_pose;
   if (robot.robot_id.empty()) robot.robot_id = fallback->robot_id;
   if (robot.controller.empty()) robot.controller = fallback->controller;
+  if (robot.controller_id.empty()) robot.controller_id = fallback->controller_id;
 }
 
 void RecordingBuilder::count_streams() {

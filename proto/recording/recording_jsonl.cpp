@@ -45,6 +45,7 @@ void add_robot(const JsonFields& fields, RecordingBuilder& builder) {
   robot.ticks_per_rev = unit_value(fields, Scalar::ticks_per_rev);
   robot.robot_id = fields[Text::robot_id];
   robot.controller = fields[Text::controller];
+  robot.controller_id = fields[Text::controller_id];
   const auto& pose = fields[Array::lidar_pose];
   if (pose.size() == 3 && std::all_of(pose.begin(), pose.end(), [](double v) { return std::isfinite(v); }))
     robot.lidar_pose = {pose[0], pose[1], pose[2]};

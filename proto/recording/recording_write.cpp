@@ -96,6 +96,7 @@ void append_robot(std::string& out, const RobotDescription& robot) {
   }
   append_text(out, "robot_id", robot.robot_id);
   append_text(out, "controller", robot.controller);
+  append_text(out, "controller_id", robot.controller_id);
   out += "}\n";
 }
 

@@ -17,7 +17,7 @@ using Slot = std::variant<std::monostate, Scalar, Array, Text>;
 
 // Names of DESIGN 4.2, of Censi's raw logs (readings, theta, ray_dt, stamps as [s, us]) and of his tuple
 // files.
-constexpr std::array<std::pair<std::string_view, Slot>, 39> kLineMembers{{
+constexpr std::array<std::pair<std::string_view, Slot>, 40> kLineMembers{{
     {"type", Text::type},
     {"t", Scalar::t},
     {"left", Scalar::left},
@@ -50,6 +50,7 @@ constexpr std::array<std::pair<std::string_view, Slot>, 39> kLineMembers{{
     {"lidar_pose", Array::lidar_pose},
     {"robot_id", Text::robot_id},
     {"controller", Text::controller},
+    {"controller_id", Text::controller_id},
     {"timestamp", Array::timestamp},
     {"leftTimestamp", Array::left_timestamp},
     {"rightTimestamp", Array::right_timestamp},

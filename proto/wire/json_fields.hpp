@@ -52,7 +52,7 @@ enum class Array : std::uint8_t {
   count
 };
 
-enum class Text : std::uint8_t { type, sensor, robot_id, controller, count };
+enum class Text : std::uint8_t { type, sensor, robot_id, controller, controller_id, count };
 
 struct JsonFields {
   /// NaN: absent, null, or not a number.

@@ -38,6 +38,13 @@ std::optional<Message> whole(const ByteReader& reader, Message message) {
   return message;
 }
 
+/// "KIND [ID]", or of earlier versions and other programs the kind alone.
+void take_controller(const std::string& text, RobotDescription& robot) {
+  const std::size_t at = text.ends_with(']') ? text.rfind(" [") : std::string::npos;
+  robot.controller = text.substr(0, at);
+  if (at != std::string::npos) robot.controller_id = text.substr(at + 2, text.size() - at - 3);
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> fingerprint(std::string_view bytes) {
@@ -51,7 +58,7 @@ std::optional<RobotDescription> decode_robot(std::string_view bytes) {
   reader.big_endian<std::int64_t>();  // utime
   RobotDescription out;
   out.robot_id = lcm_text(reader);
-  out.controller = lcm_text(reader);
+  take_controller(lcm_text(reader), out);
   out.left_wheel_diameter = reader.big_endian<double>();
   out.right_wheel_diameter = reader.big_endian<double>();
   out.track_width = reader.big_endian<double>();

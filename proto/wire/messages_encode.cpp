@@ -33,6 +33,11 @@ std::vector<float> finite(std::vector<float> values) {
   return values;
 }
 
+/// The message has one text for both (decode_robot takes them apart).
+std::string with_controller_id(const RobotDescription& robot) {
+  return robot.controller_id.empty() ? robot.controller : robot.controller + " [" + robot.controller_id + "]";
+}
+
 std::string c_text(const std::string& text) { return text.substr(0, text.find('\0')); }
 
 }  // namespace
@@ -41,7 +46,7 @@ std::string encode(std::int64_t utime, const RobotDescription& robot) {
   odomcalib::robot_t out{};
   out.utime = utime;
   out.robot_id = c_text(robot.robot_id);
-  out.controller = c_text(robot.controller);
+  out.controller = c_text(with_controller_id(robot));
   out.left_wheel_diameter = finite(robot.left_wheel_diameter);
   out.right_wheel_diameter = finite(robot.right_wheel_diameter);
   out.track_width = finite(robot.track_width);

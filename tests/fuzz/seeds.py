@@ -377,7 +377,7 @@ def control_session():
                    "parameters": {name: {"value": value, "std": 1e-5, "unit": "m"} for name, value in lengths.items()}}
 
     def prove(client=0):
-        return send(client, frame("Apply", parameters={"lease": "\x01", "prove": True, "calibration": calibration}))
+        return send(client, frame("Apply", parameters={"lease": "\x01", "prove": True, "of_this_robot": True, "calibration": calibration}))
 
     def end_proof(name, client=0):
         return send(client, frame(name, parameters={"lease": "\x01"}))

@@ -59,7 +59,8 @@ class Campaign : public WholeLoop {
                   const nlohmann::ordered_json& parameters) -> Result<nlohmann::ordered_json> {
       // What is to be proven lasts as long as the connection that wrote it.
       if (name == "Apply") held_ = std::make_unique<TestClient>(folder_ / "control");
-      const auto wanted = json::parse(parameters.dump());
+      auto wanted = json::parse(parameters.dump());
+      if (name == "Apply") wanted["of_this_robot"] = true;
       const auto reply = name == "Apply" ? ask(*held_, name, wanted) : ask(name, wanted);
       if (!reply.error.empty()) return control::error_of(reply);
       return nlohmann::ordered_json::parse(reply.parameters)
@@ -180,7 +181,7 @@ class BadCampaign : public Campaign, public testing::WithParamInterface<Bad> {
   /// Why nothing was stored; empty: it was.
   std::string refusal() {
     if (GetParam().file != nullptr) {
-      const auto reply = ask("Apply", {{"calibration", GetParam().file(seed_)}});
+      const auto reply = ask("Apply", {{"calibration", GetParam().file(seed_)}, {"of_this_robot", true}});
       return reply.error.empty() ? "" : reply.error + " " + reply.parameters;
     }
     GetParam().robot(*robot_);

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Consent on a terminal (rule M11), against the simulated robot: who is asked, what is shown, and what an answer does.
+"""Consent on a terminal (rules M11, B6), against the simulated robot: who is asked, what is shown, and what an answer does.
 
 usage: tests/integration/consent.py PROGRAMS PROFILE"""
 
+import json
 import os
 import pty
+import pwd
 import select
 import sys
 import time
@@ -14,6 +16,8 @@ from simulated_robot import SimulatedRobot
 CANCELLED = 4
 QUESTION = "Type yes to go on: "
 PATIENCE = 20.0  # s
+CALIBRATION = {"format": "odomcalib-calibration/1", "verdict": "accepted", "robot": {"robot_id": "robot-B"},
+               "parameters": {"track_width": {"value": 0.4033, "std": 1e-4, "unit": "m"}}}
 
 
 def on_terminal(robot, words, answer, until):
@@ -68,6 +72,24 @@ def main(programs, profile):
         robot.wait_until(robot.ready, "the robot does not come to rest")
         seen, status = on_terminal(robot, move, "no", [QUESTION, "Ctrl-C stops the robot"])
         expect(QUESTION in seen and status == CANCELLED, "no question without --yes:\n" + seen)
+
+        # Before values are written: where a rollback goes, and whose calibration it is.
+        robot.wait_until(robot.ready, "the robot does not come to rest")
+        done = robot.ctl("params", "set", "--yes", "track_width=0.4003")
+        expect(done.returncode == 0, "track width not set: " + done.stderr)
+        seen, status = on_terminal(robot, ["rollback"], "no", [QUESTION])
+        expect("the values before entry 0001" in seen and "track_width 400.000 mm" in seen, "where does it go:\n" + seen)
+        expect(status == CANCELLED, "status %d after no" % status)
+        with open(robot.path("cal.json"), "w", encoding="utf-8") as file:
+            json.dump(CALIBRATION, file)
+        seen, status = on_terminal(robot, ["apply", robot.path("cal.json")], "no", [QUESTION])
+        expect('"robot-B"' in seen and "Is it of this robot?" in seen, "whose robot is not asked:\n" + seen)
+        expect(status == CANCELLED, "status %d after no" % status)
+        done = robot.ctl("apply", robot.path("cal.json"), "--yes")
+        expect(done.returncode == 0 and "robot-B" in done.stderr, "a script is not told whose it is: " + done.stderr)
+        newest = json.loads(robot.ctl("history", "--json").stdout)["entries"][0]
+        expect(newest["user"] == os.getuid() and newest["proven"] is False, "history: %s" % newest)
+        expect(newest.get("user_name") == pwd.getpwuid(os.getuid()).pw_name, "no name in history: %s" % newest)
     for fault in faults:
         print(fault)
     return 1 if faults else 0

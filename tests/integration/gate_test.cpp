@@ -28,7 +28,8 @@ class Gate : public ServiceLoop {
     return {{"calibration",
              {{"format", "odomcalib-calibration/1"},
               {"verdict", verdict},
-              {"parameters", {{"track_width", {{"value", 0.4033}, {"std", 1e-5}, {"unit", "m"}}}}}}}};
+              {"parameters", {{"track_width", {{"value", 0.4033}, {"std", 1e-5}, {"unit", "m"}}}}}}},
+            {"of_this_robot", true}};
   }
 };
 

@@ -20,7 +20,7 @@ TEST_F(WholeLoop, SX_02_calibrated_values_are_true_stored_and_make_the_odometry_
     std::printf("%-21s true %.5f found %.5f +- %.5f m\n", kNames.at(i), true_value,
                 parameter["value"].get<double>(), parameter["std"].get<double>());
   }
-  EXPECT_EQ(call("Apply", {{"calibration", calibration}})["outcome"], "committed");
+  EXPECT_EQ(call("Apply", {{"calibration", calibration}, {"of_this_robot", true}})["outcome"], "committed");
   power_cycle();
   for (std::size_t i = 0; i < kNames.size(); ++i)
     EXPECT_NEAR(1e-6 * robot_->node().geometry_in_ram().at(i),

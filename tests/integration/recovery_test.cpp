@@ -61,7 +61,8 @@ class Restarted : public ServiceLoop {
   [[nodiscard]] std::vector<std::string> journaled() const {
     std::vector<std::string> states;
     std::ifstream file(journal_path());
-    for (std::string line; std::getline(file, line);)
+    for (std::string line;
+         std::getline(file, line) && line.front() != '\0';)  // behind it is what is reserved
       states.push_back(name_of(from_line(line).value_or(JournalRecord{}).state));
     return states;
   }
@@ -255,7 +256,7 @@ class Applied : public Restarted {
 };
 
 TEST_F(Applied, a_recovery_that_commits_puts_the_calibration_in_force) {
-  ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}}).error, "");
+  ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}, {"of_this_robot", true}}).error, "");
   const std::string applied = read_file_bytes(active()).value();
   // As if the daemon had died before the last record.
   JournalRecord record = record_of(JournalState::store_ok);
@@ -275,7 +276,7 @@ TEST_F(Applied, a_calibration_is_kept_with_its_evidence_but_without_the_points_o
   whole["picture"] = {{"paths", json::array()}};
   whole["drive_errors"] = json::array();
   whole["made_elsewhere"] = {{"by", "hand"}};
-  ASSERT_EQ(call("Apply", {{"calibration", whole}}).error, "");
+  ASSERT_EQ(call("Apply", {{"calibration", whole}, {"of_this_robot", true}}).error, "");
   const std::string in_history = history()[0].calibration.value_or("{}");
   for (const std::string& text : {read_file_bytes(active()).value(), in_history}) {
     const json kept = json::parse(text);
@@ -286,7 +287,7 @@ TEST_F(Applied, a_calibration_is_kept_with_its_evidence_but_without_the_points_o
 }
 
 TEST_F(Applied, a_commit_that_was_the_last_thing_done_is_settled_at_the_next_start) {
-  ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}}).error, "");
+  ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}, {"of_this_robot", true}}).error, "");
   const std::string applied = read_file_bytes(active()).value();
   end_service();
   std::filesystem::remove(active());
@@ -296,14 +297,14 @@ TEST_F(Applied, a_commit_that_was_the_last_thing_done_is_settled_at_the_next_sta
 
 TEST_F(Applied, an_apply_whose_calibration_cannot_be_put_in_force_says_so) {
   std::filesystem::create_directories(active() / "in the way");
-  const auto reply = call("Apply", {{"calibration", calibration(kNew)}});
+  const auto reply = call("Apply", {{"calibration", calibration(kNew)}, {"of_this_robot", true}});
   EXPECT_EQ(reply.error, "org.odomcalib.Calibration.Io");
   EXPECT_NE(reply.parameters.find("the values are in the controller"), std::string::npos) << reply.parameters;
   EXPECT_EQ(node().geometry_stored(), kNewRaw);
 }
 
 TEST_F(Applied, rollback_without_an_id_undoes_the_newest_that_was_committed) {
-  ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}}).error, "");
+  ASSERT_EQ(call("Apply", {{"calibration", calibration(kNew)}, {"of_this_robot", true}}).error, "");
   JournalRecord record = record_of(JournalState::write);
   record.before = kNew;
   record.after["track_width"] = 0.41;

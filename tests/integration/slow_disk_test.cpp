@@ -51,7 +51,7 @@ class OnSlowDisk : public ServiceLoop {
   }
   void begin_apply(TestClient& writer) {
     acquire();
-    writer.call("Apply", {{"lease", lease_}, {"calibration", calibration()}});
+    writer.call("Apply", {{"lease", lease_}, {"calibration", calibration()}, {"of_this_robot", true}});
   }
   [[nodiscard]] bool active() const { return std::filesystem::exists(folder_ / "state" / "active.json"); }
   [[nodiscard]] std::optional<JournalRecord> journaled() const {

@@ -94,7 +94,10 @@ TEST_F(TurnCost, of_a_write_back_of_a_whole_result_is_less_than_20_ms) {
   ASSERT_TRUE(result.contains("calibration"));
   for (const bool dry_run : {true, false}) {
     TestClient caller(folder_ / "control");
-    caller.call("Apply", {{"lease", lease_}, {"calibration", result["calibration"]}, {"dry_run", dry_run}});
+    caller.call("Apply", {{"lease", lease_},
+                          {"calibration", result["calibration"]},
+                          {"of_this_robot", true},
+                          {"dry_run", dry_run}});
     const double longest = longest_turn(caller, kWritten);
     ASSERT_TRUE(reply_.has_value());
     EXPECT_EQ(reply_->error, "") << reply_->parameters;

@@ -30,11 +30,11 @@ constexpr std::array kMethods = {
     Method{"Spin", When::when_idle, Lease::unless_dry_run, "motion", spin},
     Method{"Calibrate", When::when_idle, Lease::unless_dry_run, "motion", calibrate},
     Method{"Record", When::when_idle, Lease::none, "", record},
-    Method{"Apply", When::when_idle, Lease::always, "write-back", apply},
+    Method{"Apply", When::when_idle, Lease::unless_dry_run, "write-back", apply},
     Method{"Store", When::when_idle, Lease::always, "write-back", store},
     Method{"Discard", When::when_idle, Lease::always, "write-back", discard},
-    Method{"SetParameters", When::when_idle, Lease::always, "write-back", set_parameters},
-    Method{"Rollback", When::when_idle, Lease::always, "write-back", rollback},
+    Method{"SetParameters", When::when_idle, Lease::unless_dry_run, "write-back", set_parameters},
+    Method{"Rollback", When::when_idle, Lease::unless_dry_run, "write-back", rollback},
 };
 
 // Of the interface, but of no service of this version.

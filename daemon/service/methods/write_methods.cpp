@@ -30,6 +30,10 @@ struct Wish {
   std::optional<std::string> calibration;  ///< JSON text
   bool replaces_calibration = true;
   bool prove = false;
+  std::string place = {};     ///< where a rollback goes, in words
+  std::string verified = {};  ///< see FormerValues: the band does not hold for what was in force before
+  Provenance origin = {};
+  std::vector<std::string> asks = {};  ///< what the caller has to vouch for, and has not yet
 };
 
 ordered_json dry_run_report(const Bench& bench, const ParameterMap& present, const RoundedParameters& rounded,
@@ -37,19 +41,47 @@ ordered_json dry_run_report(const Bench& bench, const ParameterMap& present, con
   std::optional<Calibration> wanted;
   if (wish.calibration)
     if (auto read = calibration_from_json(*wish.calibration, "calibration")) wanted = std::move(read).value();
-  return {{"outcome", "dry_run"},
-          {"before", present},
-          {"after", rounded.values},
-          {"rounding_error", to_json(rounded.remaining)},
-          {"parameters", parameter_report(bench, wanted)}};
+  ordered_json report = {{"outcome", "dry_run"},
+                         {"before", present},
+                         {"after", rounded.values},
+                         {"rounding_error", to_json(rounded.remaining)},
+                         {"parameters", parameter_report(bench, wanted)},
+                         {"asks", wish.asks}};
+  if (!wish.place.empty()) report["goes_to"] = wish.place;
+  return report;
 }
 
-Outcome begin_write(Bench& bench, const Caller& caller, const Wish& wish, bool dry_run) {
+/// Of values that wait for their proof, and what was in force before them.
+ordered_json discard_report(const Bench& bench) {
+  const auto& last = bench.write_back.transaction.journal().last();
+  Wish wish;
+  wish.place = kBeforeProof;
+  return dry_run_report(bench, present_lengths(bench.drive.robot()),
+                        {last ? last->before : ParameterMap(), {}}, wish);
+}
+
+Error not_vouched_for(const std::string& what) {
+  return {
+      ErrorCode::refused, what, "calibration",
+      "state robot.id in the configuration, or say that it is: odomcalibctl apply asks (\"of_this_robot\")"};
+}
+
+Outcome begin_write(Bench& bench, const Caller& caller, Wish wish, bool dry_run) {
   const ParameterMap present = present_lengths(bench.drive.robot());
-  if (auto wrong = implausible(wish.values, present)) return *wrong;
+  const NominalLengths nominal = nominal_lengths(bench);
+  if (const auto wrong = implausible(wish.values, nominal)) {
+    if (wish.verified.empty()) return *wrong;
+    wish.place += "; " + wrong->what;  // what was verified may come back all the same, and it is said
+  }
   const RoundedParameters rounded = round_together(wish.values, bench.drive.in_force);
   if (dry_run) return Answer{{{"result", dry_run_report(bench, present, rounded, wish)}}};
-  const WriteTask::Order order{wish.label, rounded, wish.calibration, wish.replaces_calibration, wish.prove};
+  if (!wish.asks.empty()) return not_vouched_for(wish.asks.front());
+  Provenance origin = wish.origin;
+  origin.user = bench.outbox.server.user_of(caller.client);
+  origin.nominal = nominal.values;
+  origin.nominal_from = nominal.from;
+  const WriteTask::Order order{wish.label, rounded,    wish.calibration, wish.replaces_calibration,
+                               wish.prove, wish.place, std::move(origin)};
   ReadingTask::Next next = [caller, order](Bench& read) -> Result<std::unique_ptr<Task>> {
     if (auto changed = read.drive.changed_besides(order.rounded.values)) return *changed;
     return WriteTask::begin(read, caller, order);
@@ -66,24 +98,37 @@ std::optional<Error> of_another_robot(const Calibration& calibration, const std:
                "calibration", "solve a recording of this robot; its file or robot file names robot_id"};
 }
 
-/// Former values belong to the controller that held them. One that does not say who it is is believed.
-std::optional<Error> of_another_controller(const std::string& theirs, const std::string& ours) {
-  if (theirs.empty() || ours.empty() || theirs == ours) return std::nullopt;
-  return Error{ErrorCode::refused,
-               "these values are of the controller \"" + theirs + "\", this one is \"" + ours + "\"",
-               "rollback", "connect that controller, or apply a calibration to this one"};
+/// A calibration shows the wheels as one controller counts them. One that does not say which is believed.
+std::optional<Error> of_another_controller(const Calibration& calibration, const std::string& ours,
+                                           bool replaced) {
+  const std::string& theirs = calibration.robot.controller_id;
+  if (theirs.empty() || ours.empty() || theirs == ours || replaced) return std::nullopt;
+  return Error{
+      ErrorCode::refused,
+      "this calibration was made with the controller \"" + theirs + "\", this one is \"" + ours + "\"",
+      "calibration",
+      "calibrate again; where one of the same kind took its place: odomcalibctl apply --replaced"};
+}
+
+/// What nobody can tell without a name in the configuration.
+std::string whose_robot(const Calibration& calibration) {
+  const std::string& theirs = calibration.robot.robot_id;
+  return "robot.id is not configured, so that this robot cannot be told from others: the calibration is of " +
+         (theirs.empty() ? "a robot without a name" : "\"" + theirs + "\"");
 }
 
 /// The values of a calibration that a controller may hold.
-Result<Wish> wish_of(Calibration calibration, const std::string& robot) {
+Result<Wish> wish_of(Calibration calibration, const Bench& bench, bool replaced) {
+  const std::string& robot = bench.drive.nominal().robot_id;
   if (calibration.verdict == Verdict::refused)
     return Error{ErrorCode::refused, "this calibration was refused by its quality gate", "calibration",
                  "record again and solve"};
   if (auto wrong = of_another_robot(calibration, robot)) return *wrong;
-  if (const auto member = non_finite_value(calibration))
-    return Error{ErrorCode::format, "\"" + *member + "\" has no finite value", "calibration",
-                 "solve the recording again"};
+  if (auto wrong = of_another_controller(calibration, device_of(bench.drive.controller()), replaced))
+    return *wrong;
+  if (auto wrong = absurd(calibration, nominal_lengths(bench))) return *wrong;
   Wish wish;
+  if (robot.empty()) wish.asks.push_back(whose_robot(calibration));
   for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
     if (const auto value = calibration.parameter(name)) wish.values[name] = *value;
   // What is in force is kept, journaled and read again and again.
@@ -112,17 +157,20 @@ Reading write_request(Context& context, const Call& call, MakeWish make_wish) {
 Reading apply(Context& context, const Call& call) {
   CallParameters given(call.parameters);
   (void)given.flag("dry_run");
-  const bool prove = given.flag("prove");
+  const bool prove = given.flag("prove"), replaced = given.flag("replaced"),
+             ours = given.flag("of_this_robot");
   const ordered_json& wanted = given.member("calibration");
   if (!wanted.is_object()) given.reject("calibration");
   if (given.wrong()) return WrongParameter{*given.wrong()};
-  return write_request(context, call, [&bench = context.bench, &wanted, prove]() -> Result<Wish> {
-    auto calibration = calibration_from(wanted, "calibration");
-    if (!calibration) return calibration.error();
-    auto wish = wish_of(std::move(calibration).value(), bench.drive.robot().robot_id);
-    if (wish) wish.value().prove = prove;
-    return wish;
-  });
+  return write_request(context, call,
+                       [&bench = context.bench, &wanted, prove, replaced, ours]() -> Result<Wish> {
+                         auto calibration = calibration_from(wanted, "calibration");
+                         if (!calibration) return calibration.error();
+                         auto wish = wish_of(std::move(calibration).value(), bench, replaced);
+                         if (wish) wish.value().prove = prove;
+                         if (wish && ours) wish.value().asks.clear();
+                         return wish;
+                       });
 }
 
 namespace {
@@ -167,19 +215,24 @@ Reading set_parameters(Context& context, const Call& call) {
 Reading rollback(Context& context, const Call& call) {
   CallParameters given(call.parameters);
   (void)given.flag("dry_run");
-  const std::string id = given.text("id", "");
+  const WayWanted wanted{given.text("id", ""), given.text("to", ""), given.flag("replaced")};
+  if (!wanted.before.empty() && !wanted.after.empty()) given.reject("to");
   if (given.wrong()) return WrongParameter{*given.wrong()};
-  if (context.bench.write_back.proving() && id.empty() && !given.flag("dry_run"))
-    return end_proof(context, call, false);
-  return write_request(context, call, [&bench = context.bench, id]() -> Result<Wish> {
-    const auto former = bench.write_back.former_values(id, bench.applied.text());
-    if (!former)
-      return Error{ErrorCode::usage,
-                   id.empty() ? "no write-back was committed" : "no history entry \"" + id + "\"", "",
-                   "odomcalibctl history"};
-    if (auto wrong = of_another_controller(former->device, device_of(bench.drive.controller())))
-      return *wrong;
-    return Wish{former->values, "rollback", former->calibration};
+  const bool named = !wanted.before.empty() || !wanted.after.empty();
+  if (context.bench.write_back.proving() && !named)
+    return given.flag("dry_run") ? Reading(Outcome(Answer{{{"result", discard_report(context.bench)}}}))
+                                 : end_proof(context, call, false);
+  return write_request(context, call, [&bench = context.bench, wanted]() -> Result<Wish> {
+    const auto former = bench.write_back.former_values(wanted, device_of(bench.drive.controller()),
+                                                       bench.drive.in_force, bench.applied.text());
+    if (!former) return former.error();
+    const FormerValues& back = former.value();
+    Wish wish{back.values, "rollback", back.calibration};
+    wish.place = back.place;
+    wish.verified = back.verified;
+    wish.origin.restores = back.restores;
+    wish.origin.proven = back.proven;
+    return wish;
   });
 }
 

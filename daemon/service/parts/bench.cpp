@@ -25,6 +25,9 @@ Bench::Bench(const Config& configuration, Clock& time, Calibrator functions, Ope
   // Where nothing is installed there is no group of the usual name.
   if (const auto& why = outbox.server.warning(); !why.empty() && config.group != Config{}.group)
     outbox.event(messages::Severity::warning, "control_group", why);
+  if (drive.nominal().robot_id.empty())
+    outbox.event(messages::Severity::warning, "robot_id",
+                 "robot.id is not configured: this daemon cannot tell robots apart, and asks at each apply");
   if (last_run.after_crash()) outbox.event(messages::Severity::warning, "restarted", last_run.last_stop());
   drive.link.watch_frames([this](const drivers::CanFrame& frame) { outbox.frame(frame); });
 }

@@ -8,6 +8,7 @@
 
 #include <tuple>
 #include "daemon/service/settings.hpp"
+#include "daemon/writeback/transaction.hpp"
 
 namespace odomcalib {
 namespace {
@@ -70,6 +71,12 @@ RobotDescription Drive::robot() const {
     if (parameter.quantity == "right_wheel_diameter") all.right_wheel_diameter = parameter.value;
     if (parameter.quantity == "track_width") all.track_width = parameter.value;
   }
+  return all;
+}
+
+RobotDescription Drive::described() const {
+  RobotDescription all = robot();
+  all.controller_id = device_of(controller());
   return all;
 }
 

@@ -39,6 +39,8 @@ class Drive {
   [[nodiscard]] RobotDescription nominal() const;
   /// The same with what the controller holds.
   [[nodiscard]] RobotDescription robot() const;
+  /// The same with who the controller is, for recordings.
+  [[nodiscard]] RobotDescription described() const;
   [[nodiscard]] routines::WheelGeometry geometry() const;
   /// Why the wheels' dimensions are no base for a speed, as they were last read.
   [[nodiscard]] std::optional<Error> geometry_forbidden() const;

@@ -1,5 +1,7 @@
 #include "daemon/service/parts/write_back.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -87,9 +89,12 @@ void WriteBack::begin_reading(const drivers::Controller& controller, bool values
 }
 
 Result<void> WriteBack::write(const std::string& label, const ParameterMap& values,
-                              const std::string& calibration, std::optional<ClientId> prover) {
+                              const std::string& calibration, std::optional<ClientId> prover,
+                              Provenance origin) {
   if (settling) return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
-  auto begun = transaction.write(label, values, calibration, prover ? Proof::wanted : Proof::none);
+  // With the id that its entry will have, the journal alone says afterwards what became of it.
+  origin.entry = history.numbered({}).id;
+  auto begun = transaction.write(label, values, calibration, prover ? Proof::wanted : Proof::none, origin);
   if (!begun) return begun;
   ended.reset();
   prover_ = prover;
@@ -99,6 +104,7 @@ Result<void> WriteBack::write(const std::string& label, const ParameterMap& valu
 
 void WriteBack::learn(const WriteReport& report) {
   const bool unknown = report.outcome == WriteOutcome::unknown;
+  learn_of_proof(report);
   recovery_tried_ = recovery_tried_ || unknown;
   if (report.outcome == WriteOutcome::committed || report.outcome == WriteOutcome::rolled_back) {
     next_recovery_ = 0.0;
@@ -106,6 +112,22 @@ void WriteBack::learn(const WriteReport& report) {
   }
   operator_needed = unknown || (report.outcome == WriteOutcome::read && unfinished());
   if (operator_needed && report.error) problem = report.error->text();
+}
+
+// What was driven was driven with the values in force then.
+void WriteBack::learn_of_proof(const WriteReport& report) {
+  switch (report.outcome) {
+    case WriteOutcome::proving:
+      return proof.other_values();
+    case WriteOutcome::rolled_back:
+      return proof.taken_back();
+    case WriteOutcome::committed:
+      return proof.committed();
+    case WriteOutcome::unknown:
+      return proof.forget();
+    case WriteOutcome::read:
+      return;
+  }
 }
 
 void WriteBack::end() {
@@ -119,19 +141,100 @@ std::string WriteBack::journaled_calibration() const {
   return last ? last->calibration : "";
 }
 
+namespace {
+
+std::string lengths_text(const ParameterMap& values) {
+  std::string text;
+  for (const auto& [name, value] : values)
+    text += fmt::format("{}{} {:.3f} mm", text.empty() ? "" : ", ", name, 1e3 * value);
+  return text;
+}
+
+/// Former values belong to the controller that held them. One that does not say who it is is believed.
+bool of_another(const HistoryEntry& entry, const std::string& device) {
+  return !entry.device.empty() && !device.empty() && entry.device != device;
+}
+
+Error of_another_controller(const HistoryEntry& entry, const std::string& ours, const WayBack& theirs) {
+  const HistoryEntry& last = *theirs.newest();
+  return {ErrorCode::refused,
+          fmt::format("entry {} is of the controller \"{}\", this one is \"{}\": was it replaced? The last "
+                      "values verified on that one are {}",
+                      entry.id, entry.device, ours, lengths_text(theirs.after(last))),
+          "rollback",
+          "odomcalibctl rollback --to " + last.id +
+              " --replaced writes them to this one; or connect that controller"};
+}
+
+/// What was in force then was never lost in full: it needs no other proof.
+Result<FormerValues> before_interrupted(const JournalRecord& record, const std::string& device,
+                                        const std::optional<std::string>& in_force) {
+  if (!record.device.empty() && !device.empty() && record.device != device)
+    return Error{ErrorCode::refused,
+                 fmt::format("the interrupted {} was to the controller \"{}\", this one is \"{}\"",
+                             record.label, record.device, device),
+                 "rollback", "connect that controller, or apply a calibration to this one"};
+  FormerValues former;
+  former.values = record.before;
+  former.calibration = in_force;
+  former.device = record.device;
+  former.place = "the values before the interrupted " + record.label;
+  former.verified = "journal";
+  return former;
+}
+
+Error no_entry(const std::string& id) {
+  return {ErrorCode::usage, "no history entry \"" + id + "\" that was committed", "", "odomcalibctl history"};
+}
+
+}  // namespace
+
+std::optional<HistoryEntry> WriteBack::of_former_controller(const std::string& device) const {
+  auto newest = history.newest_committed();
+  return newest && of_another(*newest, device) ? newest : std::nullopt;
+}
+
+std::optional<bool> WriteBack::proven() const {
+  const auto newest = history.newest_committed();
+  return newest ? std::optional(newest->origin.proven) : std::nullopt;
+}
+
 // One that was rolled back or ended unknown has put nothing in force that could be taken back.
-std::optional<FormerValues> WriteBack::former_values(const std::string& id,
-                                                     const std::optional<std::string>& in_force) const {
+Result<FormerValues> WriteBack::former_values(const WayWanted& wanted, const std::string& device,
+                                              const std::vector<drivers::StoredParameter>& held,
+                                              const std::optional<std::string>& in_force) const {
+  const std::string& named = wanted.before.empty() ? wanted.after : wanted.before;
   const auto interrupted = transaction.journal().unfinished();
-  if (id.empty() && interrupted && !interrupted->before.empty())
-    return FormerValues{interrupted->before, in_force, interrupted->device};
-  const auto entry = id.empty() ? history.newest_committed() : history.find(id);
-  if (!entry) return std::nullopt;
-  FormerValues former{entry->before, std::nullopt, entry->device};
-  // The calibration in force before that entry is the one of the newest older entry that was committed.
-  for (const auto& older : history.entries())
-    if (older.id < entry->id && older.outcome == "committed" && !former.calibration)
-      former.calibration = older.calibration;
+  if (named.empty() && interrupted && !interrupted->before.empty() && !wanted.replaced)
+    return before_interrupted(*interrupted, device, in_force);
+  const auto found = named.empty() ? history.newest_committed() : history.find(named);
+  if (!found && named.empty())
+    return Error{ErrorCode::usage, "no write-back was committed", "", "odomcalibctl history"};
+  if (!found || found->outcome != name_of(WriteOutcome::committed)) return no_entry(named);
+  const bool foreign = of_another(*found, device);
+  const WayBack way(history.entries(), foreign ? found->device : device);
+  if (foreign && !wanted.replaced) return of_another_controller(*found, device, way);
+  const HistoryEntry* entry = named.empty() && !foreign ? way.next() : &*found;
+  if (entry == nullptr)
+    return Error{ErrorCode::usage, "nothing is further back: the oldest values of the history are in force",
+                 "", "odomcalibctl history; rollback --to ID goes to the values of an entry"};
+  const bool after = !wanted.after.empty() || (named.empty() && foreign);
+  const HistoryEntry* const following = after ? way.following(*entry) : entry;
+  FormerValues former;
+  former.values = after ? way.after(*entry) : way.before(*entry);
+  former.device = entry->device;
+  // The calibration in force before an entry is the one that the newest older entry has put in force.
+  const HistoryEntry* source = after ? entry : way.older_than(entry->id);
+  former.proven = source != nullptr && source->origin.proven && !foreign;
+  while (source != nullptr && !source->calibration && source->origin.restores.empty())
+    source = way.older_than(source->id);
+  if (source != nullptr) former.calibration = source->calibration;
+  if (!foreign && following != nullptr) former.restores = following->id;
+  const HistoryEntry* const seen = foreign ? nullptr : way.verified(former.values, held);
+  if (seen != nullptr) former.verified = seen->id;
+  former.place = (after ? "the values of entry " : "the values before entry ") + entry->id +
+                 (seen != nullptr && seen->id != entry->id ? ", verified as entry " + seen->id : "") +
+                 (foreign ? ", verified on the controller \"" + entry->device + "\"" : "");
   return former;
 }
 

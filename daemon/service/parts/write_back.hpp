@@ -6,18 +6,32 @@
 #include <string>
 
 #include "daemon/service/control_server.hpp"
+#include "daemon/writeback/drive_proof.hpp"
 #include "daemon/writeback/history.hpp"
 #include "daemon/writeback/journal.hpp"
 #include "daemon/writeback/rounding.hpp"
 #include "daemon/writeback/transaction.hpp"
+#include "daemon/writeback/way_back.hpp"
 
 namespace odomcalib {
+
+/// Where a rollback is to go. Without an entry: one further back than the last one went.
+struct WayWanted {
+  std::string before, after;  ///< id of the entry before or after which; one of them, or neither
+  bool replaced = false;      ///< the values of a former controller are for the one in its place
+};
+
+inline constexpr const char* kBeforeProof = "the values before those that wait for their proof";
 
 /// What a rollback goes back to.
 struct FormerValues {
   ParameterMap values;
   std::optional<std::string> calibration;  ///< JSON text; nullopt: none was in force
   std::string device;                      ///< whose they are, see device_of(); empty: not known
+  std::string place;                       ///< where that is, in words
+  std::string verified;  ///< newest entry with which this controller was seen to hold them; empty: none
+  std::string restores;  ///< see Provenance
+  bool proven = false;   ///< as that entry was
 };
 
 /// How a write-back has ended, for whoever asked for it.
@@ -40,7 +54,7 @@ class WriteBack {
   /// Begins one, see Transaction::write.
   /// @param prover client that will drive the proof; nullopt: the values are stored without one
   Result<void> write(const std::string& label, const ParameterMap& values, const std::string& calibration,
-                     std::optional<ClientId> prover);
+                     std::optional<ClientId> prover, Provenance origin);
   /// New values wait for the proof. The robot may move meanwhile, with them.
   [[nodiscard]] bool proving() const { return transaction.proving() && !not_proven_; }
   /// They wait until the axes are off, to be taken back.
@@ -57,12 +71,20 @@ class WriteBack {
   void end();
   /// Until what it came to is in the history, too.
   [[nodiscard]] bool busy() const { return (transaction.busy() && !proving()) || settling; }
-  /// Without an id: what an unfinished write-back is to be taken back to, else what the newest committed one
-  /// replaced. @param in_force JSON text of the calibration in force. nullopt: there is nothing to go back to
-  [[nodiscard]] std::optional<FormerValues> former_values(const std::string& id,
-                                                          const std::optional<std::string>& in_force) const;
+  /// Without an entry: what an unfinished write-back is to be taken back to, else one entry further back.
+  /// @param device this controller. @param held what it holds, for its steps
+  /// @param in_force JSON text of the calibration in force
+  /// Errors: usage (no such entry, nothing further back), refused (values of another controller)
+  [[nodiscard]] Result<FormerValues> former_values(const WayWanted& wanted, const std::string& device,
+                                                   const std::vector<drivers::StoredParameter>& held,
+                                                   const std::optional<std::string>& in_force) const;
+  /// The newest committed entry where it is of another controller than this one, which then was replaced.
+  [[nodiscard]] std::optional<HistoryEntry> of_former_controller(const std::string& device) const;
+  /// Whether the values of the newest committed entry were proven; nullopt: there is none.
+  [[nodiscard]] std::optional<bool> proven() const;
   /// Id of the calibration in the newest record of the journal.
   [[nodiscard]] std::string journaled_calibration() const;
+  [[nodiscard]] const std::vector<JournalRecord>& journal_ends() const { return journal_.ends(); }
   [[nodiscard]] std::optional<WriteEnd> take_end() { return std::exchange(ended, std::nullopt); }
 
   Transaction transaction;
@@ -71,11 +93,15 @@ class WriteBack {
   std::string problem = "an interrupted write-back waits for the controller";  ///< operator_needed: why
   bool settling = false;   ///< its end is on the way to the disk
   RoundingError rounding;  ///< that the values of the newest write-back leave
+  std::string place;       ///< where the newest one goes that is a rollback, in words; empty: it is none
+  DriveProof proof;        ///< what was driven with the values in force
+  std::vector<HistoryEntry> unwritten;  ///< entries that the disk did not take: the journal has them
   std::optional<WriteEnd> ended;
 
  private:
   void begin_reading(const drivers::Controller& controller, bool values_known, double now);
   void serve_proof(drivers::ControllerState state, bool may_begin, double now);
+  void learn_of_proof(const WriteReport& report);
 
   [[nodiscard]] bool unfinished() const { return transaction.journal().unfinished().has_value(); }
 

@@ -13,7 +13,7 @@ Result<std::unique_ptr<Task>> MotionTask::begin(Bench& bench, const Caller& call
       fmt::format("{}-{}", order.plan.name, bench.clock.wall_us() / 1'000'000));
   if (!path) return path.error();
   bench.recorded = {};
-  outbox.send_robot(bench.drive.robot());
+  outbox.send_robot(bench.drive.described());
   bench.loop.motion_begins();
   bench.last_run.begins(order.plan.name);
   bench.surroundings.braking.begins();
@@ -165,10 +165,11 @@ void MotionTask::begin_report(const Bench& bench) {
 }
 
 /// After the motion, until its moves are compared and its recording is on the disk.
-TaskTurn MotionTask::reported(const Bench& bench) {
+TaskTurn MotionTask::reported(Bench& bench) {
   if (moves_) {
     if (moves_->compare_next(bench)) return Running{};
     report_ = moves_->body(bench);
+    bench.write_back.proof.driven(report_);
     moves_.reset();
   }
   return written_.result() ? written(bench, *written_.result()) : TaskTurn(Running{});

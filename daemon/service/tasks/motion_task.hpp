@@ -60,7 +60,7 @@ class MotionTask final : public Task {
   [[nodiscard]] Situation situation(const Bench& bench) const;
   TaskTurn ended(Bench& bench);
   void begin_report(const Bench& bench);
-  TaskTurn reported(const Bench& bench);
+  TaskTurn reported(Bench& bench);
   TaskTurn written(const Bench& bench, const Result<std::filesystem::path>& path);
 
   std::string lease_;

@@ -7,6 +7,7 @@
 namespace odomcalib {
 
 TaskTurn ProofTask::store(Bench& bench) {
+  if (const auto lacking = bench.write_back.proof.lacking()) return Failed{*lacking};
   if (comes_to_rest(bench) && bench.now - asked_at_ < service::settings::kComesToRest_s) return Running{};
   if (bench.drive.controller().state() != drivers::ControllerState::disabled)
     return Failed{axes_not_off(bench)};
@@ -18,7 +19,10 @@ TaskTurn ProofTask::store(Bench& bench) {
 TaskTurn ProofTask::turn(Bench& bench) {
   if (!begun_ && proven_) return store(bench);
   // What is not proven goes back once the axes are off, whether somebody waits for it or not.
-  if (!begun_) bench.write_back.take_back("whoever drove the proof takes the values back");
+  if (!begun_) {
+    bench.write_back.take_back("whoever drove the proof takes the values back");
+    bench.write_back.place = kBeforeProof;
+  }
   begun_ = true;
   const bool waits = bench.write_back.transaction.proving();
   if (waits && bench.now - asked_at_ > service::settings::kComesToRest_s) return Failed{axes_not_off(bench)};

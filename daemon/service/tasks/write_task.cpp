@@ -17,14 +17,33 @@ Result<std::unique_ptr<Task>> WriteTask::begin(Bench& bench, const Caller& calle
   return std::unique_ptr<Task>(std::move(task));
 }
 
+namespace {
+
+/// A disk that did not take the entries of earlier write-backs has to take them first: it would forget what
+/// the journal alone still knows.
+Result<std::string> announced_id(Bench& bench, const std::optional<std::string>& calibration, bool replaces,
+                                 const std::vector<HistoryEntry>& unwritten, const std::string& journaled) {
+  for (const HistoryEntry& entry : unwritten)
+    if (auto written = bench.write_back.history.write(entry); !written) return written.error();
+  return replaces ? bench.applied.file.announce(calibration, journaled) : Result<std::string>("");
+}
+
+}  // namespace
+
 // The task may be gone when the disk is done.
 void WriteTask::announce(Bench& bench) {
-  announced_->done = !order_.replaces_calibration;
+  announced_->unwritten = bench.write_back.unwritten;
+  announced_->done = !order_.replaces_calibration && announced_->unwritten.empty();
   if (announced_->done) return;
-  bench.disk->post([&file = bench.applied.file, text = order_.calibration,
-                    journaled = bench.write_back.journaled_calibration(),
-                    announced = announced_] { announced->id = file.announce(text, journaled); },
-                   [announced = announced_] { announced->done = true; });
+  bench.disk->post(
+      [&bench, text = order_.calibration, replaces = order_.replaces_calibration,
+       journaled = bench.write_back.journaled_calibration(), announced = announced_] {
+        announced->id = announced_id(bench, text, replaces, announced->unwritten, journaled);
+      },
+      [&bench, announced = announced_] {
+        announced->done = true;
+        if (announced->id) bench.write_back.unwritten.clear();
+      });
 }
 
 TaskTurn WriteTask::begin_writing(Bench& bench) {
@@ -36,12 +55,14 @@ TaskTurn WriteTask::begin_writing(Bench& bench) {
     return bench.now - asked_at_ < service::settings::kComesToRest_s ? TaskTurn(Running{})
                                                                      : Failed{axes_not_off(bench)};
   const auto prover = order_.prove ? std::optional(caller.client) : std::nullopt;
-  const auto begun =
-      bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value(), prover);
+  const auto begun = bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value(),
+                                            prover, order_.origin);
   if (!begun) return Failed{begun.error()};
   bench.write_back.rounding = order_.rounded.remaining;
+  bench.write_back.place = order_.place;
   bench.outbox.event(messages::Severity::info, "write_back",
-                     order_.label + " begins, for " + bench.outbox.server.name_of(caller.client));
+                     order_.label + (order_.place.empty() ? "" : " to " + order_.place) + " begins, for " +
+                         bench.outbox.server.name_of(caller.client));
   begun_ = true;
   return Running{};
 }
@@ -56,13 +77,14 @@ ordered_json write_reply(const Bench& bench, const WriteReport& report, const Pa
                          const ParameterMap& after, const RoundingError& remaining) {
   // Old values that a client asked back are what it wanted.
   const bool asked = report.outcome == WriteOutcome::rolled_back;
-  return {{"result",
-           {{"outcome", name_of(asked ? WriteOutcome::committed : report.outcome)},
-            {"steps", report.steps},
-            {"before", before},
-            {"after", after},
-            {"rounding_error", to_json(remaining)},
-            {"parameters", parameter_report(bench, bench.applied.get())}}}};
+  ordered_json result = {{"outcome", name_of(asked ? WriteOutcome::committed : report.outcome)},
+                         {"steps", report.steps},
+                         {"before", before},
+                         {"after", after},
+                         {"rounding_error", to_json(remaining)},
+                         {"parameters", parameter_report(bench, bench.applied.get())}};
+  if (!bench.write_back.place.empty()) result["goes_to"] = bench.write_back.place;
+  return {{"result", std::move(result)}};
 }
 
 TaskTurn turn_of(const Bench& bench, const WriteEnd& end) {

@@ -18,6 +18,8 @@ class WriteTask final : public ParameterTask {
     std::optional<std::string> calibration = {};  ///< JSON text that comes into force with them
     bool replaces_calibration = true;             ///< false: the one in force stays
     bool prove = false;                           ///< they are stored when the caller has proven them
+    std::string place = {};                       ///< where a rollback goes, in words
+    Provenance origin = {};
   };
   /// Error: refused while another write-back runs. Errors of announcing the calibration (io) and of
   /// Transaction::write end the task.
@@ -32,6 +34,7 @@ class WriteTask final : public ParameterTask {
   TaskTurn begin_writing(Bench& bench);
 
   struct Announcement {
+    std::vector<HistoryEntry> unwritten;     // that the disk did not take before
     Result<std::string> id = std::string();  // of the calibration; belongs to the disk until it is done
     bool done = false;
   };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "calib/report/settings.hpp"
 
@@ -288,11 +289,13 @@ TEST(Gate, warns_of_a_share_that_was_left_out_and_refuses_where_little_is_left) 
 
 /// Figures at so many times the limits of as many rules: residual, odometry over ten seconds; and a length
 /// that is far from nominal, which weighs once.
-GateResult judged(double residual, double odometry, double track = 0.5) {
+GateResult judged(double residual, double odometry, double track = 0.5, std::size_t outliers = 0) {
   Calibration calibration = with_track(track, 1e-4);
   calibration.residual.noise_floor = {{1e-3, 1e-3, 5e-4}};
   calibration.residual.after = {{settings::kWarnResidual * residual * 1e-3, 1e-3, 5e-4}};
   Footing footing = kFirm;
+  footing.pairs = 100;
+  footing.outliers = outliers;
   const double error = settings::kWarnResidual * odometry * 0.004;
   footing.drive_errors = {
       {"open_loop_10s_position", "m", 20, {}, {}, Bounded{error, 0.9 * error, 1.1 * error}, 0.004}};
@@ -327,6 +330,101 @@ TEST(Gate, what_a_remark_says_of_outliers_weighs_and_is_said_once) {
   EXPECT_EQ(judge(sound(), footing).reasons.size(), 1U);
   footing.outliers = 26;
   EXPECT_EQ(judge(sound(), footing).verdict, Verdict::refused);
+}
+
+// Which of the three components it is, and twice the noise floor on both sides.
+TEST(Gate, warns_of_each_component_of_the_residual_beyond_twice_the_noise) {
+  const char* const kNames[] = {"in x of the sensor", "in y of the sensor", "in yaw"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    Calibration calibration = sound();
+    calibration.residual.noise_floor = {{1e-3, 2e-3, 5e-4}};
+    calibration.residual.after = calibration.residual.noise_floor;
+    (*calibration.residual.after)[i] *= 1.99;
+    EXPECT_EQ(judge(calibration, kFirm).verdict, Verdict::accepted) << kNames[i];
+    (*calibration.residual.after)[i] *= 2.01 / 1.99;
+    const GateResult gate = judge(calibration, kFirm);
+    EXPECT_EQ(gate.verdict, Verdict::accepted_with_warnings);
+    ASSERT_EQ(gate.reasons.size(), 1U) << kNames[i];
+    EXPECT_NE(gate.reasons[0].find(std::string("the residual ") + kNames[i] + " is "), std::string::npos)
+        << gate.reasons[0];
+  }
+}
+
+/// The joint fit and the closed form, so far apart.
+GateResult apart(double metres, double deviation_ours, double deviation_theirs, bool effects = false) {
+  Calibration calibration = sound();
+  MethodResult joint, closed;
+  joint.name = "joint";
+  joint.parameters = {{"track_width", {0.41, deviation_ours, "m"}}, {"lidar_x", {0.1, 1e-6, "m"}}};
+  closed.name = "joint_closed_form";
+  closed.parameters = {{"track_width", {0.41 + metres, deviation_theirs, "m"}},
+                       {"lidar_x", {0.2, 1e-6, "m"}}};
+  calibration.methods = {closed, joint};
+  if (effects) calibration.effects.push_back({"backlash", {}, {}, {}, "host"});
+  return judge(calibration, kFirm);
+}
+
+// Six common deviations, and half a per cent of the length: both, and in both directions.
+TEST(Gate, warns_of_two_estimators_that_are_apart) {
+  for (const double way : {1.0, -1.0}) {
+    EXPECT_EQ(apart(way * 0.00203, 1e-5, 1e-5).verdict, Verdict::accepted) << "0.495 %";
+    EXPECT_EQ(apart(way * 0.00207, 1e-5, 1e-5).verdict, Verdict::accepted_with_warnings) << "0.505 %";
+    EXPECT_EQ(apart(way * 0.00590, 1e-3, 0.0).verdict, Verdict::accepted) << "5.9 of ours";
+    EXPECT_EQ(apart(way * 0.00610, 1e-3, 0.0).verdict, Verdict::accepted_with_warnings);
+    EXPECT_EQ(apart(way * 0.00590, 0.0, 1e-3).verdict, Verdict::accepted) << "5.9 of theirs";
+    EXPECT_EQ(apart(way * 0.00610, 0.0, 1e-3).verdict, Verdict::accepted_with_warnings);
+    EXPECT_EQ(apart(way * 0.00838, 1e-3, 1e-3).verdict, Verdict::accepted) << "5.93 of both";
+    EXPECT_EQ(apart(way * 0.00860, 1e-3, 1e-3).verdict, Verdict::accepted_with_warnings) << "6.08 of both";
+  }
+  EXPECT_EQ(apart(0.02, 1e-5, 1e-5, true).verdict, Verdict::accepted) << "the closed form knows no effects";
+  const GateResult gate = apart(0.0082, 1e-3, 0.0);
+  ASSERT_EQ(gate.reasons.size(), 1U) << "not of the lidar's place";
+  for (const char* said : {"disagree on track_width", "closed form is 2", "8.2 of their common deviations"})
+    EXPECT_NE(gate.reasons[0].find(said), std::string::npos) << gate.reasons[0];
+}
+
+// A tenth of the motions adds to other signs, and a quarter refuses.
+TEST(Gate, of_motions_that_contradict_the_others_a_tenth_is_a_sign_and_a_quarter_refuses) {
+  constexpr double kOdometry = 1.5, kRest = settings::kMostSigns - kOdometry - 1.05;
+  const auto with_other_signs = [](std::size_t outliers) {
+    return judged(kRest, kOdometry, 0.41, outliers).verdict;
+  };
+  EXPECT_EQ(with_other_signs(10), Verdict::accepted_with_warnings);
+  EXPECT_EQ(with_other_signs(11), Verdict::refused);
+  const auto alone = [](std::size_t outliers, std::size_t pairs) {
+    Footing footing = kFirm;
+    footing.pairs = pairs;
+    footing.outliers = outliers;
+    return judge(sound(), footing);
+  };
+  EXPECT_EQ(alone(25, 100).verdict, Verdict::accepted);
+  ASSERT_EQ(alone(26, 100).verdict, Verdict::refused);
+  EXPECT_NE(alone(26, 100).reasons[0].find("one set of lengths does not describe this robot"),
+            std::string::npos);
+  ASSERT_EQ(alone(5, 19).verdict, Verdict::refused);
+  EXPECT_NE(alone(5, 19).reasons[0].find("19 measured motions only"), std::string::npos);
+}
+
+// One, two or all three, and none at all is no length either.
+TEST(Gate, refuses_lengths_that_are_not_positive_and_says_what_that_is_a_sign_of) {
+  const auto with = [](double left, double right, double track) {
+    Calibration calibration = sound();
+    calibration.parameters[0].second = {left, 1e-9, "m"};
+    calibration.parameters[1].second = {right, 1e-9, "m"};
+    calibration.parameters[2].second = {track, 1e-9, "m"};
+    return judge(calibration, kFirm);
+  };
+  EXPECT_EQ(with(0.15, 0.15, 0.4).verdict, Verdict::accepted);
+  const GateResult one = with(0.15, -0.15, 0.4);
+  EXPECT_EQ(one.verdict, Verdict::refused);
+  ASSERT_EQ(one.reasons.size(), 1U);
+  EXPECT_NE(one.reasons[0].find("right_wheel_diameter came out as a non-positive length"), std::string::npos);
+  EXPECT_EQ(with(-0.15, -0.15, 0.4).reasons.size(), 2U);
+  const GateResult all = with(-0.15, -0.15, -0.4);
+  EXPECT_EQ(all.verdict, Verdict::refused);
+  ASSERT_EQ(all.reasons.size(), 1U);
+  EXPECT_NE(all.reasons[0].find("looks backwards"), std::string::npos);
+  EXPECT_EQ(with(0.15, 0.15, std::numeric_limits<double>::infinity()).verdict, Verdict::refused);
 }
 
 TEST(Gate, warns_of_a_fit_that_has_not_settled) {

@@ -226,5 +226,26 @@ TEST(WriteBack, a_dry_run_says_what_would_be_written_in_place_of_what) {
   EXPECT_THAT(text, Not(HasSubstr("150.000"))) << "what stays is not listed";
 }
 
+TEST(WriteBack, history_says_when_by_whom_and_what_was_proven) {
+  const auto entries = nlohmann::ordered_json::parse(R"([
+    {"id":"0002","time":1795953600000000,"action":"rollback","outcome":"committed","user":1000,"user_name":"ada",
+     "restores":"0001","proven":true,"before":{"track_width":0.41},"after":{"track_width":0.4}},
+    {"id":"0001","time":1795953540000000,"action":"apply","outcome":"committed","user":1001,
+     "proven":false,"before":{"track_width":0.4},"after":{"track_width":0.41}}])");
+  const std::string text = to_text(describe_history(entries), true, 200);
+  for (const char* said : {"2026-11-29 12:00", "ada (1000)", "rollback before 0001", "committed, proven",
+                           "2026-11-29 11:59", "(1001)", "committed, unproven", "410.000 -> 400.000"})
+    EXPECT_THAT(text, HasSubstr(said));
+}
+
+TEST(WriteBack, a_rollback_says_where_it_goes_and_an_apply_what_is_vouched_for) {
+  const auto result =
+      nlohmann::ordered_json::parse(R"({"outcome":"dry_run","before":{},"after":{},"parameters":[],
+    "goes_to":"the values before entry 0003","asks":["robot.id is not configured"]})");
+  const std::string text = to_text(describe_write_back(result));
+  EXPECT_THAT(text, HasSubstr("goes back to the values before entry 0003"));
+  EXPECT_THAT(text, HasSubstr("to be vouched for: robot.id is not configured"));
+}
+
 }  // namespace
 }  // namespace odomcalib::cli::document_test

@@ -138,9 +138,9 @@ TEST(Journal, a_record_for_which_the_disk_was_full_does_not_spoil_the_next_one) 
   const auto path = folder / "journal";
   auto journal = value_of(Journal::open(path));
   ASSERT_TRUE(journal.append(record_of(JournalState::begin)).ok());
-  const auto size = std::filesystem::file_size(path);
+  const auto size = to_line(*journal.last()).size();
   {
-    const FileLimit full(size + 20);
+    const FileLimit full(size + 20);  // less than what is reserved
     EXPECT_FALSE(journal.append(record_of(JournalState::write)).ok());
     EXPECT_EQ(std::filesystem::file_size(path), size);
     EXPECT_EQ(journal.last()->state, JournalState::begin);
@@ -150,6 +150,72 @@ TEST(Journal, a_record_for_which_the_disk_was_full_does_not_spoil_the_next_one) 
   ASSERT_TRUE(again.ok() && again.value().last());
   EXPECT_EQ(again.value().last()->state, JournalState::rollback);
   EXPECT_EQ(again.value().last()->seq, 2U);
+}
+
+TEST(Journal, a_disk_that_is_full_is_noticed_before_anything_begins) {
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  auto journal = value_of(Journal::open(path));
+  const FileLimit full(Journal::kReserved / 2);
+  EXPECT_FALSE(journal.append(record_of(JournalState::begin)).ok());
+  EXPECT_FALSE(journal.last());
+  EXPECT_EQ(std::filesystem::file_size(path), 0U);
+}
+
+/// States in the file, and whether nothing but zeros is behind the lines.
+std::pair<std::vector<JournalState>, bool> content_of(const std::filesystem::path& path) {
+  const std::string text = read_file_bytes(path).value();
+  std::vector<JournalState> states;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1)
+    states.push_back(from_line(text.substr(begin, end - begin)).value().state);
+  return {states, text.find_first_not_of('\0', begin) == std::string::npos};
+}
+
+// What a write-back needs to its end is there when it begins, and a crash does not give it away.
+TEST(Journal, has_space_for_a_whole_write_back_however_full_the_disk_gets_meanwhile) {
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  for (const bool crash : {false, true}) {
+    auto journal = value_of(Journal::open(path));
+    ASSERT_TRUE(journal.append(record_of(JournalState::begin)).ok());
+    const auto size = std::filesystem::file_size(path);
+    EXPECT_GE(size, Journal::kReserved);
+    EXPECT_TRUE(content_of(path).second);
+    auto next = crash ? value_of(Journal::open(path)) : std::move(journal);
+    EXPECT_EQ(std::filesystem::file_size(path), size);
+    const FileLimit full(size);
+    for (const auto state : {JournalState::write, JournalState::readback_ok, JournalState::proof_ok,
+                             JournalState::store_begin, JournalState::store_ok, JournalState::rollback,
+                             JournalState::needs_operator, JournalState::rollback, JournalState::rolled_back})
+      ASSERT_TRUE(next.append(record_of(state)).ok()) << name_of(state);
+    EXPECT_LT(std::filesystem::file_size(path), size) << "what is not needed is given back at the end";
+    EXPECT_EQ(content_of(path).first.back(), JournalState::rolled_back);
+  }
+  EXPECT_EQ(content_of(path).first.size(), 20U);
+}
+
+TEST(Journal, a_torn_record_in_the_reserved_space_is_written_over) {
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  {
+    auto journal = value_of(Journal::open(path));
+    ASSERT_TRUE(journal.append(record_of(JournalState::begin)).ok());
+    JournalRecord longer = record_of(JournalState::write);
+    longer.label = std::string(500, 'x');
+    ASSERT_TRUE(journal.append(longer).ok());
+  }
+  std::string text = read_file_bytes(path).value();
+  text[text.rfind('\n')] = '\0';
+  std::ofstream(path, std::ios::binary) << text;
+  auto journal = value_of(Journal::open(path));
+  EXPECT_EQ(journal.last()->state, JournalState::begin);
+  ASSERT_TRUE(journal.append(record_of(JournalState::rollback)).ok());
+  EXPECT_EQ(Journal::open(path).value().last()->state, JournalState::rollback);
+  ASSERT_TRUE(journal.append(record_of(JournalState::rolled_back)).ok());
+  EXPECT_EQ(
+      content_of(path),
+      (std::pair{std::vector{JournalState::begin, JournalState::rollback, JournalState::rolled_back}, true}));
 }
 
 TEST(Journal, is_rotated_between_write_backs_and_never_within_one) {
@@ -163,9 +229,13 @@ TEST(Journal, is_rotated_between_write_backs_and_never_within_one) {
   EXPECT_GT(std::filesystem::file_size(path), Journal::kRotateAt);
   ASSERT_TRUE(journal.append(record_of(JournalState::commit)).ok());
   ASSERT_TRUE(journal.append(record_of(JournalState::begin)).ok());
-  EXPECT_LT(std::filesystem::file_size(path), 2000U);
+  EXPECT_LT(std::filesystem::file_size(path), 2000U + Journal::kReserved);
   EXPECT_GT(std::filesystem::file_size(path.string() + ".1"), Journal::kRotateAt);
   EXPECT_EQ(Journal::open(path).value().last()->state, JournalState::begin);
+  // The numbers go on, also where the power fails right after the rotation.
+  std::filesystem::resize_file(path, 0);
+  EXPECT_EQ(Journal::open(path).value().last()->seq, 3U);
+  EXPECT_EQ(Journal::open(path).value().ends().back().state, JournalState::commit);
 }
 
 TEST(CalibrationInForce, is_the_announced_one_once_it_is_settled) {
@@ -196,6 +266,57 @@ TEST(CalibrationInForce, a_damaged_announcement_is_not_put_in_force) {
   std::ofstream(folder / "announced" / (id + ".json")) << "other";
   EXPECT_FALSE(calibrations.settle(id).ok());
   EXPECT_FALSE(std::filesystem::exists(calibrations.path()));
+}
+
+Provenance some_provenance() {
+  Provenance origin;
+  origin.entry = "0007";
+  origin.user = 1000;
+  origin.nominal = {{"track_width", 0.4}};
+  origin.nominal_from = {{"track_width", "robot.track_width of odomcalib.toml"}};
+  origin.restores = "0003";
+  origin.proven = true;
+  return origin;
+}
+
+TEST(Journal, keeps_whose_wish_it_was_and_what_its_values_were_held_to) {
+  JournalRecord record = record_of(JournalState::commit);
+  record.origin = some_provenance();
+  std::string line = to_line(record);
+  line.pop_back();
+  EXPECT_EQ(from_line(line).value().origin, some_provenance());
+}
+
+// The history is what the journal says: an entry that is missing, or that tells of an earlier end, is made of
+// it.
+TEST(History, is_made_of_the_journal_where_it_lacks_an_entry) {
+  const TemporaryFolder folder;
+  History history(folder / "history");
+  std::vector<JournalRecord> ends;
+  for (const auto state : {JournalState::commit, JournalState::needs_operator, JournalState::rolled_back}) {
+    ends.push_back(record_of(state));
+    ends.back().origin = some_provenance();
+    ends.back().origin.entry = state == JournalState::commit ? "0001" : "0002";
+  }
+  ends.push_back(record_of(JournalState::commit));  // of an earlier version
+  const auto missing = history.missing(ends);
+  ASSERT_EQ(missing.size(), 2U);
+  for (const auto& end : missing) {
+    ASSERT_TRUE(history.write(entry_of(end)).ok());
+    history.keep(entry_of(end));
+  }
+  EXPECT_TRUE(history.missing(ends).empty());
+  const History again(folder / "history");
+  EXPECT_TRUE(again.missing(ends).empty());
+  ASSERT_EQ(again.entries().size(), 2U);
+  EXPECT_EQ(again.entries()[0].outcome, "rolled_back");
+  EXPECT_EQ(again.entries()[1].outcome, "committed");
+  EXPECT_EQ(again.entries()[1].after, kNew);
+  EXPECT_EQ(again.entries()[1].origin.user, 1000U);
+  EXPECT_EQ(again.entries()[1].origin.restores, "0003");
+  ends.front().origin.entry = "0003";
+  ends.front().state = JournalState::needs_operator;
+  EXPECT_EQ(again.missing(ends).size(), 1U);
 }
 
 void add(History& history, HistoryEntry entry) {

@@ -17,7 +17,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Calibration example() {
   Calibration c;
-  c.robot = {0.154, 0.1541, 0.33, 2000.0, std::array<double, 3>{0.1, -0.2, 0.3}, "r1", "canopen:zlac8015d"};
+  c.robot = {
+      0.154,          0.1541, 0.33, 2000.0, std::array<double, 3>{0.1, -0.2, 0.3}, "r1", "canopen:zlac8015d",
+      "0xfee/0xd15/7"};
   c.parameters = {{"left_wheel_diameter", {0.1539999999999999, 0.0001, "m"}},
                   {"lidar_yaw", {1e-300, -1.0, "rad"}}};
   c.covariance_order = {"left_wheel_diameter", "lidar_yaw"};
@@ -53,6 +55,7 @@ TEST(CalibrationFile, read_returns_what_was_written) {
   EXPECT_EQ(back.covariance, example().covariance);
   EXPECT_EQ(back.extensions, example().extensions);
   EXPECT_EQ(back.robot.lidar_pose, example().robot.lidar_pose);
+  EXPECT_EQ(back.robot.controller_id, "0xfee/0xd15/7");
   EXPECT_EQ(back.methods[0].refused, "only 1 straight run");
   EXPECT_EQ(back.data[0].counts, example().data[0].counts);
   EXPECT_EQ(back.data[0].choices, example().data[0].choices);

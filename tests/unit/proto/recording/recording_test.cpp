@@ -33,7 +33,7 @@ TEST(Recording, reads_every_kind_of_line) {
   const auto r = value_of(read_text(
       std::string(
           R"({"type":"robot","left_wheel_diameter":0.15,"right_wheel_diameter":0.16,"track_width":0.33,)"
-          R"("ticks_per_rev":2796.8,"lidar_pose":[0.1,-0.2,3.1],"robot_id":"r1","controller":"c"})"
+          R"("ticks_per_rev":2796.8,"lidar_pose":[0.1,-0.2,3.1],"robot_id":"r1","controller":"c","controller_id":"e/1/2"})"
           "\n\n") +
       ticks_line(0.5, -3, 4) +
       R"({"type":"scan","t":0.25,"angle_min":1,"angle_increment":-0.5,"time_increment":0.001,"range_min":0.1,)"
@@ -49,6 +49,7 @@ TEST(Recording, reads_every_kind_of_line) {
   EXPECT_EQ(r.robot.ticks_per_rev, 2796.8);
   EXPECT_EQ(r.robot.lidar_pose, (std::array<double, 3>{0.1, -0.2, 3.1}));
   EXPECT_EQ(r.robot.robot_id, "r1");
+  EXPECT_EQ(r.robot.controller_id, "e/1/2");
   ASSERT_EQ(r.ticks.size(), 1U);
   EXPECT_EQ(r.ticks[0].left, -3);
   ASSERT_EQ(r.scans.size(), 1U);
@@ -305,7 +306,7 @@ TEST(Recording, survives_writing_as_json_lines) {
   std::uniform_real_distribution<double> any(0.0, 10.0);
   Recording r;
   r.robot = {0.1 + 0.05, any(random), any(random), 2796.8, std::array<double, 3>{any(random), 0, -1},
-             "ä\"\\",    "c"};
+             "ä\"\\",    "c",         "e/1/2"};
   for (int i = 0; i < 50; ++i) {
     const double t = i + any(random) * 0.01;
     r.ticks.push_back({t, std::int64_t{3} * i - 20, std::int64_t{-2} * i, i / 25});
@@ -335,6 +336,7 @@ TEST(Recording, survives_writing_as_json_lines) {
     EXPECT_EQ(b.robot.left_wheel_diameter, r.robot.left_wheel_diameter);
     EXPECT_EQ(b.robot.right_wheel_diameter, r.robot.right_wheel_diameter);
     EXPECT_EQ(b.robot.robot_id, r.robot.robot_id);
+    EXPECT_EQ(b.robot.controller_id, r.robot.controller_id);
     ASSERT_EQ(b.ticks.size(), r.ticks.size());
     ASSERT_EQ(b.scans.size(), r.scans.size());
     for (std::size_t i = 0; i < r.ticks.size(); ++i) {

@@ -47,12 +47,17 @@ TEST(Messages, have_the_published_fingerprints) {
 }
 
 TEST(Messages, survive_encoding) {
-  const RobotDescription robot{0.1, 0.2, 0.3, 2796.8, std::array<double, 3>{1, 2, 3}, "r", "c"};
+  const RobotDescription robot{0.1, 0.2, 0.3, 2796.8, std::array<double, 3>{1, 2, 3}, "r", "c [d]", "e/1/2"};
   const auto robot_back = decode_robot(encode(5, robot));
   ASSERT_TRUE(robot_back);
   EXPECT_EQ(robot_back->right_wheel_diameter, 0.2);
   EXPECT_EQ(robot_back->lidar_pose, robot.lidar_pose);
-  EXPECT_EQ(robot_back->controller, "c");
+  EXPECT_EQ(robot_back->controller, "c [d]");
+  EXPECT_EQ(robot_back->controller_id, "e/1/2");
+  RobotDescription unknown;
+  unknown.controller = "c";  // of a controller that does not say which it is
+  EXPECT_EQ(decode_robot(encode(5, unknown))->controller, "c");
+  EXPECT_EQ(decode_robot(encode(5, unknown))->controller_id, "");
 
   const auto ticks =
       decode_ticks(encode(kStamp, TickSample{0, -5, 1LL << 40, 3}, {9, TimeSource::sync_echo, 250}));

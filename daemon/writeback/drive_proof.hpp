@@ -1,0 +1,58 @@
+// Whether a drive has proven values: what odometry was off by against the lidar with the old ones, and is
+// with the new ones. It looks at the answers of motions, whoever asked for them.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "proto/result.hpp"
+
+namespace odomcalib {
+
+/// What odometry is off by against the lidar, root mean squares over the moves.
+struct DriveErrors {
+  double metre_length = 0.0;   ///< m per metre of a straight
+  double metre_heading = 0.0;  ///< rad per metre of a straight
+  double turn = 0.0;           ///< rad per full turn on the spot
+};
+
+/// The errors of the newest straight and the newest turn on the spot.
+class DrivenErrors {
+ public:
+  /// @param motion answer of Straight or Spin: "moves" with "lidar" [x, y, yaw] and "error"
+  /// @return false, and nothing changes: the lidar did not recognise the place after every move, or the moves
+  /// are shorter than settings::kLeastProofWay_m and kLeastProofTurn_rad
+  bool add(const nlohmann::ordered_json& motion);
+  /// nullopt: a straight or a turn is missing.
+  [[nodiscard]] std::optional<DriveErrors> all() const;
+
+ private:
+  DriveErrors errors_;
+  bool straight_ = false, turn_ = false;
+};
+
+/// What is worse than before, by more than the comparison can tell; nullopt: nothing.
+std::optional<std::string> worse(const DriveErrors& before, const DriveErrors& after);
+
+class DriveProof {
+ public:
+  /// A motion has ended, with the values in force.
+  void driven(const nlohmann::ordered_json& motion) { (void)now_.add(motion); }
+  /// Other values are in force, and wait for their proof.
+  void other_values();
+  /// The former ones are in force again.
+  void taken_back();
+  /// Values are stored: those that waited, and were driven with, or others.
+  void committed();
+  /// Nobody knows what was driven with the values in force.
+  void forget();
+  /// Why the values that wait are not proven: nothing was driven with them or before them, or it is worse.
+  [[nodiscard]] std::optional<Error> lacking() const;
+
+ private:
+  DrivenErrors now_;
+  std::optional<DrivenErrors> before_;  // with the values that were in force before those that wait
+};
+
+}  // namespace odomcalib
