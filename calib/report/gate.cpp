@@ -28,6 +28,7 @@ Calibration refused_for(const Error& cause, Calibration calibration) {
   refused.robot = calibration.robot;
   refused.verdict = Verdict::refused;
   refused.reasons = {cause.text()};
+  refused.driven = calibration.driven;
   refused.data = std::move(calibration.data);
   refused.discarded = std::move(calibration.discarded);
   refused.repairs = std::move(calibration.repairs);

@@ -41,6 +41,8 @@ Result<TopicChoices> parsed(const std::vector<std::string>& topics) {
 
 void add_reading_options(CLI::App& verb, RecordingOptions& options) {
   verb.add_option("--robot", options.robot_file, "nominal values (TOML) instead of those of the recording");
+  verb.add_option("--robot-id", options.robot_id,
+                  "name of the robot, instead of that of the recording or of --robot");
   verb.add_option("--topic", options.topics,
                   "of a ROS recording: PART=TOPIC, or wheels=TOPIC:LEFT,RIGHT with the joints, or "
                   "wheels=LEFT_TOPIC,RIGHT_TOPIC; parts are scan, "
@@ -79,6 +81,7 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
     RobotDescription over = robot;
     // Counts that were made of something else have the resolution that they were made with.
     if (recording.value().motion != MotionSource::ticks) over.ticks_per_rev = 0.0;
+    if (!options.robot_id.empty()) over.robot_id = options.robot_id;
     recording.value().robot = overlaid(recording.value().robot, over);
     recordings.push_back(std::move(recording).value());
   }

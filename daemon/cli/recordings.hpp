@@ -13,11 +13,12 @@ class App;
 namespace odomcalib::cli {
 
 struct RecordingOptions {
+  std::string robot_id;    ///< replaces that of the recordings and of the file; empty: none
   std::string robot_file;  ///< TOML with nominal values that replace those of the recordings; empty: none
   std::vector<std::string> topics;  ///< PART=TOPIC[:LEFT,RIGHT]: what is what in ROS recordings
 };
 
-/// --robot and --topic, alike for every verb that reads recordings.
+/// --robot, --robot-id and --topic, alike for every verb that reads recordings.
 void add_reading_options(CLI::App& verb, RecordingOptions& options);
 
 /// Which one was taken where a file holds several stands on standard error, a line each.

@@ -4,6 +4,7 @@
 
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/scale.hpp"
+#include "proto/calibration/utc.hpp"
 #include "proto/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
 
@@ -56,9 +57,14 @@ Json robot(const RobotDescription& robot) {
            {"track_width", number(robot.track_width)},
            {"ticks_per_rev", number(robot.ticks_per_rev)},
            {"lidar_pose", robot.lidar_pose ? numbers(*robot.lidar_pose) : Json(nullptr)}};
-  if (!robot.robot_id.empty()) out["robot_id"] = robot.robot_id;
+  out["robot_id"] = robot.robot_id.empty() ? Json(nullptr) : Json(robot.robot_id);
   if (!robot.controller.empty()) out["controller"] = robot.controller;
   return out;
+}
+
+Json driven(const std::optional<Driven>& driven) {
+  if (!driven) return nullptr;
+  return {{"begin", utc_text(driven->begin)}, {"end", utc_text(driven->end)}};
 }
 
 Json linear_correction(const std::optional<LinearCorrection>& linear) {
@@ -168,6 +174,7 @@ std::string to_json(const Calibration& calibration) {
       {"verdict", name_of(calibration.verdict)},
       {"reasons", calibration.reasons},
       {"robot", robot(calibration.robot)},
+      {"driven", driven(calibration.driven)},
       {"parameters", parameters(calibration)},
       {"covariance", {{"order", calibration.covariance_order}, {"matrix", matrix(calibration.covariance)}}},
       {"linear_correction", linear_correction(calibration.linear_correction)},

@@ -38,6 +38,9 @@ class RecordingBuilder {
                std::optional<double> t = std::nullopt);
   /// Something was taken where the file held several.
   void choose(const std::string& choice) { recording_.choices.push_back(choice); }
+  /// Times of what is added count from here.
+  /// @param t s since 1970
+  void count_from(double t) { recording_.time_zero = t; }
   /// Whether anything tells the motion of the wheels.
   [[nodiscard]] bool has_motion() const;
   /// Why nothing does: what most samples of it were left out for.

@@ -130,6 +130,7 @@ std::optional<Error> fill_chosen(RecordingBuilder& builder, Chosen& chosen, cons
   if (auto error = settle_publishers(builder, chosen, no_angles, where)) return error;
   const Clock clock(chosen);
   if (!clock.remark().empty()) builder.choose(clock.remark());
+  builder.count_from(clock.start());
   add_wheels(builder, chosen, clock, no_angles);
   if (const Topic* topic = chosen[Part::odometry]) add_poses(builder, *topic, clock, Part::odometry);
   if (const Topic* topic = chosen[Part::pose]) add_poses(builder, *topic, clock, Part::pose);
