@@ -16,6 +16,7 @@
 #include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
+#include "daemon/cli/settings.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "odomcalib_version.hpp"
 #include "proto/calibration/calibration.hpp"
@@ -32,6 +33,7 @@ struct SolveArguments {
   calib::classical::ClosedFormOptions cuts;
   RecordingOptions reading;
   bool same_robot = false;
+  std::optional<double> odometer_km;
 };
 
 Result<void> write_results(const SolveArguments& options, const calib::Solution& solution) {
@@ -96,6 +98,8 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
   calib::Solution solution = calib::solve_with_pairs(recordings.value(), how, progress);
   Calibration& calibration = solution.calibration;
   calibration.extensions["settings"] = settings_of(options);
+  if (options.odometer_km)
+    calibration.extensions["odometer"] = nlohmann::json(1000.0 * *options.odometer_km).dump();
   line.clear();
   if (auto written = write_results(options, solution); !written)
     return report_error(written.error(), session.json);
@@ -130,6 +134,9 @@ void add_solve(CLI::App& app, Session& session) {
   verb->add_option("--cut", options->cuts.drop_fraction,
                    "share that each round of the closed form cuts (0.01)")
       ->check(finite(0.0, 0.5));
+  verb->add_option("--odometer", options->odometer_km,
+                   "km that the robot's counter of distance shows: kept in the file, compare draws over it")
+      ->check(finite(0.0, settings::kMostOdometer_km));
   verb->add_option("--note", options->note, "surface, load, tyres: kept in file and report");
   verb->callback([&session, options] {
     session.takes_much_memory = true;
