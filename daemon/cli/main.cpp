@@ -85,6 +85,7 @@ int run(int argc, char** argv) {
   odomcalib::cli::add_solve(app, session);
   odomcalib::cli::add_predict(app, session);
   odomcalib::cli::add_convert(app, session);
+  odomcalib::cli::add_inspect(app, session);
   odomcalib::cli::add_decode(app, session);
   odomcalib::cli::add_match(app, session);
   odomcalib::cli::add_report(app, session);

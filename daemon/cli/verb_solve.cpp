@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -78,6 +79,14 @@ std::optional<Error> wrong_sensor(const SolveArguments& options, const std::vect
                                : fmt::format("there are: {}", fmt::join(sensors, ", "))};
 }
 
+/// What is wrong with a file shows in what it holds.
+int report_unreadable(const Error& error, JsonMode json) {
+  const int status = report_error(error, json);
+  if (error.code != ErrorCode::io && std::filesystem::exists(error.where))
+    tell("what it holds: odomcalibctl inspect " + error.where);
+  return status;
+}
+
 int solve_recordings(const SolveArguments& options, const Session& session) {
   if (const auto wrong = calib::terms::wrong_effects(options.effects))
     return report_error(*wrong, session.json);
@@ -89,7 +98,7 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
     how.scale = scale.value();
   }
   auto recordings = read_recordings(options.recordings, options.reading);
-  if (!recordings) return report_error(recordings.error(), session.json);
+  if (!recordings) return report_unreadable(recordings.error(), session.json);
   if (const auto wrong = wrong_sensor(options, recordings.value())) return report_error(*wrong, session.json);
   how.sensor = options.sensor;
   for (Recording& recording : recordings.value()) recording = without_intensities(std::move(recording));
