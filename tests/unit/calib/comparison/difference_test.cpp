@@ -108,6 +108,14 @@ TEST(Difference, says_what_odometry_by_the_earlier_values_would_read_now) {
   EXPECT_NEAR(found.turn_error->value, 2.0 * M_PI * 0.005, 3.0 * found.turn_error->std) << "too far";
 }
 
+TEST(State, knows_the_mean_of_two_diameters_that_err_together) {
+  std::mt19937 random(12);
+  const auto mean = mean_diameter(state_of(drawn({}, random)));
+  ASSERT_TRUE(mean);
+  EXPECT_NEAR(mean->value, 0.1501, 2e-4);
+  EXPECT_NEAR(mean->std, 3e-5 * std::sqrt(0.5 * (1.0 + 0.8)), 1e-9);
+}
+
 TEST(Difference, tells_which_effects_came_went_and_changed) {
   std::mt19937 random(6);
   Calibration before = drawn({}, random), after = drawn({}, random);

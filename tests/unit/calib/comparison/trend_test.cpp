@@ -76,6 +76,31 @@ TEST(Crossing, holds_the_true_time_as_often_as_its_level_says) {
   EXPECT_GT(held, 0.93 * bounded);
 }
 
+// Where the level alone is uncertain the interval is as wide as it is over the slope.
+TEST(Crossing, has_the_uncertainty_of_level_and_slope) {
+  const Line level{.centre = 0.0,
+                   .level = 1.0,
+                   .slope = -1.0,
+                   .level_std = 0.1,
+                   .slope_std = 0.0,
+                   .scatter = 1.0,
+                   .scatter_p = 1.0,
+                   .p_value = 0.0,
+                   .half_width = 2.0,
+                   .last = 0.0,
+                   .points = 9};
+  const Crossing found = crossing(level, 0.0, 9.0);
+  EXPECT_NEAR(found.at.value(), 1.0, 1e-9);
+  EXPECT_NEAR(found.earliest.value(), 0.8, 1e-9);
+  EXPECT_NEAR(found.latest.value(), 1.2, 1e-9);
+  Line slope = level;
+  slope.level_std = 0.0;
+  slope.slope_std = 0.1;
+  const Crossing wider = crossing(slope, 0.0, 9.0);
+  EXPECT_NEAR(wider.earliest.value(), 1.0 / 1.2, 1e-9);
+  EXPECT_NEAR(wider.latest.value(), 1.0 / 0.8, 1e-9);
+}
+
 // Nobody can say when what may stand still passes anything, but until when it certainly has not.
 TEST(Crossing, of_a_line_that_may_be_level_has_no_time_but_an_earliest_one) {
   std::mt19937 random(3);
