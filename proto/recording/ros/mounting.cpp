@@ -80,10 +80,11 @@ std::optional<Mounting> mounting_of(const std::vector<Transform>& transforms,
           std::find_if(of_lidar.begin(), of_lidar.end(), [&](const auto& one) { return one.first == frame; });
       if (common == of_lidar.end()) continue;
       const Placed mount = composed(inverse(base_in_frame), common->second);
-      return Mounting{
-          base,
-          {mount.position[0], mount.position[1], std::atan2(mount.rotation[1][0], mount.rotation[0][0])},
-          mount.rotation[2][2] > kLevel};
+      const std::array<double, 3> pose{mount.position[0], mount.position[1],
+                                       std::atan2(mount.rotation[1][0], mount.rotation[0][0])};
+      if (!std::all_of(pose.begin(), pose.end(), [](double one) { return std::isfinite(one); }))
+        return std::nullopt;
+      return Mounting{base, pose, mount.rotation[2][2] > kLevel};
     }
   return std::nullopt;
 }

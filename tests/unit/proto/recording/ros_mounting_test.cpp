@@ -89,6 +89,15 @@ TEST(RosMounting, is_not_taken_of_frames_that_move) {
   EXPECT_FALSE(found.robot.lidar_pose);
 }
 
+TEST(RosMounting, with_places_that_are_no_numbers_is_none) {
+  for (const double wrong : {std::nan(""), HUGE_VAL, 1e308}) {
+    auto far = frames(about_z(0.0));
+    far[0].position = far[1].position = far[2].position = {wrong, wrong, wrong};
+    EXPECT_FALSE(value_of(read_ros(write_mcap(with_frames(Wire::cdr_little, far)))).robot.lidar_pose)
+        << wrong;
+  }
+}
+
 TEST(RosMounting, of_a_damaged_message_is_none) {
   RosLog log = small_log(Wire::cdr_little);
   log.add("/tf_static", "tf2_msgs/TFMessage", kRosStart,
