@@ -50,6 +50,17 @@ inline constexpr double kDiametersOfStraight = 3e-4;
 /// five track widths has it.
 inline constexpr double kHardlyAny = 0.1;
 
+// --- Motion for each parameter ---------------------------------------------------------------------------
+
+/// m of straight lines and rad of turns in each direction that show the lengths, and the lidar's place, well.
+/// Chosen: what docs/user/motions.md asks for.
+inline constexpr double kEnoughStraight_m = 1.0, kEnoughTurn_rad = 2.0 * math::kPi,
+                        kEnoughTurnForLidar_rad = math::kPi;
+/// s without motion that is a stop. Chosen: scans of a lidar with two turns a second are sharp then.
+inline constexpr double kStop_s = 0.5;
+/// m/s, of a rim that stands. Chosen: angles of a driver that filters them creep.
+inline constexpr double kStanding_m_s = 0.002;
+
 // --- Closed form -----------------------------------------------------------------------------------------
 
 /// Condition of the rotation's equations above which they cannot separate the two wheels. Published: the

@@ -271,6 +271,7 @@ Error cause_of(const Error& error, std::span<const measurement::PairSet> sets) {
 Calibration begun(const ingest::Recordings& recordings, std::span<const measurement::PairSet> sets) {
   Calibration calibration;
   if (recordings.size() > 0) calibration.robot = recordings.front().robot;
+  calibration.driven = driven_in(recordings.view());
   calibration.data = data_use(recordings.view(), sets);
   calibration.discarded = left_out(recordings.view(), sets);
   calibration.repairs = repairs_of(recordings);

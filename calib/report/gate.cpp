@@ -29,6 +29,7 @@ Calibration refused_for(const Error& cause, Calibration calibration) {
   refused.verdict = Verdict::refused;
   refused.reasons = {cause.text()};
   refused.next_step = next_after(cause);
+  refused.driven = calibration.driven;
   refused.data = std::move(calibration.data);
   refused.discarded = std::move(calibration.discarded);
   refused.repairs = std::move(calibration.repairs);

@@ -1,10 +1,12 @@
 #include "calib/report/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/classical/closed_form.hpp"
 #include "calib/classical/linear.hpp"
 #include "calib/classical/manual.hpp"
+#include "proto/calibration/utc.hpp"
 
 namespace odomcalib::calib::report {
 namespace {
@@ -201,6 +203,27 @@ std::vector<DataUse> data_use(std::span<const Recording> recordings,
     uses.push_back(std::move(use));
   }
   return uses;
+}
+
+std::optional<Driven> driven_in(std::span<const Recording> recordings) {
+  std::optional<Driven> driven;
+  const auto take = [&driven](double t) {
+    if (!is_date(t)) return;
+    if (!driven) driven = Driven{t, t};
+    driven->begin = std::min(driven->begin, t);
+    driven->end = std::max(driven->end, t);
+  };
+  for (const Recording& recording : recordings) {
+    const auto take_ends = [&](const auto& samples) {
+      if (samples.empty()) return;
+      take(recording.time_zero + samples.front().t);
+      take(recording.time_zero + samples.back().t);
+    };
+    take_ends(recording.ticks);
+    take_ends(recording.scans);
+    take_ends(recording.poses);
+  }
+  return driven;
 }
 
 }  // namespace odomcalib::calib::report

@@ -36,4 +36,7 @@ MethodResult joint_method(const estimation::FitResult& fit);
 std::vector<DataUse> data_use(std::span<const Recording> recordings,
                               std::span<const measurement::PairSet> pairs);
 
+/// First and last sample of all recordings whose clock tells the date; nullopt where that of none does.
+std::optional<Driven> driven_in(std::span<const Recording> recordings);
+
 }  // namespace odomcalib::calib::report

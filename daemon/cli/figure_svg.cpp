@@ -137,6 +137,7 @@ class Drawing {
       if (drawable(point))
         fmt::format_to(std::back_inserter(path), "M{:.1f} {:.1f}h0", px(point[0]), py(point[1]));
     append("d", curve, path);
+    bars(curve);
   }
 
   void bars(const Curve& curve) {

@@ -86,9 +86,11 @@ int run(int argc, char** argv) {
   odomcalib::cli::add_solve(app, session);
   odomcalib::cli::add_predict(app, session);
   odomcalib::cli::add_convert(app, session);
+  odomcalib::cli::add_inspect(app, session);
   odomcalib::cli::add_decode(app, session);
   odomcalib::cli::add_match(app, session);
   odomcalib::cli::add_report(app, session);
+  odomcalib::cli::add_compare(app, session);
   odomcalib::cli::add_export(app, session);
   odomcalib::cli::add_graph(app, session);
   odomcalib::cli::add_questions(app, session);

@@ -27,9 +27,11 @@ const Recording* same_drive(const std::vector<Recording>& recordings, const Reco
   return nullptr;
 }
 
-Result<TopicChoices> parsed(const std::vector<std::string>& topics) {
+}  // namespace
+
+Result<TopicChoices> topic_choices_of(const RecordingOptions& options) {
   TopicChoices choices;
-  for (const auto& text : topics) {
+  for (const auto& text : options.topics) {
     auto choice = parse_topic_choice(text);
     if (!choice) return choice.error();
     choices.push_back(std::move(choice).value());
@@ -37,10 +39,28 @@ Result<TopicChoices> parsed(const std::vector<std::string>& topics) {
   return choices;
 }
 
-}  // namespace
+Result<RobotDescription> robot_of(const RecordingOptions& options) {
+  RobotDescription robot;
+  if (!options.robot_file.empty()) {
+    const auto given = read_robot_file(options.robot_file);
+    if (!given) return given.error();
+    robot = given.value();
+  }
+  if (!options.robot_id.empty()) robot.robot_id = options.robot_id;
+  return robot;
+}
+
+Recording with_nominal(Recording recording, RobotDescription robot) {
+  // Counts that were made of something else have the resolution that they were made with.
+  if (recording.motion != MotionSource::ticks) robot.ticks_per_rev = 0.0;
+  recording.robot = overlaid(recording.robot, robot);
+  return recording;
+}
 
 void add_reading_options(CLI::App& verb, RecordingOptions& options) {
   verb.add_option("--robot", options.robot_file, "nominal values (TOML) instead of those of the recording");
+  verb.add_option("--robot-id", options.robot_id,
+                  "name of the robot, instead of that of the recording or of --robot");
   verb.add_option("--topic", options.topics,
                   "of a ROS recording: PART=TOPIC, or wheels=TOPIC:LEFT,RIGHT with the joints, or "
                   "wheels=LEFT_TOPIC,RIGHT_TOPIC; parts are scan, "
@@ -51,20 +71,15 @@ void add_reading_options(CLI::App& verb, RecordingOptions& options) {
 
 Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& paths,
                                                const RecordingOptions& options) {
-  const std::string& robot_file = options.robot_file;
-  const auto topics = parsed(options.topics);
+  const auto topics = topic_choices_of(options);
   if (!topics) return topics.error();
-  RobotDescription robot;
-  if (!robot_file.empty()) {
-    const auto given = read_robot_file(robot_file);
-    if (!given) return given.error();
-    robot = given.value();
-  }
+  const auto robot = robot_of(options);
+  if (!robot) return robot.error();
   std::vector<Recording> recordings;
   for (const auto& path : paths) {
     auto recording = [&] {
       const Meanwhile shown("reading " + path);
-      return read_recording(path, robot_file.empty() ? nullptr : &robot, topics.value());
+      return read_recording(path, &robot.value(), topics.value());
     }();
     if (!recording) {
       for (const auto& remark : recording.error().remarks) tell(fmt::format("{}: {}", path, remark));
@@ -76,11 +91,7 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
     if (const Recording* one = same_drive(recordings, recording.value()))
       return Error{ErrorCode::usage, "holds the same drive as \"" + one->name + "\"", path,
                    "name every recording once"};
-    RobotDescription over = robot;
-    // Counts that were made of something else have the resolution that they were made with.
-    if (recording.value().motion != MotionSource::ticks) over.ticks_per_rev = 0.0;
-    recording.value().robot = overlaid(recording.value().robot, over);
-    recordings.push_back(std::move(recording).value());
+    recordings.push_back(with_nominal(std::move(recording).value(), robot.value()));
   }
   return recordings;
 }

@@ -13,12 +13,22 @@ class App;
 namespace odomcalib::cli {
 
 struct RecordingOptions {
+  std::string robot_id;    ///< replaces that of the recordings and of the file; empty: none
   std::string robot_file;  ///< TOML with nominal values that replace those of the recordings; empty: none
   std::vector<std::string> topics;  ///< PART=TOPIC[:LEFT,RIGHT]: what is what in ROS recordings
 };
 
-/// --robot and --topic, alike for every verb that reads recordings.
+/// --robot, --robot-id and --topic, alike for every verb that reads recordings.
 void add_reading_options(CLI::App& verb, RecordingOptions& options);
+
+/// What --topic says. Error: usage.
+Result<TopicChoices> topic_choices_of(const RecordingOptions& options);
+
+/// Nominal values of --robot and --robot-id; zero and empty where they say nothing. Errors of the file.
+Result<RobotDescription> robot_of(const RecordingOptions& options);
+
+/// With nominal values in place of its own, as far as they are stated.
+Recording with_nominal(Recording recording, RobotDescription robot);
 
 /// Which one was taken where a file holds several stands on standard error, a line each.
 Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& paths,

@@ -17,6 +17,22 @@ inline constexpr std::size_t kFewRepetitions = 3;
 /// Deviation over its part that repetitions show. Derived: the root of two, where both parts are equal.
 inline constexpr double kWholeOverShown = std::numbers::sqrt2;
 
+// --- Comparison of calibrations -------------------------------------------------------------------------
+
+/// m in a metre, the largest bound of its error. Chosen: beyond it the nominal values are wrong, not worn.
+inline constexpr double kMostErrorOfMetre = 0.2;
+/// km, the largest that a counter of the robot may say. Chosen: a hundred times what a robot of ten years
+/// has.
+inline constexpr double kMostOdometer_km = 1e7;
+
+// --- Inspection of a recording ---------------------------------------------------------------------------
+
+/// m, and counts of a wheel's turn, of a robot of which nobody stated them: what kinds of motion there are
+/// hardly depends on them. Chosen: those of the simulated robot.
+inline constexpr double kUsualDiameter_m = 0.15, kUsualTrack_m = 0.4, kUsualTicks = 4096.0;
+/// Topics that are listed in text. Chosen: a screen of them.
+inline constexpr std::size_t kTopicLines = 40;
+
 // --- Words of the report ---------------------------------------------------------------------------------
 
 /// Share of a pattern in the residual from which on the variable is said to be what it depends on. Chosen.

@@ -121,8 +121,12 @@ void print_parameters(const ordered_json& parameters, const Session& session) {
   print_text(describe_parameters(parameters), session.legend);
 }
 
-void print_history(const ordered_json& entries, const Session& session) {
-  print_text(describe_history(entries), session.legend);
+void print_history(const ordered_json& answer, const Session& session) {
+  print_text(describe_history(answer.value("entries", ordered_json::array())), session.legend);
+  const std::string folder = answer.value("calibrations", "");
+  if (!folder.empty())
+    print_line("What changed between the calibrations of this robot: odomcalibctl compare " + folder +
+               "/*.json");
 }
 
 void add_question(CLI::App& app, Session& session, const char* verb, const char* help,
@@ -145,7 +149,7 @@ void add_questions(CLI::App& app, Session& session) {
   add_question(app, session, "stop", "Stop the robot and whatever runs",
                {"Stop", "", "stop", [](const ordered_json&, const Session&) { std::cout << "stopped\n"; }});
   add_question(app, session, "history", "What was written to the controller",
-               {"History", "entries", "history", print_history});
+               {"History", "", "history", print_history});
   auto* params = app.add_subcommand("params", "Parameters of the controller");
   params->require_subcommand(1);
   params->fallthrough();

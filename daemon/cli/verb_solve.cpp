@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 #include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
+#include "daemon/cli/settings.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "odomcalib_version.hpp"
 #include "proto/calibration/calibration.hpp"
@@ -32,6 +34,7 @@ struct SolveArguments {
   calib::classical::ClosedFormOptions cuts;
   RecordingOptions reading;
   bool same_robot = false;
+  std::optional<double> odometer_km;
 };
 
 Result<void> write_results(const SolveArguments& options, const calib::Solution& solution) {
@@ -76,6 +79,14 @@ std::optional<Error> wrong_sensor(const SolveArguments& options, const std::vect
                                : fmt::format("there are: {}", fmt::join(sensors, ", "))};
 }
 
+/// What is wrong with a file shows in what it holds.
+int report_unreadable(const Error& error, JsonMode json) {
+  const int status = report_error(error, json);
+  if (error.code != ErrorCode::io && std::filesystem::exists(error.where))
+    tell("what it holds: odomcalibctl inspect " + error.where);
+  return status;
+}
+
 int solve_recordings(const SolveArguments& options, const Session& session) {
   if (const auto wrong = calib::terms::wrong_effects(options.effects))
     return report_error(*wrong, session.json);
@@ -87,7 +98,7 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
     how.scale = scale.value();
   }
   auto recordings = read_recordings(options.recordings, options.reading);
-  if (!recordings) return report_error(recordings.error(), session.json);
+  if (!recordings) return report_unreadable(recordings.error(), session.json);
   if (const auto wrong = wrong_sensor(options, recordings.value())) return report_error(*wrong, session.json);
   how.sensor = options.sensor;
   for (Recording& recording : recordings.value()) recording = without_intensities(std::move(recording));
@@ -96,6 +107,8 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
   calib::Solution solution = calib::solve_with_pairs(recordings.value(), how, progress);
   Calibration& calibration = solution.calibration;
   calibration.extensions["settings"] = settings_of(options);
+  if (options.odometer_km)
+    calibration.extensions["odometer"] = nlohmann::json(1000.0 * *options.odometer_km).dump();
   line.clear();
   if (auto written = write_results(options, solution); !written)
     return report_error(written.error(), session.json);
@@ -130,6 +143,9 @@ void add_solve(CLI::App& app, Session& session) {
   verb->add_option("--cut", options->cuts.drop_fraction,
                    "share that each round of the closed form cuts (0.01)")
       ->check(finite(0.0, 0.5));
+  verb->add_option("--odometer", options->odometer_km,
+                   "km that the robot's counter of distance shows: kept in the file, compare draws over it")
+      ->check(finite(0.0, settings::kMostOdometer_km));
   verb->add_option("--note", options->note, "surface, load, tyres: kept in file and report");
   verb->callback([&session, options] {
     session.takes_much_memory = true;

@@ -25,7 +25,8 @@ struct Session {
 
 using AddVerb = void(CLI::App& app, Session& session);
 // Offline: need no daemon.
-AddVerb add_solve, add_predict, add_convert, add_decode, add_match, add_report, add_export, add_graph;
+AddVerb add_solve, add_predict, add_convert, add_decode, add_match, add_report, add_compare, add_inspect,
+    add_export, add_graph;
 // Ask the daemon.
 AddVerb add_questions, add_wait, add_monitor, add_view, add_record, add_manual, add_motions;
 int show_status(const Session& session);

@@ -26,6 +26,11 @@ struct Quantity {
 /// Ordered, because the file and every table show quantities in a fixed order.
 using QuantityList = std::vector<std::pair<std::string, Quantity>>;
 
+/// When the robot was driven: first and last sample, in s since 1970, UTC.
+struct Driven {
+  double begin = 0.0, end = 0.0;
+};
+
 struct LinearCorrection {
   std::array<std::array<double, 3>, 3> matrix{};
   double condition = 0.0;       ///< condition number of A^T A
@@ -83,7 +88,8 @@ enum class Verdict { accepted, accepted_with_warnings, refused };
 const char* name_of(Verdict verdict);
 
 struct Calibration {
-  RobotDescription robot;  ///< nominal values used
+  RobotDescription robot;        ///< nominal values used
+  std::optional<Driven> driven;  ///< none where no recording has a clock that tells the date
   QuantityList
       parameters;  ///< left_wheel_diameter, right_wheel_diameter, track_width, lidar_x, lidar_y, lidar_yaw
   std::vector<std::string> covariance_order;

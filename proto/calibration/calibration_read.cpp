@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/utc.hpp"
 #include "proto/file_bytes.hpp"
 #include "proto/recording/recording.hpp"
 
@@ -15,10 +16,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormat = "odomcalib-calibration/1";
-constexpr std::array<std::string_view, 15> kCalibrationMembers{
-    "format",     "verdict",           "reasons", "next_step", "robot",       "parameters",
-    "covariance", "linear_correction", "methods", "effects",   "unexplained", "residual",
-    "data",       "discarded",         "repairs"};
+constexpr std::array<std::string_view, 16> kCalibrationMembers{
+    "format",     "verdict",    "reasons",           "next_step", "driven",  "robot",
+    "parameters", "covariance", "linear_correction", "methods",   "effects", "unexplained",
+    "residual",   "data",       "discarded",         "repairs"};
 constexpr int kDeepestCalibration = 64;
 
 /// One JSON value and its path. Wrong types are noted once, in `problem`, and read as empty values.
@@ -118,6 +119,13 @@ RobotDescription read_robot(const Node& node) {
   out.controller = node["controller"].text();
   out.controller_id = node["controller_id"].text();
   return out;
+}
+
+std::optional<Driven> read_driven(const Node& node) {
+  if (node.is_null()) return std::nullopt;
+  const auto begin = utc_from(node["begin"].text()), end = utc_from(node["end"].text());
+  if (!node.expect(begin && end, "two times like 2026-05-04T12:30:00Z")) return std::nullopt;
+  return Driven{*begin, *end};
 }
 
 std::optional<LinearCorrection> read_linear_correction(const Node& node) {
@@ -245,6 +253,7 @@ Calibration calibration(const Json& json, std::string& problem) {
   const Node root(json, "", problem);
   Calibration out;
   out.robot = read_robot(root["robot"]);
+  out.driven = read_driven(root["driven"]);
   out.parameters = read_quantities(root["parameters"]);
   out.covariance_order = texts(root["covariance"]["order"]);
   root["covariance"]["matrix"].each([&](const Node& row) { out.covariance.push_back(read_numbers(row)); });

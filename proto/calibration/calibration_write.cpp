@@ -4,6 +4,7 @@
 
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/scale.hpp"
+#include "proto/calibration/utc.hpp"
 #include "proto/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
 
@@ -56,10 +57,15 @@ Json robot(const RobotDescription& robot) {
            {"track_width", number(robot.track_width)},
            {"ticks_per_rev", number(robot.ticks_per_rev)},
            {"lidar_pose", robot.lidar_pose ? numbers(*robot.lidar_pose) : Json(nullptr)}};
-  if (!robot.robot_id.empty()) out["robot_id"] = robot.robot_id;
+  out["robot_id"] = robot.robot_id.empty() ? Json(nullptr) : Json(robot.robot_id);
   if (!robot.controller.empty()) out["controller"] = robot.controller;
   if (!robot.controller_id.empty()) out["controller_id"] = robot.controller_id;
   return out;
+}
+
+Json driven(const std::optional<Driven>& driven) {
+  if (!driven) return nullptr;
+  return {{"begin", utc_text(driven->begin)}, {"end", utc_text(driven->end)}};
 }
 
 Json linear_correction(const std::optional<LinearCorrection>& linear) {
@@ -170,6 +176,7 @@ std::string to_json(const Calibration& calibration) {
       {"reasons", calibration.reasons},
       {"next_step", calibration.next_step.empty() ? Json() : Json(calibration.next_step)},
       {"robot", robot(calibration.robot)},
+      {"driven", driven(calibration.driven)},
       {"parameters", parameters(calibration)},
       {"covariance", {{"order", calibration.covariance_order}, {"matrix", matrix(calibration.covariance)}}},
       {"linear_correction", linear_correction(calibration.linear_correction)},

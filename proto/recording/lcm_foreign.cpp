@@ -58,7 +58,10 @@ bool ForeignMessages::add(std::uint64_t fingerprint, const LogEvent& event) {
 /// Seconds since the whole second in which the first message was measured: keeps microseconds exact.
 double ForeignMessages::time(std::int64_t utime) {
   if (utime < 0 || utime > kLatest) return std::nan("");
-  if (!start_) start_ = utime - utime % 1'000'000;
+  if (!start_) {
+    start_ = utime - utime % 1'000'000;
+    builder_.count_from(static_cast<double>(*start_ / 1'000'000));
+  }
   return static_cast<double>(utime - *start_) / 1e6;
 }
 

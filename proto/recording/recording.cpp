@@ -2,10 +2,12 @@
 
 #include "proto/file_bytes.hpp"
 #include "proto/recording/left_out.hpp"
+#include "proto/recording/overview.hpp"
 #include "proto/recording/recording_readers.hpp"
 #include "proto/recording/ros/choice.hpp"
 #include "proto/recording/ros/containers.hpp"
 #include "proto/recording/ros/folder.hpp"
+#include "proto/recording/ros/topic_overview.hpp"
 #include "proto/recording/ros/topics.hpp"
 #include "proto/wire/event_log.hpp"
 
@@ -56,22 +58,46 @@ Error has_no_topics(const std::string& where) {
           "leave --topic out: only ROS recordings have them"};
 }
 
+std::string name_of(Form form, std::string_view bytes) {
+  switch (form) {
+    case Form::ros:
+      return ros::container_name(bytes);
+    case Form::jsonl:
+      return "JSON Lines";
+    case Form::event_log:
+      return "LCM event log";
+    case Form::carmen:
+      return "CARMEN log";
+    case Form::tuples:
+      return "Censi's tuple file";
+    case Form::pose_graph:
+      return "pose graph";
+    case Form::nothing:
+    case Form::unknown:
+      break;
+  }
+  return "unknown form";
+}
+
 std::optional<Error> read_ros(std::string_view bytes, const std::string& where, const TopicChoices& topics,
-                              RecordingBuilder& builder) {
+                              RecordingBuilder& builder, Overview& overview) {
   ros::Collector collector(ros::kinds_of(topics));
-  if (auto error = ros::read_container(bytes, where, collector)) return error;
-  return ros::fill(builder, collector, topics, where);
+  const auto error = ros::read_container(bytes, where, collector);
+  overview.topics = ros::overview_of(collector.topics());
+  return error ? error : ros::fill(builder, collector, topics, where);
 }
 
 Result<Recording> read_content(std::string_view bytes, const std::string& where, RecordingBuilder builder,
-                               const RobotDescription* fallback, const TopicChoices& topics) {
+                               const RobotDescription* fallback, const TopicChoices& topics,
+                               Overview& overview) {
   using Need = RecordingBuilder::RobotNeed;
   Need need = Need::required;
   const Form form = recognise(bytes);
+  overview.form = name_of(form, bytes);
   if (form != Form::ros && !topics.empty()) return has_no_topics(where);
   switch (form) {
     case Form::ros:
-      if (auto error = read_ros(bytes, where, topics, builder)) return *error;
+      if (auto error = read_ros(bytes, where, topics, builder, overview)) return *error;
       break;
     case Form::nothing:
       return Error{ErrorCode::empty, "holds no data", where, "record again"};
@@ -106,6 +132,24 @@ Error not_understood(const std::string& text) {
           "write PART=TOPIC, wheels=TOPIC:LEFT,RIGHT or wheels=LEFT_TOPIC,RIGHT_TOPIC; parts are scan, "
           "wheels, wheel_speeds, odometry, gyro and "
           "pose"};
+}
+
+/// Of the whole file, packed or not.
+Result<Recording> read_file_content(const std::string& bytes, const std::filesystem::path& name,
+                                    const RobotDescription* fallback, const TopicChoices& topics,
+                                    Overview& overview) {
+  RecordingBuilder builder;
+  Unpacked unpacked;
+  const bool packed = is_gzip(bytes);
+  if (packed) unpacked = gunzip(bytes);
+  if (!unpacked.whole) builder.discard("file", unpacked.problem);
+  auto recording = read_content(packed ? unpacked.bytes : bytes, name.string(), std::move(builder), fallback,
+                                topics, overview);
+  if (!recording) return recording;
+  recording.value().name = name.filename().string();
+  recording.value().sha256 = sha256_hex(bytes);
+  tell_where_it_ends(recording.value());
+  return recording;
 }
 
 }  // namespace
@@ -156,25 +200,15 @@ Result<TopicChoice> parse_topic_choice(const std::string& text) {
 
 Result<Recording> read_recording_bytes(const std::string& bytes, const std::filesystem::path& name,
                                        const RobotDescription* fallback, const TopicChoices& topics) {
-  RecordingBuilder builder;
-  Unpacked unpacked;
-  const bool packed = is_gzip(bytes);
-  if (packed) unpacked = gunzip(bytes);
-  if (!unpacked.whole) builder.discard("file", unpacked.problem);
-  auto recording =
-      read_content(packed ? unpacked.bytes : bytes, name.string(), std::move(builder), fallback, topics);
-  if (!recording) return recording;
-  recording.value().name = name.filename().string();
-  recording.value().sha256 = sha256_hex(bytes);
-  tell_where_it_ends(recording.value());
-  return recording;
+  Overview unused;
+  return read_file_content(bytes, name, fallback, topics, unused);
 }
 
 namespace {
 
 /// All files of a rosbag2 folder as one recording; its hash is that of the hashes of its files, one a line.
 Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDescription* fallback,
-                              const TopicChoices& topics) {
+                              const TopicChoices& topics, Overview& overview) {
   const auto found = ros::files_of(folder);
   if (!found) return found.error();
   RecordingBuilder builder;
@@ -187,6 +221,8 @@ Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDe
     hashes += sha256_hex(file.value()) + "\n";
     if (auto error = ros::read_container(file.value(), path.string(), collector)) return *error;
   }
+  overview.form = "rosbag2 folder";
+  overview.topics = ros::overview_of(collector.topics());
   if (auto error = ros::fill(builder, collector, topics, folder.string())) return *error;
   auto recording =
       std::move(builder).finish(folder.string(), fallback, RecordingBuilder::RobotNeed::required);
@@ -208,11 +244,18 @@ bool has_write_ahead_log(const std::filesystem::path& path) {
 
 Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback,
                                  const TopicChoices& topics) {
+  Overview unused;
+  return read_recording_with_overview(path, fallback, topics, unused);
+}
+
+Result<Recording> read_recording_with_overview(const std::filesystem::path& path,
+                                               const RobotDescription* fallback, const TopicChoices& topics,
+                                               Overview& overview) {
   std::error_code none;
-  if (std::filesystem::is_directory(path, none)) return read_folder(path, fallback, topics);
+  if (std::filesystem::is_directory(path, none)) return read_folder(path, fallback, topics, overview);
   const auto file = read_file_bytes(path);
   if (!file) return file.error();
-  auto recording = read_recording_bytes(file.value(), path, fallback, topics);
+  auto recording = read_file_content(file.value(), path, fallback, topics, overview);
   if (recording && has_write_ahead_log(path))
     recording.value().discarded.push_back(
         {"file", "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'",

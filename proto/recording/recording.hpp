@@ -52,6 +52,8 @@ struct Recording {
   std::vector<PoseSample> poses;
   std::vector<GyroSample> gyro;
   std::vector<IncrementSample> increments;  ///< tuple files only
+  /// s since 1970 at which t is 0, where times count from a second of the file; 0: they are as recorded.
+  double time_zero = 0.0;
   MotionSource motion = MotionSource::ticks;
   // What `ticks` were made of, as recorded; empty but for the one that `motion` names.
   std::vector<WheelSample> wheels;        ///< rad

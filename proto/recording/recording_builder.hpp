@@ -38,6 +38,11 @@ class RecordingBuilder {
                std::optional<double> t = std::nullopt);
   /// Something was taken where the file held several.
   void choose(const std::string& choice) { recording_.choices.push_back(choice); }
+  /// Times of what is added count from here.
+  /// @param t s since 1970
+  void count_from(double t) { recording_.time_zero = t; }
+  /// Where the lidar sits, of a form that tells nothing else of the robot.
+  void mount_lidar(const std::array<double, 3>& pose) { recording_.robot.lidar_pose = pose; }
   /// Whether anything tells the motion of the wheels.
   [[nodiscard]] bool has_motion() const;
   /// Why nothing does: what most samples of it were left out for.

@@ -197,9 +197,10 @@ void assume_times(Log& log, RecordingBuilder& builder) {
 }
 
 /// Large stamps lose precision as seconds since 1970: count from the whole second of the first.
-void shift_times(Log& log) {
+void shift_times(Log& log, RecordingBuilder& builder) {
   const double start = std::floor(log.scans.front().t);
   if (start < 1e6) return;
+  builder.count_from(start);
   for (auto& scan : log.scans) scan.t -= start;
   for (auto& odometry : log.odometry) odometry.t -= start;
   for (auto& odometry : log.scan_odometry) odometry.t -= start;
@@ -265,7 +266,7 @@ void read_carmen(std::string_view text, const RobotDescription* robot, Recording
   }
   if (log.scans.empty()) return;
   if (!has_times(log)) assume_times(log, builder);
-  shift_times(log);
+  shift_times(log, builder);
   RobotDescription description = robot != nullptr ? *robot : RobotDescription{};
   if (!description.lidar_pose) description.lidar_pose = log.lidar_pose;
   if (!check_robot(description, "")) add_counts(log, description, builder);

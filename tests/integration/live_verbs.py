@@ -42,6 +42,8 @@ TABLE = [
     ("stop", "", DONE, "stop"),
 ]
 FILES = [("lengths.json", "calibration")]
+# What the text of a verb leads to.
+SAYS = {"history": "odomcalibctl compare"}
 
 
 def call_until_it_goes(robot, words, *options):
@@ -69,7 +71,10 @@ def check_text(robot, verb, arguments, *_):
     """Statuses are the business of check_call()."""
     call = (verb + " " + arguments).strip()
     done = call_until_it_goes(robot, call.split())
-    return ["%s: %d columns: %s" % (call, len(line), line) for line in too_wide(done.stdout)]
+    faults = ["%s: %d columns: %s" % (call, len(line), line) for line in too_wide(done.stdout)]
+    if SAYS.get(verb, "") not in done.stdout:
+        faults.append('%s does not say "%s": %s' % (call, SAYS[verb], done.stdout))
+    return faults
 
 
 def main(programs, schema_folder, profile, text):

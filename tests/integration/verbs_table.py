@@ -37,6 +37,10 @@ TABLE = [
     ("predict", "drive.jsonl --calibration nominal --trajectory path.tum", DONE, "prediction"),
     ("predict", "drive.jsonl --calibration nominal --trajectory path.tum --noise 0.01,0.001,0.01", DONE, "prediction"),
     ("predict", "drive.jsonl --trajectory path.tum --calibration " + ABSENT, FAILURE, "error"),
+    ("inspect", "drive.jsonl", DONE, "inspection"),
+    ("inspect", "sample.jsonl.gz", DONE, "inspection"),
+    ("inspect", "map.g2o", FAILURE, "error"),
+    ("inspect", ABSENT, FAILURE, "error"),
     ("convert", "drive.jsonl --out copy.jsonl", DONE, "conversion"),
     ("convert", ABSENT + " --out copy.jsonl", FAILURE, "error"),
     ("convert", "drive.jsonl --out copy.bag", USAGE, "error"),
@@ -50,6 +54,13 @@ TABLE = [
     ("report", "cal.json", DONE, "calibration"),
     ("report", "good.json", DONE, "calibration"),
     ("report", "drive.jsonl", FAILURE, "error"),
+    ("compare", "before.json after.json", DONE, "comparison"),
+    ("compare", "before.json after.json --until 5mm/m --csv values.csv --html values.html", DONE, "comparison"),
+    ("compare", "before.json after.json other.json --by robot", DONE, "comparison"),
+    ("compare", "before.json other.json", USAGE, "error"),
+    ("compare", "before.json after.json --until soon", USAGE, "error"),
+    ("compare", "before.json cal.json", REFUSED, "error"),
+    ("compare", "before.json " + ABSENT, FAILURE, "error"),
     ("export", "cal.json --what parameters", DONE, "export"),
     ("export", "cal.json --what toml", REFUSED, "error"),
     ("export", "cal.json --what fax", USAGE, "error"),
@@ -119,8 +130,21 @@ def room(x):
     return {"angle_min": 0.0, "angle_increment": math.radians(2), "range_min": 0.1, "range_max": 12.0, "ranges": ranges}
 
 
+def calibration(robot, day, diameter):
+    """Of one drive; the track width is not measured so well."""
+    names = {"left_wheel_diameter": (diameter, 3e-5), "right_wheel_diameter": (diameter, 3e-5), "track_width": (0.4, 2e-4)}
+    return {"format": "odomcalib-calibration/1", "verdict": "accepted", "reasons": [], "robot": {"robot_id": robot},
+            "driven": {"begin": day + "T10:00:00Z", "end": day + "T10:05:00Z"},
+            "parameters": {name: {"value": value, "std": std, "unit": "m"} for name, (value, std) in names.items()},
+            "scale": {"value": 1.0, "std": 0.01, "source": "lidar data sheet"}}
+
+
 def prepare(folder, sample):
-    """Two metres straight with poses that agree, a graph of two poses, and two scans of one room."""
+    """Two metres straight with poses that agree, a graph of two poses, two scans of one room, and calibrations of two robots."""
+    for name, made in (("before", calibration("a", "2026-01-05", 0.15)), ("after", calibration("a", "2026-06-05", 0.149)),
+                       ("other", calibration("b", "2026-06-05", 0.15))):
+        with open(os.path.join(folder, name + ".json"), "w", encoding="utf-8") as file:
+            json.dump(made, file)
     with open(os.path.join(folder, "drive.jsonl"), "w", encoding="utf-8") as file:
         lines = [{"type": "robot", "wheel_diameter": 0.15, "track_width": 0.4, "ticks_per_rev": 4096}]
         for i in range(101):

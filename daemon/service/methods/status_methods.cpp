@@ -34,7 +34,8 @@ Reading get_history(Context& context, const Call& call) {
   for (const auto& entry : context.bench.write_back.history.entries())
     if (list.size() < static_cast<std::size_t>(limit))
       list.push_back(ordered_json::parse(to_json(entry, false)));
-  return Answer{{{"entries", list}}};
+  return Answer{
+      {{"entries", list}, {"calibrations", (context.bench.config.state_dir / "calibrations").string()}}};
 }
 
 // A stream of events needs a client that takes more than one reply.

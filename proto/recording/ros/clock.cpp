@@ -152,6 +152,8 @@ Clock::Clock(const Chosen& chosen) {
     if (start_ == 0) set_start(*topic);
 }
 
+double Clock::start() const { return static_cast<double>(start_ / kStampSecond); }
+
 void Clock::judge(const std::string& reason, bool reception_is_sound) {
   if (reason.empty()) return;
   by_reception_ = reception_is_sound;

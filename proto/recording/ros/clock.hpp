@@ -16,6 +16,8 @@ class Clock {
 
   /// What to say of the times; empty for sound stamps.
   [[nodiscard]] const std::string& remark() const { return remark_; }
+  /// s since the zero of that clock, at which times begin: a whole second
+  [[nodiscard]] double start() const;
   /// s after the start of the recording
   template <typename Value>
   double operator()(const Stamped<Value>& one) const {

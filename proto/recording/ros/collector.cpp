@@ -96,6 +96,19 @@ bool add_pose(Topic& topic, std::int64_t received, std::string_view bytes) {
   return true;
 }
 
+/// Of a frame that is placed again the last place counts.
+bool add_transforms(Topic& topic, std::string_view bytes) {
+  auto transforms = decode_transforms(bytes, topic.encoding);
+  if (!transforms) return false;
+  for (Transform& one : *transforms) {
+    one.frame = frame_name(one.frame);
+    one.child = frame_name(one.child);
+    std::erase_if(topic.transforms, [&](const Transform& known) { return known.child == one.child; });
+    if (topic.transforms.size() < kMostFrames) topic.transforms.push_back(std::move(one));
+  }
+  return true;
+}
+
 bool add(Topic& topic, std::int64_t received, std::string_view bytes) {
   switch (topic.kind) {
     case Kind::scan:
@@ -107,11 +120,16 @@ bool add(Topic& topic, std::int64_t received, std::string_view bytes) {
     case Kind::odometry:
     case Kind::pose:
       return add_pose(topic, received, bytes);
+    case Kind::transforms:
+      return add_transforms(topic, bytes);
     case Kind::none:
       break;
   }
   return true;
 }
+
+/// Where frames are at rest to each other; /tf has those that move.
+bool is_static(const TopicHeader& header) { return header.name.ends_with("tf_static"); }
 
 }  // namespace
 
@@ -130,6 +148,7 @@ std::size_t Collector::topic(const TopicHeader& described) {
     topic.kind = said->second;
     topic.header.type = std::string(type_of(topic.kind)) + " as chosen";
   }
+  if (topic.kind == Kind::transforms && !is_static(header)) topic.kind = Kind::none;
   if (topic.kind != Kind::none) topic.problem = problem_of(header, topic.kind);
   if (!topic.problem.empty()) topic.kind = Kind::none;
   topics_.push_back(std::move(topic));

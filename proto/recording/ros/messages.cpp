@@ -11,6 +11,7 @@ namespace odomcalib::ros {
 namespace {
 
 constexpr std::size_t kMostJoints = 4096;
+constexpr std::size_t kMostTransforms = 4096;
 constexpr std::int64_t kSecond = 1'000'000'000;
 // Of a quaternion's norm from 1: some publishers write single precision, or a few decimals; zero is none.
 constexpr double kQuaternionTolerance = 0.1;
@@ -21,12 +22,13 @@ struct Row {
   std::string_view md5;  // rosmsg md5
 };
 
-constexpr std::array<Row, 5> kKinds{{
+constexpr std::array<Row, 6> kKinds{{
     {Kind::scan, "sensor_msgs/LaserScan", "90c7ef2dc6895d81024acba2ac42f369"},
     {Kind::joints, "sensor_msgs/JointState", "3066dcd76a6cfaef579bd0f34173e9fd"},
     {Kind::imu, "sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2"},
     {Kind::odometry, "nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7"},
     {Kind::pose, "geometry_msgs/PoseStamped", "d3812c3cbc69362b77dc0b19b345f8f5"},
+    {Kind::transforms, "tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec"},
 }};
 
 /// Numbers of one message, whatever its encoding.
@@ -63,11 +65,16 @@ class MessageReader {
     if (encoding_ == Encoding::cdr) out = out.substr(0, out.find('\0'));
     return std::string(out);
   }
-  std::vector<std::string> texts() {
+  /// Of a sequence whose elements are read one by one.
+  std::size_t count(std::size_t most) {
     const std::size_t count = number<std::uint32_t>();
-    if (count > kMostJoints) reader_.fail();
+    if (count > most) reader_.fail();
+    return ok() ? count : 0;
+  }
+  std::vector<std::string> texts() {
+    const std::size_t names = count(kMostJoints);
     std::vector<std::string> out;
-    for (std::size_t i = 0; i < count && ok(); ++i) out.push_back(text());
+    for (std::size_t i = 0; i < names && ok(); ++i) out.push_back(text());
     return out;
   }
   Header header() {
@@ -107,14 +114,19 @@ class MessageReader {
   std::size_t size_ = 0;  // of what alignment counts from
 };
 
+/// Whether it is a rotation; some publishers write single precision.
+bool is_rotation(const std::array<double, 4>& q) {
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  return std::abs(norm - 1.0) <= kQuaternionTolerance;
+}
+
 /// Position and quaternion. False when there is no heading.
 bool read_pose(MessageReader& reader, PoseMessage& out) {
   const auto position = reader.numbers<double, 3>();
   const auto q = reader.numbers<double, 4>();
   out.x = position[0];
   out.y = position[1];
-  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(std::abs(norm - 1.0) <= kQuaternionTolerance)) return false;
+  if (!is_rotation(q)) return false;
   out.yaw =
       std::atan2(2.0 * (q[3] * q[2] + q[0] * q[1]), q[3] * q[3] + q[0] * q[0] - q[1] * q[1] - q[2] * q[2]);
   return true;
@@ -210,6 +222,22 @@ std::optional<PoseMessage> decode_pose(std::string_view bytes, Encoding encoding
   PoseMessage out;
   out.header = reader.header();
   if (!read_pose(reader, out)) return std::nullopt;
+  return if_whole(reader, std::move(out));
+}
+
+std::optional<std::vector<Transform>> decode_transforms(std::string_view bytes, Encoding encoding) {
+  MessageReader reader(bytes, encoding);
+  std::vector<Transform> out;
+  const std::size_t count = reader.count(kMostTransforms);
+  for (std::size_t i = 0; i < count && reader.ok(); ++i) {
+    Transform one;
+    one.frame = reader.header().frame;
+    one.child = reader.text();
+    one.position = reader.numbers<double, 3>();
+    one.quaternion = reader.numbers<double, 4>();
+    if (!is_rotation(one.quaternion)) return std::nullopt;
+    out.push_back(std::move(one));
+  }
   return if_whole(reader, std::move(out));
 }
 

@@ -5,6 +5,7 @@
 // (XCDR1) or to at most four bytes (XCDR2), strings with their terminating zero.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,7 +19,7 @@ namespace odomcalib::ros {
 enum class Encoding : std::uint8_t { ros1, cdr };
 
 /// What can be decoded.
-enum class Kind : std::uint8_t { none, scan, joints, imu, odometry, pose };
+enum class Kind : std::uint8_t { none, scan, joints, imu, odometry, pose, transforms };
 
 /// @param type as ROS 1 (sensor_msgs/LaserScan) or ROS 2 (sensor_msgs/msg/LaserScan) writes it
 Kind kind_of(std::string_view type);
@@ -57,11 +58,19 @@ struct PoseMessage {
   double yaw = 0.0;         ///< rad, of the quaternion
 };
 
+/// One of tf2_msgs/TFMessage: pose of `child` in `frame`.
+struct Transform {
+  std::string frame, child;
+  std::array<double, 3> position{};    ///< m
+  std::array<double, 4> quaternion{};  ///< x, y, z, w; of norm 1
+};
+
 // Nothing when the bytes do not hold what the type says.
 std::optional<LaserScan> decode_scan(std::string_view bytes, Encoding encoding);
 std::optional<JointState> decode_joints(std::string_view bytes, Encoding encoding);
 std::optional<Imu> decode_imu(std::string_view bytes, Encoding encoding);
 std::optional<PoseMessage> decode_odometry(std::string_view bytes, Encoding encoding);
 std::optional<PoseMessage> decode_pose(std::string_view bytes, Encoding encoding);
+std::optional<std::vector<Transform>> decode_transforms(std::string_view bytes, Encoding encoding);
 
 }  // namespace odomcalib::ros

@@ -1,9 +1,12 @@
 #include "proto/recording/ros/topics.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 #include "proto/recording/ros/choice.hpp"
 #include "proto/recording/ros/clock.hpp"
+#include "proto/recording/ros/mounting.hpp"
 #include "proto/recording/ros/publishers.hpp"
 
 namespace odomcalib::ros {
@@ -104,6 +107,39 @@ void add_gyro(RecordingBuilder& builder, const Topic& topic, const Clock& clock)
   for (const auto& one : topic.yaw_rates) builder.add_gyro({clock(one), one.value});
 }
 
+/// The one frame of a topic; nothing where it has several, or names none.
+std::string only_frame(const Topic& topic) {
+  return topic.frames.size() == 1 ? topic.frames.front().frame : std::string();
+}
+
+/// Where odometry says that the base is, and what REP 105 and REP 120 call it.
+std::vector<std::string> frames_of_base(const std::vector<Topic>& topics) {
+  std::vector<std::string> bases;
+  for (const Topic& topic : topics)
+    for (const Frames& frames : topic.frames)
+      if (topic.kind == Kind::odometry && !frames.child.empty()) bases.push_back(frames.child);
+  bases.insert(bases.end(), {"base_footprint", "base_link"});
+  return bases;
+}
+
+/// The nominal pose of the lidar, where the recording has it and its user states none.
+void add_mounting(RecordingBuilder& builder, const std::vector<Topic>& topics, const std::string& lidar) {
+  std::vector<Transform> all;
+  for (const Topic& topic : topics) all.insert(all.end(), topic.transforms.begin(), topic.transforms.end());
+  if (all.empty() || lidar.empty()) return;
+  const auto found = mounting_of(all, frames_of_base(topics), lidar);
+  if (!found) return builder.choose("/tf_static does not lead from the base to the lidar's frame " + lidar);
+  if (!found->upright)
+    return builder.choose("by /tf_static the lidar's frame " + lidar +
+                          " is not level or upside down: its pose there is not taken; state lidar_pose");
+  builder.mount_lidar(found->pose);
+  std::array<char, 96> pose{};
+  (void)std::snprintf(pose.data(), pose.size(), "[%.3f, %.3f, %.4f] in ", found->pose[0], found->pose[1],
+                      found->pose[2]);
+  builder.choose("lidar_pose = " + std::string(pose.data()) + found->base +
+                 " by /tf_static, unless --robot states one");
+}
+
 /// Of a topic that cannot be read.
 std::string unread(const Topic& topic) {
   if (topic.header.type.empty()) return topic.header.name + ": the file does not say what it is (no schema)";
@@ -115,6 +151,7 @@ void tell_rest(RecordingBuilder& builder, const Collector& collector, const Chos
   const auto taken = taken_topics(chosen);
   for (const Topic& topic : collector.topics()) {
     const bool is_taken = std::find(taken.begin(), taken.end(), &topic) != taken.end();
+    if (topic.kind == Kind::transforms) continue;  // they are no samples
     if (topic.kind == Kind::none)
       builder.discard("message", unread(topic), topic.count);
     else if (!is_taken)
@@ -130,6 +167,7 @@ std::optional<Error> fill_chosen(RecordingBuilder& builder, Chosen& chosen, cons
   if (auto error = settle_publishers(builder, chosen, no_angles, where)) return error;
   const Clock clock(chosen);
   if (!clock.remark().empty()) builder.choose(clock.remark());
+  builder.count_from(clock.start());
   add_wheels(builder, chosen, clock, no_angles);
   if (const Topic* topic = chosen[Part::odometry]) add_poses(builder, *topic, clock, Part::odometry);
   if (const Topic* topic = chosen[Part::pose]) add_poses(builder, *topic, clock, Part::pose);
@@ -148,6 +186,8 @@ std::optional<Error> fill(RecordingBuilder& builder, Collector& collector, const
   std::optional<Error> error;
   if (chosen) {
     tell_rest(builder, collector, chosen.value());
+    if (const Topic* scans = chosen.value()[Part::scan])
+      add_mounting(builder, collector.topics(), only_frame(*scans));
     error = fill_chosen(builder, chosen.value(), where);
   } else {
     error = chosen.error();

@@ -28,6 +28,10 @@ const std::map<std::string, std::string>& definitions() {
       {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
       {"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
       {"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
+      {"geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+      {"geometry_msgs/TransformStamped",
+       "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+      {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
       {"nav_msgs/Odometry",
        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
        "geometry_msgs/TwistWithCovariance twist\n"},
@@ -218,6 +222,7 @@ std::string md5_of(const std::string& type) {
       {"sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2"},
       {"nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7"},
       {"geometry_msgs/PoseStamped", "d3812c3cbc69362b77dc0b19b345f8f5"},
+      {"tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec"},
   };
   const auto found = kSums.find(type);
   return found == kSums.end() ? "" : found->second;
@@ -265,6 +270,17 @@ std::string encode_odometry(Wire wire, const RosHeader& header, const std::strin
 
 std::string encode_pose(Wire wire, const RosHeader& header, const std::array<double, 3>& pose) {
   return Encoder(wire).header(header).pose(pose).take();
+}
+
+std::string encode_transforms(Wire wire, const std::vector<RosTransform>& transforms) {
+  Encoder out(wire);
+  out.number(static_cast<std::uint32_t>(transforms.size()));
+  for (const RosTransform& one : transforms) {
+    out.header(one.header).text(one.child);
+    for (const double value : one.position) out.number(value);
+    for (const double value : one.quaternion) out.number(value);
+  }
+  return out.take();
 }
 
 RosLog ros_log(const Recording& recording, const RosDrive& drive) {

@@ -56,6 +56,14 @@ std::string encode_imu(Wire wire, const RosHeader& header, double yaw_rate, doub
 std::string encode_odometry(Wire wire, const RosHeader& header, const std::string& child,
                             const std::array<double, 3>& pose);
 std::string encode_pose(Wire wire, const RosHeader& header, const std::array<double, 3>& pose);
+/// One transform of tf2_msgs/TFMessage, from the frame of the header.
+struct RosTransform {
+  RosHeader header;
+  std::string child;
+  std::array<double, 3> position{};              ///< m
+  std::array<double, 4> quaternion{0, 0, 0, 1};  ///< x, y, z, w
+};
+std::string encode_transforms(Wire wire, const std::vector<RosTransform>& transforms);
 
 // ---- a whole drive
 

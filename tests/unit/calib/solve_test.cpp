@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -48,6 +49,26 @@ TEST(Solve, SD_11_a_recording_without_scans_is_refused_with_the_cause) {
   ASSERT_EQ(result.data.size(), 1U) << "what was refused is told";
   EXPECT_EQ(result.data.front().name, "no-lidar");
   EXPECT_EQ(result.data.front().counts.front(), (std::pair<std::string, std::size_t>{"ticks", 2}));
+}
+
+// Of readers that count from a second of the file, and of those that do not.
+TEST(Solve, says_when_the_robot_was_driven_where_the_clock_tells_the_date) {
+  Recording recording;
+  recording.robot = {0.15, 0.15, 0.4, 4096.0, std::nullopt, "", ""};
+  recording.ticks = {{0.0, 0, 0, 0}, {1.0, 100, 100, 0}};
+  EXPECT_FALSE(solve({&recording, 1}, {}).driven) << "seconds since the start of a computer are no date";
+  recording.time_zero = 1.6e9;
+  const auto driven = solve({&recording, 1}, {}).driven;
+  ASSERT_TRUE(driven);
+  EXPECT_EQ(driven->begin, 1.6e9);
+  EXPECT_EQ(driven->end, 1.6e9 + 1.0);
+  std::array<Recording, 2> both{recording, recording};
+  both[1].time_zero = 0.0;
+  for (TickSample& sample : both[1].ticks) sample.t += 1.5e9;
+  const auto earliest = solve(both, {}).driven;
+  ASSERT_TRUE(earliest);
+  EXPECT_EQ(earliest->begin, 1.5e9);
+  EXPECT_EQ(earliest->end, 1.6e9 + 1.0);
 }
 
 TEST(Solve, S1_14_a_corridor_is_refused_as_a_place_that_scans_cannot_tell) {

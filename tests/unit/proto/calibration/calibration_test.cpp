@@ -20,6 +20,7 @@ Calibration example() {
   c.robot = {
       0.154,          0.1541, 0.33, 2000.0, std::array<double, 3>{0.1, -0.2, 0.3}, "r1", "canopen:zlac8015d",
       "0xfee/0xd15/7"};
+  c.driven = Driven{1.5e9, 1.5e9 + 12.0};
   c.parameters = {{"left_wheel_diameter", {0.1539999999999999, 0.0001, "m"}},
                   {"lidar_yaw", {1e-300, -1.0, "rad"}}};
   c.covariance_order = {"left_wheel_diameter", "lidar_yaw"};
@@ -44,6 +45,30 @@ Calibration example() {
   c.repairs = {{"times", "of reception", "stamps are in whole seconds"}};
   c.extensions = {{"zz_own", R"({"b":1,"a":[null,true]})"}, {"aa", "\"text\""}};
   return c;
+}
+
+// A solve of yesterday's recording tomorrow gives the same bytes: the file says when the robot was driven.
+TEST(CalibrationFile, says_of_which_robot_it_is_and_when_that_was_driven) {
+  const auto told = nlohmann::json::parse(to_json(example()));
+  EXPECT_EQ(told["robot"]["robot_id"], "r1");
+  EXPECT_EQ(told["driven"]["begin"], "2017-07-14T02:40:00Z");
+  EXPECT_EQ(told["driven"]["end"], "2017-07-14T02:40:12Z");
+  const auto untold = nlohmann::json::parse(to_json(Calibration{}));
+  EXPECT_TRUE(untold["robot"].at("robot_id").is_null());
+  EXPECT_TRUE(untold.at("driven").is_null());
+}
+
+TEST(CalibrationFile, with_times_that_are_none_is_damaged) {
+  for (const char* wrong :
+       {"yesterday", "2017-02-30T00:00:00Z", "2017-07-14T02:40:00", "2017-07-14T02:61:00Z",
+        "1970-01-01T00:00:10Z", "2017-07-14T02:40:00Z and more"}) {
+    auto told = nlohmann::json::parse(to_json(example()));
+    told["driven"]["end"] = wrong;
+    const auto read = calibration_from_json(told.dump(), "test");
+    ASSERT_FALSE(read) << wrong;
+    EXPECT_NE(read.error().text().find("\"driven\" is not two times"), std::string::npos)
+        << read.error().text();
+  }
 }
 
 // Equal texts mean equal members: to_json writes all of them, with numbers that read back unchanged.

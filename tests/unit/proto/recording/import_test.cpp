@@ -201,6 +201,7 @@ TEST(CarmenLog, SX_03_reads_its_messages_with_their_times_and_the_lidar_pose) {
       &robot));
   ASSERT_EQ(r.scans.size(), 2U) << list_discarded(r);
   EXPECT_EQ(r.scans[0].t, 0.0);
+  EXPECT_EQ(r.time_zero, 1000000001.0);
   EXPECT_EQ(r.scans[0].ranges, (std::vector<float>{1, 0, 3}));
   EXPECT_EQ(r.scans[1].ranges, (std::vector<float>{4, 5, 0}));
   EXPECT_EQ(r.scans[1].angle_increment, 1.5);

@@ -48,6 +48,7 @@ void expect_stamps(const RosLog& log) {
   EXPECT_FALSE(told(found, "times of reception")) << all_told(found.choices);
   EXPECT_FALSE(told(found, "lost their last digits"));
   EXPECT_EQ(found.ticks[1].t, 0.02);
+  EXPECT_EQ(found.time_zero, static_cast<double>(kRosStart / kSecond_ns));
 }
 
 TEST(RosTimes, that_are_sound_are_the_stamps) {

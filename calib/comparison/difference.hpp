@@ -1,0 +1,55 @@
+// Whether two calibrations, or several, are of one robot in one state, and what changed.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/comparison/state.hpp"
+
+namespace odomcalib::calib::comparison {
+
+/// Of one parameter, from an earlier calibration to a later one; SI units.
+struct Change {
+  std::string name, unit;
+  double before = 0.0, after = 0.0;
+  double std = 0.0;      ///< of the difference
+  double p_value = 1.0;  ///< that so large a difference is chance, among all that were looked at (S. Holm,
+                         ///< Scand. J. Statist. 6, 1979)
+
+  [[nodiscard]] double difference() const { return after - before; }
+  [[nodiscard]] double deviations() const { return std > 0.0 ? difference() / std : 0.0; }
+  [[nodiscard]] bool is_change() const;
+};
+
+/// Joint test of "nothing changed" with the covariances.
+struct JointTest {
+  double statistic = 0.0;   ///< chi-squared if nothing changed
+  std::size_t freedom = 0;  ///< its degrees of freedom
+  double p_value = 1.0;
+  [[nodiscard]] bool is_change() const;
+};
+
+struct Difference {
+  std::vector<Change> parameters;
+  JointTest joint;
+  Metre metre = Metre::unstated;
+  std::vector<std::string> came, went;  ///< names of effects
+  std::vector<Change> effects;          ///< parameters of the effects that are in both: "effect: parameter"
+  /// What odometry with the earlier values would read too much now, if the later ones are true: m in a metre
+  /// straight, rad in a full turn. None where a length was not estimated.
+  std::optional<Estimate> metre_error, turn_error;
+  /// The joint test or a single parameter says so.
+  [[nodiscard]] bool is_change() const;
+};
+
+/// The two are independent: of different recordings.
+Difference difference(const Calibration& before, const Calibration& after);
+
+/// Whether all of them have one state: Cochran's Q (Biometrics 10, 1954), chi-squared with as many degrees of
+/// freedom as there are parameters, times the calibrations less one.
+JointTest homogeneity(std::span<const Calibration* const> calibrations);
+
+}  // namespace odomcalib::calib::comparison

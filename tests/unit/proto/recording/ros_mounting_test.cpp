@@ -1,0 +1,110 @@
+// Where the lidar sits, by /tf_static.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/unit/proto/recording/ros_support.hpp"
+
+namespace odomcalib::ros_mounting_test {
+namespace {
+
+using sim::RosLog;
+using sim::RosTransform;
+using sim::Wire;
+using test::all_told;
+using test::kRosStart;
+using test::read_ros;
+using test::small_log;
+using test::told;
+
+constexpr double kPi = std::numbers::pi;
+
+std::array<double, 4> about_z(double yaw) { return {0.0, 0.0, std::sin(0.5 * yaw), std::cos(0.5 * yaw)}; }
+
+RosTransform placed(const std::string& frame, const std::string& child, const std::array<double, 3>& position,
+                    const std::array<double, 4>& quaternion = {0.0, 0.0, 0.0, 1.0}) {
+  return {{kRosStart, frame}, child, position, quaternion};
+}
+
+RosLog with_frames(Wire wire, const std::vector<RosTransform>& transforms,
+                   const std::string& topic = "/tf_static") {
+  RosLog log = small_log(wire);
+  log.add(topic, "tf2_msgs/TFMessage", kRosStart, encode_transforms(wire, transforms));
+  return log;
+}
+
+/// base_footprint is the root; the lidar hangs on a mast of base_link that is turned by a quarter.
+std::vector<RosTransform> frames(const std::array<double, 4>& lidar) {
+  return {placed("base_footprint", "base_link", {0.0, 0.0, 0.1}),
+          placed("base_link", "mast", {0.2, 0.1, 0.3}, about_z(0.5 * kPi)),
+          placed("mast", "laser", {0.05, 0.0, 0.0}, lidar)};
+}
+
+TEST(RosMounting, is_the_chain_of_transforms_from_the_base_of_the_odometry) {
+  for (const Wire wire : {Wire::ros1, Wire::cdr_little, Wire::cdr_big, Wire::cdr2_little}) {
+    const auto found =
+        value_of(read_ros(wire == Wire::ros1 ? write_bag(with_frames(wire, frames(about_z(0.25))))
+                                             : write_mcap(with_frames(wire, frames(about_z(0.25))))));
+    ASSERT_TRUE(found.robot.lidar_pose) << all_told(found.choices);
+    EXPECT_NEAR((*found.robot.lidar_pose)[0], 0.2, 1e-12);
+    EXPECT_NEAR((*found.robot.lidar_pose)[1], 0.15, 1e-12);
+    EXPECT_NEAR((*found.robot.lidar_pose)[2], 0.5 * kPi + 0.25, 1e-12);
+    EXPECT_TRUE(told(found, "lidar_pose = [0.200, 0.150, 1.8208] in base_link by /tf_static"))
+        << all_told(found.choices);
+  }
+}
+
+TEST(RosMounting, goes_up_and_down_where_base_and_lidar_hang_on_another_frame) {
+  const auto found = value_of(read_ros(
+      write_mcap(with_frames(Wire::cdr_little, {placed("chassis", "base_link", {0.1, 0.0, 0.0}, about_z(kPi)),
+                                                placed("chassis", "laser", {0.3, 0.0, 0.2})}))));
+  ASSERT_TRUE(found.robot.lidar_pose);
+  EXPECT_NEAR((*found.robot.lidar_pose)[0], -0.2, 1e-12);
+  EXPECT_NEAR(std::abs((*found.robot.lidar_pose)[2]), kPi, 1e-12);
+}
+
+TEST(RosMounting, of_a_lidar_that_hangs_upside_down_is_not_taken) {
+  const auto found =
+      value_of(read_ros(write_mcap(with_frames(Wire::cdr_little, frames({1.0, 0.0, 0.0, 0.0})))));
+  EXPECT_FALSE(found.robot.lidar_pose);
+  EXPECT_TRUE(told(found, "upside down")) << all_told(found.choices);
+}
+
+TEST(RosMounting, without_a_chain_is_said) {
+  const auto found =
+      value_of(read_ros(write_mcap(with_frames(Wire::cdr_little, {placed("map", "odom", {})}))));
+  EXPECT_FALSE(found.robot.lidar_pose);
+  EXPECT_TRUE(told(found, "/tf_static does not lead from the base to the lidar's frame laser"))
+      << all_told(found.choices);
+  const auto ring = value_of(read_ros(
+      write_mcap(with_frames(Wire::cdr_little, {placed("a", "laser", {}), placed("laser", "a", {})}))));
+  EXPECT_FALSE(ring.robot.lidar_pose) << "a ring of transforms ends";
+}
+
+TEST(RosMounting, is_not_taken_of_frames_that_move) {
+  const auto found =
+      value_of(read_ros(write_mcap(with_frames(Wire::cdr_little, frames(about_z(0.0)), "/tf"))));
+  EXPECT_FALSE(found.robot.lidar_pose);
+}
+
+TEST(RosMounting, with_places_that_are_no_numbers_is_none) {
+  for (const double wrong : {std::nan(""), HUGE_VAL, 1e308}) {
+    auto far = frames(about_z(0.0));
+    far[0].position = far[1].position = far[2].position = {wrong, wrong, wrong};
+    EXPECT_FALSE(value_of(read_ros(write_mcap(with_frames(Wire::cdr_little, far)))).robot.lidar_pose)
+        << wrong;
+  }
+}
+
+TEST(RosMounting, of_a_damaged_message_is_none) {
+  RosLog log = small_log(Wire::cdr_little);
+  log.add("/tf_static", "tf2_msgs/TFMessage", kRosStart,
+          encode_transforms(log.wire, frames({0.0, 0.0, 0.0, 0.0})));
+  log.add("/tf_static", "tf2_msgs/TFMessage", kRosStart, std::string("\0\1\0\0\xff\xff\xff\xff", 8));
+  EXPECT_FALSE(value_of(read_ros(write_mcap(log))).robot.lidar_pose);
+}
+
+}  // namespace
+}  // namespace odomcalib::ros_mounting_test
