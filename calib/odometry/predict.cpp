@@ -9,9 +9,9 @@
 #include "calib/ingest/tick_stamps.hpp"
 #include "calib/math/vector2.hpp"
 #include "calib/odometry/settings.hpp"
-#include "calib/selection/selection_json.hpp"
 #include "calib/terms/catalogue.hpp"
 #include "calib/terms/effects/reference_effect.hpp"
+#include "calib/terms/fitted_smooth_term.hpp"
 #include "calib/terms/lidar_effect.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
 #include "calib/vehicle/drive_history.hpp"
@@ -64,7 +64,7 @@ double value_or(const Calibration& calibration, const std::string& name, double 
 }
 
 /// What goes up and down with time begins the next drive anywhere, unless it rounds off a drift.
-bool carries_over(const selection::FittedSmoothTerm& fitted) {
+bool carries_over(const terms::FittedSmoothTerm& fitted) {
   const terms::SmoothTerm& smooth = fitted.smooth;
   if (make_smooth_term_effect(smooth)->carries_over()) return true;
   const auto named = terms::find_effect(fitted.named_term);
@@ -84,7 +84,7 @@ Place place_of(const vehicle::Effect& effect, const vehicle::EffectParameter& pa
   return parameter.of_wheels ? Place::odometry : place_of(effect);
 }
 
-Place place_of(const selection::FittedSmoothTerm& fitted) {
+Place place_of(const terms::FittedSmoothTerm& fitted) {
   return carries_over(fitted) ? Place::odometry : place_of(*make_smooth_term_effect(fitted.smooth));
 }
 
@@ -117,10 +117,10 @@ std::vector<double> values_of(const EffectResult& result,
   return values;
 }
 
-std::vector<selection::FittedSmoothTerm> smooths_of(const Calibration& calibration) {
-  const auto member = calibration.extensions.find(selection::kSmoothTermsMember);
-  return member == calibration.extensions.end() ? std::vector<selection::FittedSmoothTerm>{}
-                                                : selection::smooth_terms_from_json(member->second);
+std::vector<terms::FittedSmoothTerm> smooths_of(const Calibration& calibration) {
+  const auto member = calibration.extensions.find(terms::kSmoothTermsMember);
+  return member == calibration.extensions.end() ? std::vector<terms::FittedSmoothTerm>{}
+                                                : terms::smooth_terms_from_json(member->second);
 }
 
 /// A smooth term of time is about its mean: where the time is not known, nothing is better known than that.
@@ -141,7 +141,7 @@ Correction correction_of(const Calibration& calibration, const DriveClock& clock
     const std::vector<double> own = values_of(result, effect);
     values.insert(values.end(), own.begin(), own.end());
   }
-  for (const selection::FittedSmoothTerm& fitted : smooths_of(calibration)) {
+  for (const terms::FittedSmoothTerm& fitted : smooths_of(calibration)) {
     if (place_of(fitted) != Place::odometry) continue;
     if (fitted.smooth.dependence.covariate == vehicle::Covariate::time && !clock.is_known()) continue;
     correction.effects.push_back(make_smooth_term_effect(fitted.smooth));
@@ -162,7 +162,7 @@ std::vector<Placement> effect_placements(const Calibration& calibration) {
     for (const auto& [name, quantity] : result.parameters)
       placements.push_back({result.name, name, quantity, effect ? place_of(*effect, name) : otherwise});
   }
-  for (const selection::FittedSmoothTerm& fitted : smooths_of(calibration)) {
+  for (const terms::FittedSmoothTerm& fitted : smooths_of(calibration)) {
     const Quantity count{static_cast<double>(fitted.coefficients.size()), -1.0, "coefficients"};
     placements.push_back({make_smooth_term_effect(fitted.smooth)->name(), "", count, place_of(fitted)});
   }
