@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 
 #include "calib/vehicle/drive_history.hpp"
@@ -77,9 +78,12 @@ double duration_for(const wheels::WheelTrack& track, const wheels::BaseParameter
   return tick <= settings::kCoarse_m ? if_fine : settings::kSmoothing_s;
 }
 
+/// Of a running drive the last ones are looked at: they stay off the heap.
+constexpr std::size_t kFewIntervals = 4;
+
 /// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on.
 struct WheelAccelerations {
-  std::vector<double> left, right;
+  boost::container::small_vector<double, kFewIntervals> left, right;
 };
 WheelAccelerations latest_accelerations(const wheels::WheelTrack& track, std::size_t first, double duration) {
   WheelAccelerations all;
@@ -212,7 +216,14 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
                                                 const wheels::BaseParameters& base, CovariateGroups groups,
                                                 std::size_t first) {
   std::vector<StepContext> contexts;
-  if (track.empty()) return contexts;
+  make_context_of_moment(track, base, groups, first, contexts);
+  return contexts;
+}
+
+void make_context_of_moment(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
+                            CovariateGroups groups, std::size_t first, std::vector<StepContext>& contexts) {
+  contexts.clear();
+  if (track.empty()) return;
   contexts.reserve(track.t.size() - 1 - first);
   Window window;
   for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
@@ -229,7 +240,6 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
     fill_speeds(c, track, window, centre, base);
   }
   fill_groups(contexts, track, first, base, groups);
-  return contexts;
 }
 
 void see_from_the_past(StepContext& last, const wheels::WheelTrack& track, const wheels::BaseParameters& base,

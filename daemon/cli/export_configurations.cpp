@@ -8,7 +8,7 @@
 #include <ctime>
 #include <iterator>
 
-#include "calib/odometry/predict.hpp"
+#include "calib/odometry/correction.hpp"
 #include "daemon/cli/usable_calibration.hpp"
 #include "odomcalib_version.hpp"
 

@@ -9,7 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "calib/odometry/correction.hpp"
 #include "calib/odometry/predict.hpp"
+#include "calib/odometry/uncertainty.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/left_out_lines.hpp"
 #include "daemon/cli/numbers.hpp"
