@@ -108,8 +108,12 @@ WheelAccelerations centred_accelerations(const wheels::WheelTrack& track, std::s
   for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
     const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
     window = window_around(track, k, window, centre, duration);
-    all.left.push_back(local_derivatives(track.t, track.left, window.low, window.high, centre).second);
-    all.right.push_back(local_derivatives(track.t, track.right, window.low, window.high, centre).second);
+    const bool joined = track.segment[k] == track.segment[k + 1];
+    const auto curvature = [&](const std::vector<double>& angles) {
+      return joined ? local_derivatives(track.t, angles, window.low, window.high, centre).second : 0.0;
+    };
+    all.left.push_back(curvature(track.left));
+    all.right.push_back(curvature(track.right));
   }
   return all;
 }
@@ -135,7 +139,7 @@ void fill_relative_speeds(std::vector<StepContext>& contexts, const wheels::Whee
     while (to - from < settings::kSlowIntervals && from > 0 && track.segment[from - 1] == track.segment[to])
       --from;
     double way = 0.0;
-    for (std::size_t k = from; k < to; ++k)
+    for (std::size_t k = from; k < to && track.segment[from] == track.segment[to]; ++k)
       way += 0.5 * (base.left_radius * std::abs(track.left[k + 1] - track.left[k]) +
                     base.right_radius * std::abs(track.right[k + 1] - track.right[k]));
     contexts[j].relative_speed =
@@ -237,7 +241,8 @@ void make_context_of_moment(const wheels::WheelTrack& track, const wheels::BaseP
     c.left_delta = joined ? track.left[k + 1] - track.left[k] : 0.0;
     c.right_delta = joined ? track.right[k + 1] - track.right[k] : 0.0;
     window = window_around(track, k, window, centre, settings::kSmoothing_s);
-    fill_speeds(c, track, window, centre, base);
+    // Across a change of segment nobody knows how the wheels turned.
+    if (joined) fill_speeds(c, track, window, centre, base);
   }
   fill_groups(contexts, track, first, base, groups);
 }

@@ -156,6 +156,20 @@ TEST(Odometry, without_effects_each_pose_is_that_of_predict_to_the_last_bit) {
   }
 }
 
+// Counters that begin anew show a speed that no wheel had.
+TEST(Odometry, a_counter_that_was_reset_moves_nothing_whatever_the_effect) {
+  Recording reset = drive();
+  for (std::size_t k = 1400; k < reset.ticks.size(); ++k) {
+    reset.ticks[k].left -= 9'000'000;
+    reset.ticks[k].segment = 1;
+  }
+  for (const auto& effect : terms::effect_catalogue()) {
+    const Calibration calibration = with_effect(*effect);
+    for (const auto& path : {predict(reset, calibration), predict_live(reset, calibration)})
+      EXPECT_LT(distance(path[1399], path[1400]), 1e-3) << effect->name();
+  }
+}
+
 // The daemon sees speeds from the past only; apart from that it does what predict does.
 TEST(Odometry, sample_by_sample_applies_every_effect_as_predict_does) {
   const Recording recording = drive();
