@@ -1,4 +1,5 @@
 #include "calib/report/findings.hpp"
+#include "calib/report/contact_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -195,6 +196,8 @@ std::map<std::string, std::string> extensions(const Findings& found, const Smoot
                   [](const auto& f) { return !f.effect->is_named(); }))
     members[selection::kLidarSmoothTermsMember] = selection::lidar_smooth_terms_to_json(found.lidar);
   if (outliers) members["outliers"] = to_json(*outliers);
+  if (const auto noise = contact_noise(found.fit.dataset, found.outcome.model.fit))
+    members[odometry::kContactNoiseMember] = odometry::to_json(*noise);
   const ingest::StampReport& stamps = found.fit.dataset.recordings.stamps();
   if (stamps.any()) members["stamps"] = to_json(stamps);
   if (!is_silent(gyros)) members["gyros"] = to_json(gyros, found.fit.dataset.recordings.view());
