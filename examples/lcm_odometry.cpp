@@ -1,5 +1,5 @@
-// Corrected odometry beside odomcalibd: hears the wheel counts that it publishes (odomcalib.ticks_t on TICKS) and
-// publishes poses (odomcalib.pose_t on CORRECTED_POSE). The types are made from the installed files:
+// Corrected odometry beside odomcalibd: hears the wheel counts that it publishes (odomcalib.ticks_t on TICKS)
+// and publishes poses (odomcalib.pose_t on CORRECTED_POSE). The types are made from the installed files:
 //
 //   lcm-gen --cpp /usr/share/odomcalib/lcm/*.lcm
 //   c++ -std=c++17 -I. lcm_odometry.cpp $(pkg-config --cflags --libs lcm odomcalib) -o lcm_odometry
@@ -21,7 +21,8 @@ class Node {
     // The daemon says where counts cannot be continued.
     if (ticks->segment != segment_) odometry_.restart();
     segment_ = ticks->segment;
-    if (odometry_.update_counts(1e-6 * static_cast<double>(ticks->utime), ticks->left, ticks->right) != ODOMCALIB_OK)
+    if (odometry_.update_counts(1e-6 * static_cast<double>(ticks->utime), ticks->left, ticks->right) !=
+        ODOMCALIB_OK)
       std::cerr << odometry_.problem() << '\n';
     const odomcalib::Pose pose = odometry_.pose();
     const odomcalib::pose_t message{ticks->utime, ticks->mono_ns, pose.x, pose.y, pose.yaw};

@@ -1,5 +1,5 @@
-// The sources that `export` fills with the values of a calibration (daemon/cli/export/), as they were when the
-// program was built.
+// The sources that `export` fills with the values of a calibration (daemon/cli/export/), as they were when
+// the program was built.
 #pragma once
 
 namespace odomcalib::cli {

@@ -1,5 +1,5 @@
-// Node for ROS 1: joint_states in; odom (nav_msgs/Odometry with covariances) and tf from odom to base_link out.
-// Parameters: ~calibration (file), ~left_joint, ~right_joint, ~odom_frame, ~base_frame.
+// Node for ROS 1: joint_states in; odom (nav_msgs/Odometry with covariances) and tf from odom to base_link
+// out. Parameters: ~calibration (file), ~left_joint, ~right_joint, ~odom_frame, ~base_frame.
 //
 //   c++ -std=c++17 odometry_node_ros1.cpp -o odometry_node
 //     with $(pkg-config --cflags --libs roscpp nav_msgs sensor_msgs tf2_ros odomcalib)

@@ -1,6 +1,6 @@
-// Node for ROS 2: the one for ROS 1 but for the lines that touch rclcpp. It is neither built nor run by the tests of
-// this project: rclcpp is not in Debian.
-// Parameters: calibration (file), left_joint, right_joint, odom_frame, base_frame.
+// Node for ROS 2: the one for ROS 1 but for the lines that touch rclcpp. It is neither built nor run by the
+// tests of this project: rclcpp is not in Debian. Parameters: calibration (file), left_joint, right_joint,
+// odom_frame, base_frame.
 #include <tf2_ros/transform_broadcaster.h>
 
 #include <algorithm>
@@ -35,7 +35,8 @@ class Node : public rclcpp::Node {
 
   void on_joints(const sensor_msgs::msg::JointState& joints) {
     if (!odometry_.update(rclcpp::Time(joints.header.stamp).seconds(), joints.name, joints.position)) {
-      RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 5000, "joint states were not used: %s", odometry_.problem());
+      RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 5000, "joint states were not used: %s",
+                           odometry_.problem());
       return;
     }
     publish(joints.header.stamp);

@@ -1,5 +1,5 @@
-// Every call of the C++ header, as a program outside of the tree makes it. Reads "stamp left right" lines and prints the
-// last pose.
+// Every call of the C++ header, as a program outside of the tree makes it. Reads "stamp left right" lines and
+// prints the last pose.
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -39,7 +39,8 @@ int main(int argc, char** argv) {
   check(odometry.covariance()[0] > 0.0 && odometry.covariance_is_whole(), "the covariance");
   check(odometry.lidar_pose().has_value(), "the lidar pose");
   check(!odometry.effects().empty() && odometry.effects()[0].place == ODOMCALIB_IN_POSE, "the effects");
-  check(odometry.update_angles(stamp + 1.0, 0.0, 0.0) == ODOMCALIB_OTHER_MOTION, "kinds of motion do not mix");
+  check(odometry.update_angles(stamp + 1.0, 0.0, 0.0) == ODOMCALIB_OTHER_MOTION,
+        "kinds of motion do not mix");
   check(odometry.update_counts(stamp, left, right) == ODOMCALIB_STAMP_NOT_LATER, "a stamp that is not later");
   check(odometry.set_pose({1.0, 2.0, 0.5}) == ODOMCALIB_OK && odometry.pose().y == 2.0, "a pose that is set");
   check(odometry.covariance()[0] == 0.0, "is certain");
@@ -48,6 +49,7 @@ int main(int argc, char** argv) {
   odometry.correct_beams(bearings, ranges);
   check(ranges[0] == 1.0F && odometry.clock_offset() == 0.0, "a lidar without errors");
   odomcalib::Odometry moved = std::move(odometry);
-  check(moved.velocity().forward == moved.velocity().forward && moved.velocity_covariance().size() == 9, "velocity");
+  check(moved.velocity().forward == moved.velocity().forward && moved.velocity_covariance().size() == 9,
+        "velocity");
   return 0;
 }

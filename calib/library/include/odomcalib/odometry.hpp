@@ -1,5 +1,5 @@
-// Corrected odometry in C++ (17 or later): odometry.h with handles that close themselves and results that hold
-// either a value or what is wrong.
+// Corrected odometry in C++ (17 or later): odometry.h with handles that close themselves and results that
+// hold either a value or what is wrong.
 #pragma once
 
 #include <odomcalib/odometry.h>
@@ -61,7 +61,8 @@ using Covariance = std::array<double, 9>;
 /// A running drive; see odometry.h for what each call does. Moved, not copied; one thread at a time.
 class Odometry {
  public:
-  static Expected<Odometry> open(const std::string& path, const odomcalib_options& options = ODOMCALIB_OPTIONS_INIT) {
+  static Expected<Odometry> open(const std::string& path,
+                                 const odomcalib_options& options = ODOMCALIB_OPTIONS_INIT) {
     return opened([&](odomcalib_odometry** handle, char* problem, std::size_t size) {
       return odomcalib_odometry_open(path.c_str(), &options, handle, problem, size);
     });
@@ -128,8 +129,8 @@ class Odometry {
   /// In place: rad and m.
   void correct_beams(std::vector<float>& bearings, std::vector<float>& ranges) const {
     assert(bearings.size() == ranges.size());
-    (void)odomcalib_odometry_correct_beams(get(), ranges.size(), bearings.data(), ranges.data(), bearings.data(),
-                                           ranges.data());
+    (void)odomcalib_odometry_correct_beams(get(), ranges.size(), bearings.data(), ranges.data(),
+                                           bearings.data(), ranges.data());
   }
 
   /// Texts are valid as long as this object.
