@@ -1,4 +1,5 @@
 #include "calib/report/findings.hpp"
+#include "calib/report/contact_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +61,7 @@ std::vector<std::string> remarks_on(const estimation::GyroWitness& witness,
   return remarks;
 }
 
-using SmoothTerms = std::vector<selection::FittedSmoothTerm>;
+using SmoothTerms = std::vector<terms::FittedSmoothTerm>;
 using Outliers = std::optional<selection::OutlierTrace>;
 using PlainFit = std::optional<estimation::FitResult>;
 
@@ -190,11 +191,13 @@ std::map<std::string, std::string> extensions(const Findings& found, const Smoot
                                               const Outliers& outliers,
                                               const estimation::GyroWitness& gyros) {
   std::map<std::string, std::string> members;
-  if (!smooths.empty()) members[selection::kSmoothTermsMember] = smooth_terms_to_json(smooths);
+  if (!smooths.empty()) members[terms::kSmoothTermsMember] = smooth_terms_to_json(smooths);
   if (std::any_of(found.lidar.begin(), found.lidar.end(),
                   [](const auto& f) { return !f.effect->is_named(); }))
     members[selection::kLidarSmoothTermsMember] = selection::lidar_smooth_terms_to_json(found.lidar);
   if (outliers) members["outliers"] = to_json(*outliers);
+  if (const auto noise = contact_noise(found.fit.dataset, found.outcome.model.fit))
+    members[odometry::kContactNoiseMember] = odometry::to_json(*noise);
   const ingest::StampReport& stamps = found.fit.dataset.recordings.stamps();
   if (stamps.any()) members["stamps"] = to_json(stamps);
   if (!is_silent(gyros)) members["gyros"] = to_json(gyros, found.fit.dataset.recordings.view());
@@ -211,8 +214,8 @@ std::vector<std::string> remarks_in(const Findings& found, const SmoothTerms& sm
   for (const std::string& remark : remarks_on(gyros, found.fit.dataset.recordings.view()))
     sentences.push_back(remark);
   const math::Pose mount = vehicle::to_base(vehicle::as_span(found.outcome.model.fit.parameters)).mount;
-  for (const selection::FittedSmoothTerm& smooth : smooths)
-    if (happens_at_once(smooth.smooth)) sentences.push_back(event_to_text(smooth, mount));
+  for (const terms::FittedSmoothTerm& smooth : smooths)
+    if (happens_at_once(smooth.smooth)) sentences.push_back(selection::event_to_text(smooth, mount));
   return sentences;
 }
 

@@ -93,9 +93,9 @@ EffectResult found_effect(const EffectPtr& effect, Eigen::Index first, const Fin
   return result;
 }
 
-selection::FittedSmoothTerm fitted(const selection::AddedSmoothTerm& added, Eigen::Index first,
-                                   const estimation::FitResult& fit) {
-  selection::FittedSmoothTerm smooth{added.smooth, {}, added.named_term ? added.named_term->name() : ""};
+terms::FittedSmoothTerm fitted(const selection::AddedSmoothTerm& added, Eigen::Index first,
+                               const estimation::FitResult& fit) {
+  terms::FittedSmoothTerm smooth{added.smooth, {}, added.named_term ? added.named_term->name() : ""};
   for (std::size_t k = 0; k < function_count(added.smooth); ++k)
     smooth.coefficients.push_back(fit.parameters(first++));
   return smooth;
@@ -150,8 +150,8 @@ std::vector<EffectResult> found_effects(const Findings& found,
   return results;
 }
 
-std::vector<selection::FittedSmoothTerm> found_smooths(const Findings& found) {
-  std::vector<selection::FittedSmoothTerm> smooths;
+std::vector<terms::FittedSmoothTerm> found_smooths(const Findings& found) {
+  std::vector<terms::FittedSmoothTerm> smooths;
   const auto& [effects, fit] = found.outcome.model;
   for (std::size_t e = 0; e < effects.size(); ++e)
     if (const selection::AddedSmoothTerm* added = smooth_of(found.outcome, effects[e]))

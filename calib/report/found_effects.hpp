@@ -17,7 +17,7 @@ namespace odomcalib::calib::report {
 std::vector<EffectResult> found_effects(const Findings& found,
                                         const std::optional<estimation::FitResult>& plain);
 
-std::vector<selection::FittedSmoothTerm> found_smooths(const Findings& found);
+std::vector<terms::FittedSmoothTerm> found_smooths(const Findings& found);
 
 /// Smooth terms without a name, of the lidar and of the wheels: covariates they depend on, in the order
 /// found.

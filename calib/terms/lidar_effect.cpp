@@ -23,6 +23,13 @@ std::vector<std::pair<std::string, Quantity>> LidarEffect::quantities(
   return out;
 }
 
+std::vector<double> LidarEffect::values_of(const QuantityList& stated) const {
+  if (stated.size() != parameters().size()) return {};
+  std::vector<double> values;
+  for (const auto& [name, quantity] : stated) values.push_back(quantity.value);
+  return values;
+}
+
 std::vector<LidarEffectPtr> lidar_catalogue(bool all_round) {
   return {make_range_bias(), make_lidar_tilt(), make_angle_scale(all_round)};
 }

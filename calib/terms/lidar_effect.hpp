@@ -60,6 +60,9 @@ class LidarEffect {
   /// Estimates as a user reads them, from parameters and their deviations.
   [[nodiscard]] virtual std::vector<std::pair<std::string, Quantity>> quantities(
       std::span<const double> values, std::span<const double> deviations) const;
+  /// The other way round: parameters from what quantities() states, in its order. Fewer than those are
+  /// none of this effect: empty.
+  [[nodiscard]] virtual std::vector<double> values_of(const QuantityList& stated) const;
   [[nodiscard]] virtual std::vector<std::string> aliases() const { return {}; }
 };
 

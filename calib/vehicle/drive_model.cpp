@@ -1,10 +1,10 @@
 #include "calib/vehicle/drive_model.hpp"
 
 #include <algorithm>
-#include <complex>
 #include <stdexcept>
 
 #include "calib/math/last_value.hpp"
+#include "calib/vehicle/pose_sum.hpp"
 #include "calib/vehicle/settings.hpp"
 #include "calib/vehicle/step_context.hpp"
 #include "calib/vehicle/step_twist.hpp"
@@ -91,18 +91,11 @@ Trajectory DriveModel::trajectory(std::span<const double> parameters, const Effe
   trajectory.effects_ = PlacedEffects(effects, kBaseCount);
   trajectory.poses_.resize(context_.size() + 1);
   trajectory.twists_.reserve(context_.size());
-  // The heading is turned on by each step: an angle's sine and cosine, computed in every step of every fit,
-  // cost more than all the rest.
-  std::complex<double> heading = 1.0;
+  PoseSum sum;
   for (std::size_t k = 0; k < context_.size(); ++k) {
     trajectory.twists_.push_back(twist_of(context_[k], parameters, trajectory.effects_));
-    const math::Pose& w = trajectory.twists_.back();
-    const math::ArcRatios<double> ratio(w.yaw);
-    const std::complex<double> chord(ratio.sine, ratio.cosine);
-    const std::complex<double> way = heading * (chord * std::complex<double>(w.x, w.y));
-    const math::Pose& here = trajectory.poses_[k];
-    trajectory.poses_[k + 1] = {here.x + way.real(), here.y + way.imag(), here.yaw + w.yaw};
-    heading *= std::complex<double>(1.0 - w.yaw * ratio.cosine, w.yaw * ratio.sine);
+    sum.add(trajectory.twists_.back());
+    trajectory.poses_[k + 1] = sum.pose();
   }
   return trajectory;
 }

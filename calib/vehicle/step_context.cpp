@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 
 #include "calib/vehicle/drive_history.hpp"
@@ -77,9 +78,12 @@ double duration_for(const wheels::WheelTrack& track, const wheels::BaseParameter
   return tick <= settings::kCoarse_m ? if_fine : settings::kSmoothing_s;
 }
 
+/// Of a running drive the last ones are looked at: they stay off the heap.
+constexpr std::size_t kFewIntervals = 4;
+
 /// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on.
 struct WheelAccelerations {
-  std::vector<double> left, right;
+  boost::container::small_vector<double, kFewIntervals> left, right;
 };
 WheelAccelerations latest_accelerations(const wheels::WheelTrack& track, std::size_t first, double duration) {
   WheelAccelerations all;
@@ -104,8 +108,12 @@ WheelAccelerations centred_accelerations(const wheels::WheelTrack& track, std::s
   for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
     const double centre = (track.t[k] + track.t[k + 1]) / 2.0;
     window = window_around(track, k, window, centre, duration);
-    all.left.push_back(local_derivatives(track.t, track.left, window.low, window.high, centre).second);
-    all.right.push_back(local_derivatives(track.t, track.right, window.low, window.high, centre).second);
+    const bool joined = track.segment[k] == track.segment[k + 1];
+    const auto curvature = [&](const std::vector<double>& angles) {
+      return joined ? local_derivatives(track.t, angles, window.low, window.high, centre).second : 0.0;
+    };
+    all.left.push_back(curvature(track.left));
+    all.right.push_back(curvature(track.right));
   }
   return all;
 }
@@ -131,7 +139,7 @@ void fill_relative_speeds(std::vector<StepContext>& contexts, const wheels::Whee
     while (to - from < settings::kSlowIntervals && from > 0 && track.segment[from - 1] == track.segment[to])
       --from;
     double way = 0.0;
-    for (std::size_t k = from; k < to; ++k)
+    for (std::size_t k = from; k < to && track.segment[from] == track.segment[to]; ++k)
       way += 0.5 * (base.left_radius * std::abs(track.left[k + 1] - track.left[k]) +
                     base.right_radius * std::abs(track.right[k + 1] - track.right[k]));
     contexts[j].relative_speed =
@@ -212,7 +220,14 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
                                                 const wheels::BaseParameters& base, CovariateGroups groups,
                                                 std::size_t first) {
   std::vector<StepContext> contexts;
-  if (track.empty()) return contexts;
+  make_context_of_moment(track, base, groups, first, contexts);
+  return contexts;
+}
+
+void make_context_of_moment(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
+                            CovariateGroups groups, std::size_t first, std::vector<StepContext>& contexts) {
+  contexts.clear();
+  if (track.empty()) return;
   contexts.reserve(track.t.size() - 1 - first);
   Window window;
   for (std::size_t k = first; k + 1 < track.t.size(); ++k) {
@@ -226,10 +241,10 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
     c.left_delta = joined ? track.left[k + 1] - track.left[k] : 0.0;
     c.right_delta = joined ? track.right[k + 1] - track.right[k] : 0.0;
     window = window_around(track, k, window, centre, settings::kSmoothing_s);
-    fill_speeds(c, track, window, centre, base);
+    // Across a change of segment nobody knows how the wheels turned.
+    if (joined) fill_speeds(c, track, window, centre, base);
   }
   fill_groups(contexts, track, first, base, groups);
-  return contexts;
 }
 
 void see_from_the_past(StepContext& last, const wheels::WheelTrack& track, const wheels::BaseParameters& base,

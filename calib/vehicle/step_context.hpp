@@ -18,6 +18,9 @@ std::vector<StepContext> make_context_of_moment(const wheels::WheelTrack& track,
                                                 const wheels::BaseParameters& base,
                                                 CovariateGroups groups = CovariateGroups::all(),
                                                 std::size_t first = 0);
+/// The same in place of what `contexts` held: for the last intervals of a track it takes no memory.
+void make_context_of_moment(const wheels::WheelTrack& track, const wheels::BaseParameters& base,
+                            CovariateGroups groups, std::size_t first, std::vector<StepContext>& contexts);
 
 /// Where the last interval of the track is the present, changes of its acceleration come from what was
 /// before: half of a window about it would be missing, and their sum over a drive would grow with the noise.

@@ -53,23 +53,26 @@ WheelMotion motion_between(const WheelTrack& track, double begin, double end,
           angle_at(track, track.right, end) - angle_at(track, track.right, begin), sensor_motion};
 }
 
+TickAngles::TickAngles(const TickSample& first, double ticks_per_rev)
+    : first_(first),
+      rad_per_tick_(2.0 * math::kPi / ticks_per_rev),
+      left_(std::fmod(without_wrap(first.left), ticks_per_rev)),
+      right_(std::fmod(without_wrap(first.right), ticks_per_rev)) {}
+
+void TickAngles::append(const TickSample& sample, WheelTrack& track) const {
+  if (!track.t.empty() && !(sample.t > track.t.back())) return;
+  track.t.push_back(sample.t);
+  track.left.push_back(rad_per_tick_ * (left_ + static_cast<double>(sample.left - first_.left)));
+  track.right.push_back(rad_per_tick_ * (right_ + static_cast<double>(sample.right - first_.right)));
+  track.segment.push_back(sample.segment);
+}
+
 WheelTrack wheel_track_from_ticks(const Recording& recording) {
   WheelTrack track;
   if (recording.ticks.empty()) return track;
-  const double rad_per_tick = 2.0 * math::kPi / recording.robot.ticks_per_rev;
-  const TickSample& first = recording.ticks.front();
-  // Angles begin within the first turn of the counter: a wheel's phase is the same in every recording until
-  // the counter restarts.
-  const double left = std::fmod(without_wrap(first.left), recording.robot.ticks_per_rev);
-  const double right = std::fmod(without_wrap(first.right), recording.robot.ticks_per_rev);
-  for (const TickSample& sample : recording.ticks) {
-    if (!track.t.empty() && !(sample.t > track.t.back())) continue;
-    track.t.push_back(sample.t);
-    track.left.push_back(rad_per_tick * (left + static_cast<double>(sample.left - first.left)));
-    track.right.push_back(rad_per_tick * (right + static_cast<double>(sample.right - first.right)));
-    track.segment.push_back(sample.segment);
-  }
-  track.tick_angle = rad_per_tick;
+  const TickAngles angles(recording.ticks.front(), recording.robot.ticks_per_rev);
+  for (const TickSample& sample : recording.ticks) angles.append(sample, track);
+  track.tick_angle = angles.tick_angle();
   return track;
 }
 

@@ -36,6 +36,23 @@ struct WheelTrack {
   [[nodiscard]] Bend bend(std::size_t interval) const;
 };
 
+/// Counts as wheel angles. They begin within the first turn of the counter: a wheel's phase is the same in
+/// every recording until the counter restarts.
+class TickAngles {
+ public:
+  /// @param first sample of the drive
+  TickAngles(const TickSample& first, double ticks_per_rev);
+  /// Lengthens the track; a sample that does not advance in time is skipped.
+  void append(const TickSample& sample, WheelTrack& track) const;
+  /// rad, of one count
+  [[nodiscard]] double tick_angle() const { return rad_per_tick_; }
+
+ private:
+  TickSample first_;
+  double rad_per_tick_;
+  double left_, right_;  ///< counts of the first sample, within one turn
+};
+
 /// Ticks of a recording as wheel angles; samples that do not advance in time are skipped.
 WheelTrack wheel_track_from_ticks(const Recording& recording);
 

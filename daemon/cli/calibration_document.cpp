@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-#include "calib/odometry/predict.hpp"
+#include "calib/odometry/correction.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/left_out_lines.hpp"
 #include "daemon/cli/report_sections.hpp"

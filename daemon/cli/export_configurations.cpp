@@ -7,10 +7,14 @@
 #include <cmath>
 #include <ctime>
 #include <iterator>
+#include <numbers>
+#include <optional>
 
-#include "calib/odometry/predict.hpp"
+#include "calib/odometry/correction.hpp"
+#include "daemon/cli/export_step.hpp"
 #include "daemon/cli/usable_calibration.hpp"
 #include "odomcalib_version.hpp"
+#include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -78,12 +82,21 @@ Result<std::string> arcos(const Calibration& calibration, const Dimensions& d, c
                      ticks * d.track / was.track_width, drift < 0.0 ? '-' : '+', std::abs(drift));
 }
 
+/// Dead reckoning as source.
+Result<std::string> step(const Calibration& calibration, const std::string& what, const std::string& where) {
+  if (!(calibration.robot.ticks_per_rev > 0.0))
+    return Error{ErrorCode::format, "the calibration has no counts per turn", where,
+                 "state ticks_per_rev in the recording or the robot file, and solve again"};
+  return what == "python" ? step_in_python(calibration) : step_in_c(calibration);
+}
+
 /// How a line of comment begins and ends.
 struct Comment {
   const char *begin, *end;
 };
 
 Comment comment_of(const std::string& what) {
+  if (what == "c_header") return {"/* ", " */"};
   if (what == "urdf") return {"<!-- ", " -->"};
   return what == "arcos" ? Comment{"; ", ""} : Comment{"# ", ""};
 }
@@ -92,6 +105,7 @@ Comment comment_of(const std::string& what) {
 std::string commented(const std::string& what, std::string text) {
   const Comment comment = comment_of(what);
   for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.replace(at, 2, "- -");
+  for (std::size_t at = 0; (at = text.find("*/", at)) != std::string::npos;) text.replace(at, 2, "* /");
   for (char& c : text)
     if (c == '\n' || c == '\r') c = ' ';
   return comment.begin + text + comment.end + "\n";
@@ -117,6 +131,32 @@ std::string provenance(const Calibration& calibration, const std::string& what) 
   return text;
 }
 
+/// "3.4 degrees a turn and 4.2 mm a metre", of the figures that are there; empty: none.
+std::string errors_text(const std::vector<DriveError>& errors, std::optional<Bounded> DriveError::*figure) {
+  constexpr double kMillimetres = 1e3, kDegrees = 180.0 / std::numbers::pi;
+  std::string text;
+  for (const DriveError& error : errors) {
+    if (!(error.*figure)) continue;
+    const double value = (error.*figure)->value;
+    if (error.name == "full_turn_heading")
+      text += fmt::format("{}{:.2g} degrees a turn", text.empty() ? "" : " and ", kDegrees * value);
+    if (error.name == "straight_metre_length")
+      text += fmt::format("{}{:.2g} mm a metre", text.empty() ? "" : " and ", kMillimetres * value);
+  }
+  return text;
+}
+
+/// What odometry errs by without its effects, and what would apply them.
+std::string remaining_error(const Calibration& calibration, bool is_step) {
+  const auto errors = report_data_of(calibration).drive_errors;
+  const std::string without = errors_text(errors, &DriveError::geometry),
+                    with = errors_text(errors, &DriveError::after);
+  const std::string remedy = is_step ? "libodomcalib applies them"
+                                     : "libodomcalib applies them, and so do the exports c_header and python";
+  if (without.empty() || with.empty()) return "without these effects odometry is worse: " + remedy;
+  return "without these effects odometry errs by " + without + ", with them by " + with + ": " + remedy;
+}
+
 Result<std::string> configuration_text(const Calibration& calibration, const Dimensions& dimensions,
                                        const std::string& what, const std::string& where) {
   if (what == "toml") return robot_toml(calibration, dimensions);
@@ -124,6 +164,7 @@ Result<std::string> configuration_text(const Calibration& calibration, const Dim
   if (what == "urdf") return urdf(calibration, where);
   if (what == "ros_arduino") return ros_arduino_yaml(calibration, dimensions, where);
   if (what == "arcos") return arcos(calibration, dimensions, where);
+  if (what == "c_header" || what == "python") return step(calibration, what, where);
   return Error{ErrorCode::usage, "unknown export \"" + what + "\"", "--what",
                "see odomcalibctl export --help"};
 }
@@ -131,7 +172,8 @@ Result<std::string> configuration_text(const Calibration& calibration, const Dim
 }  // namespace
 
 const std::vector<std::string>& configurations() {
-  static const std::vector<std::string> names = {"toml", "diff_drive", "urdf", "ros_arduino", "arcos"};
+  static const std::vector<std::string> names = {"toml",  "diff_drive", "urdf",  "ros_arduino",
+                                                 "arcos", "c_header",   "python"};
   return names;
 }
 
@@ -141,10 +183,15 @@ bool is_configuration(const std::string& what) {
 
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what) {
   std::vector<std::string> sentences;
+  const bool is_step = what == "c_header" || what == "python";
+  bool lacks_effects = false;
   for (const auto& placement : calib::odometry::effect_placements(calibration)) {
     using calib::odometry::Place;
     // What belongs to the place or the day is nobody's to hold; a lidar's joint has no wheels.
     if (placement.place == Place::nowhere || (what == "urdf" && placement.place == Place::odometry)) continue;
+    // Odometry as source has what moves the base, and nothing of the lidar.
+    if (is_step && (placement.place == Place::reference || is_in_step(placement.effect))) continue;
+    lacks_effects = lacks_effects || placement.place == Place::odometry;
     const Quantity& q = placement.quantity;
     const std::string name =
         placement.effect + (placement.parameter.empty() ? "" : "." + placement.parameter);
@@ -157,6 +204,7 @@ std::vector<std::string> not_held(const Calibration& calibration, const std::str
     sentences.push_back(
         fmt::format("not held here: left and right wheel differ by {:.2f} %, this is their mean",
                     100.0 * (*left / *right - 1.0)));
+  if (lacks_effects) sentences.push_back(remaining_error(calibration, is_step));
   return sentences;
 }
 

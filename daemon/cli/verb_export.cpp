@@ -60,7 +60,9 @@ void add_export(CLI::App& app, Session& session) {
           "--what", options->what,
           "CSV: parameters, effects, errors, residual, paths, traces; robot.toml: toml; parameters of "
           "ros2_control's diff_drive_controller: diff_drive; joint of the lidar: urdf; parameters of "
-          "ros_arduino_bridge: ros_arduino; changes to ARCOS (Pioneer): arcos")
+          "ros_arduino_bridge: ros_arduino; changes to ARCOS (Pioneer): arcos; odometry with all effects as "
+          "one file "
+          "of source: c_header, python")
       ->check(CLI::IsMember(export_formats()))
       ->capture_default_str();
   verb->add_option("--out", options->out, "file to write instead of standard output");

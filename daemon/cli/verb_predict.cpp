@@ -9,7 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "calib/odometry/correction.hpp"
 #include "calib/odometry/predict.hpp"
+#include "calib/odometry/uncertainty.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/left_out_lines.hpp"
 #include "daemon/cli/numbers.hpp"
@@ -28,6 +30,7 @@ namespace {
 struct PredictOptions {
   std::string recording, calibration, trajectory;
   std::vector<double> noise;
+  bool live = false;
   RecordingOptions reading;
 };
 
@@ -86,7 +89,9 @@ Result<Predicted> predicted(const PredictOptions& options) {
   if (!calibration) return calibration.error();
   warn_of(calibration.value(), options.calibration);
   warn_of_lost_motion(recording);
-  auto poses = finite_poses(calib::odometry::predict(recording, calibration.value()), options.recording);
+  auto path = options.live ? calib::odometry::predict_live(recording, calibration.value())
+                           : calib::odometry::predict(recording, calibration.value());
+  auto poses = finite_poses(std::move(path), options.recording);
   if (!poses) return poses.error();
   return Predicted{std::move(poses).value(), calibration.value().parameter("track_width").value_or(0.0),
                    left_out_of(recording), recording.repairs};
@@ -141,6 +146,8 @@ void add_predict(CLI::App& app, Session& session) {
   verb->add_option("RECORDING", options->recording, "in any form that solve reads")->required();
   verb->add_option("--calibration", options->calibration, "calibration file, or \"nominal\"")->required();
   verb->add_option("--trajectory", options->trajectory, "file to write, TUM format")->required();
+  verb->add_flag("--live", options->live,
+                 "each pose from the samples up to its own, as odomcalibd and libodomcalib have it");
   verb->add_option("--noise", options->noise,
                    "FORWARD,SIDEWAYS,YAW: deviations in m, m, rad of a metre rolled; tells those of the end")
       ->delimiter(',')

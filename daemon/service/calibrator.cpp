@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "calib/match.hpp"
-#include "calib/odometry/predict.hpp"
+#include "calib/odometry/odometry.hpp"
 #include "calib/report/next_test.hpp"
 #include "calib/solve.hpp"
 #include "calib/terms/request.hpp"

@@ -125,6 +125,9 @@ std::optional<std::string> non_finite_value(const Calibration& calibration);
 /// JSON text with two-space indent and a fixed member order (same input, same bytes). Non-finite numbers
 /// become null.
 std::string to_json(const Calibration& calibration);
+/// What an error begins with where the file is of a version of the format that this program does not read.
+inline constexpr const char* kOtherVersion =
+    "is a calibration file of a version that this program does not read";
 Result<Calibration> calibration_from_json(const std::string& text, const std::string& where);
 /// The same of a value that was parsed already, as in a call of the control interface: nesting is not
 /// limited, whoever parsed it has done that.

@@ -7,14 +7,13 @@
 
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/utc.hpp"
-#include "proto/file_bytes.hpp"
-#include "proto/recording/recording.hpp"
 
 namespace odomcalib {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::string_view kFormatOfAnyVersion = "odomcalib-calibration/";
 constexpr std::string_view kFormat = "odomcalib-calibration/1";
 constexpr std::array<std::string_view, 16> kCalibrationMembers{
     "format",     "verdict",    "reasons",           "next_step", "driven",  "robot",
@@ -305,7 +304,11 @@ Result<Calibration> calibration_from(const Json& json, const std::string& where)
     return Error{ErrorCode::format, "is not a calibration file (no JSON object)", where,
                  "name a file that solve wrote"};
   std::string problem;
-  if (Node(json, "", problem)["format"].text() != kFormat)
+  const std::string format = Node(json, "", problem)["format"].text();
+  if (format != kFormat && format.starts_with(kFormatOfAnyVersion))
+    return Error{ErrorCode::format, std::string(kOtherVersion) + ": \"" + format + "\"", where,
+                 "update odomcalib, or solve the recording with this version"};
+  if (format != kFormat)
     return Error{ErrorCode::format,
                  "is not a calibration file (\"format\" is not \"odomcalib-calibration/1\")", where,
                  "name a file that solve wrote"};
@@ -316,16 +319,6 @@ Result<Calibration> calibration_from(const Json& json, const std::string& where)
     return Error{ErrorCode::format, "calibration file is damaged: " + problem, where,
                  "solve the recording again"};
   return out;
-}
-
-Result<Calibration> read_calibration(const std::filesystem::path& path) {
-  auto bytes = read_file_bytes(path);
-  if (!bytes) return bytes.error();
-  auto calibration = calibration_from_json(bytes.value(), path.string());
-  if (!calibration && is_recording(bytes.value()))
-    return Error{ErrorCode::format, "is a recording, not a calibration", path.string(),
-                 "solve it first: odomcalibctl solve " + path.string() + " --out cal.json"};
-  return calibration;
 }
 
 }  // namespace odomcalib

@@ -6,7 +6,6 @@
 #include "proto/calibration/scale.hpp"
 #include "proto/calibration/utc.hpp"
 #include "proto/discarded_json.hpp"
-#include "proto/file_bytes.hpp"
 
 namespace odomcalib {
 namespace {
@@ -190,10 +189,6 @@ std::string to_json(const Calibration& calibration) {
   std::string text = out.dump(2, ' ', false, Json::error_handler_t::replace);
   text.insert(text.size() - 2, extension_lines(out, calibration.extensions));  // before the closing "\n}"
   return text + "\n";
-}
-
-Result<void> write_calibration(const Calibration& calibration, const std::filesystem::path& path) {
-  return replace_file(path, to_json(calibration));
 }
 
 }  // namespace odomcalib

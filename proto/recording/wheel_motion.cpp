@@ -15,11 +15,6 @@ constexpr double kMostCounts = 9007199254740992.0;  // 2^53: beyond it a count i
 // elsewhere every second one deviates by more than a quarter.
 constexpr double kOnGrid = 0.05;
 
-std::int64_t count_of(double angle, double counts_per_rev) {
-  const double counts = angle / kTurn * counts_per_rev;
-  return std::abs(counts) < kMostCounts ? std::llround(counts) : 0;
-}
-
 /// Both angles never leave one turn: only then can a driver have cut off whole turns.
 bool within_one_turn(const std::vector<WheelSample>& wheels) {
   constexpr double kRounding = 1e-5;  // rad, of single precision
@@ -56,6 +51,11 @@ bool all_on_grid(const std::vector<WheelSample>& wheels, double counts_per_rev) 
 bool at_origin(const PoseSample& pose) { return pose.x == 0.0 && pose.y == 0.0 && pose.yaw == 0.0; }
 
 }  // namespace
+
+std::int64_t count_of(double angle, double counts_per_rev) {
+  const double counts = angle / kTurn * counts_per_rev;
+  return std::abs(counts) < kMostCounts ? std::llround(counts) : 0;
+}
 
 MadeTicks ticks_from_wheels(const std::vector<WheelSample>& wheels, double stated) {
   const std::vector<WheelSample> whole = continued(wheels);

@@ -1,8 +1,8 @@
-// Wheel counts of what tells the motion of the wheels without counting: angles, speeds, odometry. Internal to
-// proto/.
+// Wheel counts of what tells the motion of the wheels without counting: angles, speeds, odometry.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -13,6 +13,9 @@ namespace odomcalib {
 /// Counts a turn where none are known: rounding to them (6 urad, at a wheel of 0.2 m diameter 0.6 um) is far
 /// below what any encoder resolves, and a wheel can turn 8e9 times before a count leaves 2^53.
 inline constexpr double kFineCountsPerRev = 1 << 20;
+
+/// The count nearest to an angle in rad; zero for one that no double counts exactly.
+std::int64_t count_of(double angle, double counts_per_rev);
 
 struct MadeTicks {
   std::vector<TickSample> ticks;

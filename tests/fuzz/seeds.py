@@ -821,7 +821,51 @@ def network_captures():
     seed("tcp_stream", "anew", step(1, 9) + step(4, 10, b"abc") + step(4, 30, b"x") + step(1, 500) + step(4, 501, b"d"))
 
 
+# Library --------------------------------------------------------------------------------------------------------------
+
+
+def odometry():
+    def calibration(effects, **members):
+        names = ("left_wheel_diameter", "right_wheel_diameter", "track_width", "lidar_x", "lidar_y", "lidar_yaw")
+        parameters = {name: {"value": 0.15, "std": 1e-4, "unit": "m"} for name in names}
+        listed = [{"name": name, "stored_in": "host", "aliases": [],
+                   "parameters": {key: {"value": value, "std": 1e-3, "unit": "1"} for key, value in values.items()},
+                   "evidence": {"p_value": 0.01, "held_out_before": None, "held_out_after": None}}
+                  for name, values in effects.items()]
+        noise = {axis: {"value": 0.002, "unit": "m"} for axis in ("forward", "sideways", "yaw")}
+        return json.dumps({"format": "odomcalib-calibration/1", "verdict": "accepted", "robot": {"ticks_per_rev": 4096},
+                           "parameters": parameters, "effects": listed, "contact_noise": noise,
+                           "covariance": {"order": names[:1], "matrix": [[1e-8]]}, **members}).encode()
+
+    def steps(count, first=0):
+        return b"".join(bytes([7, 20]) + struct.pack("<hh", 40 * k, (30 if k % 60 < 30 else -10) * (k % 30))
+                        for k in range(first, first + count))
+
+    many = {"backlash": {"left_play": 0.05, "right_play": 0.05, "spread": 0.0},
+            "caster_kick": {"kappa": 0.01, "kappa_turn": 0.01, "kappa_side": 0.01, "length": 0.08, "order": 0.0, "lean": 0.0},
+            "stop_settling": {"turn": 0.005, "way": 0.005, "lasting": 0.0, "speed": 0.0},
+            "acceleration_slip": {"k": 0.01, "side": 0.0}, "time_offset": {"offset": 0.02, "smoothing": 0.001},
+            "wheel_eccentricity": {"left_cos": 0.005, "left_sin": 0.005}, "carpet": {"p_x": 0.01, "p_y": 0.0},
+            "range_bias": {"offset": 0.01}, "lidar_tilt": {"angle": 0.05, "direction": 0.3}, "of_tomorrow": {"k": 1.0}}
+    curve = {"variable": "previous_push", "carrier": "both_travel", "low": -1.0, "high": 1.0, "memory": 10, "coefficients": [0.01]}
+    seed("odometry", "plain", b"\0" + calibration({}) + b"\0" + steps(40))
+    seed("odometry", "effects", b"\0" + calibration(many) + b"\0" + steps(100) + bytes([5, 0]) + struct.pack("<ff", 0.3, 2.0))
+    seed("odometry", "curve", b"\0" + calibration({}, curves=[curve]) + b"\0" + steps(40))
+    seed("odometry", "wraps", b"\x10" + calibration({}) + b"\0" + steps(10) + bytes([7, 20]) + struct.pack("<hh", -32768, 32767))
+    jump = bytes([0, 20]) + struct.pack("<qq", 1 << 52, -(1 << 52))
+    seed("odometry", "jump", b"\0" + calibration({}) + b"\0" + steps(5) + jump + steps(2, 5) + jump + jump + bytes([3, 0]) + steps(3))
+    late = bytes([0x80]) + struct.pack("<dqq", -5.0, 100, 100)
+    seed("odometry", "stamps", b"\0" + calibration({}) + b"\0" + steps(5) + late + bytes([0x80]) + struct.pack("<dqq", float("nan"), 0, 0)
+         + late + bytes([0x80]) + struct.pack("<dqq", -4.9, 110, 110))
+    turns = b"".join(bytes([1, 20]) + struct.pack("<dd", 0.1 * k, 0.12 * k) for k in range(20))
+    seed("odometry", "angles", b"\0" + calibration(many) + b"\0" + turns + bytes([4, 0]) + struct.pack("<ddd", 1.0, 2.0, 9.0) + turns)
+    seed("odometry", "speeds", b"\0" + calibration({}) + b"\0" + b"".join(bytes([2, 20]) + struct.pack("<dd", 3.0, 2.0) for _ in range(9)))
+    path = b"".join(struct.pack("<hhq", 20 * k, 50 * k, 40 * k) for k in range(30))
+    seed("odometry", "path", b"\0" + calibration(many) + b"\0" + bytes([6, 0]) + path)
+    seed("odometry", "none", b"\0{}\0")
+
+
 if __name__ == "__main__":
     for make in (candump, slcan, sdo, speed_can, speed_serial, ld06, rplidar, cola, scip, xv11, ydlidar, control, control_session, lcm_log,
-                 pose_graph, recordings, rosbag, mcap, rosbag2, ros_messages, profiles, config, journal, network_captures):
+                 pose_graph, recordings, rosbag, mcap, rosbag2, ros_messages, profiles, config, journal, network_captures, odometry):
         make()

@@ -43,6 +43,19 @@ class Packages(unittest.TestCase):
 
     def test_there_is_one_for_the_service_the_tools_and_development(self):
         self.assertLessEqual({"odomcalibd", "odomcalib", "odomcalib-dev"}, set(self.files))
+        self.assertLessEqual({"libodomcalib0", "libodomcalib-dev", "python3-odomcalib"}, set(self.files))
+
+    def test_the_library_needs_the_runtime_and_its_module_the_library(self):
+        depends = [word.split()[0] for word in self.field("libodomcalib0", "Depends").split(", ")]
+        self.assertEqual(sorted(depends), ["libc6", "libgcc-s1", "libstdc++6"])
+        self.assertIn("libodomcalib0 (>= 0.2", self.field("python3-odomcalib", "Depends"))
+        folder = self.installed("usr/lib/python3/dist-packages")
+        library = next(self.installed("usr/lib").glob("*/libodomcalib.so.0"))
+        told("env", f"PYTHONPATH={folder}", f"ODOMCALIB_LIBRARY={library.parent}", "/usr/bin/python3", "-c",
+             f"import odomcalib; assert odomcalib.version() == '{cmake_version()}'")
+        for path in ("usr/include/odomcalib/odometry.h", "usr/include/odomcalib/odometry.hpp",
+                     "usr/share/doc/libodomcalib-dev/examples/control_loop.c"):
+            self.assertTrue(self.installed(path).exists(), path)
 
     def test_their_version_is_that_of_the_program(self):
         for package in ("odomcalibd", "odomcalib", "odomcalib-dev"):

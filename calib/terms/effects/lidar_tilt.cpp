@@ -33,6 +33,13 @@ class LidarTilt final : public LidarEffect {
             {"direction", {tilt.direction, deviation / std::max(2.0 * stretch, 1e-12), "rad"}}};
   }
 
+  [[nodiscard]] std::vector<double> values_of(const QuantityList& stated) const override {
+    if (stated.size() != parameters().size()) return {};
+    const double angle = stated[0].second.value, direction = stated[1].second.value;
+    const double stretch = 0.25 * angle * angle;
+    return {stretch * std::cos(2.0 * direction), stretch * std::sin(2.0 * direction)};
+  }
+
  private:
   struct Tilt {
     double angle = 0.0;      // rad

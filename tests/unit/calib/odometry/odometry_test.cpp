@@ -4,36 +4,21 @@
 #include <cmath>
 #include <random>
 
+#include "calib/odometry/correction.hpp"
+#include "calib/odometry/odometry.hpp"
 #include "calib/odometry/predict.hpp"
+#include "calib/odometry/uncertainty.hpp"
 #include "calib/report/next_test.hpp"
-#include "calib/selection/selection_json.hpp"
 #include "calib/terms/catalogue.hpp"
+#include "calib/terms/fitted_smooth_term.hpp"
+#include "tests/unit/calib/some_drive.hpp"
 
 namespace odomcalib::calib::odometry::odometry_test {
 namespace {
 
-const RobotDescription kRobot{0.15, 0.15, 0.4, 16384.0, std::nullopt, "", ""};
+using test_support::kRobot;
 
-/// Straights, spins and arcs both ways at two paces, each from rest to rest; counts begin anywhere.
-Recording drive() {
-  constexpr std::array<std::array<double, 2>, 6> kMoves{
-      {{2.7, 2.7}, {-2.7, -2.7}, {-1.6, 1.6}, {1.6, -1.6}, {1.0, 2.6}, {-2.0, -0.4}}};
-  Recording recording;
-  recording.robot = kRobot;
-  double left = 5000.0;
-  double right = -70000.0;
-  for (int k = 0; k < 3000; ++k) {
-    const double t = 0.02 * k;
-    recording.ticks.push_back({t, std::llround(left), std::llround(right), 0});
-    const double phase = std::fmod(t, 5.0);
-    const auto move = static_cast<std::size_t>(t / 5.0);
-    const double pace = (move / kMoves.size()) % 2 == 0 ? 1.0 : 0.4;
-    const double ramp = std::clamp(std::min(phase, 4.6 - phase), 0.0, 1.0) * pace;
-    left += 0.02 * ramp * kMoves.at(move % kMoves.size())[0] * kRobot.ticks_per_rev / (2.0 * M_PI);
-    right += 0.02 * ramp * kMoves.at(move % kMoves.size())[1] * kRobot.ticks_per_rev / (2.0 * M_PI);
-  }
-  return recording;
-}
+Recording drive() { return test_support::some_drive(); }
 
 Calibration with_effect(const vehicle::Effect& effect) {
   Calibration calibration = nominal_calibration(kRobot);
@@ -125,8 +110,8 @@ TEST(Odometry, a_curve_of_time_acts_where_the_time_is_known) {
     const terms::SmoothTerm smooth = period > 0.0 ? on_basis(steady, terms::Cycle{period}) : steady;
     std::vector<double> coefficients(function_count(smooth), 0.0);
     coefficients[0] = 0.01;
-    bent.extensions[selection::kSmoothTermsMember] =
-        selection::smooth_terms_to_json({{smooth, coefficients, named_term}});
+    bent.extensions[terms::kSmoothTermsMember] =
+        terms::smooth_terms_to_json({{smooth, coefficients, named_term}});
   };
   set_smooth(0.0, "");
   expect_as_larger(bent, 0.0, "another clock");
@@ -151,10 +136,37 @@ TEST(Odometry, what_a_lidar_did_in_time_is_not_followed) {
     terms::SmoothTerm smooth{{vehicle::Covariate::time, channel}, 0.0, 200.0};
     smooth.basis = terms::ChangePoint{100.0};
     const std::vector<double> coefficients(function_count(smooth), 0.01);
-    lidars.extensions[selection::kSmoothTermsMember] =
-        selection::smooth_terms_to_json({{smooth, coefficients, ""}});
+    lidars.extensions[terms::kSmoothTermsMember] = terms::smooth_terms_to_json({{smooth, coefficients, ""}});
     expect_as_larger(lidars, 0.0, to_string(channel).c_str());
     EXPECT_EQ(effect_placements(lidars).front().place, Place::reference) << to_string(channel);
+  }
+}
+
+// What a plain model looks at is the same whether what comes after is known or not.
+TEST(Odometry, without_effects_each_pose_is_that_of_predict_to_the_last_bit) {
+  const Recording recording = drive();
+  const Calibration calibration = with_wheels_larger_by(0.013);
+  const auto batch = predict(recording, calibration);
+  Odometry odometry(calibration);
+  for (std::size_t k = 0; k < batch.size(); ++k) {
+    const PoseSample live = odometry.update(recording.ticks[k]);
+    ASSERT_EQ(live.x, batch[k].x) << k;
+    ASSERT_EQ(live.y, batch[k].y) << k;
+    ASSERT_EQ(live.yaw, batch[k].yaw) << k;
+  }
+}
+
+// Counters that begin anew show a speed that no wheel had.
+TEST(Odometry, a_counter_that_was_reset_moves_nothing_whatever_the_effect) {
+  Recording reset = drive();
+  for (std::size_t k = 1400; k < reset.ticks.size(); ++k) {
+    reset.ticks[k].left -= 9'000'000;
+    reset.ticks[k].segment = 1;
+  }
+  for (const auto& effect : terms::effect_catalogue()) {
+    const Calibration calibration = with_effect(*effect);
+    for (const auto& path : {predict(reset, calibration), predict_live(reset, calibration)})
+      EXPECT_LT(distance(path[1399], path[1400]), 1e-3) << effect->name();
   }
 }
 

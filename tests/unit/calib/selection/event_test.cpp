@@ -109,14 +109,15 @@ TEST(Event, and_what_fades_survive_the_calibration_file_on_time_alone) {
   terms::SmoothTerm fading{{vehicle::Covariate::time, vehicle::Channel::scale}, 0.0, kDuration};
   fading.basis = terms::Decay{40.0};
   const terms::SmoothTerm event = event_at(100.0, vehicle::Channel::both_travel);
-  const auto read =
-      smooth_terms_from_json(smooth_terms_to_json({{event, {0.01, -0.02}, ""}, {fading, {0.01}, ""}}));
+  const auto read = terms::smooth_terms_from_json(
+      terms::smooth_terms_to_json({{event, {0.01, -0.02}, ""}, {fading, {0.01}, ""}}));
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[0].smooth, event);
   EXPECT_EQ(read[1].smooth, fading);
   terms::SmoothTerm nonsense = event;
   nonsense.dependence.covariate = vehicle::Covariate::speed;
-  EXPECT_TRUE(smooth_terms_from_json(smooth_terms_to_json({{nonsense, {0.01, -0.02}, ""}})).empty());
+  EXPECT_TRUE(
+      terms::smooth_terms_from_json(terms::smooth_terms_to_json({{nonsense, {0.01, -0.02}, ""}})).empty());
 }
 
 TEST(Event, a_load_that_slips_is_found_with_its_moment) {
@@ -168,7 +169,7 @@ TEST(Event, a_lidar_that_warms_up_leaves_the_lengths_of_a_warm_one) {
 }
 
 TEST(EventText, says_what_changed_when_and_for_which_state_the_values_stand) {
-  const FittedSmoothTerm slip{event_at(121.75, vehicle::Channel::both_travel), {-0.0109, 0.0042}, ""};
+  const terms::FittedSmoothTerm slip{event_at(121.75, vehicle::Channel::both_travel), {-0.0109, 0.0042}, ""};
   EXPECT_NE(
       event_to_text(slip, {}).find("121.8 s after the beginning the wheels changed at once (left -1.09 %, "
                                    "right +0.42 %)"),
@@ -177,12 +178,12 @@ TEST(EventText, says_what_changed_when_and_for_which_state_the_values_stand) {
   // Turned to the left about itself, a quarter of a metre ahead of the axle, and moved 12 mm ahead.
   const math::Pose mount{0.25, 0.0, 0.05};
   const math::Pose before = compose({-0.01, -0.005, -0.05}, mount);
-  const FittedSmoothTerm knock{event_at(60.0, vehicle::Channel::way_turned), {0.01, 0.005, 0.05}, ""};
+  const terms::FittedSmoothTerm knock{event_at(60.0, vehicle::Channel::way_turned), {0.01, 0.005, 0.05}, ""};
   std::ostringstream place;
   place << std::showpos << std::fixed << std::setprecision(1) << "x " << 1e3 * (mount.x - before.x)
         << " mm, y " << 1e3 * (mount.y - before.y) << " mm, yaw +2.86 deg";
   EXPECT_NE(event_to_text(knock, mount).find(place.str()), std::string::npos) << event_to_text(knock, mount);
-  const FittedSmoothTerm patch{event_at(60.0, vehicle::Channel::track), {0.01}, ""};
+  const terms::FittedSmoothTerm patch{event_at(60.0, vehicle::Channel::track), {0.01}, ""};
   EXPECT_NE(event_to_text(patch, {}).find("track width changed at once (+1.00 %)"), std::string::npos);
 }
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "calib/selection/hyperparameters.hpp"
-#include "calib/selection/selection_json.hpp"
 #include "calib/terms/candidate_smooths.hpp"
+#include "calib/terms/fitted_smooth_term.hpp"
 #include "calib/terms/smooth_term.hpp"
 #include "calib/terms/smooth_term_effect.hpp"
 #include "calib/terms/smooth_term_on_drives.hpp"
@@ -183,9 +183,8 @@ TEST(SmoothTerm, about_its_mean_it_has_none_over_the_drive) {
       sum[k] += std::abs(c.left_delta) * functions_of(smooth, c)[k];
   }
   for (const double value : sum) EXPECT_NEAR(value / way, 0.0, 1e-12);
-  const std::vector<selection::FittedSmoothTerm> written = {
-      {smooth, std::vector<double>(sum.size(), 0.01), ""}};
-  const auto read = selection::smooth_terms_from_json(smooth_terms_to_json(written));
+  const std::vector<terms::FittedSmoothTerm> written = {{smooth, std::vector<double>(sum.size(), 0.01), ""}};
+  const auto read = terms::smooth_terms_from_json(terms::smooth_terms_to_json(written));
   ASSERT_EQ(read.size(), 1U);
   EXPECT_EQ(read[0].smooth.mean, smooth.mean);
 }
@@ -269,11 +268,11 @@ TEST(SmoothTerm, survives_the_calibration_file) {
       other_shapes({{vehicle::Covariate::position, vehicle::Channel::both_travel}, -1.0, 1.0}, {}).front();
   SmoothTerm brake{{vehicle::Covariate::left_acceleration, vehicle::Channel::left_travel}, -0.8, 0.8};
   brake.with_motion = true;
-  const auto read = selection::smooth_terms_from_json(
-      selection::smooth_terms_to_json({{smooth, {0.01, -0.02}, "drift_with_time"},
-                                       {tiles, {0.01, 0.0, 0.0, 0.0}, ""},
-                                       {rug, std::vector<double>(16, 0.01), ""},
-                                       {brake, std::vector<double>(4, 0.01), ""}}));
+  const auto read =
+      terms::smooth_terms_from_json(terms::smooth_terms_to_json({{smooth, {0.01, -0.02}, "drift_with_time"},
+                                                                 {tiles, {0.01, 0.0, 0.0, 0.0}, ""},
+                                                                 {rug, std::vector<double>(16, 0.01), ""},
+                                                                 {brake, std::vector<double>(4, 0.01), ""}}));
   ASSERT_EQ(read.size(), 4U);
   EXPECT_EQ(read[3].smooth, brake);
   EXPECT_EQ(read[2].smooth, rug);
@@ -281,9 +280,9 @@ TEST(SmoothTerm, survives_the_calibration_file) {
   EXPECT_EQ(read[0].smooth, smooth);
   EXPECT_EQ(read[0].coefficients, (std::vector<double>{0.01, -0.02}));
   EXPECT_EQ(read[0].named_term, "drift_with_time");
-  EXPECT_TRUE(selection::smooth_terms_from_json(R"([{"variable":"mood","carrier":"track","low":0,"high":1}])")
-                  .empty());
-  EXPECT_TRUE(selection::smooth_terms_from_json("[{").empty());
+  EXPECT_TRUE(
+      terms::smooth_terms_from_json(R"([{"variable":"mood","carrier":"track","low":0,"high":1}])").empty());
+  EXPECT_TRUE(terms::smooth_terms_from_json("[{").empty());
 }
 
 /// A smooth term of an event in all that it may take, of which these are as likely as the best.

@@ -1,0 +1,63 @@
+// Wheel motion of every kind as counts that go on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace odomcalib::calib::library {
+
+/// Which kind of motion a drive is told by.
+enum class Motion { none, counts, angles, speeds };
+
+/// Cumulative counts of both wheels.
+using Counts = std::array<std::int64_t, 2>;
+
+/// Counts that wrap at a number of bits, continued.
+class CounterWrap {
+ public:
+  /// @param bits 0: they do not wrap
+  explicit CounterWrap(int bits) : bits_(bits) {}
+  Counts operator()(const Counts& raw);
+  void restart() { last_raw_.reset(); }
+
+ private:
+  int bits_;
+  std::optional<Counts> last_raw_;
+  Counts total_{};
+};
+
+/// Angles as counts of the encoder's grid, which need not go through zero: what counts are the differences.
+class AngleCounts {
+ public:
+  explicit AngleCounts(double counts_per_turn) : counts_per_turn_(counts_per_turn) {}
+  /// @param angles rad
+  /// @return nullopt beyond what can be counted
+  std::optional<Counts> operator()(const std::array<double, 2>& angles);
+  void restart() { first_.reset(); }
+
+ private:
+  double counts_per_turn_;
+  std::optional<std::array<double, 2>> first_;
+};
+
+/// Speeds, each held until the next.
+class SpeedCounts {
+ public:
+  explicit SpeedCounts(double counts_per_turn) : counts_per_turn_(counts_per_turn) {}
+  /// What has been counted at a stamp, when these speeds begin. Changes nothing until keep().
+  /// @param speeds rad/s
+  std::optional<Counts> at(double stamp, const std::array<double, 2>& speeds);
+  void keep();
+  void restart() { last_.reset(); }
+
+ private:
+  struct Held {
+    double stamp;
+    std::array<double, 2> speeds, angles;
+  };
+  double counts_per_turn_;
+  std::optional<Held> last_, next_;
+};
+
+}  // namespace odomcalib::calib::library
