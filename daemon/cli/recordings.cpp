@@ -41,6 +41,7 @@ Result<TopicChoices> parsed(const std::vector<std::string>& topics) {
 
 void add_reading_options(CLI::App& verb, RecordingOptions& options) {
   verb.add_option("--robot", options.robot_file, "nominal values (TOML) instead of those of the recording");
+  verb.add_option("--robot-id", options.robot_id, "name of the robot, instead of that of the recording");
   verb.add_option("--topic", options.topics,
                   "of a ROS recording: PART=TOPIC, or wheels=TOPIC:LEFT,RIGHT with the joints, or "
                   "wheels=LEFT_TOPIC,RIGHT_TOPIC; parts are scan, "
@@ -60,6 +61,7 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
     if (!given) return given.error();
     robot = given.value();
   }
+  if (!options.robot_id.empty()) robot.robot_id = options.robot_id;
   std::vector<Recording> recordings;
   for (const auto& path : paths) {
     auto recording = [&] {

@@ -28,7 +28,7 @@ namespace {
 struct SolveArguments {
   std::vector<std::string> recordings;
   std::vector<std::string> effects{"auto"};
-  std::string scale, sensor, out, report, pairs, note;
+  std::string scale, sensor, out, report, pairs, note, place;
   calib::classical::ClosedFormOptions cuts;
   RecordingOptions reading;
   bool same_robot = false;
@@ -53,6 +53,7 @@ std::string settings_of(const SolveArguments& options) {
   const calib::classical::ClosedFormOptions usual;
   if (options.cuts.rounds != usual.rounds) settings["rounds"] = options.cuts.rounds;
   if (options.cuts.drop_fraction != usual.drop_fraction) settings["cut"] = options.cuts.drop_fraction;
+  if (!options.place.empty()) settings["place"] = options.place;
   if (!options.note.empty()) settings["note"] = options.note;
   return settings.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
@@ -130,6 +131,7 @@ void add_solve(CLI::App& app, Session& session) {
   verb->add_option("--cut", options->cuts.drop_fraction,
                    "share that each round of the closed form cuts (0.01)")
       ->check(finite(0.0, 0.5));
+  verb->add_option("--place", options->place, "where the robot drove: kept in file and report");
   verb->add_option("--note", options->note, "surface, load, tyres: kept in file and report");
   verb->callback([&session, options] {
     session.takes_much_memory = true;

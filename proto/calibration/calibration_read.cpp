@@ -14,9 +14,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormat = "odomcalib-calibration/1";
-constexpr std::array<std::string_view, 14> kCalibrationMembers{
-    "format",  "verdict", "reasons",     "robot",    "parameters", "covariance", "linear_correction",
-    "methods", "effects", "unexplained", "residual", "data",       "discarded",  "repairs"};
+constexpr std::array<std::string_view, 15> kCalibrationMembers{
+    "format",     "verdict",           "reasons", "robot",   "driven",      "parameters",
+    "covariance", "linear_correction", "methods", "effects", "unexplained", "residual",
+    "data",       "discarded",         "repairs"};
 constexpr int kDeepestCalibration = 64;
 
 /// One JSON value and its path. Wrong types are noted once, in `problem`, and read as empty values.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proto/calibration/calibration.hpp"
+#include "proto/calibration/driven.hpp"
 #include "proto/calibration/scale.hpp"
 #include "proto/discarded_json.hpp"
 #include "proto/file_bytes.hpp"
@@ -55,8 +56,8 @@ Json robot(const RobotDescription& robot) {
            {"right_wheel_diameter", number(robot.right_wheel_diameter)},
            {"track_width", number(robot.track_width)},
            {"ticks_per_rev", number(robot.ticks_per_rev)},
-           {"lidar_pose", robot.lidar_pose ? numbers(*robot.lidar_pose) : Json(nullptr)}};
-  if (!robot.robot_id.empty()) out["robot_id"] = robot.robot_id;
+           {"lidar_pose", robot.lidar_pose ? numbers(*robot.lidar_pose) : Json(nullptr)},
+           {"robot_id", robot.robot_id.empty() ? Json(nullptr) : Json(robot.robot_id)}};
   if (!robot.controller.empty()) out["controller"] = robot.controller;
   return out;
 }
@@ -66,6 +67,12 @@ Json linear_correction(const std::optional<LinearCorrection>& linear) {
   return {{"matrix", matrix(linear->matrix)},
           {"condition", number(linear->condition)},
           {"rms", numbers(linear->rms)}};
+}
+
+Json driven(const Calibration& calibration) {
+  const auto times = driven_of(calibration);
+  if (!times) return nullptr;
+  return {{"begin", iso_time(times->begin)}, {"end", iso_time(times->end)}};
 }
 
 Json methods(const std::vector<MethodResult>& results) {
@@ -168,6 +175,7 @@ std::string to_json(const Calibration& calibration) {
       {"verdict", name_of(calibration.verdict)},
       {"reasons", calibration.reasons},
       {"robot", robot(calibration.robot)},
+      {"driven", driven(calibration)},
       {"parameters", parameters(calibration)},
       {"covariance", {{"order", calibration.covariance_order}, {"matrix", matrix(calibration.covariance)}}},
       {"linear_correction", linear_correction(calibration.linear_correction)},
