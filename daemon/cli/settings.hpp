@@ -25,6 +25,15 @@ inline constexpr double kWholeOverShown = std::numbers::sqrt2;
 
 // --- Words of the report ---------------------------------------------------------------------------------
 
+/// Digits of an effect's value behind the point. Chosen: what its deviation needs.
+inline constexpr int kDigits = 3;
+/// Sizes from which a sentence has whole numbers, and tenths. Chosen: two digits that count.
+inline constexpr double kWholeNumbers = 99.95, kTenths = 0.095;
+/// Share of an error that the dimensions alone explain, from which on it is said which way it was off.
+/// Chosen: most of it.
+inline constexpr double kPlainDirection = 0.5;
+/// Stretches of motion from which an interval is printed. Chosen: of fewer a 95 % interval is a guess.
+inline constexpr std::size_t kFewestForInterval = 10;
 /// Share of a pattern in the residual from which on the variable is said to be what it depends on. Chosen.
 inline constexpr double kDependsOn = 0.5;
 

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <memory>
 
-#include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/outputs.hpp"
+#include "daemon/cli/report_page.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/calibration/calibration.hpp"
 #include "proto/file_bytes.hpp"
@@ -26,7 +26,7 @@ int show_report(const ReportOptions& options, const Session& session) {
   const auto calibration = read_calibration(options.calibration);
   if (!calibration) return report_error(calibration.error(), session.json);
   if (!options.html.empty())
-    if (auto written = write_output(options.html, to_html(report(calibration.value()))); !written)
+    if (auto written = write_output(options.html, report_page(calibration.value())); !written)
       return report_error(written.error(), session.json);
   if (session.json != JsonMode::off)
     print_json(to_json(calibration.value()), session.json);

@@ -9,13 +9,13 @@
 
 #include "calib/solve.hpp"
 #include "calib/terms/request.hpp"
-#include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/export_formats.hpp"
 #include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
+#include "daemon/cli/report_page.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "odomcalib_version.hpp"
 #include "proto/calibration/calibration.hpp"
@@ -41,7 +41,7 @@ Result<void> write_results(const SolveArguments& options, const calib::Solution&
       return written;
   if (!options.out.empty())
     if (auto written = write_output(options.out, to_json(calibration)); !written) return written;
-  if (!options.report.empty()) return write_output(options.report, to_html(report(calibration)));
+  if (!options.report.empty()) return write_output(options.report, report_page(calibration));
   return {};
 }
 
