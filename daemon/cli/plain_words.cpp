@@ -193,12 +193,12 @@ void add_lidar(const Calibration& calibration, std::vector<Finding>& findings) {
   };
   add("lidar_x", stated[0], 1000.0, "mm", "{} further [ahead|back]");
   add("lidar_y", stated[1], 1000.0, "mm", "{} further to the [left|right]");
-  add("lidar_yaw", stated[2], kDegrees, "degrees", "turned {} to the [left|right]");
+  add("lidar_yaw", stated[2], kDegrees, "degrees", "turned {} further to the [left|right]");
   if (parts.empty()) return;
   std::string words = "lidar ";
   for (std::size_t k = 0; k < parts.size(); ++k)
     words += (k == 0 ? "" : k + 1 == parts.size() ? " and " : ", ") + parts[k];
-  findings.push_back({Spot::lidar, words + ", beside what was stated",
+  findings.push_back({Spot::lidar, words + " than stated",
                       "mount of the lidar, where it should sit as stated", "the new pose corrects it"});
 }
 

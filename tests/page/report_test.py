@@ -5,6 +5,7 @@ usage: tests/page/report_test.py ODOMCALIBCTL SAMPLE"""
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -119,6 +120,22 @@ def faults_on_paper(browser, url, folder):
         [] if len(cells) > 10 else ["only %d cells" % len(cells)])
 
 
+def faults_of_sheet(browser, url, folder):
+    """One sheet of paper, whole on every screen."""
+    found = []
+    for width, height, screen in SCREENS:
+        browser.open(url, width, height)
+        found += [screen + ": cut off: " + text for text in ask(browser, "cut()")]
+        found += [screen + ": pale: " + text for text in ask(browser, "pale(%g)" % CONTRAST)]
+        found += [screen + ": asks for " + other[:80] for other in browser.requests if other != url] + browser.complaints
+    browser.open(url, 718, media="print")
+    cells = browser.evaluate('() => [...document.querySelectorAll("td,th,p,h1,h2")].map((e) => e.textContent)')
+    printed = words_on_paper(browser.pdf(), folder, "-l", "1")
+    found += ["not on the one sheet: " + cell for cell in cells if "".join(cell.split()) not in printed]
+    pages = subprocess.run(["pdfinfo", os.path.join(folder, "page.pdf")], check=True, text=True, stdout=subprocess.PIPE).stdout
+    return found + ([] if re.search(r"^Pages: +1$", pages, re.M) else ["more than one sheet"])
+
+
 def with_a_finding(calibration):
     """The same, as if backlash had been found: an effect, its picture, reasons, long names."""
     body = json.loads(json.dumps(calibration))
@@ -157,6 +174,18 @@ def write_reports(program, sample, folder):
     return pages
 
 
+def write_sheets(program, folder):
+    """Names and addresses of the pages of one sheet; a refusal has no certificate."""
+    def ctl(*words):
+        return subprocess.run([program, "report", *words], cwd=folder, check=False, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL).returncode
+    statuses = [ctl("good.json", "--sheet", "sheet.html"), ctl("finding.json", "--sheet", "found.html"),
+                ctl("finding.json", "--certificate", "certificate.html"), ctl("refused.json", "--certificate", "none.html")]
+    if statuses != [0, 0, 0, 3] or os.path.exists(os.path.join(folder, "none.html")):
+        sys.exit("sheets and certificates end with %s" % statuses)
+    return [(name, "file://" + os.path.join(folder, name + ".html")) for name in ("sheet", "found", "certificate")]
+
+
 def plant(folder):
     """A page with one fault of each kind that is looked for."""
     path = os.path.join(folder, "planted.html")
@@ -191,6 +220,8 @@ def main(program, sample):
                 browser.open(url, width, height)
                 faults += ["%s, %s: %s" % (name, screen, fault) for fault in faults_in_sight(browser, name)]
             faults += [name + ", paper: " + fault for fault in faults_on_paper(browser, url, folder)]
+        for name, url in write_sheets(os.path.abspath(program), folder):
+            faults += [name + ": " + fault for fault in faults_of_sheet(browser, url, folder)]
     for fault in faults:
         print(fault)
     print("%d faults" % len(faults))

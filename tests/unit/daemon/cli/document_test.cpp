@@ -13,6 +13,7 @@
 #include "daemon/cli/figure_svg.hpp"
 #include "daemon/cli/parameter_tables.hpp"
 #include "daemon/cli/report_page.hpp"
+#include "daemon/cli/report_sheets.hpp"
 #include "proto/calibration/report_data.hpp"
 #include "proto/calibration/scale.hpp"
 #include "tests/value_of.hpp"
@@ -148,6 +149,66 @@ TEST(Report, says_effects_in_plain_words) {
   EXPECT_THAT(text, HasSubstr("left wheel 1.5 mm off centre, 2.0 % of its radius"));
   EXPECT_THAT(text, HasSubstr("counts of the left wheel are 5.0 ms newer than those of the right one"));
   EXPECT_THAT(text, ContainsRegex("wheel eccentricity: left wheel, cosine part +1.600 +0.020 +%"));
+}
+
+/// With an eccentric wheel, play in a gear, and a lidar that sits elsewhere.
+Calibration with_findings() {
+  Calibration calibration = example();
+  calibration.robot.robot_id = "carrier-17";
+  calibration.robot.lidar_pose = {0.1, 0.0, 0.0};
+  for (const auto& [name, value] : {std::pair{"lidar_x", 0.118}, {"lidar_y", 0.0}})
+    calibration.parameters.emplace_back(name, Quantity{value, 1e-4, "m"});
+  calibration.parameters.emplace_back("lidar_yaw", Quantity{-0.0087, 1e-4, "rad"});
+  calibration.effects = {
+      effect_of("wheel_eccentricity", {{"left_cos", {0.016, 1e-4, "1"}}, {"left_sin", {0.012, 1e-4, "1"}}}),
+      effect_of("backlash", {{"right_play", {0.0524, 1e-4, "rad"}}, {"spread", {0.0, -1.0, "rad"}}})};
+  return calibration;
+}
+
+TEST(Sheet, says_what_was_found_where_what_to_look_at_and_what_the_software_does) {
+  const std::string sheet = mechanics_sheet(with_findings());
+  for (const char* said :
+       {"What was found on carrier-17", "left wheel 1.5 mm off centre, 2.0 % of its radius",
+        "rim, hub and tyre; an encoder disc that is not centred", "play of 3.0 deg in the right gear",
+        "gear, key and coupling", "odometry with this calibration corrects it",
+        "lidar 18.0 mm further ahead and turned 0.5 degrees further to the right than stated",
+        "left wheel 3.0 mm (2.0 %) smaller than stated", "the new value corrects it",
+        "Not tested by this drive: lateral slip, carpet.", "<svg class=\"base\""})
+    EXPECT_THAT(sheet, HasSubstr(said));
+  // One number in the drawing for each row of the table.
+  for (const char* number : {">1</text>", ">5</text>"}) EXPECT_THAT(sheet, HasSubstr(number));
+  EXPECT_THAT(sheet, Not(HasSubstr(">6</text>")));
+  EXPECT_THAT(sheet, Not(HasSubstr("wheels 0"))) << "the track width is as stated";
+}
+
+TEST(Sheet, of_a_refusal_promises_no_correction) {
+  Calibration calibration = with_findings();
+  calibration.verdict = Verdict::refused;
+  const std::string sheet = mechanics_sheet(calibration);
+  EXPECT_THAT(sheet, HasSubstr("nothing: the calibration is refused"));
+  EXPECT_THAT(sheet, Not(HasSubstr("corrects it")));
+}
+
+TEST(Sheet, is_drawn_of_a_robot_of_which_nothing_is_known) {
+  EXPECT_THAT(mechanics_sheet(Calibration{}), Not(HasSubstr("nan")));
+}
+
+TEST(Certificate, has_what_is_filed) {
+  Calibration calibration = with_findings();
+  calibration.extensions["settings"] = R"({"version":"0.9.9","place":"hall 3","note":"no load"})";
+  store_scale({1.002, 0.001, "tape"}, calibration);
+  DataUse drive;
+  drive.name = "drive.bag";
+  drive.sha256 = "5e4d";
+  drive.begin = 1795947900.0;
+  drive.duration = 291.0;
+  calibration.data = {drive};
+  const std::string page = certificate(calibration, "cal.json", "f00d");
+  for (const char* said : {"carrier-17", "hall 3", "2026-11-29T10:25:00Z to 2026-11-29T10:29:51Z",
+                           "drive.bag, 291 s; SHA-256 5e4d", "cal.json; SHA-256 f00d", "odomcalib 0.9.9",
+                           "no load", "true to (tape)", "0.355", "1.002 m by a tape", "+-0.2 %",
+                           "A metre read 20.4 mm too long, now 1.1 mm off", "20.40 (20.00..21.00)"})
+    EXPECT_THAT(page, HasSubstr(said));
 }
 
 TEST(Report, page_is_self_contained_and_escaped) {
