@@ -1,0 +1,53 @@
+#include "daemon/cli/status_document.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "proto/angles.hpp"
+
+namespace odomcalib::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string status_text(const ordered_json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// Of a recording: what it holds of each kind of motion, and what a solve would miss.
+std::vector<std::vector<std::string>> motion_rows(const ordered_json& motion) {
+  const auto degrees = [&](const char* way) {
+    return fmt::format("{} {} ({:.0f} deg)", motion[way]["stretches"].get<int>(), way,
+                       motion[way]["rad"].get<double>() * kDegrees);
+  };
+  std::vector<std::vector<std::string>> rows = {
+      {"recorded",
+       fmt::format("stretches: {} straight ({:.2f} m), {}, {}", motion["straight"]["stretches"].get<int>(),
+                   motion["straight"]["m"].get<double>(), degrees("left"), degrees("right"))}};
+  for (const auto& missing : motion["missing"]) rows.push_back({"missing for a solve", status_text(missing)});
+  return rows;
+}
+
+}  // namespace
+
+Document describe_status(const ordered_json& status) {
+  Document document{"odomcalibd: " + status_text(status["state"]), {}};
+  const auto& controller = status["controller"];
+  const auto& lidar = status["lidar"];
+  Section section;
+  section.table.rows = {
+      {"controller", status_text(controller["state"]) + "  " + status_text(controller["device"])},
+      {"lidar", (lidar["stale"] == "" ? "scans arrive" : status_text(lidar["stale"])) + "  " +
+                    status_text(lidar["device"])},
+      {"calibrated", status["calibrated"] == true ? "yes" : "no"},
+      {"last stop", status_text(status["last_stop"])}};
+  if (status["recording_bytes"] > 0)
+    for (auto& row : motion_rows(status["recorded_motion"])) section.table.rows.push_back(std::move(row));
+  for (const auto* device : {&controller, &lidar})
+    if ((*device)["problem"] != "") section.lines.push_back(status_text((*device)["problem"]));
+  document.sections.push_back(section);
+  return document;
+}
+
+}  // namespace odomcalib::cli
