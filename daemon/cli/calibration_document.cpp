@@ -315,7 +315,7 @@ Document describe(const Calibration& calibration) {
                                    drive_errors_section(calibration, data, true),
                                    effects_section(calibration),
                                    traces_section(data),
-                                   not_found_section(data),
+                                   not_found_section(data, false),
                                    meanings_section(calibration),
                                    path_section(data),
                                    residual_of(calibration),
@@ -345,7 +345,7 @@ std::vector<std::pair<std::string, std::vector<Section>>> folded_sections(const 
         linear_of(calibration.linear_correction)}},
       {"What is left: the residual", {residual_shape_section(data)}},
       {kDriveTitle, {path_section(data)}},
-      {"What was not found", {not_found_section(data)}},
+      {"What was not found", {not_found_section(data, true)}},
       {"Data and settings",
        {subject_section(calibration), data_of(calibration), settings_section(calibration)}},
       {"How to read this page", {reading_section()}}};

@@ -95,30 +95,26 @@ Section traces_section(const ReportData& data) {
   return section;
 }
 
-Section not_found_section(const ReportData& data) {
+Section not_found_section(const ReportData& data, bool meanings) {
   Section section{"What was not found, and the size at which nine of ten such drives would show it", {}, {}};
-  bool is_untested = false;
   for (const Detectable& effect : data.detectable) {
     const Display show = display_of(effect.effect, effect.parameter, {0.0, -1.0, effect.unit});
     const auto size = [&show](double value) {
       return significant(value * show.factor) + (show.unit.empty() ? "" : " " + show.unit);
     };
-    const bool tests = effect.smallest && *effect.smallest < effect.typical;
-    is_untested = is_untested || !tests;
+    const bool shows = effect.smallest && *effect.smallest < settings::kNever * effect.typical;
+    std::vector<std::string> row{label_of(effect.effect, effect.parameter),
+                                 shows ? size(*effect.smallest) : "never", size(effect.typical)};
     const auto* meaning = calib::terms::meaning_of(effect.effect, effect.parameter);
-    section.table.rows.push_back({label_of(effect.effect, effect.parameter),
-                                  meaning == nullptr ? "" : std::string(meaning->is),
-                                  effect.smallest ? size(*effect.smallest) : "never", size(effect.typical),
-                                  tests ? "" : effect.motion});
+    if (meanings) row.insert(row.begin() + 1, meaning == nullptr ? "" : std::string(meaning->is));
+    section.table.rows.push_back(std::move(row));
+    const std::string line = "No test of " + readable(effect.effect) + ", which takes " + effect.motion;
+    const bool tests = effect.smallest && *effect.smallest < effect.typical;
+    if (!tests && (section.lines.empty() || section.lines.back() != line)) section.lines.push_back(line);
   }
   if (section.table.rows.empty()) return section;
-  section.table.head = {"", "what it is", "shows from", "typical", "a drive that tests it has"};
-  if (is_untested) {
-    section.lines = {"Where the last column names a drive, this one is no test: no typical size shows."};
-  } else {
-    section.table.head.pop_back();
-    for (auto& row : section.table.rows) row.pop_back();
-  }
+  section.table.head = {"", "shows from", "typical"};
+  if (meanings) section.table.head.insert(section.table.head.begin() + 1, "what it is");
   return section;
 }
 

@@ -36,14 +36,20 @@ Document describe_status(const ordered_json& status) {
   const auto& controller = status["controller"];
   const auto& lidar = status["lidar"];
   Section section;
-  section.table.rows = {
-      {"controller", status_text(controller["state"]) + "  " + status_text(controller["device"])},
-      {"lidar", (lidar["stale"] == "" ? "scans arrive" : status_text(lidar["stale"])) + "  " +
-                    status_text(lidar["device"])},
-      {"calibrated", status["calibrated"] == true ? "yes" : "no"},
-      {"last stop", status_text(status["last_stop"])}};
+  auto& rows = section.table.rows;
+  // What there is nothing to say of has no row.
+  const auto add = [&rows](const char* what, const std::string& text) {
+    if (!text.empty()) rows.push_back({what, text});
+  };
+  add("robot", status["robot"].value("robot_id", ""));
+  add("controller", status_text(controller["state"]) + "  " + status_text(controller["device"]));
+  add("lidar", (lidar["stale"] == "" ? "scans arrive" : status_text(lidar["stale"])) + "  " +
+                   status_text(lidar["device"]));
+  add("in the way", status.value("obstacle", ""));
+  add("calibrated", status["calibrated"] == true ? "yes" : "no");
+  add("last stop", status_text(status["last_stop"]));
   if (status["recording_bytes"] > 0)
-    for (auto& row : motion_rows(status["recorded_motion"])) section.table.rows.push_back(std::move(row));
+    for (auto& row : motion_rows(status["recorded_motion"])) rows.push_back(std::move(row));
   for (const auto* device : {&controller, &lidar})
     if ((*device)["problem"] != "") section.lines.push_back(status_text((*device)["problem"]));
   document.sections.push_back(section);
