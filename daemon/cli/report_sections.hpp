@@ -11,7 +11,8 @@ namespace odomcalib::cli {
 /// @param intervals whether they are shown beside the figures, where there are stretches enough
 Section drive_errors_section(const Calibration& calibration, const ReportData& data, bool intervals);
 Section traces_section(const ReportData& data);
-/// Every other effect, and the size at which it shows; the drive that would test it, where this one is no test.
+/// Every other effect, and the size at which it shows; the drive that would test it, where this one is no
+/// test.
 /// @param meanings whether a column says what each is, for which a terminal has no room
 Section not_found_section(const ReportData& data, bool meanings);
 /// Of the effects that were found.

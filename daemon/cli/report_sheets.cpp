@@ -126,7 +126,7 @@ std::string mechanics_sheet(const Calibration& calibration) {
 std::string certificate(const Calibration& calibration, const std::string& file, const std::string& sha256) {
   const ReportData data = report_data_of(calibration);
   std::string body =
-      "<h1>Certificate of calibration</h1>\n" +
+      heading(calibration, "Certificate of calibration") +
       paragraph(headline(calibration.verdict) + ". " + gain_sentence(calibration, data), " class=\"lead\"");
   body += html_of(filed_section(calibration, file, sha256).table);
   Section values = parameters_section(calibration);
