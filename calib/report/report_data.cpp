@@ -190,8 +190,9 @@ ReportData make_report_data(const measurement::Dataset& dataset, const selection
   const auto fixed = vehicle::fixed_with(dataset.fixed(), effects);
   const selection::JudgedModel full{&fit, fixed, effects};
   const selection::JudgedModel geometry{plain ? &*plain : nullptr, dataset.fixed(), {}};
-  data.drive_errors =
-      drive_errors(dataset.data, dataset.nominal, plain && !effects.empty() ? &geometry : nullptr, full);
+  const selection::JudgedModel* without_effects = plain && !effects.empty() ? &geometry : nullptr;
+  data.drive_errors = drive_errors(dataset.data, dataset.nominal, without_effects, full);
+  data.growth = error_growth(dataset.data, dataset.nominal, without_effects, full);
   data.traces = selection::residual_traces(dataset.data, effects, fit, fixed, found.nuisance);
   data.detectable = found.detectable;
   data.paths = paths_of(dataset, effects, fit);

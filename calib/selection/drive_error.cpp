@@ -78,6 +78,19 @@ Bounded bounded(Part part, const std::vector<EvaluationWindow>& windows,
   return {total.root(), interval.lower, interval.upper};
 }
 
+/// Over the windows as they are, whatever their amount.
+double rms_position(const std::vector<math::Pose>& errors) {
+  double sum = 0.0;
+  for (const math::Pose& e : errors) sum += square_of(Part::position, e);
+  return std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+double mean_amount(const std::vector<EvaluationWindow>& windows) {
+  double sum = 0.0;
+  for (const EvaluationWindow& one : windows) sum += one.amount;
+  return sum / static_cast<double>(windows.size());
+}
+
 double noise_floor(Part part, const std::vector<EvaluationWindow>& windows) {
   math::RatioOfSums sums;
   for (const EvaluationWindow& s : windows)
@@ -104,13 +117,9 @@ class Judge {
     const auto windows =
         find_windows(kind, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
     if (windows.size() < settings::kFewestOfAKind) return;
-    const auto errors = [&](const std::vector<Eigen::VectorXd>& parameters) {
-      return parameters.empty() ? std::vector<math::Pose>{}
-                                : errors_of(data_, windows, parameters, full_.effects);
-    };
-    const auto before = errors(nominal_parameters_);
-    const auto geometry = errors(geometry_parameters_);
-    const auto after = errors(full_parameters_);
+    const auto before = errors(windows, nominal_parameters_);
+    const auto geometry = errors(windows, geometry_parameters_);
+    const auto after = errors(windows, full_parameters_);
     const auto figure = [&](Part part, const std::vector<math::Pose>& e) {
       return e.empty() ? std::nullopt : std::optional(bounded(part, windows, e));
     };
@@ -119,7 +128,26 @@ class Judge {
                      figure(part, geometry), figure(part, after), noise_floor(part, windows)});
   }
 
+  [[nodiscard]] std::optional<ErrorGrowth> over(double way) const {
+    const auto windows =
+        find_windows_of_way(way, data_, folds_, *full_.fit, measured_pairs(data_, trusted_pairs(*full_.fit)));
+    if (windows.size() < settings::kFewestOfAKind) return std::nullopt;
+    const auto figure = [&](const std::vector<Eigen::VectorXd>& parameters) {
+      const auto all = errors(windows, parameters);
+      return all.empty() ? std::nullopt : std::optional(rms_position(all));
+    };
+    return ErrorGrowth{mean_amount(windows), windows.size(), figure(nominal_parameters_),
+                       figure(geometry_parameters_), figure(full_parameters_)};
+  }
+
  private:
+  /// Empty without parameters.
+  [[nodiscard]] std::vector<math::Pose> errors(const std::vector<EvaluationWindow>& windows,
+                                               const std::vector<Eigen::VectorXd>& parameters) const {
+    if (parameters.empty()) return {};
+    return errors_of(data_, windows, parameters, full_.effects);
+  }
+
   [[nodiscard]] std::vector<Eigen::VectorXd> by_fold(const JudgedModel& model) const {
     std::vector<Eigen::VectorXd> parameters;
     for (std::size_t fold = 0; fold < kFolds; ++fold)
@@ -163,6 +191,16 @@ std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
   judge.add(WindowKind::open_loop,
             {{kOpenLoopPosition, Part::position}, {"open_loop_10s_heading", Part::heading}}, errors);
   return errors;
+}
+
+std::vector<ErrorGrowth> error_growth(std::span<const measurement::FitData> data,
+                                      const wheels::BaseParameters& nominal, const JudgedModel* geometry,
+                                      const JudgedModel& full) {
+  const Judge judge(data, nominal, geometry, full);
+  std::vector<ErrorGrowth> growth;
+  for (const double way : settings::kWays_m)
+    if (const auto one = judge.over(way)) growth.push_back(*one);
+  return growth;
 }
 
 const DriveError* open_loop_position(const std::vector<DriveError>& errors) {

@@ -30,6 +30,12 @@ std::vector<DriveError> drive_errors(std::span<const measurement::FitData> data,
                                      const wheels::BaseParameters& nominal, const JudgedModel* geometry,
                                      const JudgedModel& full);
 
+/// How the error of the position grows with the way driven, judged alike: RMS over windows of each length, of
+/// a few lengths. Lengths without at least four windows are left out.
+std::vector<ErrorGrowth> error_growth(std::span<const measurement::FitData> data,
+                                      const wheels::BaseParameters& nominal, const JudgedModel* geometry,
+                                      const JudgedModel& full);
+
 /// The error of position over ten seconds open loop among these; null where the drive was too short for it.
 const DriveError* open_loop_position(const std::vector<DriveError>& errors);
 

@@ -126,10 +126,12 @@ std::optional<measurement::PlacedMotion> motion_by_places(const measurement::Fit
 /// One recording's windows, found from left to right.
 class Finder {
  public:
-  Finder(WindowKind kind, const measurement::FitData& data, std::size_t recording,
+  /// @param whole of a window: s of open loop, m of way; other kinds have their own end
+  Finder(WindowKind kind, double whole, const measurement::FitData& data, std::size_t recording,
          std::span<const std::size_t> folds, const std::vector<bool>& trusted, std::size_t first,
          const measurement::NoiseModel& noise, const math::Pose& mount)
       : kind_(kind),
+        whole_(whole),
         data_(data),
         pairs_(data.pairs),
         recording_(recording),
@@ -141,7 +143,8 @@ class Finder {
 
   std::vector<EvaluationWindow> run() {
     for (std::size_t begin = 0; begin < pairs_.size();) {
-      const std::size_t after = kind_ == WindowKind::open_loop ? window_from(begin) : run_from(begin);
+      const bool is_window = kind_ == WindowKind::open_loop || kind_ == WindowKind::way;
+      const std::size_t after = is_window ? window_from(begin) : run_from(begin);
       begin = std::max(after, begin + 1);
     }
     return std::move(found_);
@@ -152,15 +155,23 @@ class Finder {
     return folds_[k] == folds_[begin] && trusted_[first_ + k] && (k == begin || pairs_[k].follows_previous);
   }
 
+  [[nodiscard]] double way_of(std::size_t k) const {
+    const math::Pose base = conjugate(pairs_[k].motion, inverse(mount_));
+    return std::hypot(base.x, base.y);
+  }
+
   /// Windows overlap by half. @return where the next one begins
   std::size_t window_from(std::size_t begin) {
     std::size_t half = begin + 1;
     std::size_t k = begin;
+    double way = 0.0;
     for (; k < pairs_.size() && joined(begin, k); ++k) {
+      way += way_of(k);
       const double elapsed = pairs_[k].interval.end - pairs_[begin].interval.begin;
-      if (elapsed < settings::kHorizon_s / 2.0) half = k + 1;
-      if (elapsed < settings::kHorizon_s) continue;
-      keep(begin, k, 1.0);
+      const double so_far = kind_ == WindowKind::way ? way : elapsed;
+      if (so_far < whole_ / 2.0) half = k + 1;
+      if (so_far < whole_) continue;
+      keep(begin, k, kind_ == WindowKind::way ? way : 1.0);
       return half;
     }
     return k;
@@ -204,6 +215,7 @@ class Finder {
   }
 
   WindowKind kind_;
+  double whole_;
   const measurement::FitData& data_;
   std::span<const measurement::SensorPair> pairs_;
   std::size_t recording_;
@@ -214,6 +226,24 @@ class Finder {
   math::Pose mount_;
   std::vector<EvaluationWindow> found_;
 };
+
+std::vector<EvaluationWindow> windows_of(WindowKind kind, double whole,
+                                         std::span<const measurement::FitData> data,
+                                         const std::vector<std::size_t>& folds,
+                                         const estimation::FitResult& fit, const std::vector<bool>& trusted) {
+  const math::Pose mount = vehicle::to_base(vehicle::as_span(fit.parameters)).mount;
+  std::vector<EvaluationWindow> all;
+  std::size_t first = 0;
+  for (std::size_t d = 0; d < data.size(); ++d) {
+    const std::size_t count = data[d].pairs.size();
+    const auto found = Finder(kind, whole, data[d], d, std::span(folds).subspan(first, count), trusted, first,
+                              fit.noise[d], mount)
+                           .run();
+    all.insert(all.end(), found.begin(), found.end());
+    first += count;
+  }
+  return all;
+}
 
 }  // namespace
 
@@ -247,18 +277,14 @@ std::vector<EvaluationWindow> find_windows(WindowKind kind, std::span<const meas
                                            const std::vector<std::size_t>& folds,
                                            const estimation::FitResult& fit,
                                            const std::vector<bool>& trusted) {
-  const math::Pose mount = vehicle::to_base(vehicle::as_span(fit.parameters)).mount;
-  std::vector<EvaluationWindow> all;
-  std::size_t first = 0;
-  for (std::size_t d = 0; d < data.size(); ++d) {
-    const std::size_t count = data[d].pairs.size();
-    const auto found =
-        Finder(kind, data[d], d, std::span(folds).subspan(first, count), trusted, first, fit.noise[d], mount)
-            .run();
-    all.insert(all.end(), found.begin(), found.end());
-    first += count;
-  }
-  return all;
+  return windows_of(kind, settings::kHorizon_s, data, folds, fit, trusted);
+}
+
+std::vector<EvaluationWindow> find_windows_of_way(double length, std::span<const measurement::FitData> data,
+                                                  const std::vector<std::size_t>& folds,
+                                                  const estimation::FitResult& fit,
+                                                  const std::vector<bool>& trusted) {
+  return windows_of(WindowKind::way, length, data, folds, fit, trusted);
 }
 
 }  // namespace odomcalib::calib::selection

@@ -10,7 +10,7 @@
 
 namespace odomcalib::calib::selection {
 
-enum class WindowKind { open_loop, straight, turn };
+enum class WindowKind { open_loop, straight, turn, way };
 
 /// Unbroken, measured pairs first..last of one recording, inside one fold.
 struct EvaluationWindow {
@@ -18,7 +18,7 @@ struct EvaluationWindow {
   std::size_t first = 0, last = 0;  ///< pairs of the recording, both included
   std::size_t fold = 0;
   std::size_t block = 0;  ///< of half a minute: windows of one block are not independent
-  double amount = 1.0;    ///< in units of the kind: 1 for open loop, m of length, full turns
+  double amount = 1.0;    ///< in units of the kind: 1 for open loop, m of length or of way, full turns
   vehicle::Interval interval;
   math::Pose chained;          ///< motion of the sensor in its frame at the begin, by the matches
   Eigen::Matrix3d covariance;  ///< of the base's motion as the noise model has it: reference and wheels
@@ -48,5 +48,11 @@ std::vector<EvaluationWindow> find_windows(WindowKind kind, std::span<const meas
                                            const std::vector<std::size_t>& folds,
                                            const estimation::FitResult& fit,
                                            const std::vector<bool>& trusted);
+
+/// Windows of the kind `way`, over which the robot goes as far as `length`, m, on whatever path.
+std::vector<EvaluationWindow> find_windows_of_way(double length, std::span<const measurement::FitData> data,
+                                                  const std::vector<std::size_t>& folds,
+                                                  const estimation::FitResult& fit,
+                                                  const std::vector<bool>& trusted);
 
 }  // namespace odomcalib::calib::selection

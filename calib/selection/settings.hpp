@@ -3,6 +3,7 @@
 // none is given, no comparison with other values is known).
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace odomcalib::calib::selection::settings {
@@ -98,6 +99,8 @@ inline constexpr std::size_t kFewestOfAKind = 4;
 /// Blocks from which an error's interval is drawn. Derived: of three only ten different draws exist, of one
 /// only itself.
 inline constexpr std::size_t kFewestBlocks = 4;
+/// m, ways over which the error of the position is followed. Chosen: what a block of 20 s can hold.
+inline constexpr std::array kWays_m = {0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0};
 
 // --- Equivalent models -----------------------------------------------------------------------------------
 

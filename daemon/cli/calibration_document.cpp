@@ -8,12 +8,16 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include "calib/odometry/correction.hpp"
 #include "daemon/cli/display.hpp"
 #include "daemon/cli/left_out_lines.hpp"
+#include "daemon/cli/plain_words.hpp"
 #include "daemon/cli/report_sections.hpp"
 #include "proto/calibration/scale.hpp"
+#include "proto/calibration/utc.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -34,13 +38,17 @@ std::optional<double> nominal_of(const RobotDescription& robot, const std::strin
 
 bool is_length_of_drive(const std::string& name) { return !name.starts_with("lidar_"); }
 
+std::string twice(double deviation, const Display& show) {
+  return deviation >= 0.0 ? number(2.0 * deviation * show.factor, show.digits) : "-";
+}
+
 std::vector<std::string> parameter_row(const RobotDescription& robot, const std::string& name,
-                                       const Quantity& quantity) {
+                                       const Quantity& quantity, const std::optional<Scale>& scale) {
   const Display show = display_of(quantity.unit);
   const auto nominal = nominal_of(robot, name);
   std::vector<std::string> row{readable(name), nominal ? number(*nominal * show.factor, show.digits) : "-",
-                               number(quantity.value * show.factor, show.digits)};
-  row.push_back(quantity.std >= 0.0 ? number(2.0 * quantity.std * show.factor, show.digits) : "-");
+                               number(quantity.value * show.factor, show.digits), twice(quantity.std, show)};
+  if (scale) row.push_back(twice(absolute_deviation(quantity, *scale), show));
   row.push_back(show.unit);
   const bool relative = nominal && *nominal != 0.0 && is_length_of_drive(name);
   row.push_back(relative ? fmt::format("{:+.3f} %", 100.0 * (quantity.value / *nominal - 1.0)) : "");
@@ -59,28 +67,43 @@ std::string quantity_cell(const Quantity* quantity) {
   return number(quantity->value * show.factor, show.digits);
 }
 
-// Difference from the final answer in units of the two deviations together.
-std::string sigmas_of(const Quantity* quantity, const Quantity* last) {
-  if (quantity == nullptr || last == nullptr || quantity->std < 0.0 || last->std < 0.0) return "-";
-  const double sigma = std::hypot(quantity->std, last->std);
-  return sigma > 0.0 ? fmt::format("{:+.1f}", (quantity->value - last->value) / sigma) : "-";
+/// What each estimator takes for granted: where that does not hold it is off, and the answer is not.
+constexpr auto kAssumptions = std::to_array<std::pair<std::string_view, std::string_view>>({
+    {"straight", "from straight pieces alone; both wheels are off by one factor, and no effects"},
+    {"spin", "from turns on the spot alone; no effects"},
+    {"linear", "least squares without a model of wheels; sideways motion is noise to it"},
+    {"joint_closed_form", "all motion, each pair alike, no effects, clocks that agree"},
+    {"joint", "all motion, each pair by its noise, with the effects that were found: the answer"},
+});
+
+std::string assumption_of(const std::string& method) {
+  const auto* found = std::find_if(kAssumptions.begin(), kAssumptions.end(),
+                                   [&](const auto& one) { return one.first == method; });
+  return found == kAssumptions.end() ? "" : std::string(found->second);
+}
+
+/// Value, and in brackets its difference from the answer.
+std::string compared(const Quantity* quantity, const Quantity& answer) {
+  if (quantity == nullptr) return "-";
+  const Display show = display_of(answer.unit);
+  return fmt::format("{} ({:+.{}f})", quantity_cell(quantity), (quantity->value - answer.value) * show.factor,
+                     show.digits);
 }
 
 Section methods_of(const Calibration& calibration) {
-  Section section{"Estimators compared (difference from the answer in sigmas in brackets)", {}, {{""}, {}}};
+  Section section{"Estimators compared (difference from the answer in brackets)", {}, {{""}, {}}};
   for (const auto& method : calibration.methods) {
-    if (method.refused)
-      section.lines.push_back(readable(method.name) + ": " + *method.refused);
-    else
-      section.table.head.push_back(readable(method.name));
+    const std::string assumed = assumption_of(method.name);
+    section.lines.push_back(readable(method.name) + (assumed.empty() ? "" : ": " + assumed) +
+                            (method.refused ? "; refused: " + *method.refused : ""));
+    if (!method.refused) section.table.head.push_back(readable(method.name));
   }
   for (const auto& [name, last] : calibration.parameters) {
     std::vector<std::string> row{readable(name) + " [" + display_of(last.unit).unit + "]"};
     for (const auto& method : calibration.methods) {
       if (method.refused) continue;
       const Quantity* quantity = find(method.parameters, name);
-      const std::string sigmas = sigmas_of(quantity, &last);
-      row.push_back(quantity_cell(quantity) + (sigmas == "-" ? "" : " (" + sigmas + ")"));
+      row.push_back(method.name == "joint" ? quantity_cell(quantity) : compared(quantity, last));
     }
     section.table.rows.push_back(row);
   }
@@ -125,16 +148,19 @@ std::vector<std::string> residual_row(const char* name, const std::optional<std:
           number((*rms)[2] * 180.0 / std::numbers::pi, 3)};
 }
 
-Section residual_of(const ResidualReport& residual) {
-  Section section{residual.held_out ? "Residual on data not used in the fit: without effects, with them (RMS)"
-                                    : "Residual (RMS)",
+Section residual_of(const Calibration& calibration) {
+  const ResidualReport& residual = calibration.residual;
+  const bool effects = !calibration.effects.empty();
+  Section section{fmt::format("Residual of single motions{}{} (RMS)",
+                              residual.held_out ? ", on data not used in the fit" : "",
+                              effects ? ": without effects, with them" : ""),
                   {},
                   {}};
   if (!residual.before && !residual.after) return section;
   section.table.head = {"", "x mm", "y mm", "yaw deg"};
-  section.table.rows = {residual_row("without effects", residual.before),
-                        residual_row("with effects", residual.after),
-                        residual_row("noise floor", residual.noise_floor)};
+  if (effects) section.table.rows.push_back(residual_row("without effects", residual.before));
+  section.table.rows.push_back(residual_row(effects ? "with effects" : "residual", residual.after));
+  section.table.rows.push_back(residual_row("noise floor", residual.noise_floor));
   return section;
 }
 
@@ -146,20 +172,14 @@ Section subject_section(const Calibration& calibration) {
   };
   add("robot", calibration.robot.robot_id);
   add("controller", calibration.robot.controller);
+  add("place", setting_of(calibration, "place"));
+  if (const auto& driven = calibration.driven) add("driven", utc_span(driven->begin, driven->end));
   for (const auto& data : calibration.data)
     add("recording", fmt::format("{}, {:.0f} s", data.name, data.duration));
-  const auto settings = calibration.extensions.find("settings");
-  if (settings == calibration.extensions.end()) return section;
-  const auto members = nlohmann::json::parse(settings->second, nullptr, false);
-  if (!members.is_object()) return section;
-  add("solved by", "odomcalib " + members.value("version", ""));
-  add("note", members.value("note", ""));
+  if (const std::string version = setting_of(calibration, "version"); !version.empty())
+    add("solved by", "odomcalib " + version);
+  add("note", setting_of(calibration, "note"));
   return section;
-}
-
-Document::Tone tone_of(Verdict verdict) {
-  if (verdict == Verdict::accepted) return Document::Tone::good;
-  return verdict == Verdict::refused ? Document::Tone::bad : Document::Tone::doubtful;
 }
 
 Section data_of(const Calibration& calibration) {
@@ -208,29 +228,50 @@ std::string next_step(const Calibration& calibration) {
   return "Next: " + step + (calibration.verdict == Verdict::refused ? ". Nothing was written." : ".");
 }
 
+Document::Tone tone_of(Verdict verdict) {
+  if (verdict == Verdict::accepted) return Document::Tone::good;
+  return verdict == Verdict::refused ? Document::Tone::bad : Document::Tone::doubtful;
+}
+
+std::string metre_of(const Calibration& calibration) {
+  const auto scale = scale_of(calibration);
+  if (!scale) return "";
+  return scale->source == "lidar data sheet" ? "lidar" : "tape";
+}
+
+std::string setting_of(const Calibration& calibration, const char* name) {
+  const auto member = calibration.extensions.find("settings");
+  if (member == calibration.extensions.end()) return "";
+  const auto settings = nlohmann::json::parse(member->second, nullptr, false);
+  if (!settings.is_object() || !settings.contains(name) || !settings[name].is_string()) return "";
+  return settings[name].get<std::string>();
+}
+
 Section parameters_section(const Calibration& calibration) {
-  Section section{"Parameters", {}, {{"", "nominal", "value", "+-2 sigma", "unit", "change"}, {}}};
+  const auto scale = scale_of(calibration);
+  Section section{"Parameters", {}, {{"", "nominal", "value", "repeatable to", "unit", "change"}, {}}};
+  if (scale)
+    section.table.head.insert(section.table.head.begin() + 4, "true to (" + metre_of(calibration) + ")");
   for (const auto& [name, quantity] : calibration.parameters)
-    section.table.rows.push_back(parameter_row(calibration.robot, name, quantity));
-  section.lines = effect_in_words(calibration);
-  if (const auto scale = scale_of(calibration))
-    section.lines.push_back(
-        fmt::format("+-2 sigma is against the metre of the reference, which is known to +-{:.3g} % ({}): so "
-                    "are all lengths, "
-                    "and no ratio of two; --scale states what a tape says.",
-                    100.0 * 2.0 * scale->std / scale->value, scale->source));
+    section.table.rows.push_back(parameter_row(calibration.robot, name, quantity, scale));
+  if (scale)
+    section.lines.push_back(fmt::format(
+        "Repeatable to: two deviations against the metre of the reference. True to: with that metre, "
+        "which is known to +-{:.3g} % ({}); --scale states what a tape says.",
+        100.0 * 2.0 * scale->std / scale->value, scale->source));
   return section;
 }
 
 Section effects_section(const Calibration& calibration) {
-  Section section{"Effects", {}, {{"", "value", "+-2 sigma", "unit", "p", "stored in"}, {}}};
+  Section section{
+      "Effects", effect_lines(calibration), {{"", "value", "repeatable to", "unit", "p", "stored in"}, {}}};
   for (const auto& effect : calibration.effects)
     for (const auto& [name, quantity] : effect.parameters) {
-      const Display show = display_of(quantity.unit);
-      section.table.rows.push_back(
-          {readable(effect.name) + ": " + readable(name), number(quantity.value * show.factor, show.digits),
-           quantity.std >= 0.0 ? number(2.0 * quantity.std * show.factor, show.digits) : "-", show.unit,
-           fmt::format("{:.2g}", effect.evidence.p_value), effect.stored_in});
+      const Display show = display_of(effect.name, name, quantity);
+      section.table.rows.push_back({label_of(effect.name, name),
+                                    number(quantity.value * show.factor, show.digits),
+                                    twice(quantity.std, show), show.unit,
+                                    fmt::format("{:.2g}", effect.evidence.p_value), effect.stored_in});
     }
   if (section.table.rows.empty()) section.table = {};
   if (const auto& rest = calibration.unexplained) {
@@ -254,6 +295,11 @@ Section effects_section(const Calibration& calibration) {
   return section;
 }
 
+Section gain_section(const Calibration& calibration) {
+  const std::string gain = gain_sentence(calibration, report_data_of(calibration));
+  return {"", gain.empty() ? std::vector<std::string>{} : std::vector{gain}, {}};
+}
+
 Section verdict_section(const Calibration& calibration) {
   Section section{"", calibration.reasons, {}};
   section.lines.push_back(next_step(calibration));
@@ -264,15 +310,15 @@ Document describe(const Calibration& calibration) {
   const ReportData data = report_data_of(calibration);
   Document document{
       headline(calibration.verdict), {verdict_section(calibration)}, tone_of(calibration.verdict)};
-  std::vector<Section> sections = {parameters_section(calibration),
-                                   drive_errors_section(data, true),
+  std::vector<Section> sections = {gain_section(calibration),
+                                   parameters_section(calibration),
+                                   drive_errors_section(calibration, data, true),
                                    effects_section(calibration),
                                    traces_section(data),
-                                   detectable_section(data),
-                                   untested_section(data),
-                                   meanings_section(calibration, data),
+                                   not_found_section(data, false),
+                                   meanings_section(calibration),
                                    path_section(data),
-                                   residual_of(calibration.residual),
+                                   residual_of(calibration),
                                    methods_of(calibration),
                                    linear_of(calibration.linear_correction),
                                    determination_section(calibration),
@@ -286,15 +332,27 @@ Document describe(const Calibration& calibration) {
   return document;
 }
 
-Document report(const Calibration& calibration) {
-  Document document = describe(calibration);
-  document.sections.insert(document.sections.begin() + 1, subject_section(calibration));
-  // Who sees the paths knows at once what it is about.
-  const auto drive = std::find_if(document.sections.begin(), document.sections.end(),
-                                  [](const Section& section) { return section.title == kDriveTitle; });
-  if (drive != document.sections.end()) std::rotate(document.sections.begin() + 2, drive, drive + 1);
-  document.sections.push_back(reading_section());
-  return document;
+std::vector<std::pair<std::string, std::vector<Section>>> folded_sections(const Calibration& calibration) {
+  const ReportData data = report_data_of(calibration);
+  Section traces = traces_section(data);
+  // The first figure stands on the first screen.
+  if (!traces.figures.empty()) traces.figures.erase(traces.figures.begin());
+  std::vector<std::pair<std::string, std::vector<Section>>> groups = {
+      {"Errors before and after", {drive_errors_section(calibration, data, true), residual_of(calibration)}},
+      {"What was found", {effects_section(calibration), meanings_section(calibration), traces}},
+      {"How sure the values are",
+       {repeatability_section(calibration, data), determination_section(calibration), methods_of(calibration),
+        linear_of(calibration.linear_correction)}},
+      {"What is left: the residual", {residual_shape_section(data)}},
+      {kDriveTitle, {path_section(data)}},
+      {"What was not found", {not_found_section(data, true)}},
+      {"Data and settings",
+       {subject_section(calibration), data_of(calibration), settings_section(calibration)}},
+      {"How to read this page", {reading_section()}}};
+  for (auto& [title, sections] : groups)
+    std::erase_if(sections, [](const Section& one) { return one.lines.empty() && one.table.rows.empty(); });
+  std::erase_if(groups, [](const auto& group) { return group.second.empty(); });
+  return groups;
 }
 
 }  // namespace odomcalib::cli

@@ -1,22 +1,35 @@
 // A calibration for people: verdict first, then parameters, estimators, residuals, data.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "daemon/cli/document.hpp"
 #include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::cli {
 
+/// All of it, as text.
 Document describe(const Calibration& calibration);
 
-/// The same with an explanation for readers who have never seen one.
-Document report(const Calibration& calibration);
-
-// Parts of it, for whoever shows less.
+// Parts of it, for whoever shows less, or folds it.
 Section verdict_section(const Calibration& calibration);
+/// What odometry was off by and is now, in a sentence; no line where that is not known.
+Section gain_section(const Calibration& calibration);
 Section parameters_section(const Calibration& calibration);
 Section effects_section(const Calibration& calibration);
+/// Everything that a page does not show first, in groups with their titles; nothing empty.
+std::vector<std::pair<std::string, std::vector<Section>>> folded_sections(const Calibration& calibration);
 
 /// "ACCEPTED", "ACCEPTED WITH WARNINGS" or "REFUSED".
 std::string headline(Verdict verdict);
+Document::Tone tone_of(Verdict verdict);
+std::string next_step(const Calibration& calibration);
+
+/// Text of the member "settings", such as "place", "note" or "version"; empty where it is not stated.
+std::string setting_of(const Calibration& calibration, const char* name);
+/// Which metre "true to" stands on: "tape" or "lidar", by its data sheet; empty where nothing is known of it.
+std::string metre_of(const Calibration& calibration);
 
 }  // namespace odomcalib::cli

@@ -17,23 +17,24 @@ namespace odomcalib::cli {
 namespace {
 
 /// The last line is what to do next.
-void leave_first_reasons(std::vector<std::string>& lines) {
+std::vector<std::string> first_reasons(std::vector<std::string> lines, std::size_t most) {
   const std::size_t reasons = lines.size() - 1;
-  if (reasons <= settings::kSummaryReasons) return;
-  const auto begin = lines.begin() + static_cast<std::ptrdiff_t>(settings::kSummaryReasons);
-  lines.erase(begin, lines.end() - 1);
-  lines.insert(lines.end() - 1, fmt::format("and {} more: --verbose", reasons - settings::kSummaryReasons));
+  if (reasons <= most) return lines;
+  lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(most), lines.end() - 1);
+  lines.insert(lines.end() - 1, fmt::format("and {} more: --verbose", reasons - most));
+  return lines;
 }
 
 }  // namespace
 
 std::string summary(const Calibration& calibration, bool legend, std::size_t width) {
-  constexpr std::size_t kVerdict = 0, kValues = 2, kEffects = 4;
+  constexpr std::size_t kVerdict = 0, kValues = 3, kEffects = 5;
   Document document{headline(calibration.verdict),
                     {verdict_section(calibration),
+                     gain_section(calibration),
                      {"", left_out_lines(calibration), {}},
                      parameters_section(calibration),
-                     drive_errors_section(report_data_of(calibration), false),
+                     drive_errors_section(calibration, report_data_of(calibration), false),
                      effects_section(calibration),
                      {"", {"All of it: --verbose; as a page: odomcalibctl report FILE --html PAGE"}, {}}}};
   const auto text = [&] {
@@ -51,9 +52,12 @@ std::string summary(const Calibration& calibration, bool legend, std::size_t wid
     document.sections[remarks].lines.clear();
     out = text();
   }
-  if (!too_long(out)) return out;
-  leave_first_reasons(document.sections[kVerdict].lines);
-  return text();
+  const std::vector<std::string> reasons = document.sections[kVerdict].lines;
+  for (std::size_t most = settings::kSummaryReasons; most > 0 && too_long(out); --most) {
+    document.sections[kVerdict].lines = first_reasons(reasons, most);
+    out = text();
+  }
+  return out;
 }
 
 void print_calibration(const Calibration& calibration, const Session& session) {

@@ -40,20 +40,6 @@ constexpr double kNarrow = 360.0;    // px, what a phone has for a table
 constexpr double kCharacter = 8.5;   // px of a character, at most
 constexpr double kColumnGap = 10.5;  // px, the padding of a cell
 
-const char* class_of(Document::Tone tone) {
-  switch (tone) {
-    case Document::Tone::good:
-      return "good";
-    case Document::Tone::doubtful:
-      return "doubtful";
-    case Document::Tone::bad:
-      return "bad";
-    case Document::Tone::plain:
-      break;
-  }
-  return "plain";
-}
-
 /// Whether a phone has no room for it.
 bool is_wide(const Table& table) {
   std::vector<std::size_t> widths;
@@ -98,15 +84,6 @@ std::string row_of(const std::vector<std::string>& row, const std::vector<std::s
   return out + "</tr>\n";
 }
 
-std::string html_of(const Table& table) {
-  if (table.rows.empty()) return "";
-  const auto alignments = alignments_of(table);
-  std::string out = is_wide(table) ? "<table class=\"w\">\n" : "<table>\n";
-  if (!table.head.empty()) out += head_of(table.head, alignments);
-  for (const auto& row : table.rows) out += row_of(row, table.head, alignments);
-  return out + "</table>\n";
-}
-
 /// What is drawn upwards, and what is what.
 std::string key_of(const Figure& figure) {
   std::string out = fmt::format("<p class=\"k\"><span>{}</span>", escaped(figure.y_label));
@@ -117,6 +94,31 @@ std::string key_of(const Figure& figure) {
           "5h24\"/></svg>{}</span>",
           class_of(curve.tone), escaped(curve.label));
   return out + "</p>\n";
+}
+
+}  // namespace
+
+const char* class_of(Document::Tone tone) {
+  switch (tone) {
+    case Document::Tone::good:
+      return "good";
+    case Document::Tone::doubtful:
+      return "doubtful";
+    case Document::Tone::bad:
+      return "bad";
+    case Document::Tone::plain:
+      break;
+  }
+  return "plain";
+}
+
+std::string html_of(const Table& table) {
+  if (table.rows.empty()) return "";
+  const auto alignments = alignments_of(table);
+  std::string out = is_wide(table) ? "<table class=\"w\">\n" : "<table>\n";
+  if (!table.head.empty()) out += head_of(table.head, alignments);
+  for (const auto& row : table.rows) out += row_of(row, table.head, alignments);
+  return out + "</table>\n";
 }
 
 std::string html_of(const Figure& figure) {
@@ -135,7 +137,13 @@ std::string html_of(const Section& section) {
   return out + "</section>\n";
 }
 
-}  // namespace
+std::string page_of(const std::string& title, const std::string& style, const std::string& body) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width\"><title>{0}</title>\n"
+      "<style>{1}{2}{3}</style></head><body>\n{4}</body></html>\n",
+      escaped(title), kPalette, kStyle, style, body);
+}
 
 std::string to_text(const Document& document, bool legend, std::size_t width) {
   std::string out = wrapped(document.headline, width);
@@ -146,16 +154,6 @@ std::string to_text(const Document& document, bool legend, std::size_t width) {
     out += laid_out(section.table, legend, width);
   }
   return out;
-}
-
-std::string to_html(const Document& document) {
-  std::string out = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width\"><title>{0}</title>\n"
-      "<style>{3}{1}</style></head><body>\n<h1 class=\"{2}\">{0}</h1>\n",
-      escaped(document.headline), kStyle, class_of(document.tone), kPalette);
-  for (const Section& section : document.sections) out += html_of(section);
-  return out + "</body></html>\n";
 }
 
 }  // namespace odomcalib::cli

@@ -1,5 +1,5 @@
-// A result as headings, lines, tables and figures, rendered as text or as one HTML page: the two cannot
-// disagree.
+// A result as headings, lines, tables and figures, rendered as text or as parts of an HTML page: the two
+// cannot disagree.
 #pragma once
 
 #include <array>
@@ -46,7 +46,14 @@ struct Document {
 /// @param legend whether tables show their head
 /// @param width columns of a line
 std::string to_text(const Document& document, bool legend = true, std::size_t width = kAnyWidth);
-/// Self-contained page without scripts, readable on light and on dark screens; texts are escaped.
-std::string to_html(const Document& document);
+// A page is self-contained, without scripts, readable on light and on dark screens; texts are escaped.
+std::string html_of(const Section& section);
+std::string html_of(const Table& table);
+/// Empty where there is nothing to draw.
+std::string html_of(const Figure& figure);
+/// Name of the style's class.
+const char* class_of(Document::Tone tone);
+/// @param style what the page has beyond the common style
+std::string page_of(const std::string& title, const std::string& style, const std::string& body);
 
 }  // namespace odomcalib::cli

@@ -7,6 +7,7 @@
 
 #include "daemon/cli/export_configurations.hpp"
 #include "proto/calibration/report_data.hpp"
+#include "proto/calibration/scale.hpp"
 
 namespace odomcalib::cli {
 namespace {
@@ -32,9 +33,11 @@ void line(std::string& out, const Fields&... fields) {
 }
 
 std::string parameters_csv(const Calibration& calibration) {
-  std::string out = "name,value,std,unit\n";
+  std::string out = "name,value,std,unit,std_absolute\n";
+  const auto scale = scale_of(calibration);
   for (const auto& [name, q] : calibration.parameters)
-    line(out, field(name), field(q.value), deviation(q.std), field(q.unit));
+    line(out, field(name), field(q.value), deviation(q.std), field(q.unit),
+         scale ? deviation(absolute_deviation(q, *scale)) : "");
   return out;
 }
 

@@ -32,6 +32,8 @@ constexpr std::array kExamples = {
     Examples{"convert",
              {"convert drive.jsonl.gz --out copy.jsonl", "convert drive.jsonl.gz --out copy.jsonl.gz"}},
     Examples{"decode", {"decode ld06 lidar.bin", "decode sick lidar.bin --json"}},
+    Examples{"inspect", {"inspect drive.jsonl.gz", "inspect drive.jsonl.gz --json"}},
+    Examples{"compare", {"compare cal.json later.json", "compare cal.json later.json --trend --until 5mm/m"}},
     Examples{"match", {"match pairs.jsonl", "match pairs.jsonl --matcher brute"}},
     Examples{"report", {"report cal.json", "report cal.json --html report.html"}},
     Examples{"export", {"export cal.json --what toml", "export cal.json --what diff_drive --out drive.yaml"}},

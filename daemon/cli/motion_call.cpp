@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "daemon/cli/client.hpp"
+#include "daemon/cli/output.hpp"
 #include "daemon/cli/plan_document.hpp"
 #include "proto/angles.hpp"
 
@@ -34,7 +35,8 @@ Result<void> ask(const Consent& given, const std::string& what, const Prospect& 
   if (given.dry_run) return {};
   if (given.yes && !(prospect.first_motion && somebody)) {
     if (!besides.empty()) std::cerr << "odomcalibctl: " << besides << '\n';
-    if (prospect.first_motion) std::cerr << "odomcalibctl: this is the first motion of this robot\n";
+    if (prospect.first_motion)
+      tell("This is the first motion of this robot: stay beside it, with an emergency stop at hand.");
     return {};
   }
   if (!somebody) return Error{ErrorCode::usage, "moving or writing needs consent", what, "add --yes"};

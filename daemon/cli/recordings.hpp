@@ -13,8 +13,8 @@ class App;
 namespace odomcalib::cli {
 
 struct RecordingOptions {
-  std::string robot_id;    ///< replaces that of the recordings and of the file; empty: none
   std::string robot_file;  ///< TOML with nominal values that replace those of the recordings; empty: none
+  std::string robot_id;    ///< instead of that of the recordings and of the file; empty: none
   std::vector<std::string> topics;  ///< PART=TOPIC[:LEFT,RIGHT]: what is what in ROS recordings
 };
 

@@ -59,6 +59,26 @@ Figure figure_of_paths(const std::vector<PathTrace>& paths) {
   return figure;
 }
 
+Figure figure_of_growth(const std::vector<ErrorGrowth>& growth, bool has_effects) {
+  Figure figure{
+      "Error of the position against the distance driven, on parts of the recording that the values were not "
+      "fitted to (RMS).",
+      "distance driven [m]",
+      "error of the position [mm]",
+      false,
+      {}};
+  const auto add = [&](const char* label, Tone tone, std::optional<double> ErrorGrowth::*of) {
+    Curve curve{label, Style::line, tone, {{0.0, 0.0}}};
+    for (const ErrorGrowth& one : growth)
+      if (one.*of) curve.points.push_back({one.way, 1000.0 * *(one.*of)});
+    if (curve.points.size() > 2) figure.curves.push_back(std::move(curve));
+  };
+  add("before", Tone::before, &ErrorGrowth::before);
+  if (has_effects) add("without effects", Tone::reference, &ErrorGrowth::geometry);
+  add("now", Tone::after, &ErrorGrowth::after);
+  return figure;
+}
+
 Figure figure_of_trace(const ResidualTrace& trace) {
   const Display show = display_of(trace.residual_unit);
   Figure figure{

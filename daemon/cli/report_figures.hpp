@@ -6,6 +6,8 @@
 
 namespace odomcalib::cli {
 
+/// @param has_effects whether odometry without effects is drawn too
+Figure figure_of_growth(const std::vector<ErrorGrowth>& growth, bool has_effects);
 Figure figure_of_paths(const std::vector<PathTrace>& paths);
 Figure figure_of_trace(const ResidualTrace& trace);
 /// Normalised residual over time and as a histogram.

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "calib/terms/parameter_meaning.hpp"
 #include "daemon/cli/display.hpp"
+#include "daemon/cli/plain_words.hpp"
 #include "daemon/cli/report_figures.hpp"
 #include "daemon/cli/settings.hpp"
 
@@ -35,6 +35,7 @@ std::string figure_text(const std::optional<Bounded>& figure, const Display& sho
 
 std::vector<std::string> error_row(const DriveError& error, bool geometry, bool intervals) {
   const Display show = display_of(error.unit);
+  intervals = intervals && error.stretches >= settings::kFewestForInterval;
   std::vector<std::string> row{title_of(error.name), show.unit, figure_text(error.before, show, intervals)};
   if (geometry) row.push_back(figure_text(error.geometry, show, intervals));
   row.push_back(figure_text(error.after, show, intervals));
@@ -58,39 +59,20 @@ std::string dependence_of(const ResidualTrace& trace) {
   return fmt::format("the {} residual depends on {}", trace.residual, trace.variable);
 }
 
-std::optional<double> parameter_value(const Calibration& calibration, const std::string& name) {
-  return calibration.parameter(name);
+/// A term that is too small to be reported is no effect to be with or without.
+bool has_more_than_dimensions(const Calibration& calibration) {
+  return !calibration.effects.empty() || calibration.unexplained;
 }
 
 }  // namespace
 
-std::vector<std::string> effect_in_words(const Calibration& calibration) {
-  const auto& robot = calibration.robot;
-  const auto left = parameter_value(calibration, "left_wheel_diameter");
-  const auto right = parameter_value(calibration, "right_wheel_diameter");
-  const auto track = parameter_value(calibration, "track_width");
-  if (!left || !right || !track || !(robot.left_wheel_diameter > 0.0) ||
-      !(robot.right_wheel_diameter > 0.0) || !(robot.track_width > 0.0))
-    return {};
-  const double l = robot.left_wheel_diameter / *left;
-  const double r = robot.right_wheel_diameter / *right;
-  const double metre =
-      500.0 * (l + r) - 1000.0;  // mm, what odometry reads too much when the wheels roll a metre
-  const double veer = 180.0 / M_PI * (r - l) / robot.track_width;                  // deg per metre
-  const double turn = 360.0 * (0.5 * (l + r) * *track / robot.track_width - 1.0);  // deg per full turn
-  return {fmt::format(
-      "Before, by its nominal values: a metre read {:.1f} mm too {}, a straight metre veered {:.2f} deg "
-      "to the {}, a full turn read {:.1f} deg too {}.",
-      std::abs(metre), metre < 0.0 ? "short" : "long", std::abs(veer), veer > 0.0 ? "left" : "right",
-      std::abs(turn), turn < 0.0 ? "little" : "much")};
-}
-
-Section drive_errors_section(const ReportData& data, bool intervals) {
+Section drive_errors_section(const Calibration& calibration, const ReportData& data, bool intervals) {
   Section section{fmt::format("What odometry is off by, on data not used in the fit (RMS{})",
-                              intervals ? ", 95 % interval" : ""),
+                              intervals ? ", 95 % interval from ten stretches on" : ""),
                   {},
                   {}};
-  const bool geometry = std::any_of(data.drive_errors.begin(), data.drive_errors.end(),
+  const bool geometry = has_more_than_dimensions(calibration) &&
+                        std::any_of(data.drive_errors.begin(), data.drive_errors.end(),
                                     [](const DriveError& e) { return e.geometry.has_value(); });
   for (const DriveError& error : data.drive_errors)
     section.table.rows.push_back(error_row(error, geometry, intervals));
@@ -113,41 +95,35 @@ Section traces_section(const ReportData& data) {
   return section;
 }
 
-Section detectable_section(const ReportData& data) {
+Section not_found_section(const ReportData& data, bool meanings) {
   Section section{"What was not found, and the size at which nine of ten such drives would show it", {}, {}};
   for (const Detectable& effect : data.detectable) {
-    const Display show = display_of(effect.unit);
-    section.table.rows.push_back({readable(effect.effect) + ": " + readable(effect.parameter),
-                                  effect.smallest ? significant(*effect.smallest * show.factor) : "never",
-                                  significant(effect.typical * show.factor), show.unit});
+    const Display show = display_of(effect.effect, effect.parameter, {0.0, -1.0, effect.unit});
+    const auto size = [&show](double value) {
+      return significant(value * show.factor) + (show.unit.empty() ? "" : " " + show.unit);
+    };
+    const bool shows = effect.smallest && *effect.smallest < settings::kNever * effect.typical;
+    std::vector<std::string> row{label_of(effect.effect, effect.parameter),
+                                 shows ? size(*effect.smallest) : "never", size(effect.typical)};
+    const auto* meaning = calib::terms::meaning_of(effect.effect, effect.parameter);
+    if (meanings) row.insert(row.begin() + 1, meaning == nullptr ? "" : std::string(meaning->is));
+    section.table.rows.push_back(std::move(row));
+    const std::string line = "No test of " + readable(effect.effect) + ", which takes " + effect.motion;
+    const bool tests = effect.smallest && *effect.smallest < effect.typical;
+    if (!tests && (section.lines.empty() || section.lines.back() != line)) section.lines.push_back(line);
   }
-  if (!section.table.rows.empty()) section.table.head = {"", "smallest", "typical", "unit"};
+  if (section.table.rows.empty()) return section;
+  section.table.head = {"", "shows from", "typical"};
+  if (meanings) section.table.head.insert(section.table.head.begin() + 1, "what it is");
   return section;
 }
 
-Section untested_section(const ReportData& data) {
-  Section section{"What this drive is no test of, because no typical size shows", {}, {}};
-  auto& rows = section.table.rows;
-  for (const Detectable& effect : data.detectable) {
-    if (effect.smallest && *effect.smallest < effect.typical) continue;
-    std::vector<std::string> row{readable(effect.effect), effect.motion};
-    if (rows.empty() || rows.back() != row) rows.push_back(std::move(row));
-  }
-  if (!rows.empty()) section.table.head = {"", "a drive that tests it has"};
-  return section;
-}
-
-Section meanings_section(const Calibration& calibration, const ReportData& data) {
+Section meanings_section(const Calibration& calibration) {
   Section section{"What the parameters of these effects are", {}, {}};
-  std::set<std::pair<std::string, std::string>> shown;
   for (const EffectResult& effect : calibration.effects)
-    for (const auto& [parameter, quantity] : effect.parameters) shown.emplace(effect.name, parameter);
-  for (const Detectable& effect : data.detectable) shown.emplace(effect.effect, effect.parameter);
-  for (const auto& row : calib::terms::parameter_meanings()) {
-    const std::string effect(row.effect), parameter(row.parameter);
-    if (shown.count({effect, parameter}) > 0)
-      section.table.rows.push_back({readable(effect) + ": " + readable(parameter), std::string(row.is)});
-  }
+    for (const auto& [parameter, quantity] : effect.parameters)
+      if (const auto* meaning = calib::terms::meaning_of(effect.name, parameter))
+        section.table.rows.push_back({label_of(effect.name, parameter), std::string(meaning->is)});
   return section;
 }
 
@@ -207,7 +183,7 @@ Section repeatability_section(const Calibration& calibration, const ReportData& 
     section.table.rows.push_back(row);
   }
   if (!section.table.rows.empty())
-    section.table.head = {"difference from the answer", "", "1", "2", "3", "4", "5", "+-2 sigma"};
+    section.table.head = {"difference from the answer", "", "1", "2", "3", "4", "5", "repeatable to"};
   return section;
 }
 
@@ -250,10 +226,15 @@ Section reading_section() {
   constexpr const char* kResidual =
       "std / expected near 1 and a runs test within -2 to 2: the residual is noise. Larger: something "
       "is missing or the matches are worse than they say.";
+  constexpr const char* kDeviations =
+      "Repeatable to: two standard deviations of the value in another such drive, against the same metre. "
+      "True "
+      "to: with the error of that metre, which all lengths share; no ratio of two lengths depends on it.";
   constexpr const char* kProbability =
       "p of an effect: how probable so strong a trace of it is on a robot that does not have it.";
-  return {
-      "How to read this page", {kBefore, kFloor, kResidual, kProbability, "More: odomcalib-report(7)."}, {}};
+  return {"How to read this page",
+          {kDeviations, kBefore, kFloor, kResidual, kProbability, "More: odomcalib-report(7)."},
+          {}};
 }
 
 }  // namespace odomcalib::cli

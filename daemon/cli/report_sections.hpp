@@ -7,17 +7,16 @@
 
 namespace odomcalib::cli {
 
-/// What wrong dimensions did to odometry, in words; empty when nominal values are not known.
-std::vector<std::string> effect_in_words(const Calibration& calibration);
-
 // Sections without lines and rows have nothing to say.
-/// @param intervals whether they are shown beside the figures
-Section drive_errors_section(const ReportData& data, bool intervals);
+/// @param intervals whether they are shown beside the figures, where there are stretches enough
+Section drive_errors_section(const Calibration& calibration, const ReportData& data, bool intervals);
 Section traces_section(const ReportData& data);
-Section detectable_section(const ReportData& data);
-Section untested_section(const ReportData& data);
-/// Of the effects in the sections above.
-Section meanings_section(const Calibration& calibration, const ReportData& data);
+/// Every other effect, and the size at which it shows; the drive that would test it, where this one is no
+/// test.
+/// @param meanings whether a column says what each is, for which a terminal has no room
+Section not_found_section(const ReportData& data, bool meanings);
+/// Of the effects that were found.
+Section meanings_section(const Calibration& calibration);
 inline constexpr const char* kDriveTitle = "The drive";
 Section path_section(const ReportData& data);
 Section determination_section(const Calibration& calibration);

@@ -13,6 +13,7 @@
 #include "daemon/cli/document.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/parameter_tables.hpp"
+#include "daemon/cli/status_document.hpp"
 #include "daemon/cli/verbs.hpp"
 
 namespace odomcalib::cli {
@@ -20,10 +21,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using Printer = std::function<void(const ordered_json&, const Session&)>;
-
-std::string text_of(const ordered_json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
 
 /// What is asked, and what the answer is printed as.
 struct Question {
@@ -69,48 +66,8 @@ int ask(const Session& session, const Question& question) {
   return status_of(body, question);
 }
 
-/// Of a recording: what it holds of each kind of motion, and what a solve would miss.
-std::vector<std::vector<std::string>> motion_rows(const ordered_json& motion) {
-  const auto degrees = [&](const char* way) {
-    return fmt::format("{} {} ({:.0f} deg)", motion[way]["stretches"].get<int>(), way,
-                       motion[way]["rad"].get<double>() * 180.0 / std::numbers::pi);
-  };
-  std::vector<std::vector<std::string>> rows = {
-      {"recorded",
-       fmt::format("stretches: {} straight ({:.2f} m), {}, {}", motion["straight"]["stretches"].get<int>(),
-                   motion["straight"]["m"].get<double>(), degrees("left"), degrees("right"))}};
-  for (const auto& missing : motion["missing"]) rows.push_back({"missing for a solve", text_of(missing)});
-  return rows;
-}
-
-/// Whether what was written last was proven by a motion belongs to it.
-std::string calibrated_text(const ordered_json& status) {
-  const std::string calibrated = status["calibrated"] == true ? "yes" : "no";
-  if (!status.contains("proven") || !status["proven"].is_boolean()) return calibrated;
-  return calibrated +
-         (status["proven"] == true ? ", proven by a motion" : "; what was written last is unproven");
-}
-
 void print_status(const ordered_json& status, const Session& session) {
-  Document document{"odomcalibd: " + text_of(status["state"]), {}};
-  const auto& controller = status["controller"];
-  const auto& lidar = status["lidar"];
-  Section section;
-  section.table.rows = {{"controller", text_of(controller["state"]) + "  " + text_of(controller["device"])},
-                        {"lidar", (lidar["stale"] == "" ? "scans arrive" : text_of(lidar["stale"])) + "  " +
-                                      text_of(lidar["device"])},
-                        {"calibrated", calibrated_text(status)},
-                        {"last stop", text_of(status["last_stop"])}};
-  if (const auto lost = status["lcm"].value("dropped", std::uint64_t{0}); lost > 0)
-    section.table.rows.push_back({"LCM", fmt::format("{} messages dropped: the network is too slow", lost)});
-  if (status["recording_bytes"] > 0)
-    for (auto& row : motion_rows(status["recorded_motion"])) section.table.rows.push_back(std::move(row));
-  for (const auto* device : {&controller, &lidar})
-    if ((*device)["problem"] != "") section.lines.push_back(text_of((*device)["problem"]));
-  if (status.value("replaced_controller", "") != "")
-    section.lines.push_back(status.value("replaced_controller", "") + ": odomcalibctl check");
-  document.sections.push_back(section);
-  print_text(document, session.legend);
+  print_text(describe_status(status), session.legend);
 }
 
 void print_checks(const ordered_json& checks, const Session& session) {

@@ -10,13 +10,13 @@
 
 #include "calib/solve.hpp"
 #include "calib/terms/request.hpp"
-#include "daemon/cli/calibration_document.hpp"
 #include "daemon/cli/calibration_summary.hpp"
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/export_formats.hpp"
 #include "daemon/cli/numbers.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/recordings.hpp"
+#include "daemon/cli/report_page.hpp"
 #include "daemon/cli/settings.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "odomcalib_version.hpp"
@@ -30,7 +30,7 @@ namespace {
 struct SolveArguments {
   std::vector<std::string> recordings;
   std::vector<std::string> effects{"auto"};
-  std::string scale, sensor, out, report, pairs, note;
+  std::string scale, sensor, out, report, pairs, note, place;
   calib::classical::ClosedFormOptions cuts;
   RecordingOptions reading;
   bool same_robot = false;
@@ -44,7 +44,7 @@ Result<void> write_results(const SolveArguments& options, const calib::Solution&
       return written;
   if (!options.out.empty())
     if (auto written = write_output(options.out, to_json(calibration)); !written) return written;
-  if (!options.report.empty()) return write_output(options.report, to_html(report(calibration)));
+  if (!options.report.empty()) return write_output(options.report, report_page(calibration));
   return {};
 }
 
@@ -56,6 +56,7 @@ std::string settings_of(const SolveArguments& options) {
   const calib::classical::ClosedFormOptions usual;
   if (options.cuts.rounds != usual.rounds) settings["rounds"] = options.cuts.rounds;
   if (options.cuts.drop_fraction != usual.drop_fraction) settings["cut"] = options.cuts.drop_fraction;
+  if (!options.place.empty()) settings["place"] = options.place;
   if (!options.note.empty()) settings["note"] = options.note;
   return settings.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
@@ -146,6 +147,7 @@ void add_solve(CLI::App& app, Session& session) {
   verb->add_option("--odometer", options->odometer_km,
                    "km that the robot's counter of distance shows: kept in the file, compare draws over it")
       ->check(finite(0.0, settings::kMostOdometer_km));
+  verb->add_option("--place", options->place, "where the robot drove: kept in file and report");
   verb->add_option("--note", options->note, "surface, load, tyres: kept in file and report");
   verb->callback([&session, options] {
     session.takes_much_memory = true;

@@ -101,6 +101,9 @@ class Watch {
     const auto status = ask(*client_, "GetStatus", "status");
     if (!status) return status.error();
     state_.take_status(status.value());
+    // An older daemon does not know the method: it shows no scan then.
+    if (state_.needs_scan())
+      if (const auto scan = ask(*client_, "GetScan", "scan")) state_.take_scan_answer(scan.value());
     if (turn_ % settings::kTurnsPerTable != 0) return {};
     const auto parameters = ask(*client_, "GetParameters", "parameters");
     if (!parameters) return parameters.error();

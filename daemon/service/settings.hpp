@@ -103,6 +103,10 @@ inline constexpr double kEventsAtOnce = 20.0, kEventPause_s = 5.0;
 
 /// s between messages of the same kind. Chosen.
 inline constexpr double kRobotPeriod_s = 10.0, kStatusPeriod_s = 1.0, kProgressPeriod_s = 0.2;
+/// s for which progress that was sent is that of what runs now. Derived: five periods, in case one is late.
+inline constexpr double kProgressLasts_s = 5.0 * kProgressPeriod_s;
+/// Points of a scan that is asked for. Chosen: half a degree of a full turn, as viewers show.
+inline constexpr std::size_t kMostScanPoints = 720;
 /// s between attempts to open the network. Chosen.
 inline constexpr double kPublisherRetry_s = 5.0;
 /// Messages, and bytes of them, that wait for the network. Derived: a second of a usual robot (counts at 50

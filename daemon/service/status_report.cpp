@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "daemon/safety/obstacle.hpp"
 #include "daemon/service/settings.hpp"
@@ -188,7 +189,8 @@ ordered_json robot_report(const Drive& drive) {
           {"right_wheel_diameter", all.right_wheel_diameter},
           {"track_width", all.track_width},
           {"ticks_per_rev", all.ticks_per_rev},
-          {"in_controller", !drive.in_force.empty()}};
+          {"in_controller", !drive.in_force.empty()},
+          {"robot_id", all.robot_id}};
 }
 
 ordered_json motion_report(const MotionCount& recorded) {
@@ -253,6 +255,8 @@ ordered_json status_report(const Bench& bench, const Task* task) {
   body["controller"] = controller_report(bench);
   body["lidar"] = lidar_report(bench);
   body["robot"] = robot_report(bench.drive);
+  body["obstacle"] = bench.surroundings.obstacles.obstacle().value_or("");
+  body["progress"] = task == nullptr ? ordered_json() : bench.outbox.last_progress();
   body["odometry"] = {pose.x, pose.y, routines::wrapped(pose.yaw)};
   body["calibrated"] = bench.applied.get().has_value();
   const auto proven = bench.write_back.proven();
@@ -267,6 +271,17 @@ ordered_json status_report(const Bench& bench, const Task* task) {
   body["recording_bytes_waiting"] = telemetry.recorder.bytes_waiting();
   body["recorded_motion"] = motion_report(bench.recorded);
   return body;
+}
+
+ordered_json scan_report(const Bench& bench) {
+  const auto& points = bench.surroundings.points;
+  ordered_json list = ordered_json::array();
+  const std::size_t step = points.size() / service::settings::kMostScanPoints + 1;
+  const auto rounded = [](double metres) { return std::round(1000.0 * metres) / 1000.0; };
+  if (!bench.surroundings.scans.stale(bench.now))
+    for (std::size_t k = 0; k < points.size(); k += step)
+      list.push_back({rounded(points[k].x), rounded(points[k].y)});
+  return {{"points", list}};
 }
 
 ordered_json description(const Config& config) {

@@ -10,6 +10,8 @@ std::string activity(const Bench& bench, const Task* task);
 /// That, and which devices are missing: for systemd's STATUS.
 std::string one_line(const Bench& bench, const Task* task);
 ordered_json status_report(const Bench& bench, const Task* task);
+/// The newest scan: points [x, y], m in the frame of the base, thinned; none where no current scan arrives.
+ordered_json scan_report(const Bench& bench);
 /// The configuration in force.
 ordered_json description(const Config& config);
 /// Rows {name, outcome, found, remedy}.

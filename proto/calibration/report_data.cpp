@@ -1,5 +1,6 @@
 #include "proto/calibration/report_data.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -40,6 +41,12 @@ Json row(Numbers... values) {
   Json out = Json::array();
   (out.push_back(rounded_number(values)), ...);
   return out;
+}
+
+Json to_json(const ErrorGrowth& growth) {
+  const double nan = std::nan("");
+  return row(growth.way, static_cast<double>(growth.stretches), growth.before.value_or(nan),
+             growth.geometry.value_or(nan), growth.after.value_or(nan));
 }
 
 Json to_json(const ResidualTrace& trace) {
@@ -122,6 +129,16 @@ DriveError error_of(const Json& value) {
   return error;
 }
 
+std::optional<double> known(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+ErrorGrowth growth_of(const Json& value) {
+  const auto g = numbers_of(value, 5);
+  const double stretches = g[1] > 0.0 ? g[1] : 0.0;
+  return {g[0], static_cast<std::size_t>(std::min(stretches, 1e9)), known(g[2]), known(g[3]), known(g[4])};
+}
+
 ResidualTrace trace_of(const Json& value) {
   ResidualTrace trace;
   trace.effect = value.at("effect");
@@ -184,6 +201,7 @@ void read_detectable(const Json& list, ReportData& data) {
 }
 
 void read_picture(const Json& picture, ReportData& data) {
+  for (const auto& value : picture.value("growth", Json::array())) data.growth.push_back(growth_of(value));
   for (const auto& value : picture.at("paths")) data.paths.push_back(path_of(value));
   for (const auto& value : picture.at("traces")) data.traces.push_back(trace_of(value));
   for (const auto& value : picture.at("axes")) data.axes.push_back(axis_of(value));
@@ -216,12 +234,10 @@ void store_report_data(const ReportData& data, Calibration& calibration) {
   }
   calibration.extensions[kErrorsMember] = list(data.drive_errors).dump();
   if (!data.detectable.empty()) calibration.extensions[kDetectableMember] = list(data.detectable).dump();
-  calibration.extensions[kPictureMember] = Json{
-      {"paths", list(data.paths)},
-      {"traces", list(data.traces)},
-      {"axes", list(data.axes)},
-      {"series", list(data.series)},
-      {"left_out", left_out}}.dump();
+  calibration.extensions[kPictureMember] =
+      Json{{"growth", list(data.growth)}, {"paths", list(data.paths)},   {"traces", list(data.traces)},
+           {"axes", list(data.axes)},     {"series", list(data.series)}, {"left_out", left_out}}
+          .dump();
 }
 
 ReportData report_data_of(const Calibration& calibration) {

@@ -33,6 +33,13 @@ struct DriveError {
   std::optional<double> noise_floor;  ///< what noise of reference and wheels alone would show
 };
 
+/// Error of the position of dead reckoning after a way, on data not used in the fit: RMS over stretches, m.
+struct ErrorGrowth {
+  double way = 0.0;  ///< m driven, the mean of the stretches
+  std::size_t stretches = 0;
+  std::optional<double> before, geometry, after;  ///< as in DriveError
+};
+
 /// Residual of single measured motions with and without one effect, by the variable that the effect acts by.
 struct ResidualTrace {
   struct Point {
@@ -84,6 +91,7 @@ struct ResidualSample {
 
 struct ReportData {
   std::vector<DriveError> drive_errors;
+  std::vector<ErrorGrowth> growth;
   std::vector<ResidualTrace> traces;
   std::vector<Detectable> detectable;
   std::vector<PathTrace> paths;

@@ -30,6 +30,14 @@ std::string utc_text(double t) {
   return text.data();
 }
 
+std::string utc_span(double begin, double end) {
+  const std::string from = utc_text(begin), to = utc_text(end);
+  const auto day = [](const std::string& text) { return text.substr(0, 10); };
+  const auto minute = [](const std::string& text) { return text.substr(11, 5); };
+  return day(from) + ", " + minute(from) + " to " + (day(to) == day(from) ? "" : day(to) + ", ") +
+         minute(to) + " UTC";
+}
+
 std::optional<double> utc_from(const std::string& text) {
   int year = 0, hour = 0, minute = 0, second = 0;
   unsigned month = 0, day = 0;

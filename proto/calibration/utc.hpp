@@ -15,6 +15,10 @@ bool is_date(double t);
 /// @param t s since 1970, a date
 std::string utc_text(double t);
 
+/// "2026-11-29, 10:19 to 10:24 UTC" for people; both days where begin and end lie on two.
+/// @param begin, end s since 1970, dates
+std::string utc_span(double begin, double end);
+
 /// s since 1970; nullopt for what utc_text() does not write.
 std::optional<double> utc_from(const std::string& text);
 

@@ -66,6 +66,7 @@ def main(programs, profile):
         # A script has nobody to ask; its --yes is somebody's who gave it.
         done = robot.ctl(*move, "--yes")
         expect("first motion of this robot" in done.stderr, "a script is not told: " + done.stderr)
+        expect("odomcalibctl: this is the first" not in done.stderr, "it looks like an error: " + done.stderr)
         robot.wait_until(robot.ready, "the robot does not come to rest")
         seen, _ = on_terminal(robot, [*move, "--yes"], "no", [QUESTION, "Ctrl-C stops the robot"])
         expect(QUESTION not in seen, "asked again after the first motion:\n" + seen)

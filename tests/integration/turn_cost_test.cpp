@@ -119,6 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, WholeMotion, testing::ValuesIn(kDriven),
 
 const Asked kAsked[] = {
     {"status", "GetStatus", json::object()},
+    {"scan", "GetScan", json::object()},
     {"check", "Check", json::object()},
     {"parameters", "GetParameters", json::object()},
     {"calibrate", "Calibrate", {{"dry_run", true}}},

@@ -81,6 +81,21 @@ class Packages(unittest.TestCase):
         self.assertIn("/etc/odomcalib/odomcalib.toml", told(self.installed("usr/bin/odomcalibd"), "--help"))
         self.assertIn("/usr/share/odomcalib/profiles", told(self.installed("usr/bin/odomcalibctl"), "decode", "--help"))
 
+    def test_relative_links_of_the_documents_resolve(self):
+        folder, links = self.installed("usr/share/doc/odomcalib"), 0
+        for page in folder.glob("**/*.md"):
+            for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
+                links += 1
+                self.assertTrue((page.parent / link).exists(), f"{page.relative_to(folder)}: {link}")
+        self.assertGreater(links, 100)
+        self.assertTrue((folder / "README.md").exists())
+
+    def test_the_simulator_of_recordings_is_there(self):
+        with tempfile.TemporaryDirectory() as folder:
+            recording = pathlib.Path(folder) / "rest.jsonl.gz"
+            told(self.installed("usr/bin/odomcalib-sim-record"), "--drive", "rest", "--duration", "2", "--out", recording)
+            self.assertEqual(json.loads(gzip.open(recording, "rt").readline())["type"], "robot")
+
     def test_every_manual_page_is_there(self):
         for page in (source / "docs/man").iterdir():
             self.assertTrue(self.installed(f"usr/share/man/man{page.suffix[1:]}/{page.name}.gz").exists(), page.name)

@@ -5,6 +5,7 @@ usage: tests/page/report_test.py ODOMCALIBCTL SAMPLE"""
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -12,7 +13,7 @@ import tempfile
 from browser import Browser
 
 # px; and a name of the reader
-SCREENS = [(1400, "desk"), (400, "phone")]
+SCREENS = [(1400, 900, "desk"), (400, 800, "phone")]
 CONTRAST = 4.5  # of text and its background, as WCAG 2 asks
 
 FUNCTIONS = """
@@ -49,7 +50,7 @@ const light = (c) => c.match(/[\\d.]+/g).slice(0, 3).map((v) => v / 255)
   .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)).reduce((s, v, i) => s + v * [0.2126, 0.7152, 0.0722][i], 0);
 const pale = (least) => {
   const paper = light(getComputedStyle(document.body).backgroundColor);
-  return [...document.body.querySelectorAll("h1,h2,p,td,th,figcaption,svg text")].filter((e) => {
+  return [...document.body.querySelectorAll("h1,h2,p,td,th,summary,figcaption,svg text")].filter((e) => {
     const ink = light(getComputedStyle(e)[e.tagName === "text" ? "fill" : "color"]);
     return (Math.max(ink, paper) + 0.05) / (Math.min(ink, paper) + 0.05) < least;
   }).map(label);
@@ -57,39 +58,82 @@ const pale = (least) => {
 """
 
 
+# What a reader sees without scrolling, and what must be among it.
+IN_SIGHT = """() => [...document.querySelectorAll("h1,header p,.lead,.sizes .v,.next p,.gain svg")].filter((e) => {
+  const box = e.getBoundingClientRect();
+  return box.width > 0 && box.top >= 0 && box.bottom <= innerHeight;
+}).map((e) => e.tagName + " " + (e.className.baseVal ?? e.className) + " " + e.textContent)"""
+UNFOLD = '() => document.querySelectorAll("details").forEach((e) => { e.open = true; })'
+
+
 def ask(browser, expression):
     return browser.evaluate("() => {%s return %s; }" % (FUNCTIONS, expression))
 
 
-def faults_on_screen(browser, url, width, dark):
-    browser.open(url, width, dark=dark)
-    scroll, client = ask(browser, "width()")
-    found = ["%d px of %d" % (scroll, client)] if scroll > client or client != width else []
-    found += ["cut off: " + text for text in ask(browser, "cut()")]
+def faults_in_sight(browser, name):
+    """Verdict, robot, when, what to do; where values may be used the sentence, its two figures and the picture of the gain too."""
+    seen = browser.evaluate(IN_SIGHT)
+    wanted = ["H1", "Next: "] + ([] if name == "refused" else ["P lead A ", "P v", "svg"])
+    return ["not in sight without scrolling: " + text for text in wanted if not any(text in one for one in seen)]
+
+
+def faults_of_layout(browser):
+    found = ["cut off: " + text for text in ask(browser, "cut()")]
     found += ["letters of a drawing: " + text for text in ask(browser, "letters()")]
     found += ["no marks: " + text for text in ask(browser, "empty()")]
-    found += ["pale: " + text for text in ask(browser, "pale(%g)" % CONTRAST)]
+    return found + ["pale: " + text for text in ask(browser, "pale(%g)" % CONTRAST)]
+
+
+def faults_on_screen(browser, url, width, height, dark):
+    """As it comes, and with everything unfolded."""
+    browser.open(url, width, height, dark=dark)
+    found = faults_of_layout(browser)
+    browser.evaluate(UNFOLD)
+    scroll, client = ask(browser, "width()")
+    found += ["%d px of %d" % (scroll, client)] if scroll > client or client != width else []
+    found += [fault for fault in faults_of_layout(browser) if fault not in found]
     found += ["asks for " + other[:80] for other in browser.requests if other != url]
     return found + browser.complaints
 
 
-def words_on_paper(pdf, folder):
+def words_on_paper(pdf, folder, *options):
     path = os.path.join(folder, "page.pdf")
     with open(path, "wb") as file:
         file.write(pdf)
-    text = subprocess.run(["pdftotext", "-raw", path, "-"], check=True, text=True, stdout=subprocess.PIPE).stdout
+    text = subprocess.run(["pdftotext", "-raw", *options, path, "-"], check=True, text=True, stdout=subprocess.PIPE).stdout
     return "".join(text.split())
 
 
 def faults_on_paper(browser, url, folder):
-    """Every cell of every table is on the paper, and nothing is wider than it."""
+    """Every cell of every table is on the paper, though folded on a screen; nothing is wider than it; and the first sheet is the
+    summary: what is not folded, all of it, and nothing else."""
     browser.open(url, 718, media="print")  # A4 between its margins
     scroll, client = ask(browser, "width()")
     found = ["%d px of %d" % (scroll, client)] if scroll > client else []
     cells = browser.evaluate('() => [...document.querySelectorAll("td,th,p,h2")].map((e) => e.textContent)')
-    printed = words_on_paper(browser.pdf(), folder)
+    pdf = browser.pdf()
+    printed, first = words_on_paper(pdf, folder), words_on_paper(pdf, folder, "-l", "1")
+    summary = browser.evaluate('() => [...document.querySelectorAll("h1,.lead,.first p,.first td")].map((e) => e.textContent)')
+    found += ["not on the first sheet: " + text for text in summary if "".join(text.split()) not in first]
+    found += ["more than the summary is on the first sheet"] if "Howtoreadthispage" in first else []
     return found + ["not printed: " + cell for cell in cells if "".join(cell.split()) not in printed] + (
         [] if len(cells) > 10 else ["only %d cells" % len(cells)])
+
+
+def faults_of_sheet(browser, url, folder):
+    """One sheet of paper, whole on every screen."""
+    found = []
+    for width, height, screen in SCREENS:
+        browser.open(url, width, height)
+        found += [screen + ": cut off: " + text for text in ask(browser, "cut()")]
+        found += [screen + ": pale: " + text for text in ask(browser, "pale(%g)" % CONTRAST)]
+        found += [screen + ": asks for " + other[:80] for other in browser.requests if other != url] + browser.complaints
+    browser.open(url, 718, media="print")
+    cells = browser.evaluate('() => [...document.querySelectorAll("td,th,p,h1,h2")].map((e) => e.textContent)')
+    printed = words_on_paper(browser.pdf(), folder, "-l", "1")
+    found += ["not on the one sheet: " + cell for cell in cells if "".join(cell.split()) not in printed]
+    pages = subprocess.run(["pdfinfo", os.path.join(folder, "page.pdf")], check=True, text=True, stdout=subprocess.PIPE).stdout
+    return found + ([] if re.search(r"^Pages: +1$", pages, re.M) else ["more than one sheet"])
 
 
 def with_a_finding(calibration):
@@ -130,6 +174,18 @@ def write_reports(program, sample, folder):
     return pages
 
 
+def write_sheets(program, folder):
+    """Names and addresses of the pages of one sheet; a refusal has no certificate."""
+    def ctl(*words):
+        return subprocess.run([program, "report", *words], cwd=folder, check=False, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL).returncode
+    statuses = [ctl("good.json", "--sheet", "sheet.html"), ctl("finding.json", "--sheet", "found.html"),
+                ctl("finding.json", "--certificate", "certificate.html"), ctl("refused.json", "--certificate", "none.html")]
+    if statuses != [0, 0, 0, 3] or os.path.exists(os.path.join(folder, "none.html")):
+        sys.exit("sheets and certificates end with %s" % statuses)
+    return [(name, "file://" + os.path.join(folder, name + ".html")) for name in ("sheet", "found", "certificate")]
+
+
 def plant(folder):
     """A page with one fault of each kind that is looked for."""
     path = os.path.join(folder, "planted.html")
@@ -146,10 +202,10 @@ def plant(folder):
 def blind_spots(browser, folder):
     """What of the planted faults is not seen."""
     url = plant(folder)
-    seen = "\n".join(faults_on_screen(browser, url, 400, False))
+    seen = "\n".join(faults_on_screen(browser, url, 400, 800, False) + faults_in_sight(browser, "planted"))
     return ["a planted fault is not seen: " + kind for kind in
             ("px of 400", "cut off: DIV hidden", "cut off: TD wide", "letters of a drawing", "no marks", "pale: P pale",
-             "asks for http://localhost", "script error") if kind not in seen]
+             "asks for http://localhost", "script error", "not in sight without scrolling: H1") if kind not in seen]
 
 
 def main(program, sample):
@@ -157,11 +213,15 @@ def main(program, sample):
     with tempfile.TemporaryDirectory() as folder, Browser() as browser:
         faults += blind_spots(browser, folder)
         for name, url in write_reports(os.path.abspath(program), os.path.abspath(sample), folder):
-            for width, screen in SCREENS:
+            for width, height, screen in SCREENS:
                 for dark in (False, True):
                     where = "%s, %s%s: " % (name, screen, ", dark" * dark)
-                    faults += [where + fault for fault in faults_on_screen(browser, url, width, dark)]
+                    faults += [where + fault for fault in faults_on_screen(browser, url, width, height, dark)]
+                browser.open(url, width, height)
+                faults += ["%s, %s: %s" % (name, screen, fault) for fault in faults_in_sight(browser, name)]
             faults += [name + ", paper: " + fault for fault in faults_on_paper(browser, url, folder)]
+        for name, url in write_sheets(os.path.abspath(program), folder):
+            faults += [name + ": " + fault for fault in faults_of_sheet(browser, url, folder)]
     for fault in faults:
         print(fault)
     print("%d faults" % len(faults))

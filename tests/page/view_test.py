@@ -157,6 +157,25 @@ def faults_of_screens(browser, url):
     return found + (["colours do not follow the scheme: %s" % papers] if len(papers) != 2 else [])
 
 
+def faults_without_lcm(programs, profile, schemas):
+    """A daemon whose LCM is off: scan and progress reach the page all the same."""
+    with SimulatedRobot(programs, profile, seed=3) as robot, View(robot) as view:
+        robot.wait_until(robot.ready, "the controller does not come to rest")
+        program, seen = os.path.join(programs, "odomcalibctl"), []
+        process = subprocess.Popen([program, "--socket", robot.path("control"), *DRIVE], cwd=robot.folder, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while process.poll() is None:
+            seen.append(view.state())
+            time.sleep(0.1)
+    moving = [state for state in seen if state["state"].startswith("moving")]
+    found = [] if moving else ["no motion was shown"]
+    found += [] if any(len(state["scan"]) > 100 for state in moving) else ["no scan"]
+    found += [] if any(state["progress"] and state["progress"]["fraction"] > 0.0 for state in moving) else ["no progress"]
+    known = [row["known_to"] for state in moving for row in state["parameters"] if row["name"] == "left_wheel_diameter"]
+    found += [] if any(known) else ["nothing is known of a wheel while it rolls"]
+    return ["without LCM: " + fault for fault in found + schemas.faults(seen[-1], "view")]
+
+
 def faults_of_end(robot, view, browser):
     """The daemon goes away and comes back, and Ctrl-C ends the verb."""
     daemon = robot.running[-1]
@@ -185,6 +204,7 @@ def main(programs, schema_folder, profile, picture=None):
                 file.write(browser.picture())
         faults += faults_of_screens(browser, view.url)
         faults += faults_of_end(robot, view, browser)
+    faults += faults_without_lcm(programs, profile, Schemas(schema_folder))
     for fault in faults:
         print(fault)
     print("%d faults" % len(faults))

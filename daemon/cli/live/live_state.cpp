@@ -12,6 +12,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr const char* kWithoutLcm =
+    "scan and progress are asked for; calibrated odometry and results of a solve are missing";
+
 constexpr std::array kLidarPose = {"lidar_x", "lidar_y", "lidar_yaw"};
 
 // The daemon's answers are checked member by member: what is missing is empty, what is of another type too.
@@ -74,8 +77,8 @@ std::vector<Pose> path_of(const Calibration& calibration, const std::string& nam
 }
 
 ordered_json row_of(const std::string& name, const std::string& unit) {
-  return {{"name", name},      {"unit", unit},   {"value", nullptr},   {"calibrated", nullptr},
-          {"solved", nullptr}, {"std", nullptr}, {"stored_in", "host"}};
+  return {{"name", name},      {"unit", unit},   {"value", nullptr},    {"calibrated", nullptr},
+          {"solved", nullptr}, {"std", nullptr}, {"known_to", nullptr}, {"stored_in", "host"}};
 }
 
 ordered_json& row_in(ordered_json& rows, const std::string& name, const std::string& unit) {
@@ -83,6 +86,46 @@ ordered_json& row_in(ordered_json& rows, const std::string& name, const std::str
     if (row["name"] == name) return row;
   rows.push_back(row_of(name, unit));
   return rows.back();
+}
+
+ordered_json progress_of(const ordered_json& body) {
+  if (!body.is_object() || !number_in(body, "fraction").is_number()) return nullptr;
+  return {{"phase", text_in(body, "phase")},
+          {"fraction", std::clamp(body["fraction"].get<double>(), 0.0, 1.0)},
+          {"eta", number_in(body, "eta")}};
+}
+
+/// Motion of the recording in progress, or of the last one, each stretch as long as a pair of scans.
+struct Recorded {
+  double straight = 0.0, straight_m = 0.0, turns = 0.0, turned_rad = 0.0;
+};
+
+Recorded recorded_in(const ordered_json& status) {
+  const ordered_json motion = object_in(status, "recorded_motion");
+  const auto amount = [&motion](const char* kind, const char* member) {
+    const auto value = number_in(object_in(motion, kind), member);
+    return value.is_number() ? value.get<double>() : 0.0;
+  };
+  return {amount("straight", "stretches"), amount("straight", "m"),
+          amount("left", "stretches") + amount("right", "stretches"),
+          amount("left", "rad") + amount("right", "rad")};
+}
+
+/// Two deviations that so much motion leaves, by the noise of each stretch alone; nullopt where it shows
+/// nothing of the parameter.
+std::optional<double> expected_deviation(const std::string& name, const ordered_json& value,
+                                         const Recorded& recorded) {
+  const bool drove = recorded.straight_m > 0.0, turned = recorded.turned_rad > 0.0;
+  const double length = 2.0 * settings::kPairLength_m * std::sqrt(recorded.straight) / recorded.straight_m;
+  const double turn = 2.0 * settings::kPairHeading_rad * std::sqrt(recorded.turns) / recorded.turned_rad;
+  const bool is_diameter = name == "left_wheel_diameter" || name == "right_wheel_diameter";
+  if (is_diameter && drove && value.is_number()) return value.get<double>() * length;
+  if (name == "track_width" && drove && turned && value.is_number())
+    return value.get<double>() * std::hypot(length, turn);
+  if (name == "lidar_yaw" && drove) return length;
+  if ((name == "lidar_x" || name == "lidar_y") && turned)
+    return 2.0 * settings::kPairLength_m * std::sqrt(recorded.turns) / recorded.turned_rad;
+  return std::nullopt;
 }
 
 bool is_driving(const std::string& state) { return state.starts_with("moving") || state == "recording"; }
@@ -108,6 +151,21 @@ void LiveState::disconnect(const std::string& why) {
   problem_ = why;
   progress_ = nullptr;
   scan_.clear();
+  base_scan_.clear();
+}
+
+bool LiveState::needs_scan() const {
+  return connected_ && (!lcm_opened_ || answers_without_message_ >= settings::kPatience);
+}
+
+void LiveState::take_scan_answer(const ordered_json& scan) {
+  base_scan_.clear();
+  scan_.clear();
+  const auto points = scan.is_object() ? scan.value("points", ordered_json::array()) : ordered_json::array();
+  for (const auto& point : points)
+    if (point.is_array() && point.size() == 2 && point[0].is_number() && point[1].is_number() &&
+        base_scan_.size() < kMostBeams)
+      base_scan_.push_back({point[0].get<double>(), point[1].get<double>()});
 }
 
 void LiveState::take_status(const ordered_json& status) {
@@ -116,12 +174,15 @@ void LiveState::take_status(const ordered_json& status) {
   const bool drove = std::exchange(drives_, is_driving(text_in(status, "state")));
   if (drives_ && !drove) begin_drive();
   if (text_in(status, "state") == "idle") progress_ = nullptr;
-  if (!text_in(object_in(status, "lidar"), "stale").empty()) scan_.clear();
+  if (!text_in(object_in(status, "lidar"), "stale").empty()) {
+    scan_.clear();
+    base_scan_.clear();
+  }
   if (answers_without_message_ < settings::kPatience) ++answers_without_message_;
-  // The one path that is known without LCM.
-  const bool alone = !lcm_opened_ || answers_without_message_ >= settings::kPatience;
-  if (const auto pose = pose_of(status.value("odometry", ordered_json())); alone && pose)
-    take_odometry(*pose);
+  if (!needs_scan()) return;
+  // What is known without LCM.
+  progress_ = progress_of(object_in(status, "progress"));
+  if (const auto pose = pose_of(status.value("odometry", ordered_json()))) take_odometry(*pose);
 }
 
 void LiveState::take_parameters(const ordered_json& parameters) {
@@ -152,6 +213,7 @@ void LiveState::take_scan(std::string_view bytes) {
   const Scan& scan = message->scan;
   const std::size_t step = scan.ranges.size() / kMostBeams + 1;
   scan_.clear();
+  base_scan_.clear();
   for (std::size_t k = 0; k < scan.ranges.size(); k += step) {
     const double range = static_cast<double>(scan.ranges[k]);
     const double angle = scan.angle(k);
@@ -164,11 +226,8 @@ void LiveState::take_scan(std::string_view bytes) {
 void LiveState::take_progress(std::string_view bytes) {
   const auto message = messages::decode_json(bytes);
   if (!message) return;
-  const auto body = ordered_json::parse(message->json, nullptr, false);
-  if (!body.is_object() || !number_in(body, "fraction").is_number()) return;
-  progress_ = {{"phase", text_in(body, "phase")},
-               {"fraction", std::clamp(body["fraction"].get<double>(), 0.0, 1.0)},
-               {"eta", number_in(body, "eta")}};
+  const auto progress = progress_of(ordered_json::parse(message->json, nullptr, false));
+  if (!progress.is_null()) progress_ = progress;
 }
 
 void LiveState::take_result(std::string_view bytes) {
@@ -205,12 +264,10 @@ void LiveState::begin_drive() {
 std::string LiveState::why_no_telemetry() const {
   if (!connected_) return "";
   if (lcm_url_.empty())
-    return "LCM is off in the daemon's configuration ([lcm] enabled): no scan, no progress, odometry alone";
-  if (!lcm_opened_)
-    return "LCM cannot be opened here (" + lcm_url_ + "): no scan, no progress, odometry alone";
+    return "LCM is off in the daemon's configuration ([lcm] enabled): " + std::string(kWithoutLcm);
+  if (!lcm_opened_) return "LCM cannot be opened here (" + lcm_url_ + "): " + kWithoutLcm;
   if (answers_without_message_ >= settings::kPatience)
-    return "no LCM message arrives (" + lcm_url_ +
-           "): no scan, no progress, odometry alone; see that multicast has a route";
+    return "no LCM message arrives (" + lcm_url_ + "; see that multicast has a route): " + kWithoutLcm;
   return "";
 }
 
@@ -223,6 +280,19 @@ Pose LiveState::lidar_pose() const {
 }
 
 ordered_json LiveState::parameter_rows() const {
+  ordered_json rows = all_rows();
+  const Recorded recorded = recorded_in(status_);
+  for (auto& row : rows) {
+    const auto std = row["std"];
+    const auto known = std.is_number() ? std::optional(2.0 * std.get<double>())
+                                       : expected_deviation(row["name"].get<std::string>(),
+                                                            number_in(row, "value"), recorded);
+    if (known) row["known_to"] = finite_or_null(*known);
+  }
+  return rows;
+}
+
+ordered_json LiveState::all_rows() const {
   ordered_json rows = ordered_json::array();
   for (const auto& parameter : parameters_) {
     if (!parameter.is_object() || text_in(parameter, "name").empty()) continue;
@@ -254,6 +324,8 @@ ordered_json LiveState::document() const {
   body["state"] = connected_ ? text_in(status_, "state") : "";
   body["progress"] = progress_;
   body["last_stop"] = text_in(status_, "last_stop");
+  body["robot"] = text_in(object_in(status_, "robot"), "robot_id");
+  body["obstacle"] = connected_ ? text_in(status_, "obstacle") : "";
   body["controller"] = connected_ ? text_in(controller, "state") : "";
   body["lidar"] = connected_ ? text_in(lidar, "stale") : "";
   const auto& now = calibrated_.now() ? calibrated_.now() : odometry_.now();
@@ -266,6 +338,7 @@ ordered_json LiveState::document() const {
     const Pose point = calib::math::compose(lidar_pose(), Pose{x, y, 0.0});
     body["scan"].push_back({millimetres(point.x), millimetres(point.y)});
   }
+  for (const auto& [x, y] : base_scan_) body["scan"].push_back({millimetres(x), millimetres(y)});
   body["verdict"] = result_ ? ordered_json(name_of(result_->verdict)) : ordered_json();
   body["parameters"] = parameter_rows();
   return body;

@@ -24,6 +24,10 @@ class LiveState {
   void connect(const nlohmann::ordered_json& description, bool lcm_opened);
   void disconnect(const std::string& why);
   void take_status(const nlohmann::ordered_json& status);
+  /// Whether scans have to be asked for: no LCM message brings them.
+  [[nodiscard]] bool needs_scan() const;
+  /// @param scan answer of GetScan
+  void take_scan_answer(const nlohmann::ordered_json& scan);
   void take_parameters(const nlohmann::ordered_json& parameters);
   /// @param channel without prefix. Bytes that are no message of this channel change nothing.
   void take_message(std::string_view channel, std::string_view bytes);
@@ -38,6 +42,8 @@ class LiveState {
   void begin_drive();
   [[nodiscard]] std::string why_no_telemetry() const;
   [[nodiscard]] Pose lidar_pose() const;
+  [[nodiscard]] nlohmann::ordered_json all_rows() const;
+  /// With what each is known to: by the last solve, or what the motion recorded so far would give.
   [[nodiscard]] nlohmann::ordered_json parameter_rows() const;
 
   bool connected_ = false, drives_ = false, lcm_opened_ = false;
@@ -50,7 +56,8 @@ class LiveState {
   Trace odometry_, calibrated_;
   std::optional<Pose> last_odometry_, last_calibrated_;  ///< in the frames of their sources
   std::vector<Pose> reference_;
-  std::vector<std::array<double, 2>> scan_;  ///< m, frame of the lidar
+  std::vector<std::array<double, 2>> scan_;       ///< m, frame of the lidar
+  std::vector<std::array<double, 2>> base_scan_;  ///< of a scan that was asked for: m, frame of the base
   std::optional<Calibration> result_;
 };
 

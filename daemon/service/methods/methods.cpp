@@ -16,6 +16,7 @@ using Lease = Method::Lease;
 constexpr std::array kMethods = {
     Method{"GetStatus", When::always, Lease::none, "", get_status},
     Method{"Stop", When::always, Lease::none, "", stop},
+    Method{"GetScan", When::unless_ending, Lease::none, "", get_scan},
     Method{"Describe", When::unless_ending, Lease::none, "", describe},
     Method{"GetParameters", When::unless_ending, Lease::none, "", get_parameters},
     Method{"History", When::unless_ending, Lease::none, "", get_history},

@@ -64,7 +64,7 @@ std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming)
 void stop_robot(Context context);
 
 // status_methods.cpp
-Handler get_status, describe, check, get_parameters, get_history, monitor;
+Handler get_status, get_scan, describe, check, get_parameters, get_history, monitor;
 // lease_methods.cpp
 Handler acquire, renew, release, stop;
 // motion_methods.cpp

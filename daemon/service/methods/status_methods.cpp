@@ -11,6 +11,10 @@ Reading get_status(Context& context, const Call& /*call*/) {
   return Answer{{{"status", status_report(context.bench, context.task)}}};
 }
 
+Reading get_scan(Context& context, const Call& /*call*/) {
+  return Answer{{{"scan", scan_report(context.bench)}}};
+}
+
 Reading describe(Context& context, const Call& /*call*/) {
   return Answer{{{"description", description(context.bench.config)}}};
 }

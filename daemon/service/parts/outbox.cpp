@@ -65,9 +65,15 @@ void Outbox::progress(const Caller& caller, const std::string& phase, double fra
   next_progress_ = now_ + service::settings::kProgressPeriod_s;
   ordered_json body = {{"phase", phase}, {"fraction", fraction}, {"eta", nullptr}, {"hint", nullptr}};
   if (eta) body["eta"] = *eta;
+  last_progress_ = {{"phase", phase}, {"fraction", fraction}, {"eta", body["eta"]}};
+  last_progress_at_ = now_;
   telemetry.publisher.send("PROGRESS",
                            messages::encode_json(clock_.wall_us(), "odomcalib-progress/1", json_text(body)));
   if (caller.more) server.reply(caller.client, control::encode_reply(json_text({{"progress", body}}), true));
+}
+
+ordered_json Outbox::last_progress() const {
+  return now_ - last_progress_at_ < service::settings::kProgressLasts_s ? last_progress_ : ordered_json();
 }
 
 void Outbox::send_robot(const RobotDescription& robot) {

@@ -47,6 +47,9 @@ class Outbox {
   /// Some times a second at most, however often it is called.
   void progress(const Caller& caller, const std::string& phase, double fraction, std::optional<double> eta);
 
+  /// Of what runs, as it was sent last: phase, fraction, eta; null when nothing was sent for a second.
+  [[nodiscard]] ordered_json last_progress() const;
+
   /// The robot's description goes into recordings: again in this turn, or at once.
   void send_robot_soon() { next_robot_ = now_; }
   void send_robot(const RobotDescription& robot);
@@ -72,6 +75,8 @@ class Outbox {
   EventRate rate_;
   double now_ = 0.0;
   std::set<ClientId> monitors_;
+  ordered_json last_progress_;
+  double last_progress_at_ = 0.0;
   double next_robot_ = 0.0, next_status_ = 0.0, next_progress_ = 0.0;
 };
 

@@ -129,6 +129,31 @@ TEST(DriveErrors, before_is_what_the_wrong_dimensions_do_and_after_is_noise) {
   }
 }
 
+/// m of way, RMS position errors at it.
+double error_at(const std::vector<ErrorGrowth>& growth, double way, std::optional<double> ErrorGrowth::*of) {
+  for (const ErrorGrowth& one : growth)
+    if (std::abs(one.way - way) < 0.15 * way && one.*of) return *(one.*of);
+  ADD_FAILURE() << "nothing at " << way << " m";
+  return 0.0;
+}
+
+TEST(ErrorGrowth, grows_with_the_way_before_and_stays_small_after) {
+  const auto world = make_world({}, {}, 11);
+  const estimation::FitResult fit = fitted(*world, {});
+  const auto growth = selection::error_growth(world->data, kNominal, nullptr, {&fit, none_fixed({}), {}});
+  ASSERT_GE(growth.size(), 4U);
+  for (std::size_t k = 0; k < growth.size(); ++k) {
+    EXPECT_GE(growth[k].stretches, 4U);
+    EXPECT_FALSE(growth[k].geometry.has_value());
+    ASSERT_TRUE(growth[k].before && growth[k].after);
+    EXPECT_LT(*growth[k].after, 0.3 * *growth[k].before) << growth[k].way;
+    EXPECT_GT(growth[k].way, k > 0 ? growth[k - 1].way : 0.0);
+  }
+  EXPECT_GT(error_at(growth, 2.0, &ErrorGrowth::before), 1.5 * error_at(growth, 0.5, &ErrorGrowth::before));
+  for (const auto& one : selection::error_growth(world->data, {}, nullptr, {&fit, none_fixed({}), {}}))
+    EXPECT_FALSE(one.before.has_value()) << "no nominal values";
+}
+
 TEST(DriveErrors, unknown_nominal_values_give_no_before) {
   const auto world = make_world({}, {}, 12);
   const estimation::FitResult fit = fitted(*world, {});

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -34,6 +35,24 @@ TEST(ParameterMeaning, stands_in_the_table_for_each_parameter_of_the_catalogues_
     EXPECT_TRUE(told.emplace(row.effect, row.parameter).second)
         << row.effect << " " << row.parameter << " twice";
   EXPECT_EQ(told, of_catalogues());
+}
+
+TEST(ParameterMeaning, has_labels_that_tell_the_parameters_of_an_effect_apart) {
+  Names labels;
+  for (const ParameterMeaning& row : parameter_meanings()) {
+    EXPECT_TRUE(labels.emplace(row.effect, row.label).second) << row.effect << " " << row.label << " twice";
+    EXPECT_EQ(row.label.find("kappa"), std::string_view::npos) << row.effect;
+    EXPECT_GE(row.factor, 1.0) << row.effect << " " << row.parameter;
+  }
+}
+
+TEST(ParameterMeaning, has_sentences_with_whole_choices) {
+  for (const ParameterMeaning& row : parameter_meanings()) {
+    const auto count = [&row](char c) { return std::count(row.said.begin(), row.said.end(), c); };
+    EXPECT_EQ(count('['), count(']')) << row.said;
+    EXPECT_EQ(count('['), count('|')) << row.said;
+    EXPECT_EQ(row.said.empty() ? 0 : 1, count('{')) << row.said;
+  }
 }
 
 }  // namespace

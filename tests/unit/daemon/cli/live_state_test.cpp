@@ -118,6 +118,73 @@ TEST(LiveState, without_lcm_it_says_so_and_follows_the_odometry_of_the_status) {
   EXPECT_EQ(state.document()["pose"][0], 0.5);
 }
 
+TEST(LiveState, without_lcm_scan_and_progress_are_those_that_were_asked_for) {
+  LiveState state;
+  state.connect(description(""), false);
+  EXPECT_TRUE(state.needs_scan());
+  auto moving = status("moving: straight forward");
+  moving["progress"] = {{"phase", "straight"}, {"fraction", 0.25}, {"eta", 3.0}};
+  state.take_status(moving);
+  state.take_scan_answer({{"points", {{1.0, 2.0}, {"x", 1.0}, {3.0}, {-1.5, 0.25}}}});
+  EXPECT_EQ(state.document()["scan"], ordered_json({{1.0, 2.0}, {-1.5, 0.25}})) << "frame of the base";
+  EXPECT_EQ(state.document()["progress"]["fraction"], 0.25);
+  state.take_status(status("idle"));
+  EXPECT_TRUE(state.document()["progress"].is_null());
+  for (const auto& wrong : {ordered_json(), ordered_json("x"), ordered_json({{"points", 1}})}) {
+    state.take_scan_answer(wrong);
+    EXPECT_TRUE(state.document()["scan"].empty());
+  }
+}
+
+TEST(LiveState, with_lcm_nothing_is_asked_for) {
+  LiveState state;
+  state.connect(description(), true);
+  state.take_message("ODOM", pose(0.0, 0.0, 0.0));
+  EXPECT_FALSE(state.needs_scan());
+}
+
+ordered_json row_named(const ordered_json& body, const char* name) {
+  for (const auto& row : body["parameters"])
+    if (row["name"] == name) return row;
+  return nullptr;
+}
+
+TEST(LiveState, what_is_known_of_a_parameter_shrinks_while_the_robot_drives) {
+  LiveState state;
+  state.connect(description(), true);
+  state.take_parameters({{{"name", "left_wheel_diameter"}, {"unit", "m"}, {"value", 0.15}},
+                         {{"name", "track_width"}, {"unit", "m"}, {"value", 0.4}}});
+  const auto known_after = [&state](double stretches, double turns) {
+    auto moving = status("moving");
+    moving["recorded_motion"] = {{"straight", {{"stretches", stretches}, {"m", 0.15 * stretches}}},
+                                 {"left", {{"stretches", turns}, {"rad", 0.3 * turns}}},
+                                 {"right", {{"stretches", 0}, {"rad", 0.0}}}};
+    state.take_status(moving);
+    const auto body = state.document();
+    return std::pair{row_named(body, "left_wheel_diameter")["known_to"],
+                     row_named(body, "track_width")["known_to"]};
+  };
+  EXPECT_TRUE(known_after(0, 0).first.is_null());
+  const auto few = known_after(4, 0), more = known_after(16, 8);
+  EXPECT_NEAR(few.first.get<double>(), 0.15 * 2.0 * 1e-3 * 2.0 / 0.6, 1e-9);
+  EXPECT_NEAR(more.first.get<double>(), 0.5 * few.first.get<double>(), 1e-9);
+  EXPECT_TRUE(few.second.is_null()) << "nothing has turned";
+  EXPECT_GT(more.second.get<double>(), 0.0);
+  state.take_message("RESULT", result());
+  EXPECT_EQ(row_named(state.document(), "track_width")["known_to"], 0.0004) << "two deviations of the solve";
+}
+
+TEST(LiveState, names_the_robot_and_what_stands_in_its_way) {
+  LiveState state;
+  state.connect(description(), true);
+  auto stopped = status("idle");
+  stopped["robot"] = {{"robot_id", "carrier-17"}};
+  stopped["obstacle"] = "3 readings 0.4 m ahead";
+  state.take_status(stopped);
+  EXPECT_EQ(state.document()["robot"], "carrier-17");
+  EXPECT_EQ(state.document()["obstacle"], "3 readings 0.4 m ahead");
+}
+
 TEST(LiveState, messages_that_never_come_are_named_and_those_that_do_are_not) {
   LiveState state;
   state.connect(description(), true);

@@ -41,7 +41,7 @@ void add_effects(Calibration& calibration, int count) {
   for (int k = 0; k < count; ++k) {
     EffectResult effect;
     effect.name = "effect_" + std::to_string(k);
-    effect.parameters = {{"kappa", {0.01, 0.001, "1"}}};
+    effect.parameters = {{"size", {0.01, 0.001, "1"}}};
     effect.aliases = {"another_effect", "and_still_another_one"};
     effect.stored_in = "host";
     calibration.effects.push_back(effect);
@@ -67,9 +67,10 @@ TEST(Summary, has_verdict_values_errors_and_what_was_found_and_leaves_the_rest) 
   calibration.linear_correction = LinearCorrection{};
   const std::string text = summary(calibration, true, kColumns);
   expect_a_screen(text);
-  for (const char* said : {"ACCEPTED", "Next: odomcalibctl apply", "a metre read 20.4 mm too long",
-                           "lidar yaw", "10 s without reference: heading", "floor  stretches",
-                           "effect 1: kappa", "effect 0 cannot be separated from", "--verbose"})
+  for (const char* said :
+       {"ACCEPTED", "Next: odomcalibctl apply", "A metre read 20.4 mm too long, now 1.1 mm off", "lidar yaw",
+        "10 s without reference: heading", "floor  stretches", "effect 1: size",
+        "effect 0 cannot be separated from", "--verbose"})
     EXPECT_THAT(text, HasSubstr(said));
   for (const char* rest : {"Linear correction", "20.40 (20.00..21.00)"})
     EXPECT_THAT(text, Not(HasSubstr(rest)));
@@ -115,8 +116,8 @@ TEST(Summary, fits_a_screen_with_many_reasons_and_effects) {
   const std::string text = summary(calibration, true, kColumns);
   expect_a_screen(text);
   EXPECT_THAT(text, HasSubstr("reason 0 "));
-  EXPECT_THAT(text, HasSubstr("and 17 more: --verbose"));
-  EXPECT_THAT(text, HasSubstr("effect 5: kappa"));
+  EXPECT_THAT(text, HasSubstr("and 19 more: --verbose"));
+  EXPECT_THAT(text, HasSubstr("effect 5: size"));
   EXPECT_THAT(text, HasSubstr("lidar yaw"));
 }
 
