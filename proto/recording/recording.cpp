@@ -72,6 +72,8 @@ std::string name_of(Form form, std::string_view bytes) {
       return "Censi's tuple file";
     case Form::pose_graph:
       return "pose graph";
+    case Form::calibration:
+      return "calibration";
     case Form::nothing:
     case Form::unknown:
       break;

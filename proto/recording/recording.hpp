@@ -87,7 +87,8 @@ Result<TopicChoice> parse_topic_choice(const std::string& text);
 Result<Recording> read_recording(const std::filesystem::path& path,
                                  const RobotDescription* fallback = nullptr, const TopicChoices& topics = {});
 
-/// Whether the content, plain or gzip, is a recording of one of the forms: for errors that say what a file is.
+/// Whether the content, plain or gzip, is a recording of one of the forms: for errors that say what a file
+/// is.
 bool is_recording(std::string_view bytes);
 
 /// The same for content that is in memory already.

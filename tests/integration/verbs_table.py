@@ -246,7 +246,7 @@ def main(path, schema_folder, sample):
         shutil.copy(os.path.join(folder, "sample.jsonl.gz"), os.path.join(folder, "drive.jsonl.gz"))
         for verb in ("solve", "graph build"):  # what others read
             check_examples(program, verb)
-        shutil.copy(os.path.join(folder, "good.json"), os.path.join(folder, "later.json"))
+        shutil.copy(os.path.join(folder, "cal.json"), os.path.join(folder, "later.json"))
         for verb in sorted(listed & known - {"solve", "graph build"}):
             check_examples(program, verb)
         for row in TABLE:
