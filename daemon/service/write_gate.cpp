@@ -38,7 +38,7 @@ NominalLengths nominal_lengths(const Bench& bench) {
   const std::string profile = "profile " + bench.config.controller_profile;
   NominalLengths nominal{present_lengths(bench.drive.nominal()), {}};
   for (const auto& [name, value] : present_lengths(given))
-    nominal.from[name] = value > 0.0 ? "robot." + name + " of " + file : profile;
+    nominal.from[name] = value > 0.0 ? fmt::format("robot.{} of {}", name, file) : profile;
   return nominal;
 }
 
