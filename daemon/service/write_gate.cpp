@@ -54,7 +54,7 @@ std::optional<Error> implausible(const ParameterMap& values, const NominalLength
         std::isfinite(value) && std::abs(value / known->second - 1.0) <= service::settings::kPlausibleLength;
     if (!plausible)
       return Error{ErrorCode::refused,
-                   fmt::format("{} = {} m is more than 15 % from the nominal {} m ({})", name, value,
+                   fmt::format("{} = {:.6g} m is more than 15 % from the nominal {:.6g} m ({})", name, value,
                                known->second, nominal.from.at(name)),
                    "write-back", "check the nominal values; what was once committed: odomcalibctl rollback"};
   }
