@@ -81,7 +81,7 @@ std::string write_question(const ordered_json& plan) {
   const ordered_json after = plan.value("after", ordered_json::object());
   for (const auto& [name, value] : after.items())
     if (!text.empty() && value.is_number())
-      text += fmt::format(" {} {:.3f} mm", name, 1e3 * value.get<double>());
+      text += fmt::format("{} {} {:.3f} mm", text.ends_with(':') ? "" : ",", name, 1e3 * value.get<double>());
   if (!text.empty()) text += ". ";
   for (const auto& what : plan.value("asks", std::vector<std::string>()))
     text += what + ". Is it of this robot? ";

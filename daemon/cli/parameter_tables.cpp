@@ -86,7 +86,7 @@ std::string action_of(const ordered_json& entry) {
 }
 
 std::string outcome_of(const ordered_json& entry) {
-  const std::string outcome = entry.value("outcome", "");
+  std::string outcome = entry.value("outcome", "");
   if (outcome != "committed" || !entry.contains("proven")) return outcome;
   return outcome + (entry["proven"] == true ? ", proven" : ", unproven");
 }

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "calib/odometry/predict.hpp"
+#include "calib/odometry/correction.hpp"
 #include "calib/terms/parameter_meaning.hpp"
 #include "daemon/cli/settings.hpp"
 #include "proto/angles.hpp"

@@ -35,7 +35,7 @@ NominalLengths nominal_lengths(const Bench& bench) {
   const std::string profile = "profile " + bench.config.controller_profile;
   NominalLengths nominal{present_lengths(bench.drive.nominal()), {}};
   for (const auto& [name, value] : present_lengths(given))
-    nominal.from[name] = value > 0.0 ? "robot." + name + " of " + file : profile;
+    nominal.from[name] = value > 0.0 ? fmt::format("robot.{} of {}", name, file) : profile;
   return nominal;
 }
 
@@ -51,7 +51,7 @@ std::optional<Error> implausible(const ParameterMap& values, const NominalLength
         std::isfinite(value) && std::abs(value / known->second - 1.0) <= service::settings::kPlausibleLength;
     if (!plausible)
       return Error{ErrorCode::refused,
-                   fmt::format("{} = {} m is more than 15 % from the nominal {} m ({})", name, value,
+                   fmt::format("{} = {:.6g} m is more than 15 % from the nominal {:.6g} m ({})", name, value,
                                known->second, nominal.from.at(name)),
                    "write-back", "check the nominal values; what was once committed: odomcalibctl rollback"};
   }

@@ -12,6 +12,7 @@ TEST_F(WholeLoop, SX_02_calibrated_values_are_true_stored_and_make_the_odometry_
   const json calibration = result.value("calibration", json::object());
   ASSERT_TRUE(calibration.contains("verdict")) << result;
   EXPECT_NE(calibration["verdict"], "refused") << calibration["reasons"];
+  EXPECT_EQ(calibration["robot"].value("controller_id", ""), "0xfee/0xd15/4242") << calibration["robot"];
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     const auto& parameter = calibration["parameters"][kNames.at(i)];
     const double true_value = truth().at(i);

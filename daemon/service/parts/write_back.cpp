@@ -183,6 +183,44 @@ Result<FormerValues> before_interrupted(const JournalRecord& record, const std::
   return former;
 }
 
+/// A place on the way back.
+struct Stage {
+  const HistoryEntry& entry;
+  bool after;    ///< the values of the entry, not those before it
+  bool foreign;  ///< the entry is of the controller that was there before
+};
+
+std::string place_of(const Stage& stage, const HistoryEntry* seen) {
+  return (stage.after ? "the values of entry " : "the values before entry ") + stage.entry.id +
+         (seen != nullptr && seen->id != stage.entry.id ? ", verified as entry " + seen->id : "") +
+         (stage.foreign ? ", verified on the controller \"" + stage.entry.device + "\"" : "");
+}
+
+/// In force after an entry is the calibration that it, or the newest older one, has put in force; a rollback
+/// may have put it out of force.
+std::optional<std::string> calibration_after(const WayBack& way, const HistoryEntry* entry) {
+  while (entry != nullptr && !entry->calibration && entry->origin.restores.empty())
+    entry = way.older_than(entry->id);
+  return entry != nullptr ? entry->calibration : std::nullopt;
+}
+
+FormerValues values_at(const WayBack& way, const Stage& stage,
+                       const std::vector<drivers::StoredParameter>& held) {
+  const HistoryEntry& entry = stage.entry;
+  const HistoryEntry* const following = stage.after ? way.following(entry) : &entry;
+  const HistoryEntry* const source = stage.after ? &entry : way.older_than(entry.id);
+  FormerValues former;
+  former.values = stage.after ? way.after(entry) : way.before(entry);
+  former.device = entry.device;
+  former.calibration = calibration_after(way, source);
+  former.proven = source != nullptr && source->origin.proven && !stage.foreign;
+  if (!stage.foreign && following != nullptr) former.restores = following->id;
+  const HistoryEntry* const seen = stage.foreign ? nullptr : way.verified(former.values, held);
+  if (seen != nullptr) former.verified = seen->id;
+  former.place = place_of(stage, seen);
+  return former;
+}
+
 Error no_entry(const std::string& id) {
   return {ErrorCode::usage, "no history entry \"" + id + "\" that was committed", "", "odomcalibctl history"};
 }
@@ -218,24 +256,7 @@ Result<FormerValues> WriteBack::former_values(const WayWanted& wanted, const std
   if (entry == nullptr)
     return Error{ErrorCode::usage, "nothing is further back: the oldest values of the history are in force",
                  "", "odomcalibctl history; rollback --to ID goes to the values of an entry"};
-  const bool after = !wanted.after.empty() || (named.empty() && foreign);
-  const HistoryEntry* const following = after ? way.following(*entry) : entry;
-  FormerValues former;
-  former.values = after ? way.after(*entry) : way.before(*entry);
-  former.device = entry->device;
-  // The calibration in force before an entry is the one that the newest older entry has put in force.
-  const HistoryEntry* source = after ? entry : way.older_than(entry->id);
-  former.proven = source != nullptr && source->origin.proven && !foreign;
-  while (source != nullptr && !source->calibration && source->origin.restores.empty())
-    source = way.older_than(source->id);
-  if (source != nullptr) former.calibration = source->calibration;
-  if (!foreign && following != nullptr) former.restores = following->id;
-  const HistoryEntry* const seen = foreign ? nullptr : way.verified(former.values, held);
-  if (seen != nullptr) former.verified = seen->id;
-  former.place = (after ? "the values of entry " : "the values before entry ") + entry->id +
-                 (seen != nullptr && seen->id != entry->id ? ", verified as entry " + seen->id : "") +
-                 (foreign ? ", verified on the controller \"" + entry->device + "\"" : "");
-  return former;
+  return values_at(way, {*entry, !wanted.after.empty() || (named.empty() && foreign), foreign}, held);
 }
 
 }  // namespace odomcalib
