@@ -112,6 +112,9 @@ def test_needs():
     shown = {line.split()[-1].split("@")[0] for line in run("nm", "--dynamic", "--defined-only", library).splitlines()}
     header = (SOURCE / "calib/library/include/odomcalib/odometry.h").read_text()
     declared = set(re.findall(r"\b(odomcalib_\w+)\(", header.split("typedef struct odomcalib_odometry", 1)[1]))
+    symbols = (SOURCE / "debian/libodomcalib0.symbols").read_text()
+    listed = set(re.findall(r"^ (odomcalib_\w+)@", symbols, re.M))
+    check(listed == declared, f"the package's symbols are those: {listed ^ declared}")
     check(shown - {"ODOMCALIB_0"} == declared, f"it shows what the header declares: {shown ^ declared}")
 
 
