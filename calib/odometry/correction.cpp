@@ -92,6 +92,7 @@ Eigen::MatrixXd base_covariance(const Calibration& calibration) {
     return static_cast<std::size_t>(std::find(order.begin(), order.end(), kNames.at(k)) - order.begin());
   };
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(vehicle::kBaseCount, vehicle::kBaseCount);
+  if (calibration.covariance.size() != order.size()) return covariance;
   for (std::size_t a = 0; a < kNames.size(); ++a)
     for (std::size_t b = 0; b < kNames.size(); ++b)
       if (place(a) < order.size() && place(b) < order.size())

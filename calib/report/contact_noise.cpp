@@ -55,7 +55,9 @@ std::optional<odometry::IncrementNoise> contact_noise(const measurement::Dataset
   const Eigen::Vector3d per_metre = sum / way;
   const double lever = base.mount.x * base.mount.x + base.mount.y * base.mount.y;
   const double along = std::max(0.5 * (per_metre(0) + per_metre(1) - lever * per_metre(2)), 0.0);
-  return odometry::IncrementNoise{std::sqrt(along), std::sqrt(along), std::sqrt(per_metre(2))};
+  const double of_each_wheel = 0.25 * base.track_width * base.track_width * per_metre(2);
+  return odometry::IncrementNoise{std::sqrt(std::max(along, of_each_wheel)), std::sqrt(along),
+                                  std::sqrt(per_metre(2))};
 }
 
 }  // namespace odomcalib::calib::report

@@ -11,7 +11,8 @@ namespace odomcalib::calib::report {
 
 /// By the noise of the fit: the part of the pairs' errors that is neither the reference's nor taken back by
 /// the neighbours, over the way that the wheels rolled in them. Forward and sideways it is the same, as the
-/// fit has it, less what the lever of the sensor makes of the heading's.
+/// fit has it, less what the lever of the sensor makes of the heading's; forward no less than what wheels
+/// that err by themselves add where they turn the base so much.
 /// @return nullopt where no trusted pair rolled
 std::optional<odometry::IncrementNoise> contact_noise(const measurement::Dataset& dataset,
                                                       const estimation::FitResult& fit);

@@ -82,6 +82,7 @@ double duration_for(const wheels::WheelTrack& track, const wheels::BaseParameter
 constexpr std::size_t kFewIntervals = 4;
 
 /// Of the wheels' angles, rad/s^2, over the time up to the end of each interval from `first` on.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving more than a few of them takes memory
 struct WheelAccelerations {
   boost::container::small_vector<double, kFewIntervals> left, right;
 };

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "calib/odometry/correction.hpp"
+#include "daemon/cli/export_noise.hpp"
 #include "daemon/cli/export_step.hpp"
 #include "daemon/cli/usable_calibration.hpp"
 #include "odomcalib_version.hpp"
@@ -164,6 +165,8 @@ Result<std::string> configuration_text(const Calibration& calibration, const Dim
   if (what == "urdf") return urdf(calibration, where);
   if (what == "ros_arduino") return ros_arduino_yaml(calibration, dimensions, where);
   if (what == "arcos") return arcos(calibration, dimensions, where);
+  if (what == "amcl") return amcl_yaml(calibration, where);
+  if (what == "robot_localization") return robot_localization_yaml(calibration, where);
   if (what == "c_header" || what == "python") return step(calibration, what, where);
   return Error{ErrorCode::usage, "unknown export \"" + what + "\"", "--what",
                "see odomcalibctl export --help"};
@@ -172,8 +175,9 @@ Result<std::string> configuration_text(const Calibration& calibration, const Dim
 }  // namespace
 
 const std::vector<std::string>& configurations() {
-  static const std::vector<std::string> names = {"toml",  "diff_drive", "urdf",  "ros_arduino",
-                                                 "arcos", "c_header",   "python"};
+  static const std::vector<std::string> names = {"toml",        "diff_drive", "urdf",
+                                                 "ros_arduino", "arcos",      "c_header",
+                                                 "python",      "amcl",       "robot_localization"};
   return names;
 }
 
@@ -183,6 +187,8 @@ bool is_configuration(const std::string& what) {
 
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what) {
   std::vector<std::string> sentences;
+  // How far odometry errs is no odometry.
+  if (what == "amcl" || what == "robot_localization") return sentences;
   const bool is_step = what == "c_header" || what == "python";
   bool lacks_effects = false;
   for (const auto& placement : calib::odometry::effect_placements(calibration)) {

@@ -90,6 +90,14 @@ inline constexpr std::chrono::milliseconds kRenewal{30};
 /// Priority among real-time processes while a motion runs. Chosen.
 inline constexpr int kPriority = 5;
 
+// --- Exported noise --------------------------------------------------------------------------------------
+
+/// m and rad between two updates of AMCL. Published: defaults of nav2 (update_min_d, update_min_a).
+inline constexpr double kAmclStep_m = 0.25, kAmclTurn_rad = 0.2;
+/// m/s of the rims and 1/s that the variances of velocities are stated for. Chosen: an indoor robot, and the
+/// rate at which ros2_control publishes odometry by default.
+inline constexpr double kSpeedOfNoise = 0.5, kRateOfNoise = 50.0;
+
 // --- Live view -------------------------------------------------------------------------------------------
 
 /// Between two looks at the daemon. Derived: the period of its progress.

@@ -143,7 +143,7 @@ void call(odomcalib_odometry* odometry, Bytes& bytes, double& stamp) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, size);
   odomcalib_options options = ODOMCALIB_OPTIONS_INIT;
-  options.counter_bits = bytes.take<std::int8_t>();
+  options.counter_bits = bytes.take<std::uint8_t>();
   options.use_refused = 1;
   const std::string text = bytes.take_text();
   std::array<char, 64> problem{};

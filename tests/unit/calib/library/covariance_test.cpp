@@ -93,7 +93,7 @@ int count_inside(const Eigen::Matrix3d& covariance, double slip, unsigned seed) 
     truth.right_diameter = 0.15 + off(1);
     truth.track_width = 0.4 + off(2);
     truth.ticks_per_rev = 16384.0;
-    if (ends_inside(truth, slip, calibration, 1000 * seed + drive)) ++inside;
+    if (ends_inside(truth, slip, calibration, std::uint64_t{1000} * seed + drive)) ++inside;
   }
   return inside;
 }

@@ -195,7 +195,7 @@ TEST(Library, updates_take_no_memory) {
 }
 
 /// Straight ahead, 100 counts every 20 ms.
-TickSample ahead(int k) { return {0.02 * k, 100 * k, 100 * k, 0}; }
+TickSample ahead(int k) { return {0.02 * k, std::int64_t{100} * k, std::int64_t{100} * k, 0}; }
 
 double x_after(const Handle& handle) { return pose_of(handle)[0]; }
 
@@ -239,7 +239,9 @@ TEST(Library, a_stamp_that_goes_back_is_refused_and_a_clock_that_was_set_goes_on
   EXPECT_EQ(update(opened.handle, ahead(3)), ODOMCALIB_STAMP_NOT_LATER);
   EXPECT_THAT(odomcalib_odometry_problem(opened.handle.get()), HasSubstr("no later than the one before"));
   EXPECT_EQ(x_after(opened.handle), x);
-  const auto set_back = [](int k) { return TickSample{0.02 * k - 1000.0, 100 * k, 100 * k, 0}; };
+  const auto set_back = [](int k) {
+    return TickSample{0.02 * k - 1000.0, std::int64_t{100} * k, std::int64_t{100} * k, 0};
+  };
   EXPECT_EQ(update(opened.handle, set_back(5)), ODOMCALIB_STAMP_NOT_LATER);
   EXPECT_EQ(update(opened.handle, set_back(6)), ODOMCALIB_OK);
   EXPECT_EQ(update(opened.handle, set_back(7)), ODOMCALIB_OK);
@@ -251,7 +253,7 @@ TEST(Library, counters_wrap_where_the_options_say) {
   options.counter_bits = 16;
   const auto opened = open(to_json(accepted()), &options), whole = open(to_json(accepted()));
   for (int k = 0; k < 2000; ++k) {
-    const std::int64_t count = 100 * k;
+    const std::int64_t count = std::int64_t{100} * k;
     ASSERT_EQ(odomcalib_odometry_update_counts(opened.handle.get(), 0.02 * k, count % 65536,
                                                static_cast<std::int16_t>(count)),
               ODOMCALIB_OK);

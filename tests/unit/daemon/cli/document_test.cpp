@@ -287,6 +287,8 @@ Calibration for_export() {
   Calibration calibration = example();
   calibration.robot.robot_id = "r-1";
   calibration.robot.ticks_per_rev = 4096.0;
+  calibration.extensions["contact_noise"] =
+      R"({"forward":{"value":1e-3},"sideways":{"value":1e-3},"yaw":{"value":5e-3}})";
   calibration.parameters = {{"left_wheel_diameter", {0.1485, 1e-4, "m"}},
                             {"right_wheel_diameter", {0.147, 1e-4, "m"}},
                             {"track_width", {0.41, 2e-4, "m"}},

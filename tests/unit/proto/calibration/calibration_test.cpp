@@ -157,7 +157,7 @@ TEST(CalibrationFile, rejects_damage_and_names_the_member) {
   EXPECT_NE(broken("/linear_correction/matrix/0", {1, 2}).find("linear_correction.matrix[0]"),
             std::string::npos);
   EXPECT_NE(broken("/methods/joint/used", -1).find("methods.joint.used"), std::string::npos);
-  EXPECT_NE(broken("/format", "odomcalib-calibration/2").find("format"), std::string::npos);
+  EXPECT_NE(broken("/format", "odomcalib-calibration/2").find("version"), std::string::npos);
   EXPECT_EQ(broken("/parameters/lidar_yaw/value", 0.5), "accepted");
   EXPECT_EQ(broken("/new_member", 0.5), "accepted") << "changes are additive";
 }
