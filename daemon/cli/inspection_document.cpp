@@ -136,8 +136,7 @@ const char* name_of(Supply supply) {
 }
 
 Section supply_section(const Inspection& found) {
-  Section section{
-      "What that is enough for", {}, {{"parameters", "shown by", "there is", "wanted", ""}, {}}};
+  Section section{"What that is enough for", {}, {{"parameters", "shown by", "there is", "wanted", ""}, {}}};
   for (const ParameterSupply& one : found.motion->supply) {
     std::string names = one.parameters;
     section.table.rows.push_back(
