@@ -17,7 +17,7 @@ using Slot = std::variant<std::monostate, Scalar, Array, Text>;
 
 // Names of DESIGN 4.2, of Censi's raw logs (readings, theta, ray_dt, stamps as [s, us]) and of his tuple
 // files.
-constexpr std::array<std::pair<std::string_view, Slot>, 39> kLineMembers{{
+constexpr std::array<std::pair<std::string_view, Slot>, 40> kLineMembers{{
     {"type", Text::type},
     {"t", Scalar::t},
     {"left", Scalar::left},
@@ -47,6 +47,7 @@ constexpr std::array<std::pair<std::string_view, Slot>, 39> kLineMembers{{
     {"right_wheel_diameter", Scalar::right_wheel_diameter},
     {"track_width", Scalar::track_width},
     {"ticks_per_rev", Scalar::ticks_per_rev},
+    {"time_zero", Scalar::time_zero},
     {"lidar_pose", Array::lidar_pose},
     {"robot_id", Text::robot_id},
     {"controller", Text::controller},
