@@ -43,6 +43,8 @@ void add_robot(const JsonFields& fields, RecordingBuilder& builder) {
   robot.right_wheel_diameter = diameter(fields, Scalar::right_wheel_diameter);
   robot.track_width = unit_value(fields, Scalar::track_width);
   robot.ticks_per_rev = unit_value(fields, Scalar::ticks_per_rev);
+  if (const double zero = unit_value(fields, Scalar::time_zero); std::isfinite(zero))
+    builder.count_from(zero);
   robot.robot_id = fields[Text::robot_id];
   robot.controller = fields[Text::controller];
   robot.controller_id = fields[Text::controller_id];

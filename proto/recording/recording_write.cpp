@@ -74,7 +74,7 @@ void append_array(std::string& out, const char* name, const std::vector<float>& 
   out += ']';
 }
 
-void append_robot(std::string& out, const RobotDescription& robot) {
+void append_robot(std::string& out, const RobotDescription& robot, double time_zero) {
   out += R"({"type":"robot")";
   if (robot.left_wheel_diameter == robot.right_wheel_diameter) {
     append_member(out, "wheel_diameter", robot.left_wheel_diameter);
@@ -94,6 +94,7 @@ void append_robot(std::string& out, const RobotDescription& robot) {
     append_value(out, pose[2]);
     out += ']';
   }
+  if (time_zero != 0.0) append_member(out, "time_zero", time_zero);
   append_text(out, "robot_id", robot.robot_id);
   append_text(out, "controller", robot.controller);
   append_text(out, "controller_id", robot.controller_id);
@@ -156,7 +157,7 @@ class Merge {
 
   std::string text() {
     std::string out;
-    append_robot(out, recording_.robot);
+    append_robot(out, recording_.robot, recording_.time_zero);
     while (next(out)) {
     }
     return out;

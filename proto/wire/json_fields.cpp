@@ -47,6 +47,7 @@ constexpr std::array<std::pair<std::string_view, Slot>, 40> kLineMembers{{
     {"right_wheel_diameter", Scalar::right_wheel_diameter},
     {"track_width", Scalar::track_width},
     {"ticks_per_rev", Scalar::ticks_per_rev},
+    {"time_zero", Scalar::time_zero},
     {"lidar_pose", Array::lidar_pose},
     {"robot_id", Text::robot_id},
     {"controller", Text::controller},

@@ -33,6 +33,7 @@ enum class Scalar : std::uint8_t {
   right_wheel_diameter,
   track_width,
   ticks_per_rev,
+  time_zero,
   tuple_duration,
   tuple_left,
   tuple_right,

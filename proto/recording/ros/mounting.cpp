@@ -75,11 +75,11 @@ std::optional<Mounting> mounting_of(const std::vector<Transform>& transforms,
   for (const Transform& one : transforms) parents[one.child] = &one;
   const auto of_lidar = ancestors(parents, lidar);
   for (const std::string& base : bases)
-    for (const auto& [frame, base_in_frame] : ancestors(parents, base)) {
-      const auto common =
-          std::find_if(of_lidar.begin(), of_lidar.end(), [&](const auto& one) { return one.first == frame; });
+    for (const auto& above : ancestors(parents, base)) {
+      const auto common = std::find_if(of_lidar.begin(), of_lidar.end(),
+                                       [&](const auto& one) { return one.first == above.first; });
       if (common == of_lidar.end()) continue;
-      const Placed mount = composed(inverse(base_in_frame), common->second);
+      const Placed mount = composed(inverse(above.second), common->second);
       const std::array<double, 3> pose{mount.position[0], mount.position[1],
                                        std::atan2(mount.rotation[1][0], mount.rotation[0][0])};
       if (!std::all_of(pose.begin(), pose.end(), [](double one) { return std::isfinite(one); }))

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "proto/calibration/calibration.hpp"
 #include "proto/calibration/scale.hpp"
@@ -50,6 +51,14 @@ inline Calibration drawn(const TrueState& robot, std::mt19937& random) {
   const Eigen::VectorXd truth =
       (Eigen::VectorXd(6) << robot.left, robot.right, robot.track, robot.x, robot.y, robot.yaw).finished();
   return stated(truth + covariance.llt().matrixL() * error, covariance);
+}
+
+/// Several of them as they are compared.
+inline std::vector<const Calibration*> views(const std::vector<Calibration>& all) {
+  std::vector<const Calibration*> out;
+  out.reserve(all.size());
+  for (const Calibration& one : all) out.push_back(&one);
+  return out;
 }
 
 }  // namespace odomcalib::test_support

@@ -153,10 +153,9 @@ TEST(Homogeneity, of_two_is_the_joint_test_and_of_many_keeps_its_level) {
   int alarms = 0;
   for (int k = 0; k < 500; ++k) {
     std::vector<Calibration> all;
+    all.reserve(5);
     for (int n = 0; n < 5; ++n) all.push_back(drawn({}, random));
-    std::vector<const Calibration*> view;
-    for (const Calibration& one : all) view.push_back(&one);
-    const JointTest test = homogeneity(view);
+    const JointTest test = homogeneity(test_support::views(all));
     EXPECT_EQ(test.freedom, 24U);
     alarms += test.is_change() ? 1 : 0;
   }

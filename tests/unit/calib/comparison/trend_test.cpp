@@ -20,6 +20,7 @@ constexpr double kStd = 5e-5;  // m
 std::vector<TrendPoint> monthly(std::mt19937& random, double slope, double scatter, int months = 12) {
   std::normal_distribution<double> normal;
   std::vector<TrendPoint> points;
+  points.reserve(static_cast<std::size_t>(months));
   for (int k = 0; k < months; ++k)
     points.push_back({30.0 * k, 0.15 + slope * k + scatter * kStd * normal(random), kStd});
   return points;
@@ -140,9 +141,7 @@ TEST(ParameterTrends, find_the_wear_of_tyres_and_when_a_metre_passes_a_bound) {
       all.push_back(test_support::drawn(worn, random));
       driven.push_back(kMonth * month);
     }
-    std::vector<const Calibration*> view;
-    for (const Calibration& one : all) view.push_back(&one);
-    const std::vector<ParameterTrend> trends = parameter_trends(view, driven);
+    const std::vector<ParameterTrend> trends = parameter_trends(test_support::views(all), driven);
     ASSERT_EQ(trends.size(), 7U);
     ASSERT_EQ(trends.front().name, kMeanDiameter);
     const Line& line = trends.front().line.value();

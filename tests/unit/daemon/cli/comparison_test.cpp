@@ -163,6 +163,7 @@ TEST(Compare, finds_the_wear_of_a_year_and_the_date_of_a_bound) {
 TEST(Compare, of_a_robot_that_does_not_wear_tells_an_earliest_date_alone) {
   std::mt19937 random(7);
   std::vector<ComparedFile> files;
+  files.reserve(6);
   for (int month = 0; month < 6; ++month) files.push_back(file(std::to_string(month), "r1", month, random));
   const ComparisonOptions options{false, true, 0.005};
   const auto robots = value_of(compare(files, options));
@@ -187,6 +188,16 @@ TEST(Compare, makes_a_table_of_a_fleet_the_most_urgent_first) {
   const std::string told = text(robots, options, Extent::summary);
   EXPECT_THAT(told, HasSubstr("3 robots, 1 refused, 1 changed, 1 fine"));
   EXPECT_THAT(told, HasSubstr("left wheel diameter"));
+}
+
+TEST(Compare, has_the_date_of_the_bound_in_the_table_of_a_fleet) {
+  std::mt19937 random(12);
+  auto files = year(random);
+  files.push_back(file("x", "r2", 0, random));
+  const ComparisonOptions options{true, true, 0.005};
+  const std::string told = text(value_of(compare(files, options)), options, Extent::summary);
+  EXPECT_THAT(told, HasSubstr("passes 5 mm/m"));
+  EXPECT_THAT(told.substr(0, told.find("robot r1: ")), HasSubstr("  2027-0"));
 }
 
 TEST(Compare, fits_a_terminal_of_eighty_columns) {

@@ -326,6 +326,7 @@ TEST(Recording, survives_writing_as_json_lines) {
     }
     r.scans.push_back(scan);
   }
+  r.time_zero = 1.7e9;
   for (const char* name : {"survives.jsonl", "survives.jsonl.gz"}) {
     const auto path = std::filesystem::path(testing::TempDir()) / name;
     ASSERT_TRUE(write_recording_jsonl(r, path).ok());
@@ -337,6 +338,7 @@ TEST(Recording, survives_writing_as_json_lines) {
     EXPECT_EQ(b.robot.right_wheel_diameter, r.robot.right_wheel_diameter);
     EXPECT_EQ(b.robot.robot_id, r.robot.robot_id);
     EXPECT_EQ(b.robot.controller_id, r.robot.controller_id);
+    EXPECT_EQ(b.time_zero, r.time_zero);
     ASSERT_EQ(b.ticks.size(), r.ticks.size());
     ASSERT_EQ(b.scans.size(), r.scans.size());
     for (std::size_t i = 0; i < r.ticks.size(); ++i) {
