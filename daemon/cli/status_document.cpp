@@ -46,6 +46,8 @@ Document describe_status(const ordered_json& status) {
   add("lidar", (lidar["stale"] == "" ? "scans arrive" : status_text(lidar["stale"])) + "  " +
                    status_text(lidar["device"]));
   add("in the way", status.value("obstacle", ""));
+  if (controller.contains("supply_voltage") && controller["supply_voltage"].is_number())
+    add("battery", fmt::format("{:.1f} V", controller["supply_voltage"].get<double>()));
   add("calibrated", status["calibrated"] == true ? "yes" : "no");
   add("last stop", status_text(status["last_stop"]));
   if (status["recording_bytes"] > 0)
