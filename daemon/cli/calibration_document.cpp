@@ -82,28 +82,33 @@ std::string assumption_of(const std::string& method) {
   return found == kAssumptions.end() ? "" : std::string(found->second);
 }
 
-/// Value, and in brackets its difference from the answer.
+/// Value, and in brackets its difference from the answer in units of the two deviations together.
 std::string compared(const Quantity* quantity, const Quantity& answer) {
   if (quantity == nullptr) return "-";
-  const Display show = display_of(answer.unit);
-  return fmt::format("{} ({:+.{}f})", quantity_cell(quantity), (quantity->value - answer.value) * show.factor,
-                     show.digits);
+  const std::string value = quantity_cell(quantity);
+  if (quantity->std < 0.0 || answer.std < 0.0) return value;
+  const double sigma = std::hypot(quantity->std, answer.std);
+  return sigma > 0.0 ? fmt::format("{} ({:+.1f})", value, (quantity->value - answer.value) / sigma) : value;
 }
 
 Section methods_of(const Calibration& calibration) {
-  Section section{"Estimators compared (difference from the answer in brackets)", {}, {{""}, {}}};
+  Section section{"Estimators compared (difference from the answer in sigmas in brackets)", {}, {{""}, {}}};
   for (const auto& method : calibration.methods) {
     const std::string assumed = assumption_of(method.name);
     section.lines.push_back(readable(method.name) + (assumed.empty() ? "" : ": " + assumed) +
                             (method.refused ? "; refused: " + *method.refused : ""));
     if (!method.refused) section.table.head.push_back(readable(method.name));
   }
+  if (!section.lines.empty())
+    section.lines.emplace_back(
+        "Many sigmas say that what an estimator takes for granted does not hold here, not that the answer is "
+        "wrong.");
   for (const auto& [name, last] : calibration.parameters) {
     std::vector<std::string> row{readable(name) + " [" + display_of(last.unit).unit + "]"};
     for (const auto& method : calibration.methods) {
       if (method.refused) continue;
       const Quantity* quantity = find(method.parameters, name);
-      row.push_back(method.name == "joint" ? quantity_cell(quantity) : compared(quantity, last));
+      row.push_back(compared(quantity, last));
     }
     section.table.rows.push_back(row);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -242,6 +243,7 @@ std::vector<Gain> gains_of(const Calibration& calibration, const ReportData& dat
       "too short");
   add("full_turn_heading", "a full turn", "degrees", kDegrees, nominal ? nominal->turn_deg : 0.0, "too large",
       "too small");
+  if (gains.empty()) add("open_loop_10s_position", "after ten seconds odometry", "mm", 1000.0, 0.0, "", "");
   return gains;
 }
 
@@ -258,7 +260,7 @@ std::string gain_sentence(const Calibration& calibration, const ReportData& data
     out += (out.empty() ? "" : "; ") + words;
   }
   if (out.empty()) return out;
-  out[0] = 'A';
+  out[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(out[0])));
   return out + ".";
 }
 
@@ -288,7 +290,7 @@ std::vector<std::string> effect_lines(const Calibration& calibration) {
   std::vector<std::string> lines;
   std::string before;
   for (const Finding& one : effect_findings(calibration)) {
-    const std::string end = ": " + one.remedy;
+    const std::string end = " (" + one.remedy + ")";
     if (one.remedy == before)
       lines.back().replace(lines.back().size() - end.size(), end.size(), ", " + one.what + end);
     else

@@ -28,7 +28,8 @@ struct Gain {
   std::string way;  ///< which way it was off: "too long"; empty where that is not plain
 };
 
-/// The metre, then the full turn; without what the recording does not show.
+/// The metre, then the full turn; without what the recording does not show. Where it shows neither, ten
+/// seconds of whatever was driven.
 std::vector<Gain> gains_of(const Calibration& calibration, const ReportData& data);
 /// "A metre read 16.1 mm too short, now 0.5 mm off; a full turn ..."; empty without gains.
 std::string gain_sentence(const Calibration& calibration, const ReportData& data);

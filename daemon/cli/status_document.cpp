@@ -54,6 +54,8 @@ Document describe_status(const ordered_json& status) {
   add("lidar", (lidar["stale"] == "" ? "scans arrive" : status_text(lidar["stale"])) + "  " +
                    status_text(lidar["device"]));
   add("in the way", status.value("obstacle", ""));
+  if (controller.contains("supply_voltage") && controller["supply_voltage"].is_number())
+    add("battery", fmt::format("{:.1f} V", controller["supply_voltage"].get<double>()));
   add("calibrated", calibrated_text(status));
   add("last stop", status_text(status["last_stop"]));
   if (const auto lost = status["lcm"].value("dropped", std::uint64_t{0}); lost > 0)

@@ -133,7 +133,9 @@ ordered_json controller_report(const Bench& bench) {
                        {"watchdog_armed", controller.watchdog_armed()},
                        {"ticks", drive.tick_count},
                        {"stale", drive.encoders.stale(bench.now).value_or("")},
-                       {"counters", drive.link.counters()}};
+                       {"counters", drive.link.counters()},
+                       {"supply_voltage", nullptr}};
+  if (const auto voltage = controller.supply_voltage()) body["supply_voltage"] = *voltage;
   for (const auto& one : controller.capabilities())
     body["holds"][one.quantity] = {{"readable", one.readable},
                                    {"writable", one.writable},

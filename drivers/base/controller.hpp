@@ -131,6 +131,8 @@ class Controller {
     const auto one = identity();
     return one ? std::vector<Identity>{*one} : std::vector<Identity>{};
   }
+  /// V, of battery or supply, as the device said last; nullopt where it says nothing of it.
+  [[nodiscard]] virtual std::optional<double> supply_voltage() const { return std::nullopt; }
   /// Nominal geometry from the profile: ticks per revolution, and the diameters and track where the profile
   /// states them.
   [[nodiscard]] virtual RobotDescription description() const = 0;

@@ -123,6 +123,7 @@ TEST_F(SampleRecording, SX_01_S3_10_goes_through_all_estimators_and_their_differ
   for (const char* name : kEstimators) EXPECT_TRUE(methods.contains(name)) << name;
   const std::string text = read("first.txt");
   EXPECT_THAT(text, HasSubstr("difference from the answer in sigmas"));
+  EXPECT_THAT(text, HasSubstr("straight: from straight pieces alone")) << "what it assumes";
   EXPECT_THAT(text, ContainsRegex(
                         "lidar yaw \\[deg\\] +- +- +- +-?[0-9.]+ \\([+-][0-9.]+\\) +-?[0-9.]+ \\([+]0.0\\)"));
 }
@@ -133,7 +134,8 @@ TEST_F(SampleRecording, S3_18_SD_09_tells_six_values_with_deviations_of_their_ow
   for (const char* name :
        {"left wheel diameter", "right wheel diameter", "track width", "lidar x", "lidar y", "lidar yaw"}) {
     const std::string unit = std::string(name) == "lidar yaw" ? "deg" : "mm";
-    EXPECT_THAT(text, ContainsRegex(std::string("  ") + name + " +[0-9.-]+ +[0-9.-]+ +[0-9.]+ +" + unit));
+    EXPECT_THAT(text,
+                ContainsRegex(std::string("  ") + name + " +[0-9.-]+ +[0-9.-]+ +[0-9.]+ +[0-9.]+ +" + unit));
   }
   EXPECT_THAT(text, HasSubstr("correlations"));
   // A deviation of the lidar's place is no residual of its motion: that one is printed as a residual.

@@ -325,6 +325,7 @@ ordered_json LiveState::document() const {
   body["progress"] = progress_;
   body["last_stop"] = text_in(status_, "last_stop");
   body["robot"] = text_in(object_in(status_, "robot"), "robot_id");
+  body["supply_voltage"] = connected_ ? number_in(controller, "supply_voltage") : ordered_json();
   body["obstacle"] = connected_ ? text_in(status_, "obstacle") : "";
   body["controller"] = connected_ ? text_in(controller, "state") : "";
   body["lidar"] = connected_ ? text_in(lidar, "stale") : "";

@@ -19,6 +19,15 @@ std::size_t index(Side side) { return static_cast<std::size_t>(side); }
 constexpr std::array kCommands = {"motion_command", "control_mode", "set_state", "controller_mode",
                                   "input_speed",    "set_current",  "set_rpm"};
 
+/// What the tables call the voltage that the device runs on.
+constexpr std::array kVoltages = {"battery_V", "voltage_V", "input_voltage_V"};
+
+std::optional<double> voltage_in(const DeviceMessage& message) {
+  for (const MessageField& field : message.fields)
+    if (std::find(kVoltages.begin(), kVoltages.end(), field.name) != kVoltages.end()) return field.number;
+  return std::nullopt;
+}
+
 bool is_command(const DeviceMessage& message) {
   return std::find(kCommands.begin(), kCommands.end(), message.name) != kCommands.end();
 }
@@ -52,8 +61,10 @@ void SpeedBase::on_bytes(std::span<const std::uint8_t> bytes, double now) {
 }
 
 void SpeedBase::take_news() {
-  for (const DeviceMessage& message : protocol_->take_messages())
+  for (const DeviceMessage& message : protocol_->take_messages()) {
     if (is_command(message)) on_other_master();
+    if (const auto voltage = voltage_in(message)) supply_voltage_ = voltage;
+  }
   for (const SideCount& count : protocol_->take_counts()) on_count(count);
 }
 

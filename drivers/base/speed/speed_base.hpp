@@ -46,6 +46,7 @@ class SpeedBase final : public Controller, private MotionDevice {
   std::optional<ParameterJobResult> take_job_result() override { return std::exchange(job_result_, {}); }
 
   [[nodiscard]] std::optional<Identity> identity() const override { return protocol_->identity(); }
+  [[nodiscard]] std::optional<double> supply_voltage() const override { return supply_voltage_; }
   [[nodiscard]] RobotDescription description() const override { return profile_.robot; }
   [[nodiscard]] std::vector<Capability> capabilities() const override;
   [[nodiscard]] Counters counters() const override;
@@ -78,6 +79,7 @@ class SpeedBase final : public Controller, private MotionDevice {
   std::array<double, 2> counted_at_{-1e9, -1e9};  ///< s
   double last_other_master_ = -1e9;               ///< s
   std::uint64_t other_master_ = 0;
+  std::optional<double> supply_voltage_;  ///< V
   bool present_ = false;
   bool asked_ = false;  // for torque
   std::string last_fault_;

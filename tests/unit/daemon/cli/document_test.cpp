@@ -145,6 +145,16 @@ TEST(Report, has_two_deviations_where_the_metre_is_known) {
   EXPECT_THAT(value_of(exported(calibration, "parameters")), HasSubstr("0.147,0.0001,m,0.000177"));
 }
 
+TEST(Report, without_straights_and_turns_it_says_what_ten_seconds_are_off_by) {
+  Calibration calibration = example();
+  ReportData data;
+  data.drive_errors = {{"open_loop_10s_position", "m", 12, Bounded{0.008, 0.007, 0.009}, std::nullopt,
+                        Bounded{0.0022, 0.002, 0.003}, 0.001}};
+  store_report_data(data, calibration);
+  EXPECT_THAT(to_text(describe(calibration)),
+              HasSubstr("After ten seconds odometry was 8.0 mm off, now 2.2 mm off."));
+}
+
 TEST(Report, says_effects_in_plain_words) {
   Calibration calibration = example();
   calibration.effects = {
@@ -366,17 +376,18 @@ TEST(Report, next_is_the_controller_or_for_a_recording_from_elsewhere_the_export
 
 TEST(Status, has_no_row_of_what_there_is_nothing_to_say_of) {
   auto status = nlohmann::ordered_json::parse(R"({"state":"idle","robot":{"robot_id":""},
-    "controller":{"state":"enabled","device":"can0","problem":""},
+    "controller":{"state":"enabled","device":"can0","problem":"","supply_voltage":null},
     "lidar":{"stale":"","device":"/dev/ttyUSB0","problem":""},
     "calibrated":false,"last_stop":"","recording_bytes":0})");
-  for (const char* row : {"last stop", "robot  ", "in the way"})
+  for (const char* row : {"last stop", "robot  ", "in the way", "battery"})
     EXPECT_THAT(to_text(describe_status(status)), Not(HasSubstr(row)));
   status["last_stop"] = "the lease lapsed";
   status["robot"]["robot_id"] = "carrier-17";
   status["obstacle"] = "0.4 m ahead";
+  status["controller"]["supply_voltage"] = 25.93;
   const std::string text = to_text(describe_status(status));
-  for (const char* row :
-       {"last stop   the lease lapsed", "robot       carrier-17", "in the way  0.4 m ahead"})
+  for (const char* row : {"last stop   the lease lapsed", "robot       carrier-17", "in the way  0.4 m ahead",
+                          "battery     25.9 V"})
     EXPECT_THAT(text, HasSubstr(row));
 }
 

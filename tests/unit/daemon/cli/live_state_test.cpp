@@ -180,9 +180,12 @@ TEST(LiveState, names_the_robot_and_what_stands_in_its_way) {
   auto stopped = status("idle");
   stopped["robot"] = {{"robot_id", "carrier-17"}};
   stopped["obstacle"] = "3 readings 0.4 m ahead";
+  EXPECT_TRUE(state.document()["supply_voltage"].is_null());
+  stopped["controller"] = {{"state", "enabled"}, {"supply_voltage", 25.9}};
   state.take_status(stopped);
   EXPECT_EQ(state.document()["robot"], "carrier-17");
   EXPECT_EQ(state.document()["obstacle"], "3 readings 0.4 m ahead");
+  EXPECT_EQ(state.document()["supply_voltage"], 25.9);
 }
 
 TEST(LiveState, messages_that_never_come_are_named_and_those_that_do_are_not) {

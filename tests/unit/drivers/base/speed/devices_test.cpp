@@ -250,6 +250,15 @@ TEST(Agilex, an_emergency_stop_is_a_fault_until_it_is_released) {
   EXPECT_TRUE(bench.run_until(ControllerState::disabled));
 }
 
+TEST(Agilex, tells_the_voltage_of_its_battery) {
+  sim::AgilexChassis device;
+  CanBench bench(shipped("agilex"), device);
+  EXPECT_FALSE(bench.controller->supply_voltage()) << "nothing was heard yet";
+  ASSERT_TRUE(bench.run_until(ControllerState::disabled));
+  ASSERT_TRUE(bench.controller->supply_voltage());
+  EXPECT_EQ(*bench.controller->supply_voltage(), 25.9);
+}
+
 TEST(Vesc, its_configuration_is_read_in_pieces) {
   sim::VescPair device;
   CanBench bench(shipped("vesc"), device);
