@@ -17,7 +17,7 @@ using Slot = std::variant<std::monostate, Scalar, Array, Text>;
 
 // Names of DESIGN 4.2, of Censi's raw logs (readings, theta, ray_dt, stamps as [s, us]) and of his tuple
 // files.
-constexpr std::array<std::pair<std::string_view, Slot>, 40> kLineMembers{{
+constexpr std::array<std::pair<std::string_view, Slot>, 41> kLineMembers{{
     {"type", Text::type},
     {"t", Scalar::t},
     {"left", Scalar::left},
