@@ -382,7 +382,7 @@ TEST_F(HalfBlind, nothing_goes_where_the_lidar_sees_nothing_unless_somebody_vouc
     const bool begins =
         run_until([this] { return status()["state"].get<std::string>().starts_with("moving"); }, 0.5);
     if (begins) robot_->room() = sim::furnished_room();
-    const auto reply = wait_reply(mover, 20.0);
+    auto reply = wait_reply(mover, 20.0);
     EXPECT_EQ(begins, reply.error.empty()) << reply.parameters;
     return reply;
   };

@@ -42,7 +42,7 @@ class Touched : public ServiceLoop {
   }
   control::Reply ask_and_watch(const std::string& method, const json& parameters) {
     const sim::Pose begin = robot_->pose();
-    const auto reply = call(method, parameters);
+    auto reply = call(method, parameters);
     farthest_ = std::hypot(robot_->pose().x - begin.x, robot_->pose().y - begin.y);
     return reply;
   }
