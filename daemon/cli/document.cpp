@@ -156,4 +156,11 @@ std::string to_text(const Document& document, bool legend, std::size_t width) {
   return out;
 }
 
+std::string page_of(const Document& document) {
+  std::string body =
+      fmt::format("<h1 class=\"{}\">{}</h1>\n", class_of(document.tone), escaped(document.headline));
+  for (const Section& section : document.sections) body += html_of(section);
+  return page_of(document.headline, "", body);
+}
+
 }  // namespace odomcalib::cli

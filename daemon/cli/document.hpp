@@ -55,5 +55,7 @@ std::string html_of(const Figure& figure);
 const char* class_of(Document::Tone tone);
 /// @param style what the page has beyond the common style
 std::string page_of(const std::string& title, const std::string& style, const std::string& body);
+/// All sections below the headline.
+std::string page_of(const Document& document);
 
 }  // namespace odomcalib::cli

@@ -1,13 +1,10 @@
 // Calibrations of one robot against each other, or the newest of each robot of a fleet.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/comparison_document.hpp"
 #include "daemon/cli/exit_codes.hpp"
-#include "daemon/cli/figure_svg.hpp"
 #include "daemon/cli/outputs.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/file_bytes.hpp"
@@ -41,19 +38,12 @@ Result<std::vector<ComparedFile>> read_calibrations(const std::vector<std::strin
   return files;
 }
 
-std::string page_of_comparison(const Document& document) {
-  std::string body =
-      fmt::format("<h1 class=\"{}\">{}</h1>\n", class_of(document.tone), escaped(document.headline));
-  for (const Section& section : document.sections) body += html_of(section);
-  return page_of(document.headline, "", body);
-}
-
 Result<void> write_pages(const CompareArguments& arguments, const std::vector<ComparedRobot>& robots,
                          const ComparisonOptions& options) {
   if (!arguments.csv.empty())
     if (auto written = write_output(arguments.csv, to_csv(robots)); !written) return written;
   if (arguments.html.empty()) return {};
-  return write_output(arguments.html, page_of_comparison(describe(robots, options, Extent::page)));
+  return write_output(arguments.html, page_of(describe(robots, options, Extent::page)));
 }
 
 int compare_files(const CompareArguments& arguments, const Session& session) {

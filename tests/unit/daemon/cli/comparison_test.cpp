@@ -214,7 +214,7 @@ TEST(Compare, fits_a_terminal_of_eighty_columns) {
 TEST(Compare, draws_a_picture_of_each_parameter_with_its_line) {
   std::mt19937 random(10);
   const ComparisonOptions options{false, true, std::nullopt};
-  const std::string page = to_html(describe(value_of(compare(year(random), options)), options, Extent::page));
+  const std::string page = page_of(describe(value_of(compare(year(random), options)), options, Extent::page));
   std::size_t pictures = 0;
   for (std::size_t at = page.find("<figure>"); at != std::string::npos; at = page.find("<figure>", at + 1))
     ++pictures;
@@ -222,7 +222,7 @@ TEST(Compare, draws_a_picture_of_each_parameter_with_its_line) {
   EXPECT_THAT(page, HasSubstr("days since 2026-01-02"));
   EXPECT_THAT(page, HasSubstr("weighted line"));
   EXPECT_THAT(page, Not(HasSubstr("<script")));
-  const std::string plain = to_html(describe(value_of(compare(year(random), {})), {}, Extent::page));
+  const std::string plain = page_of(describe(value_of(compare(year(random), {})), {}, Extent::page));
   EXPECT_THAT(plain, Not(HasSubstr("weighted line")));
   EXPECT_THAT(plain, HasSubstr("<figure>"));
 }
