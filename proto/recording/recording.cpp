@@ -51,21 +51,22 @@ Error has_no_topics(const std::string& where) {
 }
 
 std::optional<Error> read_ros(std::string_view bytes, const std::string& where, const TopicChoices& topics,
-                              RecordingBuilder& builder) {
-  ros::Collector collector(ros::kinds_of(topics));
+                              RecordingBuilder& builder, const UnpackLimit& limit) {
+  ros::Collector collector(ros::kinds_of(topics), limit);
   if (auto error = ros::read_container(bytes, where, collector)) return error;
   return ros::fill(builder, collector, topics, where);
 }
 
 Result<Recording> read_content(std::string_view bytes, const std::string& where, RecordingBuilder builder,
-                               const RobotDescription* fallback, const TopicChoices& topics) {
+                               const RobotDescription* fallback, const TopicChoices& topics,
+                               const UnpackLimit& limit) {
   using Need = RecordingBuilder::RobotNeed;
   Need need = Need::required;
   const Form form = recognise(bytes);
   if (form != Form::ros && !topics.empty()) return has_no_topics(where);
   switch (form) {
     case Form::ros:
-      if (auto error = read_ros(bytes, where, topics, builder)) return *error;
+      if (auto error = read_ros(bytes, where, topics, builder, limit)) return *error;
       break;
     case Form::nothing:
       return Error{ErrorCode::empty, "holds no data", where, "record again"};
@@ -127,14 +128,16 @@ Result<TopicChoice> parse_topic_choice(const std::string& text) {
 }
 
 Result<Recording> read_recording_bytes(const std::string& bytes, const std::filesystem::path& name,
-                                       const RobotDescription* fallback, const TopicChoices& topics) {
+                                       const RobotDescription* fallback, const TopicChoices& topics,
+                                       const UnpackLimit& limit) {
   RecordingBuilder builder;
   Unpacked unpacked;
   const bool packed = is_gzip(bytes);
-  if (packed) unpacked = gunzip(bytes);
+  if (packed) unpacked = gunzip(bytes, limit);
+  if (unpacked.over_limit) return limit.refusal(bytes.size(), name.string());
   if (!unpacked.whole) builder.discard("file", unpacked.problem);
-  auto recording =
-      read_content(packed ? unpacked.bytes : bytes, name.string(), std::move(builder), fallback, topics);
+  auto recording = read_content(packed ? unpacked.bytes : bytes, name.string(), std::move(builder), fallback,
+                                topics, limit);
   if (!recording) return recording;
   recording.value().name = name.filename().string();
   recording.value().sha256 = sha256_hex(bytes);
@@ -145,12 +148,12 @@ namespace {
 
 /// All files of a rosbag2 folder as one recording; its hash is that of the hashes of its files, one a line.
 Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDescription* fallback,
-                              const TopicChoices& topics) {
+                              const TopicChoices& topics, const UnpackLimit& limit) {
   const auto found = ros::files_of(folder);
   if (!found) return found.error();
   RecordingBuilder builder;
   for (const auto& name : found.value().missing) builder.discard("file", name + " is missing");
-  ros::Collector collector(ros::kinds_of(topics));
+  ros::Collector collector(ros::kinds_of(topics), limit);
   std::string hashes;
   for (const auto& path : found.value().files) {
     const auto file = read_file_bytes(path);
@@ -177,12 +180,12 @@ bool has_write_ahead_log(const std::filesystem::path& path) {
 }  // namespace
 
 Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback,
-                                 const TopicChoices& topics) {
+                                 const TopicChoices& topics, const UnpackLimit& limit) {
   std::error_code none;
-  if (std::filesystem::is_directory(path, none)) return read_folder(path, fallback, topics);
+  if (std::filesystem::is_directory(path, none)) return read_folder(path, fallback, topics, limit);
   const auto file = read_file_bytes(path);
   if (!file) return file.error();
-  auto recording = read_recording_bytes(file.value(), path, fallback, topics);
+  auto recording = read_recording_bytes(file.value(), path, fallback, topics, limit);
   if (recording && has_write_ahead_log(path))
     recording.value().discarded.push_back(
         {"file", "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'",
