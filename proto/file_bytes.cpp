@@ -111,27 +111,28 @@ int inflate_member(z_stream& stream, std::string& out, std::size_t limit) {
   return code;
 }
 
-std::string describe_inflate(int code, bool over_limit) {
-  if (over_limit) return "unpacks to more than the limit";
+std::string describe_inflate(int code) {
   return code == Z_BUF_ERROR ? "compressed data is cut off" : "compressed data is damaged";
 }
 
 }  // namespace
 
-Unpacked gunzip(std::string_view packed, std::size_t limit) {
+Unpacked gunzip(std::string_view packed, const UnpackLimit& limit) {
   Unpacked result;
+  const std::size_t most = limit.of(packed.size());
   while (is_gzip(packed)) {
     z_stream stream{};
     if (inflateInit2(&stream, 16 + MAX_WBITS) != Z_OK) return {{}, false, "cannot start unpacking"};
     // zlib never writes through next_in. Files are limited to 4 GiB, avail_in holds one byte less.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT
     stream.avail_in = static_cast<uInt>(std::min<std::size_t>(packed.size(), UINT32_MAX));
-    const int code = inflate_member(stream, result.bytes, limit);
+    const int code = inflate_member(stream, result.bytes, most);
     packed.remove_prefix(packed.size() - stream.avail_in);
     inflateEnd(&stream);
-    if (code == Z_STREAM_END) continue;
+    result.over_limit = result.bytes.size() > most || (code == Z_OK && result.bytes.size() == most);
+    if (code == Z_STREAM_END && !result.over_limit) continue;
     result.whole = false;
-    result.problem = describe_inflate(code, result.bytes.size() >= limit);
+    result.problem = result.over_limit ? "unpacks to more than the limit" : describe_inflate(code);
     return result;
   }
   if (!packed.empty() && packed.find_first_not_of('\0') != std::string_view::npos) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "proto/result.hpp"
+#include "proto/unpack_limit.hpp"
 
 namespace odomcalib {
 
@@ -24,10 +25,11 @@ struct Unpacked {
   std::string bytes;
   bool whole = true;
   std::string problem;  ///< why it is not whole
+  bool over_limit = false;
 };
 
-/// Unpacks all members of a gzip file (RFC 1952), at most `limit` bytes.
-Unpacked gunzip(std::string_view packed, std::size_t limit = std::size_t{4} << 30);
+/// Unpacks all members of a gzip file (RFC 1952), hardly more than the limit.
+Unpacked gunzip(std::string_view packed, const UnpackLimit& limit = {});
 
 /// Packs into one gzip member without a time stamp: same input, same bytes.
 Result<std::string> gzip(std::string_view bytes);

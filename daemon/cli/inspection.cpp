@@ -129,15 +129,16 @@ Result<Inspection> inspect(const std::string& path, const RecordingOptions& opti
   if (!topics) return topics.error();
   const auto robot = robot_of(options);
   if (!robot) return robot.error();
+  const UnpackLimit limit = unpack_limit_of(options.unpack_limit);
   Inspection found;
   found.path = path;
-  auto recording = read_recording_with_overview(path, &robot.value(), topics.value(), found.overview);
+  auto recording = read_recording_with_overview(path, &robot.value(), topics.value(), limit, found.overview);
   if (!recording && recording.error().code == ErrorCode::io) return recording.error();
   if (!recording) found.error = recording.error();
   if (!recording && recording.error().code == ErrorCode::missing_units) {
     // Without lengths nothing can be told of the motion: usual ones tell at least its kinds.
     const RobotDescription usual = filled_in(robot.value());
-    recording = read_recording_with_overview(path, &usual, topics.value(), found.overview);
+    recording = read_recording_with_overview(path, &usual, topics.value(), limit, found.overview);
     if (recording) found.assumed = assumed_in(recording.value(), robot.value());
   }
   if (!recording && found.overview.topics.empty()) return recording.error();

@@ -115,6 +115,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const JsonMode json = asked_mode(argc, argv);
+  const odomcalib::cli::VisibleStreams visible;
   odomcalib::cli::end_when_interrupted(json);
   int status = odomcalib::cli::kFailure;
   try {

@@ -39,17 +39,55 @@ double seconds(std::chrono::steady_clock::duration time) {
   return std::chrono::duration<double>(time).count();
 }
 
+/// Takes back the line that is shown: a command to the terminal, and the only one.
+void erase_line() {
+  std::cerr << std::flush;
+  constexpr std::string_view kErase = "\r\x1b[K";
+  (void)!write(STDERR_FILENO, kErase.data(), kErase.size());
+}
+
+/// JSON without control characters: it has escapes for all of them, and its values stay what they are.
+std::string dumped(const nlohmann::ordered_json& value, int indent) {
+  const std::string text = value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const unsigned next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0U;
+    if (byte == 0x7F) {
+      out += "\\u007f";
+    } else if (byte == 0xC2 && next < 0xA0) {
+      out += fmt::format("\\u{:04x}", next);
+      ++i;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
 std::string duration_text(double time) {
   return time < 90.0 ? fmt::format("{:.0f} s", time) : fmt::format("{:.0f} min", time / 60.0);
 }
 
 }  // namespace
 
+VisibleStreams::VisibleStreams()
+    : out_(std::cout.rdbuf()), err_(std::cerr.rdbuf()), visible_out_(*out_), visible_err_(*err_) {
+  std::cout.rdbuf(&visible_out_);
+  std::cerr.rdbuf(&visible_err_);
+}
+
+VisibleStreams::~VisibleStreams() {
+  std::cout.rdbuf(out_);
+  std::cerr.rdbuf(err_);
+}
+
 void print_json(const std::string& text, JsonMode mode) {
   const auto value = nlohmann::ordered_json::parse(text, nullptr, false);
   if (value.is_discarded()) throw std::runtime_error("the result is no JSON: " + text.substr(0, 80));
   const int indent = mode == JsonMode::pretty ? 2 : -1;
-  std::cout << value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  std::cout << dumped(value, indent) << '\n';
 }
 
 void print_document(const std::string& name, const nlohmann::ordered_json& body, JsonMode mode) {
@@ -131,7 +169,8 @@ void ProgressLine::replace(const std::string& text) {
   pollfd terminal{STDERR_FILENO, POLLOUT, 0};
   if (poll(&terminal, 1, 0) != 1 || (terminal.revents & POLLOUT) == 0) return;
   const std::size_t columns = terminal_columns(STDERR_FILENO);
-  std::cerr << "\r\x1b[K" << (columns > 1 ? text.substr(0, columns - 1) : text) << std::flush;
+  erase_line();
+  std::cerr << (columns > 1 ? text.substr(0, columns - 1) : text) << std::flush;
   shown_ = true;
 }
 
@@ -146,7 +185,7 @@ void ProgressLine::add_plain(const std::string& text) {
 }
 
 void ProgressLine::clear() {
-  if (shown_) std::cerr << "\r\x1b[K" << std::flush;
+  if (shown_) erase_line();
   shown_ = false;
 }
 

@@ -11,10 +11,25 @@
 
 #include "daemon/cli/document.hpp"
 #include "proto/result.hpp"
+#include "proto/visible_text.hpp"
 
 namespace odomcalib::cli {
 
 enum class JsonMode { off, pretty, shortened };
+
+/// While it lives, standard output and standard error take visible() text alone: nothing that a file says
+/// reaches the terminal as a command. Verbs print through the streams and through nothing else.
+class VisibleStreams {
+ public:
+  VisibleStreams();
+  ~VisibleStreams();
+  VisibleStreams(const VisibleStreams&) = delete;
+  VisibleStreams& operator=(const VisibleStreams&) = delete;
+
+ private:
+  std::streambuf *out_, *err_;  // as they were
+  VisibleText visible_out_, visible_err_;
+};
 
 /// Prints JSON text (any layout) in the wanted layout; members keep their order. Throws std::runtime_error
 /// on other text: what is printed here is JSON, or nothing.

@@ -57,10 +57,24 @@ Recording with_nominal(Recording recording, RobotDescription robot) {
   return recording;
 }
 
+void add_unpack_limit(CLI::App& verb, double& limit) {
+  verb.add_option(
+          "--unpack-limit", limit,
+          "MiB that a packed file may unpack to, where it can be trusted (256, and less for small files)")
+      ->check(CLI::Range(1.0, 1e6));
+}
+
+UnpackLimit unpack_limit_of(double mebibytes) {
+  constexpr double kMebibyte = 1048576.0;
+  return mebibytes > 0.0 ? UnpackLimit::allowed(static_cast<std::size_t>(mebibytes * kMebibyte))
+                         : UnpackLimit{};
+}
+
 void add_reading_options(CLI::App& verb, RecordingOptions& options) {
   verb.add_option("--robot", options.robot_file, "nominal values (TOML) instead of those of the recording");
   verb.add_option("--robot-id", options.robot_id,
                   "name of the robot, instead of that of the recording or of --robot");
+  add_unpack_limit(verb, options.unpack_limit);
   verb.add_option("--topic", options.topics,
                   "of a ROS recording: PART=TOPIC, or wheels=TOPIC:LEFT,RIGHT with the joints, or "
                   "wheels=LEFT_TOPIC,RIGHT_TOPIC; parts are scan, "
@@ -79,7 +93,7 @@ Result<std::vector<Recording>> read_recordings(const std::vector<std::string>& p
   for (const auto& path : paths) {
     auto recording = [&] {
       const Meanwhile shown("reading " + path);
-      return read_recording(path, &robot.value(), topics.value());
+      return read_recording(path, &robot.value(), topics.value(), unpack_limit_of(options.unpack_limit));
     }();
     if (!recording) {
       for (const auto& remark : recording.error().remarks) tell(fmt::format("{}: {}", path, remark));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "proto/recording/recording.hpp"
+#include "proto/unpack_limit.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's name
 class App;
@@ -13,12 +14,17 @@ class App;
 namespace odomcalib::cli {
 
 struct RecordingOptions {
-  std::string robot_file;  ///< TOML with nominal values that replace those of the recordings; empty: none
-  std::string robot_id;    ///< instead of that of the recordings and of the file; empty: none
+  std::string robot_file;     ///< TOML with nominal values that replace those of the recordings; empty: none
+  std::string robot_id;       ///< instead of that of the recordings and of the file; empty: none
+  double unpack_limit = 0.0;  ///< MiB that a packed file may unpack to; 0: see UnpackLimit
   std::vector<std::string> topics;  ///< PART=TOPIC[:LEFT,RIGHT]: what is what in ROS recordings
 };
 
-/// --robot, --robot-id and --topic, alike for every verb that reads recordings.
+/// --unpack-limit, alike for every verb that reads packed files.
+void add_unpack_limit(CLI::App& verb, double& limit);
+UnpackLimit unpack_limit_of(double mebibytes);
+
+/// --robot, --robot-id, --topic and --unpack-limit, alike for every verb that reads recordings.
 void add_reading_options(CLI::App& verb, RecordingOptions& options);
 
 /// What --topic says. Error: usage.

@@ -22,13 +22,14 @@ namespace {
 struct OptimizeOptions {
   std::vector<std::string> files;
   std::string out, picture;
+  double unpack_limit = 0.0;  // MiB; 0: see UnpackLimit
   calib::slam::GraphOptions solver;
 };
 
-Result<PoseGraph> read_files(const std::vector<std::string>& files) {
-  const std::vector<std::filesystem::path> paths(files.begin(), files.end());
-  const Meanwhile shown("reading " + files.front());
-  return read_pose_graph(paths);
+Result<PoseGraph> read_files(const OptimizeOptions& options) {
+  const std::vector<std::filesystem::path> paths(options.files.begin(), options.files.end());
+  const Meanwhile shown("reading " + options.files.front());
+  return read_pose_graph(paths, unpack_limit_of(options.unpack_limit));
 }
 
 struct BuildOptions {
@@ -57,7 +58,7 @@ int optimize(const OptimizeOptions& options, const Session& session) {
                                        named("the graph", options.files));
       !files)
     return report_error(files.error(), session.json);
-  auto graph = read_files(options.files);
+  auto graph = read_files(options);
   if (!graph) return report_error(graph.error(), session.json);
   ProgressLine line;
   std::size_t steps = 0;
@@ -75,7 +76,7 @@ int optimize(const OptimizeOptions& options, const Session& session) {
 }
 
 int tell(const OptimizeOptions& options, const Session& session) {
-  auto graph = read_files(options.files);
+  auto graph = read_files(options);
   if (!graph) return report_error(graph.error(), session.json);
   if (!graph.value().has_positions) {
     PoseGraph anchored = graph.value();
@@ -132,6 +133,7 @@ void add_optimize(CLI::App& parent, Session& session) {
   auto* verb = parent.add_subcommand("optimize", "Move the vertices to where they agree best with the edges");
   auto options = std::make_shared<OptimizeOptions>();
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
+  add_unpack_limit(*verb, options->unpack_limit);
   verb->add_option("--out", options->out, "g2o file to write");
   verb->add_option("--svg", options->picture, "picture to write: trajectory before and after, loops");
   add_choice(*verb, "--start", options->solver.start, graph_starts(), "first guess to try first");
@@ -147,6 +149,7 @@ void add_info(CLI::App& parent, Session& session) {
   auto* verb = parent.add_subcommand("info", "What a pose graph holds, and how well it fits its edges");
   auto options = std::make_shared<OptimizeOptions>();
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
+  add_unpack_limit(*verb, options->unpack_limit);
   verb->callback(
       [&session, options] { session.run = [&session, options] { return tell(*options, session); }; });
 }

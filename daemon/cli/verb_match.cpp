@@ -12,6 +12,7 @@
 
 #include "calib/match.hpp"
 #include "daemon/cli/exit_codes.hpp"
+#include "daemon/cli/recordings.hpp"
 #include "daemon/cli/verbs.hpp"
 #include "proto/file_bytes.hpp"
 #include "proto/recording/recording.hpp"
@@ -105,10 +106,13 @@ ordered_json match_pair(const ordered_json& pair, calib::Matcher matcher) {
   return describe(match, processor_time() - begin);
 }
 
-int match_file(const std::string& path, calib::Matcher matcher, const Session& session) {
+int match_file(const std::string& path, calib::Matcher matcher, const UnpackLimit& limit,
+               const Session& session) {
   const auto bytes = read_file_bytes(path);
   if (!bytes) return report_error(bytes.error(), session.json);
-  const Unpacked text = is_gzip(bytes.value()) ? gunzip(bytes.value()) : Unpacked{bytes.value(), true, ""};
+  const Unpacked text =
+      is_gzip(bytes.value()) ? gunzip(bytes.value(), limit) : Unpacked{bytes.value(), true, ""};
+  if (text.over_limit) return report_error(limit.refusal(bytes.value().size(), path), session.json);
   if (!text.whole) warn(path + ": " + text.problem);
   if (is_recording(text.bytes))
     return report_error({ErrorCode::format, "is a recording, not pairs of scans", path,
@@ -143,8 +147,12 @@ void add_match(CLI::App& app, Session& session) {
   verb->add_option("--matcher", *matcher, "lines: point to line; brute: best of a grid; fast: hill climb")
       ->check(CLI::IsMember({"lines", "brute", "fast"}))
       ->capture_default_str();
-  verb->callback([&session, path, matcher] {
-    session.run = [&session, path, matcher] { return match_file(*path, matcher_of(*matcher), session); };
+  auto limit = std::make_shared<double>(0.0);
+  add_unpack_limit(*verb, *limit);
+  verb->callback([&session, path, matcher, limit] {
+    session.run = [&session, path, matcher, limit] {
+      return match_file(*path, matcher_of(*matcher), unpack_limit_of(*limit), session);
+    };
   });
 }
 

@@ -24,6 +24,7 @@
 #include "daemon/service/urgency.hpp"
 #include "odomcalib_paths.hpp"
 #include "odomcalib_version.hpp"
+#include "proto/visible_text.hpp"
 
 namespace {
 
@@ -47,7 +48,9 @@ void catch_signals() {
 }
 
 // With the kind of event as a field of its own where this program's messages go to systemd's journal.
-void write_event(odomcalib::messages::Severity severity, const std::string& code, const std::string& text) {
+void write_event(odomcalib::messages::Severity severity, const std::string& code,
+                 const std::string& happened) {
+  const std::string text = odomcalib::visible(happened);  // devices and clients have their say in it
   using Severity = odomcalib::messages::Severity;
   const bool in_journal = std::getenv("JOURNAL_STREAM") != nullptr;
   const bool info = severity == Severity::info, fault = severity == Severity::fault;

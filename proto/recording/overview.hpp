@@ -32,6 +32,6 @@ struct Overview {
 /// As read_recording(), and what the file holds, as far as it was read before an error.
 Result<Recording> read_recording_with_overview(const std::filesystem::path& path,
                                                const RobotDescription* fallback, const TopicChoices& topics,
-                                               Overview& overview);
+                                               const UnpackLimit& limit, Overview& overview);
 
 }  // namespace odomcalib

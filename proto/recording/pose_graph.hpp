@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "proto/result.hpp"
+#include "proto/unpack_limit.hpp"
 
 namespace odomcalib {
 
@@ -49,7 +50,8 @@ struct PoseGraph {
 /// EDGE2, also VERTEX and EDGE), whose information is ordered xx xy yy tt xt yt. Several files are read as
 /// one, e.g. vertices and edges apart; any may be packed with gzip.
 /// Error: io; format with file and line for anything that cannot be used as it stands.
-Result<PoseGraph> read_pose_graph(std::span<const std::filesystem::path> files);
+Result<PoseGraph> read_pose_graph(std::span<const std::filesystem::path> files,
+                                  const UnpackLimit& limit = {});
 
 /// The same from memory. @param where names the text in errors
 Result<PoseGraph> read_pose_graph_text(std::string_view text, const std::string& where);

@@ -259,10 +259,11 @@ Result<PoseGraph> Reader::finish() {
   return std::move(graph_);
 }
 
-Result<std::string> unpacked(const std::filesystem::path& path) {
+Result<std::string> unpacked(const std::filesystem::path& path, const UnpackLimit& limit) {
   auto bytes = read_file_bytes(path);
   if (!bytes || !is_gzip(bytes.value())) return bytes;
-  auto text = gunzip(bytes.value());
+  auto text = gunzip(bytes.value(), limit);
+  if (text.over_limit) return limit.refusal(bytes.value().size(), path.string());
   // A graph that lacks its end is another graph.
   if (!text.whole) return Error{ErrorCode::format, text.problem, path.string(), "get the whole file"};
   return std::move(text.bytes);
@@ -270,10 +271,10 @@ Result<std::string> unpacked(const std::filesystem::path& path) {
 
 }  // namespace
 
-Result<PoseGraph> read_pose_graph(std::span<const std::filesystem::path> files) {
+Result<PoseGraph> read_pose_graph(std::span<const std::filesystem::path> files, const UnpackLimit& limit) {
   Reader reader;
   for (const auto& path : files) {
-    const auto text = unpacked(path);
+    const auto text = unpacked(path, limit);
     if (!text) return text.error();
     if (auto read = reader.read(text.value(), path.string()); !read) return read.error();
   }

@@ -82,8 +82,8 @@ std::string name_of(Form form, std::string_view bytes) {
 }
 
 std::optional<Error> read_ros(std::string_view bytes, const std::string& where, const TopicChoices& topics,
-                              RecordingBuilder& builder, Overview& overview) {
-  ros::Collector collector(ros::kinds_of(topics));
+                              RecordingBuilder& builder, const UnpackLimit& limit, Overview& overview) {
+  ros::Collector collector(ros::kinds_of(topics), limit);
   const auto error = ros::read_container(bytes, where, collector);
   overview.topics = ros::overview_of(collector.topics());
   return error ? error : ros::fill(builder, collector, topics, where);
@@ -91,7 +91,7 @@ std::optional<Error> read_ros(std::string_view bytes, const std::string& where, 
 
 Result<Recording> read_content(std::string_view bytes, const std::string& where, RecordingBuilder builder,
                                const RobotDescription* fallback, const TopicChoices& topics,
-                               Overview& overview) {
+                               const UnpackLimit& limit, Overview& overview) {
   using Need = RecordingBuilder::RobotNeed;
   Need need = Need::required;
   const Form form = recognise(bytes);
@@ -99,7 +99,7 @@ Result<Recording> read_content(std::string_view bytes, const std::string& where,
   if (form != Form::ros && !topics.empty()) return has_no_topics(where);
   switch (form) {
     case Form::ros:
-      if (auto error = read_ros(bytes, where, topics, builder, overview)) return *error;
+      if (auto error = read_ros(bytes, where, topics, builder, limit, overview)) return *error;
       break;
     case Form::nothing:
       return Error{ErrorCode::empty, "holds no data", where, "record again"};
@@ -139,14 +139,15 @@ Error not_understood(const std::string& text) {
 /// Of the whole file, packed or not.
 Result<Recording> read_file_content(const std::string& bytes, const std::filesystem::path& name,
                                     const RobotDescription* fallback, const TopicChoices& topics,
-                                    Overview& overview) {
+                                    const UnpackLimit& limit, Overview& overview) {
   RecordingBuilder builder;
   Unpacked unpacked;
   const bool packed = is_gzip(bytes);
-  if (packed) unpacked = gunzip(bytes);
+  if (packed) unpacked = gunzip(bytes, limit);
+  if (unpacked.over_limit) return limit.refusal(bytes.size(), name.string());
   if (!unpacked.whole) builder.discard("file", unpacked.problem);
   auto recording = read_content(packed ? unpacked.bytes : bytes, name.string(), std::move(builder), fallback,
-                                topics, overview);
+                                topics, limit, overview);
   if (!recording) return recording;
   recording.value().name = name.filename().string();
   recording.value().sha256 = sha256_hex(bytes);
@@ -159,7 +160,7 @@ Result<Recording> read_file_content(const std::string& bytes, const std::filesys
 bool is_recording(std::string_view bytes) {
   Unpacked unpacked;
   if (is_gzip(bytes)) {
-    unpacked = gunzip(bytes, kRecognised_bytes);
+    unpacked = gunzip(bytes, UnpackLimit::allowed(kRecognised_bytes));
     bytes = unpacked.bytes;
   }
   switch (recognise(bytes)) {
@@ -201,21 +202,22 @@ Result<TopicChoice> parse_topic_choice(const std::string& text) {
 }
 
 Result<Recording> read_recording_bytes(const std::string& bytes, const std::filesystem::path& name,
-                                       const RobotDescription* fallback, const TopicChoices& topics) {
+                                       const RobotDescription* fallback, const TopicChoices& topics,
+                                       const UnpackLimit& limit) {
   Overview unused;
-  return read_file_content(bytes, name, fallback, topics, unused);
+  return read_file_content(bytes, name, fallback, topics, limit, unused);
 }
 
 namespace {
 
 /// All files of a rosbag2 folder as one recording; its hash is that of the hashes of its files, one a line.
 Result<Recording> read_folder(const std::filesystem::path& folder, const RobotDescription* fallback,
-                              const TopicChoices& topics, Overview& overview) {
+                              const TopicChoices& topics, const UnpackLimit& limit, Overview& overview) {
   const auto found = ros::files_of(folder);
   if (!found) return found.error();
   RecordingBuilder builder;
   for (const auto& name : found.value().missing) builder.discard("file", name + " is missing");
-  ros::Collector collector(ros::kinds_of(topics));
+  ros::Collector collector(ros::kinds_of(topics), limit);
   std::string hashes;
   for (const auto& path : found.value().files) {
     const auto file = read_file_bytes(path);
@@ -245,19 +247,19 @@ bool has_write_ahead_log(const std::filesystem::path& path) {
 }  // namespace
 
 Result<Recording> read_recording(const std::filesystem::path& path, const RobotDescription* fallback,
-                                 const TopicChoices& topics) {
+                                 const TopicChoices& topics, const UnpackLimit& limit) {
   Overview unused;
-  return read_recording_with_overview(path, fallback, topics, unused);
+  return read_recording_with_overview(path, fallback, topics, limit, unused);
 }
 
 Result<Recording> read_recording_with_overview(const std::filesystem::path& path,
                                                const RobotDescription* fallback, const TopicChoices& topics,
-                                               Overview& overview) {
+                                               const UnpackLimit& limit, Overview& overview) {
   std::error_code none;
-  if (std::filesystem::is_directory(path, none)) return read_folder(path, fallback, topics, overview);
+  if (std::filesystem::is_directory(path, none)) return read_folder(path, fallback, topics, limit, overview);
   const auto file = read_file_bytes(path);
   if (!file) return file.error();
-  auto recording = read_file_content(file.value(), path, fallback, topics, overview);
+  auto recording = read_file_content(file.value(), path, fallback, topics, limit, overview);
   if (recording && has_write_ahead_log(path))
     recording.value().discarded.push_back(
         {"file", "what lies in its -wal beside it; merge it: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'",

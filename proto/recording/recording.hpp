@@ -8,6 +8,7 @@
 #include "proto/discarded.hpp"
 #include "proto/measurements.hpp"
 #include "proto/result.hpp"
+#include "proto/unpack_limit.hpp"
 
 namespace odomcalib {
 
@@ -80,12 +81,14 @@ Result<TopicChoice> parse_topic_choice(const std::string& text);
 /// Reads a recording and recognises its form by content: JSON Lines (plain or gzip), native LCM log, LCM log
 /// of the MBot/MaeBot family, ROS bag 2.0, rosbag2 (file or folder), MCAP, Censi's tuple file or raw JSON
 /// log, CARMEN log. Errors: io (cannot open), empty (no usable line), missing_units (no or incomplete robot
-/// line), format (unknown form), usage (a topic has to be chosen, or the chosen one is not there). A cut-off
-/// end is not an error: what is whole is used, `discarded` says what was not.
+/// line), format (unknown form; unpacks to more than the limit), usage (a topic has to be chosen, or the
+/// chosen one is not there). A cut-off end is not an error: what is whole is used, `discarded` says what was
+/// not.
 /// @param fallback robot description for forms that carry none; its zero fields count as missing
 /// @param topics what to take of a ROS recording; what is unique is taken without
 Result<Recording> read_recording(const std::filesystem::path& path,
-                                 const RobotDescription* fallback = nullptr, const TopicChoices& topics = {});
+                                 const RobotDescription* fallback = nullptr, const TopicChoices& topics = {},
+                                 const UnpackLimit& limit = {});
 
 /// Whether the content, plain or gzip, is a recording of one of the forms: for errors that say what a file
 /// is.
@@ -95,7 +98,7 @@ bool is_recording(std::string_view bytes);
 /// @param name file name, for messages and Recording::name
 Result<Recording> read_recording_bytes(const std::string& bytes, const std::filesystem::path& name,
                                        const RobotDescription* fallback = nullptr,
-                                       const TopicChoices& topics = {});
+                                       const TopicChoices& topics = {}, const UnpackLimit& limit = {});
 
 /// Without what no calibration reads, in an hour's recording as much memory as the ranges.
 Recording without_intensities(Recording recording);

@@ -255,6 +255,44 @@ TEST_F(CommandLine, an_effect_that_this_program_does_not_know_is_told) {
   EXPECT_EQ(ctl("predict drive.jsonl --calibration cal.json --trajectory out").err, "");
 }
 
+// Escape sequences of both kinds, a title, a bell: what a terminal would obey.
+constexpr const char* kSteering =
+    "\x1b[2J\x1b]0;title\x07 \xC2\x9B"
+    "31m red\r\x7f";
+
+bool steers(const std::string& text) {
+  const bool c1 = text.find("\xC2\x9B") != std::string::npos;
+  return c1 || std::any_of(text.begin(), text.end(), [](char c) {
+           return (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == '\x7f';
+         });
+}
+
+TEST_F(CommandLine, what_files_say_does_not_steer_the_terminal) {
+  Calibration hostile = calibration();
+  hostile.reasons = {kSteering};
+  hostile.robot.robot_id = kSteering;
+  hostile.data.push_back({.file = kSteering});
+  save("hostile.json", hostile);
+  std::string text = recording(0.0);
+  text.insert(text.find('}'), R"(,"robot_id":")"
+                              "\\u001b[2J"
+                              R"(")");
+  write("hostile.jsonl", text + "{\"type\":\"\\u001b[2J\",\"t\":1}\n");
+  write(std::string("name") + kSteering, "no recording");
+  for (const char* arguments :
+       {"report hostile.json", "--verbose report hostile.json", "export hostile.json --what toml",
+        "export hostile.json --what python", "report hostile.json --json", "report name*",
+        "predict hostile.jsonl --calibration nominal", "solve hostile.jsonl", "solve name*",
+        "solve name* --json"}) {
+    const auto got = ctl(arguments);
+    EXPECT_FALSE(steers(got.out)) << arguments << got.out;
+    EXPECT_FALSE(steers(got.err)) << arguments << got.err;
+  }
+  EXPECT_THAT(ctl("report hostile.json").out, HasSubstr("red"));
+  const auto document = json::parse(ctl("report hostile.json --json").out, nullptr, false);
+  EXPECT_EQ(document["reasons"], json::array({kSteering})) << "in JSON it stays what it is";
+}
+
 TEST_F(CommandLine, errors_of_usage_are_json_where_json_is_asked_for) {
   for (const std::string words :
        {"--json fly", "solve --json", "status --fly --json=short", "straight --json --distance nan"}) {

@@ -104,6 +104,7 @@ TEST_F(Urgent, beside_five_busy_programs_it_is_in_time) {
   std::vector<std::unique_ptr<Process>> busy;
   const std::vector<std::string> command{
       "/usr/bin/chrt", "--other", "0", "/usr/bin/setsid", "/bin/sh", "-c", "while :; do :; done"};
+  busy.reserve(kBusy);
   for (int i = 0; i < kBusy; ++i)
     busy.push_back(std::make_unique<Process>(command, both_.folder() / "busy.log"));
   EXPECT_EQ(both_.run({"straight", "--yes", "--distance", "1"})->wait(30.0), 0) << both_.output();

@@ -63,7 +63,8 @@ struct Topic {
 class Collector {
  public:
   /// @param kinds of topics by name, for those whose type the file does not say
-  explicit Collector(std::map<std::string, Kind> kinds = {}) : kinds_(std::move(kinds)) {}
+  explicit Collector(std::map<std::string, Kind> kinds = {}, const UnpackLimit& limit = {})
+      : kinds_(std::move(kinds)), unpacker_(limit) {}
 
   /// A topic as one connection of one file describes it; the same name and type are the same topic. The
   /// number goes with the messages. kTooMany when a file has more of them than any robot.

@@ -32,16 +32,28 @@ bool looks_like_container(std::string_view bytes) {
          bytes.starts_with(kMcap) || bytes.starts_with(kSqlite) || is_zstd(bytes);
 }
 
-std::optional<Error> read_container(std::string_view bytes, const std::string& where, Collector& collector) {
+namespace {
+
+std::optional<Error> read_packed(std::string_view bytes, const std::string& where, Collector& collector) {
   if (!is_zstd(bytes)) return read_plain(bytes, where, collector);
   // rosbag2 with compression_mode "file"
-  const Unpacked unpacked = unpack(Packing::zstd, bytes, kLargestRecording);
+  const Unpacked unpacked = collector.unpacker().file(Packing::zstd, bytes);
+  if (unpacked.over_limit) return std::nullopt;  // refused as a whole
   if (!unpacked.whole && unpacked.bytes.empty())
     return Error{ErrorCode::format,
                  "is packed with zstd, and nothing of it can be unpacked: " + unpacked.problem, where,
                  "copy it from the robot again"};
   if (!unpacked.whole) collector.discard("file", unpacked.problem);
   return read_plain(unpacked.bytes, where, collector);
+}
+
+}  // namespace
+
+std::optional<Error> read_container(std::string_view bytes, const std::string& where, Collector& collector) {
+  collector.unpacker().begin_file(bytes.size());
+  auto error = read_packed(bytes, where, collector);
+  if (auto refused = collector.unpacker().refusal(where)) return refused;
+  return error;
 }
 
 }  // namespace odomcalib::ros

@@ -34,7 +34,7 @@ Unpacked unpack_with(Decompress turn, std::string_view packed, std::size_t limit
   while (!packed.empty() || !ended) {
     const Turn done = turn(packed, *step);
     if (done.failed) return {std::move(result.bytes), false, kDamaged};
-    if (done.made > limit - result.bytes.size()) return {std::move(result.bytes), false, kTooLarge};
+    if (done.made > limit - result.bytes.size()) return {std::move(result.bytes), false, kTooLarge, true};
     result.bytes.append(step->data(), done.made);
     packed.remove_prefix(done.taken);
     ended = done.ended;
@@ -109,8 +109,19 @@ Unpacked unpack(Packing packing, std::string_view packed, std::size_t limit) {
     case Packing::none:
       break;
   }
-  if (packed.size() > limit) return {std::string(packed.substr(0, limit)), false, kTooLarge};
+  if (packed.size() > limit) return {std::string(packed.substr(0, limit)), false, kTooLarge, true};
   return {std::string(packed), true, {}};
+}
+
+/// @param bounded by what is left for the whole recording
+Unpacked Unpacker::taken(Unpacked piece, bool bounded) {
+  unpacked_ += piece.bytes.size();
+  over_limit_ = over_limit_ || (bounded && piece.over_limit);
+  return piece;
+}
+
+Unpacked Unpacker::file(Packing packing, std::string_view packed) {
+  return taken(unpack(packing, packed, left()), true);
 }
 
 Unpacked Unpacker::operator()(Packing packing, std::string_view packed, std::optional<std::uint64_t> stated) {
@@ -120,8 +131,8 @@ Unpacked Unpacker::operator()(Packing packing, std::string_view packed, std::opt
             "states " + std::to_string(*stated) + " bytes, more than the limit of " +
                 std::to_string(kLargestChunk)};
   const std::size_t limit = stated ? static_cast<std::size_t>(*stated) : kLargestChunk;
-  Unpacked piece = unpack(packing, packed, std::min(limit, left_));
-  left_ -= piece.bytes.size();
+  const std::size_t most = left();
+  Unpacked piece = taken(unpack(packing, packed, std::min(limit, most)), limit > most);
   if (piece.whole && stated && piece.bytes.size() < *stated) return {std::move(piece.bytes), false, kCutOff};
   return piece;
 }

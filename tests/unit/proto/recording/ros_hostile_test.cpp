@@ -71,12 +71,16 @@ TEST(HostileRos, a_bomb_unpacks_to_no_more_than_it_states_or_the_limit) {
     const Unpacked whole = ros::unpack(as, bomb, kBomb);
     EXPECT_TRUE(whole.whole) << whole.problem;
     EXPECT_EQ(whole.bytes.size(), kBomb);
-    ros::Unpacker unpacker(kBomb + kLimit);
+    ros::Unpacker unpacker(UnpackLimit::allowed(kBomb + kLimit));
     EXPECT_TRUE(unpacker(as, bomb, kBomb).whole);
+    EXPECT_FALSE(unpacker.refusal("file"));
     EXPECT_FALSE(unpacker(as, bomb, kBomb).whole) << "all pieces together have one limit";
-    EXPECT_FALSE(ros::Unpacker()(as, bomb, kBomb - 1).whole) << "more than it states";
-    EXPECT_FALSE(ros::Unpacker()(as, bomb, kBomb + 1).whole) << "less than it states";
-    EXPECT_FALSE(ros::Unpacker()(as, bomb, UINT64_MAX).whole);
+    EXPECT_TRUE(unpacker.refusal("file"));
+    for (const std::uint64_t stated : {std::uint64_t{kBomb - 1}, std::uint64_t{kBomb + 1}, UINT64_MAX}) {
+      ros::Unpacker other(UnpackLimit::allowed(4 * kBomb));
+      EXPECT_FALSE(other(as, bomb, stated).whole) << "states " << stated;
+      EXPECT_FALSE(other.refusal("file")) << "damage, not size";
+    }
   }
 }
 
@@ -94,6 +98,47 @@ TEST(HostileRos, bombs_in_chunks_cost_neither_memory_nor_the_rest_of_the_file) {
   EXPECT_EQ(discarded_like(result, "chunk", "more than the limit of"), 20U);
   EXPECT_EQ(discarded_like(result, "chunk", "compressed data is damaged"), 1U) << list_discarded(result);
   EXPECT_LT(peak_memory() - before, 100 + kMoreMemory) << "MiB";
+}
+
+TEST(UnpackLimit, grows_with_the_file_up_to_256_MiB_or_what_was_allowed) {
+  const UnpackLimit usual;
+  EXPECT_EQ(usual.of(0), UnpackLimit::kLeast);
+  EXPECT_EQ(usual.of(200'000), 40'000'000U);
+  EXPECT_EQ(usual.of(std::size_t{1} << 40U), UnpackLimit::kMost);
+  EXPECT_EQ(UnpackLimit::allowed(1000).of(1), 1000U);
+  EXPECT_NE(usual.refusal(200'000, "file").text().find("38 MiB, 200 times its size"), std::string::npos);
+  EXPECT_NE(usual.refusal(1, "file").text().find("16 MiB; where"), std::string::npos);
+  EXPECT_EQ(usual.refusal(std::size_t{1} << 40U, "file").remedy,
+            "where it can be trusted: --unpack-limit 512");
+}
+
+/// A recording that is followed by nothing, much of it, packed in each way.
+std::vector<std::pair<const char*, std::string>> swollen_files() {
+  const std::string nothing(std::size_t{40} << 20, '\n');
+  const std::string robot =
+      R"({"type":"robot","wheel_diameter":0.15,"track_width":0.4,"ticks_per_rev":4096})";
+  return {{"gzip", value_of(gzip(robot + nothing))},
+          {"zstd", sim::packed(RosPacking::zstd, write_mcap(small_log(Wire::cdr_little)) + nothing)},
+          {"chunk", mcap_with(mcap_chunk("zstd", sim::packed(RosPacking::zstd, nothing), nothing.size()) +
+                              mcap_chunk("zstd", sim::packed(RosPacking::zstd, nothing), nothing.size()))}};
+}
+
+TEST(HostileRos, much_out_of_little_is_refused_and_the_switch_is_named) {
+  for (const auto& [name, file] : swollen_files()) {
+    ASSERT_LT(file.size(), 500'000U) << name;
+    const long before = peak_memory();
+    const auto begin = std::chrono::steady_clock::now();
+    const auto refused = read_recording_bytes(file, "swollen");
+    ASSERT_FALSE(refused.ok()) << name;
+    EXPECT_EQ(refused.error().code, ErrorCode::format);
+    EXPECT_NE(refused.error().remedy.find("--unpack-limit 512"), std::string::npos) << refused.error().text();
+    EXPECT_LT(peak_memory() - before, 60 + kMoreMemory) << name;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(kSlower)) << name;
+    const auto allowed =
+        read_recording_bytes(file, "swollen", nullptr, {}, UnpackLimit::allowed(std::size_t{1} << 30));
+    const std::string said = allowed.ok() ? "" : allowed.error().text();
+    EXPECT_EQ(said.find("unpacks to more"), std::string::npos) << said;
+  }
 }
 
 TEST(HostileRos, a_packed_recording_is_bounded_too) {

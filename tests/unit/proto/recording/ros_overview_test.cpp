@@ -29,7 +29,7 @@ const TopicOverview& topic(const Overview& overview, const std::string& name) {
 Result<Recording> look(const std::string& bytes, Overview& overview, const RobotDescription* robot) {
   const TemporaryFolder folder;
   std::ofstream(folder / "drive", std::ios::binary) << bytes;
-  return read_recording_with_overview(folder / "drive", robot, {}, overview);
+  return read_recording_with_overview(folder / "drive", robot, {}, {}, overview);
 }
 
 TEST(RosOverview, lists_topics_with_their_rates_frames_and_joints) {
