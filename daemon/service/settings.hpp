@@ -192,6 +192,10 @@ inline constexpr std::size_t kMostCalibrations = 200;
 
 /// ms that one look for a solver's answers waits. Chosen.
 inline constexpr int kAskedAgain_ms = 100;
+/// Real-time priority of the loop. Chosen: before every usual program, behind threads of the kernel (50).
+inline constexpr int kLoopPriority = 5;
+/// us. Chosen: as LimitRTTIME of the unit; five times the delay that stops the robot.
+inline constexpr std::uint64_t kLongestAwake_us = 1'000'000;
 /// Niceness. Chosen: the control loop has the processor first.
 inline constexpr int kLessUrgent = 10;
 /// MiB of its data. Chosen: a recording of 157 MB takes 266 MB; the unit's limit leaves the service the rest.

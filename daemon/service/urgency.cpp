@@ -14,6 +14,8 @@
 namespace odomcalib {
 namespace {
 
+namespace settings = service::settings;
+
 bool real_time(int policy) { return policy == SCHED_RR || policy == SCHED_FIFO; }
 
 std::string text_of(int policy, int priority) {
@@ -32,28 +34,40 @@ bool lock_memory() {
   return enough && mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
 }
 
+/// A loop that does not sleep for so long hangs: the kernel ends it, rather than the machine.
+void limit_real_time() {
+  const rlimit limit{settings::kLongestAwake_us, settings::kLongestAwake_us};
+  rlimit present{};
+  if (getrlimit(RLIMIT_RTTIME, &present) == 0 && present.rlim_cur == RLIM_INFINITY)
+    (void)setrlimit(RLIMIT_RTTIME, &limit);
+}
+
 }  // namespace
 
 Urgency made_urgent() {
-  const int policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
+  int policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
   sched_param priority{};
   (void)sched_getparam(0, &priority);
-  // The unit has it already, and forbids to ask.
-  if (real_time(policy)) (void)sched_setscheduler(0, policy | SCHED_RESET_ON_FORK, &priority);
+  if (!real_time(policy)) priority.sched_priority = settings::kLoopPriority;
+  const int wanted = real_time(policy) ? policy : SCHED_RR;
+  if (sched_setscheduler(0, wanted | SCHED_RESET_ON_FORK, &priority) == 0) policy = wanted;
+  if (real_time(policy)) limit_real_time();
   const bool locked = lock_memory();
   const int why = errno;
   Urgency urgency;
   urgency.found = text_of(policy, priority.sched_priority) +
                   (locked ? "; memory locked" : fmt::format("; memory not locked ({})", std::strerror(why)));
   if (!real_time(policy) || !locked)
-    urgency.remedy = "other programs may hold up the loop; start it by its unit: systemctl start odomcalib";
+    urgency.remedy =
+        "other programs may hold up the loop; start it by its unit (systemctl start odomcalib), "
+        "on a kernel that gives services real time";
   return urgency;
 }
 
 void step_back() {
   const sched_param none{};
   (void)sched_setscheduler(0, SCHED_OTHER, &none);
-  (void)setpriority(PRIO_PROCESS, 0, service::settings::kLessUrgent);
+  (void)setpriority(PRIO_PROCESS, 0, settings::kLessUrgent);
 }
 
 }  // namespace odomcalib

@@ -11,9 +11,9 @@ struct Urgency {
   std::string remedy;  ///< empty: nothing is missing
 };
 
-/// Keeps what this process has in its memory there, and its threads and processes from being as urgent as the
-/// thread that calls this: once, before there are others. The priority itself comes from whoever starts the
-/// program (unit: CPUSchedulingPolicy).
+/// Gives the thread that calls this a real-time priority where it has none and may have one (unit:
+/// LimitRTPRIO), keeps its threads and processes from being as urgent, and what this process has in its memory
+/// there: once, before there are others.
 Urgency made_urgent();
 
 /// This process is not urgent, whatever it was started by: the solver.

@@ -91,12 +91,21 @@ TEST_F(Urgent, has_its_memory_locked_where_that_is_allowed) {
 }
 
 TEST_F(Urgent, by_nobody_is_a_service_that_says_so) {
-  start_anew({"/usr/bin/chrt", "--other", "0"});
+  // Where the kernel gives no real time: containers, CONFIG_RT_GROUP_SCHED.
+  start_anew({"/usr/bin/chrt", "--other", "0", "/usr/bin/prlimit", "--rtprio=0", "/usr/bin/setpriv",
+              "--bounding-set=-sys_nice"});
   const json found = scheduling();
   EXPECT_EQ(found["outcome"], "warn") << found;
   EXPECT_TRUE(found["found"].get<std::string>().starts_with("no real-time priority")) << found;
   EXPECT_NE(found["remedy"].get<std::string>().find("systemctl start odomcalib"), std::string::npos) << found;
   EXPECT_TRUE(logged("not_urgent: no real-time priority"));
+}
+
+TEST_F(Urgent, by_itself_where_whoever_started_it_did_not_care) {
+  start_anew({"/usr/bin/chrt", "--other", "0"});
+  EXPECT_TRUE(scheduling()["found"].get<std::string>().starts_with("round robin, priority 5"))
+      << scheduling();
+  EXPECT_EQ(sched_getscheduler(both_.daemon->id()), SCHED_RR | SCHED_RESET_ON_FORK);
 }
 
 TEST_F(Urgent, beside_five_busy_programs_it_is_in_time) {
