@@ -12,8 +12,8 @@ struct Urgency {
 };
 
 /// Gives the thread that calls this a real-time priority where it has none and may have one (unit:
-/// LimitRTPRIO), keeps its threads and processes from being as urgent, and what this process has in its memory
-/// there: once, before there are others.
+/// LimitRTPRIO), keeps its threads and processes from being as urgent, and what this process has in its
+/// memory there: once, before there are others.
 Urgency made_urgent();
 
 /// This process is not urgent, whatever it was started by: the solver.
