@@ -274,7 +274,7 @@ class Session {
     auto server = ControlServer::create(config.socket, config.group);
     require(base.ok() && lidar.ok() && state.ok() && journal.ok() && server.ok());
     return {std::move(base).value(), std::move(lidar).value(), std::move(server).value(),
-            std::move(state).value(), std::move(journal).value()};
+            std::move(state).value(), std::move(journal).value(), {}};
   }
   [[nodiscard]] const Bench& bench() const { return loop_->bench(); }
   [[nodiscard]] bool moves() const { return loop_->task() != nullptr && loop_->task()->moves(); }

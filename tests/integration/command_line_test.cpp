@@ -271,7 +271,7 @@ TEST_F(CommandLine, what_files_say_does_not_steer_the_terminal) {
   Calibration hostile = calibration();
   hostile.reasons = {kSteering};
   hostile.robot.robot_id = kSteering;
-  hostile.data.push_back({.file = kSteering});
+  hostile.data.emplace_back().name = kSteering;
   save("hostile.json", hostile);
   std::string text = recording(0.0);
   text.insert(text.find('}'), R"(,"robot_id":")"
