@@ -273,7 +273,7 @@ class Session {
     auto journal = Journal::open(config.state_dir / "journal");
     auto server = ControlServer::create(config.socket, config.group);
     require(base.ok() && lidar.ok() && state.ok() && journal.ok() && server.ok());
-    return {std::move(base).value(), std::move(lidar).value(), std::move(server).value(),
+    return {std::move(base).value(),  std::move(lidar).value(),   std::move(server).value(),
             std::move(state).value(), std::move(journal).value(), {}};
   }
   [[nodiscard]] const Bench& bench() const { return loop_->bench(); }
