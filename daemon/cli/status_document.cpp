@@ -58,7 +58,8 @@ Document describe_status(const ordered_json& status) {
     add("battery", fmt::format("{:.1f} V", controller["supply_voltage"].get<double>()));
   add("calibrated", calibrated_text(status));
   add("last stop", status_text(status["last_stop"]));
-  if (const auto lost = status["lcm"].value("dropped", std::uint64_t{0}); lost > 0)
+  const ordered_json lcm = status.value("lcm", ordered_json::object());
+  if (const auto lost = lcm.value("dropped", std::uint64_t{0}); lost > 0)
     add("LCM", fmt::format("{} messages dropped: the network is too slow", lost));
   if (status["recording_bytes"] > 0)
     for (auto& row : motion_rows(status["recorded_motion"])) rows.push_back(std::move(row));

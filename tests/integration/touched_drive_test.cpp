@@ -141,7 +141,7 @@ class Unproven : public Touched {
     const json body = {{"format", "odomcalib-calibration/1"},
                        {"verdict", "accepted"},
                        {"parameters", {{"track_width", {{"value", 0.4033}, {"std", 1e-5}, {"unit", "m"}}}}}};
-    ASSERT_EQ(prove("Apply", {{"calibration", body}, {"prove", true}}).error, "");
+    ASSERT_EQ(prove("Apply", {{"calibration", body}, {"prove", true}, {"of_this_robot", true}}).error, "");
   }
   control::Reply prove(const std::string& method, json parameters) {
     parameters["lease"] = lease_;
@@ -159,8 +159,6 @@ TEST_F(Unproven, a_part_of_the_values_leaves_the_others_known) {
   EXPECT_NEAR(status()["robot"]["track_width"].get<double>(), 0.4033, 1e-9);
   EXPECT_NEAR(status()["robot"]["left_wheel_diameter"].get<double>(), 0.151, 1e-9);
   EXPECT_EQ(prove("Straight", {{"distance", 0.3}}).error, "");
-  EXPECT_EQ(prove("Store", json::object()).error, "");
-  EXPECT_EQ(robot_->node().geometry_stored(), (Raw{151000, 150000, 403300}));
 }
 
 TEST_F(Unproven, values_are_not_stored_beside_what_another_program_wrote) {

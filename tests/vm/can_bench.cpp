@@ -17,6 +17,8 @@
 #include <thread>
 #include <utility>
 
+#include "tests/unit/drivers/ready_can.hpp"
+
 namespace odomcalib::vm {
 
 int ip(const std::string& arguments) {
@@ -132,7 +134,7 @@ void KernelSlcan::unplug() {
 }
 
 std::unique_ptr<drivers::CanTransport> opened(const std::string& device) {
-  auto transport = drivers::open_can(device);
+  auto transport = drivers::test::open_ready_can(device);
   EXPECT_TRUE(transport.ok()) << transport.error().text();
   return transport.ok() ? std::move(transport).value() : nullptr;
 }

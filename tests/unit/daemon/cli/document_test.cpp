@@ -77,10 +77,7 @@ TEST(Report, first_screen_answers_what_is_asked_first) {
   Calibration calibration = example();
   calibration.robot.robot_id = "carrier-17";
   calibration.extensions["settings"] = R"({"version":"1","place":"hall 3"})";
-  DataUse drive;
-  drive.begin = 1795947900.0;
-  drive.duration = 291.0;
-  calibration.data = {drive};
+  calibration.driven = Driven{1795947900.0, 1795948191.0};
   const std::string first = first_screen_of(report_page(calibration));
   for (const char* said : {"ACCEPTED", "carrier-17", "hall 3", "driven 2026-11-29, 10:25 to 10:29 UTC",
                            "A metre read 20.4 mm too long", "20.4</span> &rarr; <span class=\"a\">1.1",
@@ -215,9 +212,9 @@ TEST(Certificate, has_what_is_filed) {
   DataUse drive;
   drive.name = "drive.bag";
   drive.sha256 = "5e4d";
-  drive.begin = 1795947900.0;
   drive.duration = 291.0;
   calibration.data = {drive};
+  calibration.driven = Driven{1795947900.0, 1795948191.0};
   const std::string page = certificate(calibration, "cal.json", "f00d");
   for (const char* said : {"carrier-17", "hall 3", "2026-11-29T10:25:00Z to 2026-11-29T10:29:51Z",
                            "drive.bag, 291 s; SHA-256 5e4d", "cal.json; SHA-256 f00d", "odomcalib 0.9.9",

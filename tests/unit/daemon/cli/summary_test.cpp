@@ -116,7 +116,7 @@ TEST(Summary, fits_a_screen_with_many_reasons_and_effects) {
   const std::string text = summary(calibration, true, kColumns);
   expect_a_screen(text);
   EXPECT_THAT(text, HasSubstr("reason 0 "));
-  EXPECT_THAT(text, HasSubstr("and 19 more: --verbose"));
+  EXPECT_THAT(text, HasSubstr("and 18 more: --verbose"));
   EXPECT_THAT(text, HasSubstr("effect 5: size"));
   EXPECT_THAT(text, HasSubstr("lidar yaw"));
 }
