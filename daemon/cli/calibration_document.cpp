@@ -85,7 +85,7 @@ std::string assumption_of(const std::string& method) {
 /// Value, and in brackets its difference from the answer in units of the two deviations together.
 std::string compared(const Quantity* quantity, const Quantity& answer) {
   if (quantity == nullptr) return "-";
-  const std::string value = quantity_cell(quantity);
+  std::string value = quantity_cell(quantity);
   if (quantity->std < 0.0 || answer.std < 0.0) return value;
   const double sigma = std::hypot(quantity->std, answer.std);
   return sigma > 0.0 ? fmt::format("{} ({:+.1f})", value, (quantity->value - answer.value) / sigma) : value;

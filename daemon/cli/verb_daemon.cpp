@@ -58,7 +58,7 @@ int ask(const Session& session, const Question& question) {
   const auto answer = client.value().call(question.method);
   if (!answer) return report_error(answer.error(), session.json);
   auto body = ordered_json::parse(answer.value(), nullptr, false);
-  if (question.document == "history") name_users(body[question.member]);
+  if (question.document == "history") name_users(body["entries"]);
   if (session.json != JsonMode::off)
     print_document(question.document, document_of(body, question), session.json);
   else

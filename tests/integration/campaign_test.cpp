@@ -231,7 +231,7 @@ const Bad kBad[] = {
            config.robot.left_wheel_diameter = config.robot.right_wheel_diameter = 0.150 / 0.0254;
          }},
     {.name = "millimetres_in_the_file",
-     .said = {"15 %"},
+     .said = {"more than 10 m"},
      .file = [](std::uint64_t seed) { return file_of(1e3, "", seed); }},
     {.name = "file_of_another_robot",
      .said = {"robot-B"},
