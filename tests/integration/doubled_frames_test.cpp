@@ -25,7 +25,7 @@ bool is_sdo(const sim::Frame& frame) { return frame.id == 0x581 || frame.id == 0
 struct Line {
   const char* name;
   sim::LineFaults faults;
-  friend void PrintTo(const Line& line, std::ostream* out) { *out << line.name; }
+  friend std::ostream& operator<<(std::ostream& out, const Line& line) { return out << line.name; }
 };
 
 // On the last one life signs are not late: a drive that is silent for 90 ms is lost, and its write-back is
