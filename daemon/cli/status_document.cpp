@@ -31,7 +31,7 @@ std::vector<std::vector<std::string>> motion_rows(const ordered_json& motion) {
 
 /// Whether what was written last was proven by a motion belongs to it.
 std::string calibrated_text(const ordered_json& status) {
-  const std::string calibrated = status["calibrated"] == true ? "yes" : "no";
+  std::string calibrated = status["calibrated"] == true ? "yes" : "no";
   if (!status.contains("proven") || !status["proven"].is_boolean()) return calibrated;
   return calibrated +
          (status["proven"] == true ? ", proven by a motion" : "; what was written last is unproven");
