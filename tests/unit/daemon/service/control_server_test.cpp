@@ -47,6 +47,7 @@ TEST_F(Burst, is_served_a_few_calls_a_turn_and_whole_in_the_end) {
   const auto one = client();
   one->send(40, "GetStatus");
   std::vector<std::size_t> turns;
+  turns.reserve(4);
   for (int i = 0; i < 4; ++i) turns.push_back(turn().size());
   EXPECT_EQ(turns, (std::vector<std::size_t>{16, 16, 8, 0}));
   EXPECT_FALSE(server_->calls_wait());
