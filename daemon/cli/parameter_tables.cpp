@@ -43,7 +43,7 @@ std::vector<std::string> places_of(const ordered_json& parameters) {
   }
   std::vector<std::string> lines;
   for (const auto& [place, names] : places)
-    if (!place.empty()) lines.push_back("applied in " + place + ": " + names);
+    if (!place.empty()) lines.push_back(fmt::format("applied in {}: {}", place, names));
   return lines;
 }
 
