@@ -1,5 +1,6 @@
 #include "daemon/cli/parameter_tables.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,11 +67,7 @@ std::string change_of(const ordered_json& entry, const char* name) {
 }
 
 std::string moment_of(std::int64_t us) {
-  const std::time_t seconds = us / 1'000'000;
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday,
-                     parts.tm_hour, parts.tm_min);
+  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(us / 1'000'000)));
 }
 
 std::string user_of(const ordered_json& entry) {

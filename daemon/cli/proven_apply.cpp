@@ -8,27 +8,12 @@
 #include <utility>
 
 #include "daemon/cli/output.hpp"
-#include "proto/angles.hpp"
 #include "proto/calibration/report_data.hpp"
 
 namespace odomcalib::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-struct ShownError {
-  const char* name;
-  const char* words;
-  double DriveErrors::*value;
-  double factor;
-  const char* unit;
-};
-
-constexpr std::array kShownErrors = {
-    ShownError{"straight_metre_length", "straight metre: length", &DriveErrors::metre_length, 1e3, "mm"},
-    ShownError{"straight_metre_heading", "straight metre: heading", &DriveErrors::metre_heading, kDegrees,
-               "deg"},
-    ShownError{"full_turn_heading", "full turn: heading", &DriveErrors::turn, kDegrees, "deg"}};
 
 /// A failed write has left the old values, as far as the daemon could see to it and say so.
 bool is_final(const Error& failed) {
@@ -43,7 +28,7 @@ Error unseen_drive() {
 
 ordered_json json_of(const DriveErrors& errors) {
   ordered_json body = ordered_json::object();
-  for (const ShownError& one : kShownErrors) body[one.name] = errors.*one.value;
+  for (const DriveFigure& one : drive_figures()) body[one.name] = errors.*one.value;
   return body;
 }
 
@@ -162,7 +147,7 @@ Document describe(const ProvenApply& applied) {
                                      "taken back, the old values are in force",
                                      "IN DOUBT: not proven, and what is in force was not seen"};
   Section section{"", {}, {{"odometry off by", "before", "after", "unit"}, {}}};
-  for (const ShownError& one : kShownErrors) {
+  for (const DriveFigure& one : drive_figures()) {
     const auto text = [&](const DriveErrors& errors) {
       return fmt::format("{:.2f}", one.factor * errors.*one.value);
     };

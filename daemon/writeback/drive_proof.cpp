@@ -22,19 +22,13 @@ namespace settings = writeback::settings;
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-struct JudgedError {
-  const char* words;
-  double DriveErrors::*value;
-  double noise;
-  double shown;  ///< factor
-  const char* unit;
-};
-
-constexpr std::array kJudgedErrors = {
-    JudgedError{"straight metre: length", &DriveErrors::metre_length, settings::kLengthNoise_m, 1e3, "mm"},
-    JudgedError{"straight metre: heading", &DriveErrors::metre_heading, settings::kHeadingNoise_rad, kDegrees,
-                "deg"},
-    JudgedError{"full turn: heading", &DriveErrors::turn, settings::kHeadingNoise_rad, kDegrees, "deg"}};
+constexpr std::array kDriveFigures = {
+    DriveFigure{"straight_metre_length", "straight metre: length", &DriveErrors::metre_length,
+                settings::kLengthNoise_m, 1e3, "mm"},
+    DriveFigure{"straight_metre_heading", "straight metre: heading", &DriveErrors::metre_heading,
+                settings::kHeadingNoise_rad, kDegrees, "deg"},
+    DriveFigure{"full_turn_heading", "full turn: heading", &DriveErrors::turn, settings::kHeadingNoise_rad,
+                kDegrees, "deg"}};
 
 /// A move from rest to rest.
 struct DrivenMove {
@@ -85,6 +79,8 @@ Error unproven(const std::string& what) {
 
 }  // namespace
 
+std::span<const DriveFigure> drive_figures() { return kDriveFigures; }
+
 bool DrivenErrors::add(const ordered_json& motion) {
   const std::vector<DrivenMove> moves = driven_moves(motion);
   if (moves.empty()) return false;
@@ -106,11 +102,11 @@ std::optional<DriveErrors> DrivenErrors::all() const {
 }
 
 std::optional<std::string> worse(const DriveErrors& before, const DriveErrors& after) {
-  for (const JudgedError& one : kJudgedErrors) {
+  for (const DriveFigure& one : kDriveFigures) {
     const double was = before.*one.value, is = after.*one.value;
     if (is <= std::max(was, one.noise)) continue;
     return fmt::format("{} is off by {:.2f} {} with the new values, by {:.2f} {} with the old ones",
-                       one.words, one.shown * is, one.unit, one.shown * was, one.unit);
+                       one.words, one.factor * is, one.unit, one.factor * was, one.unit);
   }
   return std::nullopt;
 }

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "proto/result.hpp"
@@ -16,6 +17,19 @@ struct DriveErrors {
   double metre_heading = 0.0;  ///< rad per metre of a straight
   double turn = 0.0;           ///< rad per full turn on the spot
 };
+
+/// One of them as people and programs have it.
+struct DriveFigure {
+  const char* name;  ///< in JSON
+  const char* words;
+  double DriveErrors::*value;
+  double noise;   ///< what two drives differ by at least
+  double factor;  ///< from SI to the unit that is shown
+  const char* unit;
+};
+
+/// All of DriveErrors.
+std::span<const DriveFigure> drive_figures();
 
 /// The errors of the newest straight and the newest turn on the spot.
 class DrivenErrors {
