@@ -14,6 +14,7 @@
 #include "calib/math/se2.hpp"
 #include "calib/slam/optimize.hpp"
 #include "proto/recording/pose_graph.hpp"
+#include "tests/shared_folder.hpp"
 
 namespace odomcalib {
 namespace {
@@ -165,8 +166,7 @@ void register_graph(const std::string& name, const std::shared_ptr<PoseGraph>& g
 
 /// The public graphs, where they are.
 void register_public_graphs() {
-  const char* shared = std::getenv("ODOMCALIB_SHARED");
-  const auto folder = std::filesystem::path(shared != nullptr ? shared : "../shared") / "data" / "posegraph";
+  const auto folder = odomcalib::shared_folder("data") / "posegraph";
   if (!std::filesystem::is_directory(folder)) {
     std::cerr << "REAL DATA ABSENT: " << folder << " not found; set ODOMCALIB_SHARED\n";
     return;

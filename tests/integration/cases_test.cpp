@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 #include "calib/solve.hpp"
 #include "daemon/config/robot_file.hpp"
 #include "proto/calibration/report_data.hpp"
 #include "proto/recording/recording.hpp"
+#include "tests/shared_folder.hpp"
 
 namespace odomcalib::cases_test {
 namespace {
@@ -19,10 +19,7 @@ namespace {
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
-std::filesystem::path cases() {
-  const char* folder = std::getenv("ODOMCALIB_SHARED");
-  return std::filesystem::path(folder != nullptr ? folder : "../shared") / "cases";
-}
+std::filesystem::path cases() { return shared_folder("cases"); }
 
 class Cases : public ::testing::Test {
  protected:

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,16 +11,14 @@
 #include "calib/solve.hpp"
 #include "daemon/config/robot_file.hpp"
 #include "proto/recording/recording.hpp"
+#include "tests/shared_folder.hpp"
 
 namespace odomcalib::stranger_cases_test {
 namespace {
 
 using ::testing::ContainsRegex;
 
-std::filesystem::path cases() {
-  const char* folder = std::getenv("ODOMCALIB_SHARED");
-  return std::filesystem::path(folder != nullptr ? folder : "../shared") / "cases";
-}
+std::filesystem::path cases() { return shared_folder("cases"); }
 
 struct Stranger {
   std::string name;

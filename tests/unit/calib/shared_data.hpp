@@ -9,15 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "tests/shared_folder.hpp"
+
 namespace odomcalib::test_support {
 
 /// ./test.sh --long: more robots and recordings than are needed to see a fault.
 inline bool long_tests() { return std::getenv("ODOMCALIB_LONG") != nullptr; }
 
-inline std::filesystem::path shared_data(const std::string& name) {
-  const char* root = std::getenv("ODOMCALIB_SHARED");
-  return std::filesystem::path(root != nullptr ? root : "../shared") / "data" / name;
-}
+inline std::filesystem::path shared_data(const std::string& name) { return shared_folder("data") / name; }
 
 /// Files of a folder whose names contain `part`, sorted.
 inline std::vector<std::filesystem::path> shared_files(const std::string& folder, const std::string& part) {

@@ -14,6 +14,7 @@
 
 #include "drivers/can/transport.hpp"
 #include "drivers/lidar/lidar.hpp"
+#include "tests/shared_folder.hpp"
 #include "tests/value_of.hpp"
 
 namespace odomcalib::drivers::test {
@@ -66,16 +67,15 @@ inline std::vector<Scan> whole_scans(Lidar& lidar) {
 }
 
 /// A folder of recordings that are not part of the repository; empty when it is absent.
-inline std::filesystem::path shared_folder(const char* name) {
-  const char* given = std::getenv("ODOMCALIB_SHARED");
-  const std::filesystem::path folder = std::filesystem::path(given != nullptr ? given : "../shared") / name;
+inline std::filesystem::path present_folder(const char* name) {
+  const std::filesystem::path folder = shared_folder(name);
   return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
 }
 
 /// Real captures.
-inline std::filesystem::path captures() { return shared_folder("captures"); }
+inline std::filesystem::path captures() { return present_folder("captures"); }
 /// Situations that users of other tools reported, made small.
-inline std::filesystem::path cases() { return shared_folder("cases"); }
+inline std::filesystem::path cases() { return present_folder("cases"); }
 
 inline std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

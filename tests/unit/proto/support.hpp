@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "proto/file_bytes.hpp"
 #include "proto/recording/recording.hpp"
+#include "tests/shared_folder.hpp"
 #include "tests/value_of.hpp"
 
 namespace odomcalib::test {
@@ -49,10 +49,7 @@ inline std::string list_discarded(const Recording& recording) {
 }
 
 /// Folder with the real recordings, which are not part of the repository.
-inline std::filesystem::path shared_data() {
-  const char* folder = std::getenv("ODOMCALIB_SHARED");
-  return std::filesystem::path(folder != nullptr ? folder : "../shared") / "data";
-}
+inline std::filesystem::path shared_data() { return shared_folder("data"); }
 
 }  // namespace odomcalib::test
 
