@@ -266,6 +266,7 @@ TEST(ControlSocket, whose_group_is_missing_or_cannot_be_set_says_so_with_a_remed
 
 TEST_F(Burst, of_more_than_eight_clients_is_for_a_stop_alone) {
   std::vector<std::unique_ptr<ControlClient>> all;
+  all.reserve(9);
   for (int i = 0; i < 9; ++i) all.push_back(client());
   all.back()->send(1, "GetStatus");
   EXPECT_TRUE(turn().empty());
