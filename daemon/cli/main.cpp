@@ -65,14 +65,32 @@ std::string suggestion(const CLI::App& app) {
   return "";
 }
 
+/// The help of the verb that was found.
+std::string help_command(const CLI::App& app) {
+  std::string command = "odomcalibctl";
+  for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    command += " " + at->get_name();
+  }
+  return "see " + command + " --help";
+}
+
+/// The option parser lists what it would take without a space, which no line could be broken at.
+std::string with_spaces(const std::string& list) {
+  std::string out;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    out += list[i];
+    if (list[i] == ',' && i + 1 < list.size() && list[i + 1] != ' ') out += ' ';
+  }
+  return out;
+}
+
 int refuse(const CLI::App& app, const CLI::ParseError& error, JsonMode json) {
-  if (app.exit(error) == 0) return odomcalib::cli::kDone;
+  if (error.get_exit_code() == 0) return app.exit(error);
   const std::string meant = suggestion(app);
-  if (!meant.empty()) odomcalib::cli::tell(meant);
-  odomcalib::cli::print_error_json({odomcalib::ErrorCode::usage, error.what(), "command line",
-                                    meant.empty() ? "odomcalibctl --help" : meant},
-                                   json);
-  return odomcalib::cli::kUsage;
+  return odomcalib::cli::report_error({odomcalib::ErrorCode::usage, with_spaces(error.what()), "command line",
+                                       meant.empty() ? help_command(app) : meant},
+                                      json);
 }
 
 int run(int argc, char** argv) {

@@ -34,7 +34,7 @@ Result<void> ask(const Consent& given, const std::string& what, const Prospect& 
   const bool somebody = isatty(STDIN_FILENO) == 1;
   if (given.dry_run) return {};
   if (given.yes && !(prospect.first_motion && somebody)) {
-    if (!besides.empty()) std::cerr << "odomcalibctl: " << besides << '\n';
+    if (!besides.empty()) tell("odomcalibctl: " + besides);
     if (prospect.first_motion)
       tell("This is the first motion of this robot: stay beside it, with an emergency stop at hand.");
     return {};

@@ -66,6 +66,15 @@ std::string dumped(const nlohmann::ordered_json& value, int indent) {
   return out;
 }
 
+/// Whole on one line in a pipe or a file, where programs look for it; within the columns of a terminal.
+void print_message(const std::string& text) {
+  const bool terminal = isatty(STDERR_FILENO) == 1;
+  std::size_t columns = terminal ? wanted_columns() : kAnyWidth;
+  if (columns == 0) columns = terminal_columns(STDERR_FILENO);
+  if (columns == 0) columns = settings::kTextColumns;
+  std::cerr << wrapped_message(text, std::max(columns, settings::kFewestColumns));
+}
+
 std::string duration_text(double time) {
   return time < 90.0 ? fmt::format("{:.0f} s", time) : fmt::format("{:.0f} min", time / 60.0);
 }
@@ -97,7 +106,7 @@ void print_document(const std::string& name, const nlohmann::ordered_json& body,
 }
 
 int report_error(const Error& error, JsonMode mode) {
-  std::cerr << "odomcalibctl: " << error.text() << '\n';
+  print_message("odomcalibctl: " + error.text());
   print_error_json(error, mode);
   return exit_status(error.code);
 }
@@ -114,9 +123,9 @@ void print_error_json(const Error& error, JsonMode mode) {
   print_document("error", {{"error", to_json(error)}}, mode);
 }
 
-void tell(const std::string& text) { std::cerr << text << '\n'; }
+void tell(const std::string& text) { print_message(text); }
 
-void warn(const std::string& text) { std::cerr << "odomcalibctl: warning: " << text << '\n'; }
+void warn(const std::string& text) { print_message("odomcalibctl: warning: " + text); }
 
 int after_flush(int status) {
   std::cout.flush();

@@ -39,7 +39,8 @@ void print_json(const std::string& text, JsonMode mode);
 /// says what else is in it: members are only ever added to a version.
 void print_document(const std::string& name, const nlohmann::ordered_json& body, JsonMode mode);
 
-/// One line for people on standard error, with --json also the document "error" on standard output.
+/// For people on standard error, one line where that is no terminal, with --json also the document "error" on
+/// standard output.
 /// @return the exit status that belongs to the error
 int report_error(const Error& error, JsonMode mode);
 
@@ -58,10 +59,10 @@ void print_text(const Document& document, bool legend);
 /// A sentence, or one line of a list, on standard output within its columns.
 void print_line(const std::string& text);
 
-/// One line on standard error that is no warning.
+/// A message on standard error that is no warning.
 void tell(const std::string& text);
 
-/// One line on standard error; the verb goes on.
+/// A message on standard error; the verb goes on.
 void warn(const std::string& text);
 
 /// What was printed must have arrived (a full disk, a closed pipe). Call once, at the very end.

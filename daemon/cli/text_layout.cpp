@@ -183,6 +183,21 @@ std::string wrapped_command(const std::string& command, std::size_t width) {
   return out;
 }
 
+std::string wrapped_message(const std::string& text, std::size_t width) {
+  if (width_of(text) <= width) return text + "\n";
+  const std::string indent(4, ' '), command = ": odomcalibctl ";
+  std::string out;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find("; ", from), text.size());
+    const std::string part = (from == 0 ? "" : indent) + text.substr(from, end - from);
+    const std::size_t typed = width_of(part) > width ? part.find(command) : std::string::npos;
+    out += wrapped(typed == std::string::npos ? part : part.substr(0, typed + 1), width);
+    if (typed != std::string::npos) out += wrapped_command(indent + part.substr(typed + 2), width);
+    from = end + 2;
+  }
+  return out;
+}
+
 std::string laid_out(const Table& table, bool legend, std::size_t width) {
   std::vector<std::size_t> rest(columns_of(table));
   std::iota(rest.begin(), rest.end(), std::size_t{0});

@@ -27,6 +27,11 @@ std::string wrapped(const std::string& text, std::size_t width);
 /// A command, broken so that a shell still takes it as one.
 std::string wrapped_command(const std::string& command, std::size_t width);
 
+/// A message, of sentences that are joined by "; " and may end with ": odomcalibctl ...". It stays on one
+/// line where that fits; else each sentence begins a line, and so does a command, which a shell still takes
+/// as it stands.
+std::string wrapped_message(const std::string& text, std::size_t width);
+
 /// Numbers are right-aligned, everything else and the first column left-aligned.
 /// @param legend whether the head is shown
 std::string laid_out(const Table& table, bool legend, std::size_t width);

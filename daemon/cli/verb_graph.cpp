@@ -75,7 +75,7 @@ int optimize(const OptimizeOptions& options, const Session& session) {
   return kDone;
 }
 
-int tell(const OptimizeOptions& options, const Session& session) {
+int describe_graph(const OptimizeOptions& options, const Session& session) {
   auto graph = read_files(options);
   if (!graph) return report_error(graph.error(), session.json);
   if (!graph.value().has_positions) {
@@ -150,8 +150,9 @@ void add_info(CLI::App& parent, Session& session) {
   auto options = std::make_shared<OptimizeOptions>();
   verb->add_option("GRAPH", options->files, "g2o or TORO text; several files are read as one")->required();
   add_unpack_limit(*verb, options->unpack_limit);
-  verb->callback(
-      [&session, options] { session.run = [&session, options] { return tell(*options, session); }; });
+  verb->callback([&session, options] {
+    session.run = [&session, options] { return describe_graph(*options, session); };
+  });
 }
 
 void add_build(CLI::App& parent, Session& session) {

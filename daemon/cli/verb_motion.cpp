@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -76,13 +75,13 @@ Solved second_drive(const Session& session, const MotionOptions& options, Solved
   const auto next = first.body.value("next", ordered_json());
   if (options.one_drive || !next.is_object()) return first;
   const std::string manoeuvre = next.value("manoeuvre", "");
-  std::cerr << "One more motion, \"" << manoeuvre << "\": " << next.value("why", "") << ".\n";
+  tell("One more motion, \"" + manoeuvre + "\": " + next.value("why", "") + ".");
   ordered_json wanted = {{"manoeuvre", manoeuvre}, {"with", {first.body.value("recording", "")}}};
   auto second = drive_and_solve(session, options, wanted);
   if (second && second.value().calibration.verdict != Verdict::refused) return std::move(second).value();
-  std::cerr << "It did not help: "
-            << (second ? "the two recordings together were refused" : second.error().text())
-            << ". The first drive counts.\n";
+  tell("It did not help: " +
+       (second ? std::string("the two recordings together were refused") : second.error().text()) +
+       ". The first drive counts.");
   return first;
 }
 

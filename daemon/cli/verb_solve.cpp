@@ -2,7 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -80,10 +80,12 @@ std::optional<Error> wrong_sensor(const SolveArguments& options, const std::vect
                                : fmt::format("there are: {}", fmt::join(sensors, ", "))};
 }
 
-/// What is wrong with a file shows in what it holds.
-int report_unreadable(const Error& error, JsonMode json) {
+/// What is wrong with a recording shows in what it holds, where the error does not say what to type.
+int report_unreadable(const Error& error, const std::vector<std::string>& recordings, JsonMode json) {
   const int status = report_error(error, json);
-  if (error.code != ErrorCode::io && std::filesystem::exists(error.where))
+  const bool said = error.remedy.find("odomcalibctl ") != std::string::npos;
+  const bool of_recording = std::ranges::find(recordings, error.where) != recordings.end();
+  if (!said && of_recording && error.code != ErrorCode::io)
     tell("what it holds: odomcalibctl inspect " + error.where);
   return status;
 }
@@ -99,7 +101,7 @@ int solve_recordings(const SolveArguments& options, const Session& session) {
     how.scale = scale.value();
   }
   auto recordings = read_recordings(options.recordings, options.reading);
-  if (!recordings) return report_unreadable(recordings.error(), session.json);
+  if (!recordings) return report_unreadable(recordings.error(), options.recordings, session.json);
   if (const auto wrong = wrong_sensor(options, recordings.value())) return report_error(*wrong, session.json);
   how.sensor = options.sensor;
   for (Recording& recording : recordings.value()) recording = without_intensities(std::move(recording));

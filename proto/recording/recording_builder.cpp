@@ -250,13 +250,13 @@ bool RecordingBuilder::has_motion() const {
 }
 
 Error RecordingBuilder::no_motion(const std::string& where) const {
-  std::string what = "no message tells the motion of the wheels";
+  std::string what = "no message holds the motion of the wheels";
   std::size_t most = 0;
   for (const auto& [key, one] : discarded_) {
     const bool of_wheels = one.what == "wheels" || one.what == "wheel_speeds" || one.what == "odometry";
     if (!of_wheels || one.count <= most) continue;
     most = one.count;
-    what = "no message tells the motion of the wheels: " + std::to_string(one.count) + " x " + one.what +
+    what = "no message holds the motion of the wheels: " + std::to_string(one.count) + " x " + one.what +
            " left out, " + one.reason;
   }
   return {ErrorCode::empty, what, where,
@@ -293,7 +293,7 @@ void RecordingBuilder::join_halves(MotionSource source, Halves& halves, std::vec
   const JoinedWheels joined = joined_wheels(std::exchange(left, {}), std::exchange(right, {}),
                                             angles ? Between::linear : Between::held);
   const Side moved = joined.kept == Side::left ? Side::right : Side::left;
-  discard(name_of(source), "the other wheel was not told near that time", joined.alone);
+  discard(name_of(source), "the other wheel has no value near that time", joined.alone);
   stream = joined.wheels;
   choose(std::string(name_of(source)) + ": each sample has one wheel only (" + counts + "); the " +
          name_of(moved) + " wheel was brought to the times of the " + name_of(joined.kept) +

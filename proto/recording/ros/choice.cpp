@@ -98,7 +98,7 @@ class Choosing {
       const auto wheel = wheel_by_name(*topics.at(side));
       if (names.size() != 1 && !wheel)
         return usage("the joints of " + topics.at(side)->header.name + " (" + names_of_joints(names) +
-                         ") do not tell which is the wheel",
+                         ") do not say which is the wheel",
                      "record a topic with the joint of one wheel");
       joints.at(side) = wheel ? wheel->joint : names.front();
     }
@@ -114,11 +114,11 @@ class Choosing {
     return found;
   }
 
-  /// "the joints of /joint_states (a, b) do not tell which are the wheels: --topic
+  /// "the joints of /joint_states (a, b) do not say which are the wheels: --topic
   /// wheels=/joint_states:LEFT,RIGHT"
   static std::string untold(const Topic& topic, const std::string& part) {
     return "the joints of " + topic.header.name + " (" + names_of_joints(topic) +
-           ") do not tell which are the wheels: --topic " + part + "=" + topic.header.name + ":LEFT,RIGHT";
+           ") do not say which are the wheels: --topic " + part + "=" + topic.header.name + ":LEFT,RIGHT";
   }
 
   std::optional<Error> take_joints(const Topic& topic, const TopicChoice& choice) {
@@ -213,7 +213,7 @@ class Choosing {
       return usage(
           unsaid(typeless),
           "record with the packages of the messages installed, or say what they are: " + lines_for(typeless));
-    return {ErrorCode::empty, "no topic tells the motion of the wheels", where_,
+    return {ErrorCode::empty, "no topic holds the motion of the wheels", where_,
             "record " + types_for(Part::wheels) + " or " + types_for(Part::odometry) + "; " + topics_there()};
   }
 

@@ -114,7 +114,7 @@ std::optional<Error> settle_joints(RecordingBuilder& builder, Topic& topic, cons
   for (std::size_t k = 1; k < changing.size(); ++k)
     if (!lists.agree(changing.front(), changing[k]))
       return Error{ErrorCode::usage,
-                   "two publishers tell different motions of the wheels on " + topic.header.name + ": " +
+                   "two publishers send different motions of the wheels on " + topic.header.name + ": " +
                        lists.names(changing.front()) + ", and " + lists.names(changing[k]),
                    where,
                    "record with one of them stopped" +
@@ -153,7 +153,7 @@ void settle_frames(RecordingBuilder& builder, const Topic& topic, std::vector<St
                         text_of(topic.frames[taken]) + " has more messages",
                     counts[k]);
   }
-  builder.choose(topic.header.name + " tells of several frames: " + text_of(topic.frames[taken]) + ", " +
+  builder.choose(topic.header.name + " holds several frames: " + text_of(topic.frames[taken]) + ", " +
                  std::to_string(*most) + " messages, is taken; not taken: " + others);
   std::erase_if(messages, [&](const auto& one) { return one.frames != taken; });
 }

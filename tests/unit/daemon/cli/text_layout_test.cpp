@@ -34,6 +34,31 @@ TEST(TextLayout, breaks_a_command_so_that_a_shell_takes_it) {
             "Next: set left=0.15 \\\n    right=0.15\n");
 }
 
+TEST(TextLayout, leaves_a_message_that_fits_on_its_line) {
+  EXPECT_EQ(wrapped_message("a.bag: no scans; name them; see --topic", 80),
+            "a.bag: no scans; name them; see --topic\n");
+}
+
+TEST(TextLayout, begins_a_line_with_each_sentence_of_a_message_and_with_its_command) {
+  EXPECT_EQ(
+      wrapped_message(
+          "a.bag: it holds no scans; name their topic; see what it holds: odomcalibctl inspect a.bag", 40),
+      "a.bag: it holds no scans\n"
+      "    name their topic\n"
+      "    see what it holds:\n"
+      "    odomcalibctl inspect a.bag\n");
+  EXPECT_EQ(wrapped_message("a.bag: its scans stand on no topic that is known here", 30),
+            "a.bag: its scans stand on no\n    topic that is known here\n");
+}
+
+TEST(TextLayout, breaks_a_long_command_of_a_message_so_that_a_shell_takes_it) {
+  EXPECT_EQ(wrapped_message("it is another: odomcalibctl solve a.bag --topic odometry=/wheels", 30),
+            "it is another:\n"
+            "    odomcalibctl solve a.bag \\\n"
+            "        --topic \\\n"
+            "        odometry=/wheels\n");
+}
+
 const Table kErrors{{"", "before", "noise floor"},
                     {{"a metre: length", "20.99 (20.83..21.15)", "0.39"}, {"a metre: heading", "-", "0.09"}}};
 

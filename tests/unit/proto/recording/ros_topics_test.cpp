@@ -117,7 +117,7 @@ TEST(RosTopics, other_recordings_have_none) {
 TEST(RosTopics, without_wheel_motion_are_refused_with_what_there_is) {
   sim::RosLog log = sim::ros_log(small_drive(), {.wire = Wire::ros1, .joints = false, .odometry = false});
   expect_usage(read_ros(mcap(log)),
-               {"no topic tells the motion", "/scan (sensor_msgs/LaserScan, 40 messages)"}, ErrorCode::empty);
+               {"no topic holds the motion", "/scan (sensor_msgs/LaserScan, 40 messages)"}, ErrorCode::empty);
 }
 
 TEST(RosTopics, wheels_are_recognised_by_the_names_of_their_joints) {
@@ -134,12 +134,12 @@ TEST(RosTopics, wheels_are_recognised_by_the_names_of_their_joints) {
        {std::vector<std::string>{"joint_1", "joint_2"},
         {"wheel_1_left", "wheel_1_right", "wheel_2_left", "wheel_2_right"}}) {
     const auto refused = read_ros(mcap(joints_log(names)));
-    expect_usage(refused, {"do not tell which are the wheels", "--topic wheels=/joint_states:LEFT,RIGHT"});
+    expect_usage(refused, {"do not say which are the wheels", "--topic wheels=/joint_states:LEFT,RIGHT"});
     const auto chosen =
         value_of(read_ros(mcap(joints_log(names)), {{"wheels", "/joint_states", {names[0], names[1]}}}));
     EXPECT_EQ(chosen.ticks.size(), 50U);
     expect_usage(read_ros(mcap(joints_log(names)), {{"wheels", "/joint_states", {}}}),
-                 {"do not tell which are the wheels", names.front(), ":LEFT,RIGHT"});
+                 {"do not say which are the wheels", names.front(), ":LEFT,RIGHT"});
   }
 }
 

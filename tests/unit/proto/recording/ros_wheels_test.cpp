@@ -48,7 +48,7 @@ std::string error_of(const Result<Recording>& result) { return result ? "read" :
 TEST(RosWheels, joints_that_do_not_tell_are_named_with_the_line_to_type) {
   const auto refused = read_ros(write_mcap(drive_of({"m1", "m2"}, {1.0, 1.1})));
   EXPECT_THAT(error_of(refused),
-              EndsWith("the joints of /joint_states (m1, m2) do not tell which are the wheels: "
+              EndsWith("the joints of /joint_states (m1, m2) do not say which are the wheels: "
                        "--topic wheels=/joint_states:LEFT,RIGHT"));
   const auto chosen = value_of(
       read_ros(write_mcap(drive_of({"m1", "m2"}, {1.0, 1.1})), {{"wheels", "/joint_states", {"m1", "m2"}}}));
@@ -88,7 +88,7 @@ TEST(RosWheels, a_topic_whose_wheels_say_nothing_is_told_so_and_ticks_are_not_as
   RobotDescription robot = test::ros_robot();
   robot.ticks_per_rev = 0.0;
   const auto result = read_recording_bytes(write_mcap(log), "drive", &robot);
-  EXPECT_THAT(error_of(result), HasSubstr("no message tells the motion of the wheels: 50 x wheels left out"));
+  EXPECT_THAT(error_of(result), HasSubstr("no message holds the motion of the wheels: 50 x wheels left out"));
 }
 
 TEST(RosWheels, of_two_axles_the_rear_one_is_taken_and_the_front_one_offered) {
@@ -156,7 +156,7 @@ TEST(RosWheels, three_axles_and_arms_have_to_be_chosen) {
         {"left_front_finger", "left_rear_finger", "right_front_finger", "right_rear_finger", "neck"},
         {"arm_l", "arm_r"}})
     EXPECT_THAT(error_of(read_ros(write_mcap(drive_of(names, std::vector<double>(names.size(), 1.0))))),
-                HasSubstr("do not tell which are the wheels"))
+                HasSubstr("do not say which are the wheels"))
         << names.front();
 }
 
@@ -225,7 +225,7 @@ TEST(RosWheels, that_are_one_wheel_only_are_refused_for_that) {
   const RosLog log = test::without_topic(in_turn("/left", "left", "/joint_states", "right"), "/left");
   EXPECT_THAT(error_of(read_ros(write_mcap(log), {{"wheels", "/joint_states", {"right", "right"}}})),
               Not(HasSubstr("ticks")));
-  EXPECT_THAT(error_of(read_ros(write_mcap(log))), HasSubstr("/joint_states (right) do not tell"));
+  EXPECT_THAT(error_of(read_ros(write_mcap(log))), HasSubstr("/joint_states (right) do not say"));
 }
 
 TEST(RosWheels, the_choice_of_two_topics_is_read) {
