@@ -32,24 +32,24 @@ std::array<double, 2> wheel_turns(const Leg& leg, double ticks_per_rev) {
           turn * static_cast<double>(leg.ticks_after.right - leg.ticks_before.right)};
 }
 
-MovesReport::MovesReport(const Bench& bench, std::vector<Leg> legs, std::size_t moves_in_round)
+MovesReport::MovesReport(const RobotParts& parts, std::vector<Leg> legs, std::size_t moves_in_round)
     : legs_(std::move(legs)), in_rounds_(moves_in_round != 0) {
   const std::size_t together = in_rounds_ ? moves_in_round : 1;
   for (std::size_t k = 0; k + together <= legs_.size(); k += together) {
     const Leg &first = legs_[k], &last = legs_[k + together - 1];
     const std::size_t pairs =
-        bench.calibrator.match ? std::min(first.scans_before.size(), last.scans_after.size()) : 0;
+        parts.calibrator.match ? std::min(first.scans_before.size(), last.scans_after.size()) : 0;
     comparisons_.push_back({k, k + together - 1, relative(first.before, last.after), pairs});
   }
 }
 
-bool MovesReport::compare_next(const Bench& bench) {
+bool MovesReport::compare_next(const RobotParts& parts) {
   while (next_ < comparisons_.size() && comparisons_[next_].tried == comparisons_[next_].pairs) ++next_;
   if (next_ == comparisons_.size()) return false;
   Comparison& now = comparisons_[next_];
   const auto seen =
-      bench.calibrator.match(legs_[now.from].scans_before[now.tried], legs_[now.to].scans_after[now.tried],
-                             now.told, lidar_pose(bench.applied.get(), bench.config));
+      parts.calibrator.match(legs_[now.from].scans_before[now.tried], legs_[now.to].scans_after[now.tried],
+                             now.told, lidar_pose(parts.applied.get(), parts.config));
   ++now.tried;
   if (!seen) return true;
   // The lidar cannot count full turns: the nearest to what the odometry says.
@@ -73,13 +73,13 @@ void MovesReport::add(const Comparison& comparison, ordered_json& body) {
                    {"yaw", told.yaw - seen.yaw}};
 }
 
-ordered_json MovesReport::body(const Bench& bench) const {
-  ordered_json body = {{"moves", ordered_json::array()}, {"robot", lengths(bench.drive.robot())}};
+ordered_json MovesReport::body(const RobotParts& parts) const {
+  ordered_json body = {{"moves", ordered_json::array()}, {"robot", lengths(parts.drive.robot())}};
   for (std::size_t k = 0; k < legs_.size(); ++k) {
     const Leg& leg = legs_[k];
     ordered_json move = {{"move", leg.move.name}, {"begin", leg.begin}, {"end", leg.end}};
     add(in_rounds_ ? Comparison{k, k, relative(leg.before, leg.after), 0} : comparisons_[k], move);
-    move["wheels"] = wheel_turns(leg, bench.drive.robot().ticks_per_rev);
+    move["wheels"] = wheel_turns(leg, parts.drive.robot().ticks_per_rev);
     body["moves"].push_back(std::move(move));
   }
   if (!in_rounds_) return body;

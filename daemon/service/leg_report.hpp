@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "daemon/service/motion_run.hpp"
-#include "daemon/service/parts/bench.hpp"
+#include "daemon/service/parts/robot_parts.hpp"
 
 namespace odomcalib {
 
@@ -19,13 +19,13 @@ class MovesReport {
  public:
   /// @param moves_in_round after so many the robot is back at its start: rounds are compared then, and nobody
   /// needs the lidar's view of their moves; 0: each move is compared
-  MovesReport(const Bench& bench, std::vector<Leg> legs, std::size_t moves_in_round);
+  MovesReport(const RobotParts& parts, std::vector<Leg> legs, std::size_t moves_in_round);
 
   /// Compares one more pair of scans. @return false where all have been
-  bool compare_next(const Bench& bench);
+  bool compare_next(const RobotParts& parts);
   /// {"moves": [...], "robot": {...}} and with rounds "rounds": wheels, odometry and lidar, and the values
   /// that odometry goes by.
-  [[nodiscard]] ordered_json body(const Bench& bench) const;
+  [[nodiscard]] ordered_json body(const RobotParts& parts) const;
 
  private:
   /// Base motion between two moments at rest, in the frame of the first.
@@ -45,6 +45,6 @@ class MovesReport {
 };
 
 /// Of a nudge: {"checks": rows of `check` with one or more about the wiring, "wiring": what was measured}
-ordered_json nudge_report(const Bench& bench, const std::vector<Leg>& legs);
+ordered_json nudge_report(const RobotParts& parts, const std::vector<Leg>& legs);
 
 }  // namespace odomcalib

@@ -98,10 +98,10 @@ void add_rows(const routines::Wiring& wiring, ordered_json& checks) {
 
 }  // namespace
 
-ordered_json nudge_report(const Bench& bench, const std::vector<Leg>& legs) {
-  ordered_json list = check_report(bench);
+ordered_json nudge_report(const RobotParts& parts, const std::vector<Leg>& legs) {
+  ordered_json list = check_report(parts);
   if (legs.size() != 4) return {{"checks", list}, {"wiring", nullptr}};
-  const auto nudge = nudge_of(bench.calibrator, bench.drive.robot(), legs);
+  const auto nudge = nudge_of(parts.calibrator, parts.drive.robot(), legs);
   const auto wiring = routines::judge_wiring(nudge);
   add_rows(wiring, list);
   return {{"checks", list}, {"wiring", json_of(nudge, wiring)}};

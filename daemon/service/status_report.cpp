@@ -73,9 +73,9 @@ ordered_json watchdog_check(const drivers::Controller& controller) {
                "use a profile with a watchdog");
 }
 
-ordered_json check_disk(const Bench& bench) {
-  const std::filesystem::path& folder = bench.config.state_dir;
-  if (const auto& why = bench.folder.read_only()) return check("disk", false, why->what, why->remedy);
+ordered_json check_disk(const RobotParts& parts) {
+  const std::filesystem::path& folder = parts.config.state_dir;
+  if (const auto& why = parts.folder.read_only()) return check("disk", false, why->what, why->remedy);
   constexpr std::uintmax_t kMegabyte = 1'000'000;
   std::error_code error;
   const auto space = std::filesystem::space(folder, error);
@@ -123,8 +123,8 @@ void add_host_values(const std::vector<HostValue>& values, ordered_json& list) {
                     {"applied_in", value.applied_in}});
 }
 
-ordered_json controller_report(const Bench& bench) {
-  const Drive& drive = bench.drive;
+ordered_json controller_report(const RobotParts& parts) {
+  const Drive& drive = parts.drive;
   const drivers::Controller& controller = drive.controller();
   ordered_json body = {{"device", drive.link.device()},
                        {"connected", drive.link.connected()},
@@ -132,7 +132,7 @@ ordered_json controller_report(const Bench& bench) {
                        {"problem", text_of(drive.link.problem())},
                        {"watchdog_armed", controller.watchdog_armed()},
                        {"ticks", drive.tick_count},
-                       {"stale", drive.encoders.stale(bench.now).value_or("")},
+                       {"stale", drive.encoders.stale(parts.now).value_or("")},
                        {"counters", drive.link.counters()},
                        {"supply_voltage", nullptr}};
   if (const auto voltage = controller.supply_voltage()) body["supply_voltage"] = *voltage;
@@ -151,22 +151,22 @@ ordered_json controller_report(const Bench& bench) {
   return body;
 }
 
-ordered_json lidar_report(const Bench& bench) {
-  const LidarLink& lidar = bench.surroundings.link;
+ordered_json lidar_report(const RobotParts& parts) {
+  const LidarLink& lidar = parts.surroundings.link;
   return {{"device", lidar.device()},
           {"identity", lidar.identity()},
           {"connected", lidar.connected()},
           {"problem", text_of(lidar.problem())},
-          {"scans", bench.surroundings.scan_count},
-          {"stale", bench.surroundings.scans.stale(bench.now).value_or("")},
+          {"scans", parts.surroundings.scan_count},
+          {"stale", parts.surroundings.scans.stale(parts.now).value_or("")},
           {"counters", lidar.counters()}};
 }
 
 /// A controller that took the place of another: what it holds is not what was verified. Empty: it is no
 /// other.
-std::string replaced_text(const Bench& bench) {
-  const std::string ours = device_of(bench.drive.controller());
-  const auto former = bench.write_back.of_former_controller(ours);
+std::string replaced_text(const RobotParts& parts) {
+  const std::string ours = device_of(parts.drive.controller());
+  const auto former = parts.write_back.of_former_controller(ours);
   if (!former) return "";
   return fmt::format(
       "this controller (\"{}\") is another than that of the newest write-back, entry {} (\"{}\")", ours,
@@ -174,10 +174,10 @@ std::string replaced_text(const Bench& bench) {
 }
 
 /// No failure: the robot goes by what the controller holds, as far as that is likely.
-std::optional<ordered_json> replaced_check(const Bench& bench) {
-  const std::string found = replaced_text(bench);
+std::optional<ordered_json> replaced_check(const RobotParts& parts) {
+  const std::string found = replaced_text(parts);
   if (found.empty()) return std::nullopt;
-  const auto former = bench.write_back.of_former_controller(device_of(bench.drive.controller()));
+  const auto former = parts.write_back.of_former_controller(device_of(parts.drive.controller()));
   return ordered_json{
       {"name", "replaced"},
       {"outcome", "warn"},
@@ -213,74 +213,74 @@ ordered_json lcm_report(const Publisher::Counters& counters) {
   return {{"sent", counters.sent}, {"failed", counters.failed}, {"dropped", counters.dropped}};
 }
 
-ordered_json loop_report(const Bench& bench) {
-  return {{"scheduling", bench.urgency.found},
-          {"turns", bench.loop.turns()},
-          {"late_steps", bench.late_steps},
-          {"longest_turn", json_of(bench.loop.since_start())},
-          {"longest_turn_in_motion", json_of(bench.loop.in_motion())}};
+ordered_json loop_report(const RobotParts& parts) {
+  return {{"scheduling", parts.urgency.found},
+          {"turns", parts.loop.turns()},
+          {"late_steps", parts.late_steps},
+          {"longest_turn", json_of(parts.loop.since_start())},
+          {"longest_turn_in_motion", json_of(parts.loop.in_motion())}};
 }
 
 }  // namespace
 
-std::string activity(const Bench& bench, const Task* task) {
-  if (bench.ending) return bench.write_back.busy() ? "ending: reading or writing parameters" : "ending";
-  if (task != nullptr) return task->activity(bench);
-  return bench.write_back.busy() ? "reading or writing parameters" : "idle";
+std::string activity(const RobotParts& parts, const Task* task) {
+  if (parts.ending) return parts.write_back.busy() ? "ending: reading or writing parameters" : "ending";
+  if (task != nullptr) return task->activity(parts);
+  return parts.write_back.busy() ? "reading or writing parameters" : "idle";
 }
 
-std::string one_line(const Bench& bench, const Task* task) {
-  std::string line = activity(bench, task);
+std::string one_line(const RobotParts& parts, const Task* task) {
+  std::string line = activity(parts, task);
   const auto missing = [&line](const char* what, const std::string& why) {
     line += std::string("; no ") + what + (why.empty() ? "" : ": " + why);
   };
-  const auto state = bench.drive.controller().state();
-  const BaseLink& base = bench.drive.link;
+  const auto state = parts.drive.controller().state();
+  const BaseLink& base = parts.drive.link;
   if (!base.connected())
     missing("bus", text_of(base.problem()));
   else if (state == drivers::ControllerState::absent)
-    missing("controller", bench.drive.trouble);
-  const LidarLink& lidar = bench.surroundings.link;
-  if (!lidar.connected() || bench.surroundings.scans.stale(bench.now))
+    missing("controller", parts.drive.trouble);
+  const LidarLink& lidar = parts.surroundings.link;
+  if (!lidar.connected() || parts.surroundings.scans.stale(parts.now))
     missing("scans", text_of(lidar.problem()));
-  if (bench.write_back.proving()) line += "; new values wait for their proof";
+  if (parts.write_back.proving()) line += "; new values wait for their proof";
   return line;
 }
 
-ordered_json status_report(const Bench& bench, const Task* task) {
-  const Telemetry& telemetry = bench.outbox.telemetry;
-  const auto& pose = bench.odometry.pose();
+ordered_json status_report(const RobotParts& parts, const Task* task) {
+  const Telemetry& telemetry = parts.outbox.telemetry;
+  const auto& pose = parts.odometry.pose();
   ordered_json body;
   body["format"] = "odomcalib-status/1";
-  body["state"] = activity(bench, task);
+  body["state"] = activity(parts, task);
   body["version"] = kVersion;
-  body["controller"] = controller_report(bench);
-  body["lidar"] = lidar_report(bench);
-  body["robot"] = robot_report(bench.drive);
-  body["obstacle"] = bench.surroundings.obstacles.obstacle().value_or("");
-  body["progress"] = task == nullptr ? ordered_json() : bench.outbox.last_progress();
+  body["controller"] = controller_report(parts);
+  body["lidar"] = lidar_report(parts);
+  body["robot"] = robot_report(parts.drive);
+  body["obstacle"] = parts.surroundings.obstacles.obstacle().value_or("");
+  body["progress"] = task == nullptr ? ordered_json() : parts.outbox.last_progress();
   body["odometry"] = {pose.x, pose.y, routines::wrapped(pose.yaw)};
-  body["calibrated"] = bench.applied.get().has_value();
-  const auto proven = bench.write_back.proven();
+  body["calibrated"] = parts.applied.get().has_value();
+  const auto proven = parts.write_back.proven();
   body["proven"] = proven ? ordered_json(*proven) : ordered_json(nullptr);
-  body["replaced_controller"] = replaced_text(bench);
-  body["operator_needed"] = bench.write_back.operator_needed;
-  body["last_stop"] = bench.last_run.last_stop();
+  body["replaced_controller"] = replaced_text(parts);
+  body["operator_needed"] = parts.write_back.operator_needed;
+  body["last_stop"] = parts.last_run.last_stop();
   body["lcm"] = lcm_report(telemetry.publisher.counters());
-  body["clients"] = client_report(bench.outbox.server);
-  body["loop"] = loop_report(bench);
+  body["clients"] = client_report(parts.outbox.server);
+  body["loop"] = loop_report(parts);
   body["recording_bytes"] = telemetry.recorder.bytes();
   body["recording_bytes_waiting"] = telemetry.recorder.bytes_waiting();
-  body["recorded_motion"] = motion_report(bench.recorded);
+  body["recorded_motion"] = motion_report(parts.recorded);
   return body;
 }
 
-ordered_json scan_report(const Bench& bench) {
-  const auto& points = bench.surroundings.points;
+ordered_json scan_report(const RobotParts& parts) {
+  const auto& points = parts.surroundings.points;
   ordered_json list = ordered_json::array();
   const std::size_t step = points.size() / service::settings::kMostScanPoints + 1;
   const auto rounded = [](double metres) { return std::round(1000.0 * metres) / 1000.0; };
-  if (!bench.surroundings.scans.stale(bench.now))
+  if (!parts.surroundings.scans.stale(parts.now))
     for (std::size_t k = 0; k < points.size(); k += step)
       list.push_back({rounded(points[k].x), rounded(points[k].y)});
   return {{"points", list}};
@@ -301,24 +301,24 @@ ordered_json description(const Config& config) {
       {"state_dir", config.state_dir.string()}};
 }
 
-ordered_json check_report(const Bench& bench) {
-  const Drive& drive = bench.drive;
-  const Surroundings& around = bench.surroundings;
-  const WriteBack& write_back = bench.write_back;
+ordered_json check_report(const RobotParts& parts) {
+  const Drive& drive = parts.drive;
+  const Surroundings& around = parts.surroundings;
+  const WriteBack& write_back = parts.write_back;
   const RobotDescription all = drive.robot();
   ordered_json list = ordered_json::array();
   list.push_back(check("bus", drive.link.connected(), found_at(drive.link.connected(), drive.link.problem()),
                        "connect the adapter; check controller.device"));
   list.push_back(controller_check(drive));
   list.push_back(watchdog_check(drive.controller()));
-  list.push_back(check("encoders", !drive.encoders.stale(bench.now),
-                       drive.encoders.stale(bench.now).value_or("counts arrive"), "check the bus"));
+  list.push_back(check("encoders", !drive.encoders.stale(parts.now),
+                       drive.encoders.stale(parts.now).value_or("counts arrive"), "check the bus"));
   list.push_back(check("lidar port", around.link.connected(),
                        found_at(around.link.connected(), around.link.problem()) + by_name(around.link),
                        "connect it; check lidar.device"));
-  list.push_back(check("scans", !around.scans.stale(bench.now),
-                       around.scans.stale(bench.now).value_or("scans arrive"), "check lidar and baud rate"));
-  list.push_back(view_check(around.cover.blind(bench.now).sectors()));
+  list.push_back(check("scans", !around.scans.stale(parts.now),
+                       around.scans.stale(parts.now).value_or("scans arrive"), "check lidar and baud rate"));
+  list.push_back(view_check(around.cover.blind(parts.now).sectors()));
   const auto wrong = drive.geometry_forbidden();
   const bool ticks_known = all.ticks_per_rev > 0.0;
   list.push_back(wrong ? check("geometry", false, wrong->what, wrong->remedy)
@@ -331,16 +331,16 @@ ordered_json check_report(const Bench& bench) {
       check("write-back", !write_back.operator_needed,
             write_back.operator_needed ? write_back.problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
-  if (auto replaced = replaced_check(bench)) list.push_back(*replaced);
-  list.push_back(check_disk(bench));
-  if (!bench.urgency.found.empty()) list.push_back(scheduling_check(bench.urgency));
-  if (auto configuration = config_check(bench.config)) list.push_back(*configuration);
+  if (auto replaced = replaced_check(parts)) list.push_back(*replaced);
+  list.push_back(check_disk(parts));
+  if (!parts.urgency.found.empty()) list.push_back(scheduling_check(parts.urgency));
+  if (auto configuration = config_check(parts.config)) list.push_back(*configuration);
   return list;
 }
 
-ordered_json parameter_report(const Bench& bench, const std::optional<Calibration>& calibration) {
-  const auto& in_force = bench.drive.in_force;
-  const RobotDescription all = bench.drive.robot();
+ordered_json parameter_report(const RobotParts& parts, const std::optional<Calibration>& calibration) {
+  const auto& in_force = parts.drive.in_force;
+  const RobotDescription all = parts.drive.robot();
   const std::array<std::pair<const char*, double>, 3> values = {
       {{"left_wheel_diameter", all.left_wheel_diameter},
        {"right_wheel_diameter", all.right_wheel_diameter},
@@ -360,8 +360,8 @@ ordered_json parameter_report(const Bench& bench, const std::optional<Calibratio
         stored ? "controller, rounding remainder in corrected odometry" : "corrected odometry on the host";
     list.push_back(entry);
   }
-  if (calibration && bench.calibrator.host_values)
-    add_host_values(bench.calibrator.host_values(*calibration), list);
+  if (calibration && parts.calibrator.host_values)
+    add_host_values(parts.calibrator.host_values(*calibration), list);
   return list;
 }
 

@@ -12,7 +12,7 @@ namespace odomcalib {
 
 /// What a method works on.
 struct Context {
-  Bench& bench;
+  RobotParts& parts;
   Task* task = nullptr;  ///< that runs, or null
 };
 

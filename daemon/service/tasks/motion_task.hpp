@@ -39,29 +39,29 @@ class MotionTask final : public Task {
     std::string unseen = {};      ///< what that is, and which moves go there; empty: nothing
   };
   /// The robot may move; motion_gate.hpp was asked. Errors: those of Recorder::start
-  static Result<std::unique_ptr<Task>> begin(Bench& bench, const Caller& caller, Order order);
+  static Result<std::unique_ptr<Task>> begin(RobotParts& parts, const Caller& caller, Order order);
 
   [[nodiscard]] const char* part() const override { return "motion"; }
-  [[nodiscard]] std::string activity(const Bench& bench) const override;
-  TaskTurn turn(Bench& bench) override;
-  void stop(Bench& bench) override;
+  [[nodiscard]] std::string activity(const RobotParts& parts) const override;
+  TaskTurn turn(RobotParts& parts) override;
+  void stop(RobotParts& parts) override;
   /// Who asked for a motion and went away cannot watch it.
-  void abandoned(Bench& bench) override;
+  void abandoned(RobotParts& parts) override;
   void drive_stopped(const std::string& why) override;
-  void scanned(const Bench& bench, const Scan& scan) override;
-  TaskTurn daemon_ends(Bench& bench, const Error& why) override;
+  void scanned(const RobotParts& parts, const Scan& scan) override;
+  TaskTurn daemon_ends(RobotParts& parts, const Error& why) override;
   [[nodiscard]] bool moves() const override { return run_.has_value(); }
   [[nodiscard]] routines::Twist twist() const override { return run_ ? run_->twist() : routines::Twist{}; }
 
  private:
-  MotionTask(Bench& bench, const Caller& waits, Order order);
-  void watch_loop(Bench& bench);
-  [[nodiscard]] std::optional<std::string> lapsed(const Bench& bench) const;
-  [[nodiscard]] Situation situation(const Bench& bench) const;
-  TaskTurn ended(Bench& bench);
-  void begin_report(const Bench& bench);
-  TaskTurn reported(Bench& bench);
-  TaskTurn written(const Bench& bench, const Result<std::filesystem::path>& path);
+  MotionTask(RobotParts& parts, const Caller& waits, Order order);
+  void watch_loop(RobotParts& parts);
+  [[nodiscard]] std::optional<std::string> lapsed(const RobotParts& parts) const;
+  [[nodiscard]] Situation situation(const RobotParts& parts) const;
+  TaskTurn ended(RobotParts& parts);
+  void begin_report(const RobotParts& parts);
+  TaskTurn reported(RobotParts& parts);
+  TaskTurn written(const RobotParts& parts, const Result<std::filesystem::path>& path);
 
   std::string lease_;
   MotionPurpose purpose_;

@@ -12,12 +12,12 @@ class ParameterTask : public Task {
   using Task::Task;
 
   [[nodiscard]] const char* part() const override { return "write-back"; }
-  [[nodiscard]] std::string activity(const Bench& /*bench*/) const override {
+  [[nodiscard]] std::string activity(const RobotParts& /*parts*/) const override {
     return "reading or writing parameters";
   }
   /// Values are written wholly or not at all: what has begun goes on.
-  void stop(Bench& /*bench*/) override {}
-  void abandoned(Bench& /*bench*/) override {}
+  void stop(RobotParts& /*parts*/) override {}
+  void abandoned(RobotParts& /*parts*/) override {}
 };
 
 }  // namespace odomcalib

@@ -11,10 +11,10 @@ class ProofTask final : public ParameterTask {
   ProofTask(const Caller& waits, bool proven, double now)
       : ParameterTask(waits), proven_(proven), asked_at_(now) {}
 
-  TaskTurn turn(Bench& bench) override;
+  TaskTurn turn(RobotParts& parts) override;
 
  private:
-  TaskTurn store(Bench& bench);
+  TaskTurn store(RobotParts& parts);
 
   bool proven_;
   double asked_at_;  // s

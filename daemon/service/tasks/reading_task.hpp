@@ -12,22 +12,22 @@ namespace odomcalib {
 
 class ReadingTask final : public Task {
  public:
-  using Next = std::function<Result<std::unique_ptr<Task>>(Bench& bench)>;
+  using Next = std::function<Result<std::unique_ptr<Task>>(RobotParts& parts)>;
   /// @param next makes what follows, or says why it may not
   ReadingTask(const Caller& waits, double now, Next next)
       : Task(waits), asked_at_(now), next_(std::move(next)) {}
 
   [[nodiscard]] const char* part() const override { return "reading"; }
-  [[nodiscard]] std::string activity(const Bench& /*bench*/) const override {
+  [[nodiscard]] std::string activity(const RobotParts& /*parts*/) const override {
     return "reading the controller";
   }
-  TaskTurn turn(Bench& bench) override;
-  void stop(Bench& /*bench*/) override { cancelled_ = "stopped on request"; }
-  void abandoned(Bench& /*bench*/) override { cancelled_ = "the client closed its connection"; }
+  TaskTurn turn(RobotParts& parts) override;
+  void stop(RobotParts& /*parts*/) override { cancelled_ = "stopped on request"; }
+  void abandoned(RobotParts& /*parts*/) override { cancelled_ = "the client closed its connection"; }
   [[nodiscard]] bool uses_controller() const override { return true; }
 
  private:
-  TaskTurn begin(Bench& bench);
+  TaskTurn begin(RobotParts& parts);
 
   double asked_at_;  // s
   Next next_;

@@ -12,15 +12,15 @@ namespace odomcalib {
 class RecordingTask final : public Task {
  public:
   /// @param duration s; 0: until it is stopped. Errors: those of Recorder::start
-  static Result<std::unique_ptr<Task>> begin(Bench& bench, const Caller& caller, const std::string& name,
+  static Result<std::unique_ptr<Task>> begin(RobotParts& parts, const Caller& caller, const std::string& name,
                                              double duration);
 
   [[nodiscard]] const char* part() const override { return "recording"; }
-  [[nodiscard]] std::string activity(const Bench& bench) const override;
-  TaskTurn turn(Bench& bench) override;
-  void stop(Bench& bench) override { until_ = bench.now; }
+  [[nodiscard]] std::string activity(const RobotParts& parts) const override;
+  TaskTurn turn(RobotParts& parts) override;
+  void stop(RobotParts& parts) override { until_ = parts.now; }
   /// Nobody would end a recording without a duration. What was recorded is kept.
-  void abandoned(Bench& bench) override { until_ = bench.now; }
+  void abandoned(RobotParts& parts) override { until_ = parts.now; }
 
  private:
   RecordingTask(const Caller& waits, std::optional<double> until) : Task(waits), until_(until) {}

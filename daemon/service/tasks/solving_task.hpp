@@ -17,14 +17,14 @@ class SolvingTask final : public Task {
     std::vector<std::filesystem::path> recordings;  ///< solved together; the one just driven is the last
     std::vector<std::string> effects;
   };
-  SolvingTask(const Bench& bench, const Caller& waits, const Order& order);
+  SolvingTask(const RobotParts& parts, const Caller& waits, const Order& order);
 
   [[nodiscard]] const char* part() const override { return "solver"; }
-  [[nodiscard]] std::string activity(const Bench& /*bench*/) const override { return "solving"; }
-  TaskTurn turn(Bench& bench) override;
-  void stop(Bench& /*bench*/) override { *cancelled_ = true; }
+  [[nodiscard]] std::string activity(const RobotParts& /*parts*/) const override { return "solving"; }
+  TaskTurn turn(RobotParts& parts) override;
+  void stop(RobotParts& /*parts*/) override { *cancelled_ = true; }
   /// The result is kept in a file.
-  void abandoned(Bench& /*bench*/) override {}
+  void abandoned(RobotParts& /*parts*/) override {}
 
  private:
   std::filesystem::path recording_;

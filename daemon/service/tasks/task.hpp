@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "daemon/service/json_text.hpp"
-#include "daemon/service/parts/bench.hpp"
+#include "daemon/service/parts/robot_parts.hpp"
 #include "proto/control/control.hpp"
 
 namespace odomcalib {
@@ -43,20 +43,20 @@ class Task {
   /// Part of the loop as which the duration of its turns is counted (LoopWatch).
   [[nodiscard]] virtual const char* part() const = 0;
   /// What `odomcalibctl status` shows.
-  [[nodiscard]] virtual std::string activity(const Bench& bench) const = 0;
-  virtual TaskTurn turn(Bench& bench) = 0;
+  [[nodiscard]] virtual std::string activity(const RobotParts& parts) const = 0;
+  virtual TaskTurn turn(RobotParts& parts) = 0;
 
   /// Somebody wants the robot to stand still: the task ends as soon as it may, and turn() says how.
-  virtual void stop(Bench& bench) = 0;
+  virtual void stop(RobotParts& parts) = 0;
   /// The client `caller` has closed its connection.
-  virtual void abandoned(Bench& bench) = 0;
+  virtual void abandoned(RobotParts& parts) = 0;
   /// The drive has stopped by itself.
   virtual void drive_stopped(const std::string& /*why*/) {}
   /// A whole turn of the lidar; odometry is up to date.
-  virtual void scanned(const Bench& /*bench*/, const Scan& /*scan*/) {}
+  virtual void scanned(const RobotParts& /*parts*/, const Scan& /*scan*/) {}
   /// The daemon ends. A task that moves the robot has ended it when this returns; others go on as they can.
   /// @return how it ended, Running where it did not
-  virtual TaskTurn daemon_ends(Bench& /*bench*/, const Error& /*why*/) { return Running{}; }
+  virtual TaskTurn daemon_ends(RobotParts& /*parts*/, const Error& /*why*/) { return Running{}; }
 
   [[nodiscard]] virtual bool moves() const { return false; }
   /// Nothing else may be asked of the controller meanwhile.

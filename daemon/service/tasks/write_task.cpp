@@ -9,11 +9,11 @@ ordered_json to_json(const RoundingError& error) {
   return {{"length", error.length}, {"heading", error.heading}, {"turn", error.turn}};
 }
 
-Result<std::unique_ptr<Task>> WriteTask::begin(Bench& bench, const Caller& caller, const Order& order) {
-  if (bench.write_back.busy())
+Result<std::unique_ptr<Task>> WriteTask::begin(RobotParts& parts, const Caller& caller, const Order& order) {
+  if (parts.write_back.busy())
     return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
-  std::unique_ptr<WriteTask> task(new WriteTask(caller, order, bench.now));
-  task->announce(bench);
+  std::unique_ptr<WriteTask> task(new WriteTask(caller, order, parts.now));
+  task->announce(parts);
   return std::unique_ptr<Task>(std::move(task));
 }
 
@@ -21,59 +21,60 @@ namespace {
 
 /// A disk that did not take the entries of earlier write-backs has to take them first: it would forget what
 /// the journal alone still knows.
-Result<std::string> announced_id(Bench& bench, const std::optional<std::string>& calibration, bool replaces,
-                                 const std::vector<HistoryEntry>& unwritten, const std::string& journaled) {
+Result<std::string> announced_id(RobotParts& parts, const std::optional<std::string>& calibration,
+                                 bool replaces, const std::vector<HistoryEntry>& unwritten,
+                                 const std::string& journaled) {
   for (const HistoryEntry& entry : unwritten)
-    if (auto written = bench.write_back.history.write(entry); !written) return written.error();
-  return replaces ? bench.applied.file.announce(calibration, journaled) : Result<std::string>("");
+    if (auto written = parts.write_back.history.write(entry); !written) return written.error();
+  return replaces ? parts.applied.file.announce(calibration, journaled) : Result<std::string>("");
 }
 
 }  // namespace
 
 // The task may be gone when the disk is done.
-void WriteTask::announce(Bench& bench) {
-  announced_->unwritten = bench.write_back.unwritten;
+void WriteTask::announce(RobotParts& parts) {
+  announced_->unwritten = parts.write_back.unwritten;
   announced_->done = !order_.replaces_calibration && announced_->unwritten.empty();
   if (announced_->done) return;
-  bench.disk->post(
-      [&bench, text = order_.calibration, replaces = order_.replaces_calibration,
-       journaled = bench.write_back.journaled_calibration(), announced = announced_] {
-        announced->id = announced_id(bench, text, replaces, announced->unwritten, journaled);
+  parts.disk->post(
+      [&parts, text = order_.calibration, replaces = order_.replaces_calibration,
+       journaled = parts.write_back.journaled_calibration(), announced = announced_] {
+        announced->id = announced_id(parts, text, replaces, announced->unwritten, journaled);
       },
-      [&bench, announced = announced_] {
+      [&parts, announced = announced_] {
         announced->done = true;
-        if (announced->id) bench.write_back.unwritten.clear();
+        if (announced->id) parts.write_back.unwritten.clear();
       });
 }
 
-TaskTurn WriteTask::begin_writing(Bench& bench) {
-  if (bench.ending) return Failed{{ErrorCode::cancelled, "the daemon ends", "write-back", "start again"}};
-  if (!announced_->done || bench.write_back.busy()) return Running{};
+TaskTurn WriteTask::begin_writing(RobotParts& parts) {
+  if (parts.ending) return Failed{{ErrorCode::cancelled, "the daemon ends", "write-back", "start again"}};
+  if (!announced_->done || parts.write_back.busy()) return Running{};
   if (!announced_->id) return Failed{announced_->id.error()};
-  if (auto forbidden = write_forbidden(bench)) return Failed{*forbidden};
-  if (comes_to_rest(bench))
-    return bench.now - asked_at_ < service::settings::kComesToRest_s ? TaskTurn(Running{})
-                                                                     : Failed{axes_not_off(bench)};
+  if (auto forbidden = write_forbidden(parts)) return Failed{*forbidden};
+  if (comes_to_rest(parts))
+    return parts.now - asked_at_ < service::settings::kComesToRest_s ? TaskTurn(Running{})
+                                                                     : Failed{axes_not_off(parts)};
   const auto prover = order_.prove ? std::optional(caller.client) : std::nullopt;
-  const auto begun = bench.write_back.write(order_.label, order_.rounded.values, announced_->id.value(),
+  const auto begun = parts.write_back.write(order_.label, order_.rounded.values, announced_->id.value(),
                                             prover, order_.origin);
   if (!begun) return Failed{begun.error()};
-  bench.write_back.rounding = order_.rounded.remaining;
-  bench.write_back.place = order_.place;
-  bench.outbox.event(messages::Severity::info, "write_back",
+  parts.write_back.rounding = order_.rounded.remaining;
+  parts.write_back.place = order_.place;
+  parts.outbox.event(messages::Severity::info, "write_back",
                      order_.label + (order_.place.empty() ? "" : " to " + order_.place) + " begins, for " +
-                         bench.outbox.server.name_of(caller.client));
+                         parts.outbox.server.name_of(caller.client));
   begun_ = true;
   return Running{};
 }
 
-TaskTurn WriteTask::turn(Bench& bench) {
-  if (!begun_) return begin_writing(bench);
-  const auto end = bench.write_back.take_end();
-  return end ? turn_of(bench, *end) : TaskTurn(Running{});
+TaskTurn WriteTask::turn(RobotParts& parts) {
+  if (!begun_) return begin_writing(parts);
+  const auto end = parts.write_back.take_end();
+  return end ? turn_of(parts, *end) : TaskTurn(Running{});
 }
 
-ordered_json write_reply(const Bench& bench, const WriteReport& report, const ParameterMap& before,
+ordered_json write_reply(const RobotParts& parts, const WriteReport& report, const ParameterMap& before,
                          const ParameterMap& after, const RoundingError& remaining) {
   // Old values that a client asked back are what it wanted.
   const bool asked = report.outcome == WriteOutcome::rolled_back;
@@ -82,17 +83,17 @@ ordered_json write_reply(const Bench& bench, const WriteReport& report, const Pa
                          {"before", before},
                          {"after", after},
                          {"rounding_error", to_json(remaining)},
-                         {"parameters", parameter_report(bench, bench.applied.get())}};
-  if (!bench.write_back.place.empty()) result["goes_to"] = bench.write_back.place;
+                         {"parameters", parameter_report(parts, parts.applied.get())}};
+  if (!parts.write_back.place.empty()) result["goes_to"] = parts.write_back.place;
   return {{"result", std::move(result)}};
 }
 
-TaskTurn turn_of(const Bench& bench, const WriteEnd& end) {
+TaskTurn turn_of(const RobotParts& parts, const WriteEnd& end) {
   const WriteReport& report = end.report;
   if (report.outcome != WriteOutcome::committed && report.outcome != WriteOutcome::proving)
     return Failed{report.error.value_or(Error{ErrorCode::write_failed, "write-back failed", "", ""})};
   if (end.unsettled) return Failed{*end.unsettled};
-  return done_with(write_reply(bench, report, report.before, report.after, bench.write_back.rounding));
+  return done_with(write_reply(parts, report, report.before, report.after, parts.write_back.rounding));
 }
 
 }  // namespace odomcalib
