@@ -93,7 +93,7 @@ void Loop::see_that_it_gets_on() {
       clients.accepted + clients.not_permitted, clients.bytes};
   guard_.turned(at_once_, clients.served != std::exchange(served_, clients.served), taken);
   if (guard_.hangs_at().empty()) return;
-  stop_drive(parts_);
+  stop_drive(parts_.drive, parts_.write_back, parts_.now);
   spdlog::critical("the loop hangs at {}", guard_.hangs_at());
   std::abort();
 }
@@ -120,7 +120,7 @@ void Loop::serve_lidar() {
   for (const Scan& scan : parts_.surroundings.serve(parts_.clock)) {
     parts_.surroundings.judge(scan, task_ ? task_->twist() : routines::Twist{}, parts_.now);
     parts_.outbox.scan(scan);
-    if (task_) task_->scanned(parts_, scan);
+    if (task_) task_->scanned(scan);
   }
   report("lidar", parts_.surroundings.take_news());
 }
@@ -143,7 +143,7 @@ void Loop::forget(ClientId gone) {
   parts_.lease.lost(gone);
   parts_.write_back.forget(gone);
   parts_.outbox.forget(gone);
-  if (task_ && task_->caller.client == gone) task_->abandoned(parts_);
+  if (task_ && task_->caller.client == gone) task_->abandoned(parts_.now);
 }
 
 void Loop::serve_disk() {
@@ -160,7 +160,7 @@ void Loop::serve_write_back() {
 }
 
 void Loop::serve_task() {
-  if (task_) settle(task_->turn(parts_));
+  if (task_) settle(task_->turn(parts_.now));
 }
 
 void Loop::settle(TaskTurn turn) {
@@ -188,8 +188,8 @@ void Loop::stop_all(const std::string& why) {
   parts_.write_back.end();
   parts_.last_run.daemon_ends();
   const bool moves = task_ && task_->moves();
-  if (!moves) return stop_drive(parts_);
-  settle(task_->daemon_ends(parts_, {ErrorCode::cancelled, why, "odomcalibd", "start again"}));
+  if (!moves) return stop_drive(parts_.drive, parts_.write_back, parts_.now);
+  settle(task_->daemon_ends({ErrorCode::cancelled, why, "odomcalibd", "start again"}, parts_.now));
 }
 
 }  // namespace odomcalib

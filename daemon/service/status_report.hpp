@@ -11,12 +11,13 @@ std::string activity(const RobotParts& parts, const Task* task);
 std::string one_line(const RobotParts& parts, const Task* task);
 ordered_json status_report(const RobotParts& parts, const Task* task);
 /// The newest scan: points [x, y], m in the frame of the base, thinned; none where no current scan arrives.
-ordered_json scan_report(const RobotParts& parts);
+ordered_json scan_report(const Surroundings& surroundings, double now);
 /// The configuration in force.
 ordered_json description(const Config& config);
 /// Rows {name, outcome, found, remedy}.
 ordered_json check_report(const RobotParts& parts);
 /// @param calibration whose values are shown beside those in force
-ordered_json parameter_report(const RobotParts& parts, const std::optional<Calibration>& calibration);
+ordered_json parameter_report(const Drive& drive, const Calibrator& calibrator,
+                              const std::optional<Calibration>& calibration);
 
 }  // namespace odomcalib

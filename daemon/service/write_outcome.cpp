@@ -11,7 +11,7 @@ void learn(RobotParts& parts, const WriteReport& report) {
   // Where nothing was touched, it was a reading.
   const ParameterMap written = report.steps.empty() ? ParameterMap{} : report.before;
   if (unknown) parts.drive.forget_values();
-  if (was_read) settle_reading(parts, report.in_force, written);
+  if (was_read) settle_reading(parts.drive, parts.outbox, report.in_force, written);
   parts.drive.values_known = !unknown && (parts.drive.values_known || was_read);
   parts.write_back.learn(report);
 }
@@ -81,13 +81,12 @@ std::optional<Error> take_over(RobotParts& parts, const Settlement& end) {
 
 }  // namespace
 
-void settle_reading(RobotParts& parts, const std::vector<drivers::StoredParameter>& found,
+void settle_reading(Drive& drive, Outbox& outbox, const std::vector<drivers::StoredParameter>& found,
                     const ParameterMap& written) {
-  if (parts.drive.take(found, written))
-    parts.outbox.event(messages::Severity::warning, "values_changed",
-                       parts.drive.changed_besides({})->text());
-  parts.drive.values_known = true;
-  parts.outbox.send_robot_soon();
+  if (drive.take(found, written))
+    outbox.event(messages::Severity::warning, "values_changed", drive.changed_besides({})->text());
+  drive.values_known = true;
+  outbox.send_robot_soon();
 }
 
 void settle_write(RobotParts& parts, const WriteReport& report) {

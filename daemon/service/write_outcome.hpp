@@ -12,7 +12,7 @@ void settle_write(RobotParts& parts, const WriteReport& report);
 
 /// Takes over what was read of the controller, and says where somebody else has changed it.
 /// @param written quantities that were written by us since the last time
-void settle_reading(RobotParts& parts, const std::vector<drivers::StoredParameter>& found,
+void settle_reading(Drive& drive, Outbox& outbox, const std::vector<drivers::StoredParameter>& found,
                     const ParameterMap& written = {});
 
 /// At the start, at once: the journal is what counts. Entries that the history lacks are made of it, and the

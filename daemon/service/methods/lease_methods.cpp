@@ -36,9 +36,10 @@ Reading release(Context& context, const Call& call) {
 }
 
 void stop_robot(Context context) {
-  stop_drive(context.parts);
-  if (context.task != nullptr) context.task->stop(context.parts);
-  context.parts.outbox.event(messages::Severity::stop, "stop", "stopped on request of a client");
+  RobotParts& parts = context.parts;
+  stop_drive(parts.drive, parts.write_back, parts.now);
+  if (context.task != nullptr) context.task->stop(parts.now);
+  parts.outbox.event(messages::Severity::stop, "stop", "stopped on request of a client");
 }
 
 // One that was found on its arrival has been obeyed then: what has begun since was asked for after it.

@@ -84,6 +84,11 @@ std::unique_ptr<Task> settle_outcome(Outcome outcome, const Caller& caller, Outb
 
 }  // namespace
 
+std::unique_ptr<Task> begin_reading(RobotParts& parts, const Caller& caller, ReadingTask::Next next) {
+  return std::make_unique<ReadingTask>(ReadingTask::Parts{parts.write_back, parts.drive, parts.outbox},
+                                       caller, parts.now, std::move(next));
+}
+
 std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming) {
   Outbox& outbox = context.parts.outbox;
   const Caller caller{incoming.client, incoming.call.more, incoming.call.oneway};

@@ -139,15 +139,15 @@ struct View {
   std::vector<std::string> unseen;  ///< moves that go there
 };
 
-View view_of(const RobotParts& parts, const routines::Plan& plan) {
-  const safety::BlindArea blind = parts.surroundings.cover.blind(parts.now);
-  return {blind, safety::unseen_moves(plan, blind, parts.surroundings.obstacles.options())};
+View view_of(const Surroundings& surroundings, const routines::Plan& plan, double now) {
+  const safety::BlindArea blind = surroundings.cover.blind(now);
+  return {blind, safety::unseen_moves(plan, blind, surroundings.obstacles.options())};
 }
 
 /// Where the lidar sees nothing, nothing but a person stops the robot: one has to stand for it, in this call
 /// and for this motion (rule M10). Notes in the order what it is.
-std::optional<Error> not_vouched_for(const RobotParts& parts, MotionTask::Order& order) {
-  const View view = view_of(parts, order.plan);
+std::optional<Error> not_vouched_for(const Surroundings& surroundings, MotionTask::Order& order, double now) {
+  const View view = view_of(surroundings, order.plan, now);
   order.unseen.clear();
   if (view.unseen.empty()) return std::nullopt;
   order.unseen = fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
@@ -156,6 +156,12 @@ std::optional<Error> not_vouched_for(const RobotParts& parts, MotionTask::Order&
   return Error{ErrorCode::refused, order.unseen, "motion",
                "another motion; or somebody watches that area and vouches for it: odomcalibctl asks, other "
                "clients say who (vouched_by)"};
+}
+
+MotionTask::Parts for_motion(RobotParts& parts) {
+  return {parts.config,     parts.clock,        parts.calibrator, parts.loop,     parts.outbox,
+          parts.drive,      parts.surroundings, parts.odometry,   parts.recorded, parts.applied,
+          parts.write_back, parts.lease,        parts.last_run};
 }
 
 Outcome begin_motion(RobotParts& parts, const Caller& caller, MotionTask::Order order, bool dry_run) {
@@ -168,20 +174,20 @@ Outcome begin_motion(RobotParts& parts, const Caller& caller, MotionTask::Order 
   if (const auto error = motion_forbidden(parts, preview)) return *error;
   if (dry_run) {
     if (auto wrong = parts.drive.geometry_forbidden()) return *wrong;
-    const View view = view_of(parts, plan);
+    const View view = view_of(parts.surroundings, plan, parts.now);
     return Answer{{{"result", plan_report(parts, plan, preview, view.unseen, view.blind.sectors())}}};
   }
-  if (const auto refused = not_vouched_for(parts, order)) return *refused;
+  if (const auto refused = not_vouched_for(parts.surroundings, order, parts.now)) return *refused;
   for (const auto& text : routines::limited(plan))
     parts.outbox.event(messages::Severity::info, "limited", text);
-  ReadingTask::Next next = [caller, order = std::move(order),
-                            preview](RobotParts& read) mutable -> Result<std::unique_ptr<Task>> {
-    if (const auto error = motion_forbidden(read, preview)) return *error;
-    if (const auto wrong = read.drive.geometry_forbidden()) return *wrong;
-    if (const auto refused = not_vouched_for(read, order)) return *refused;
-    return MotionTask::begin(read, caller, order);
+  ReadingTask::Next next = [&parts, caller, order = std::move(order),
+                            preview]() mutable -> Result<std::unique_ptr<Task>> {
+    if (const auto error = motion_forbidden(parts, preview)) return *error;
+    if (const auto wrong = parts.drive.geometry_forbidden()) return *wrong;
+    if (const auto refused = not_vouched_for(parts.surroundings, order, parts.now)) return *refused;
+    return MotionTask::begin(for_motion(parts), caller, order, parts.now);
   };
-  return std::make_unique<ReadingTask>(caller, parts.now, std::move(next));
+  return begin_reading(parts, caller, std::move(next));
 }
 
 Reading motion_request(Context& context, const Call& call, routines::Plan plan, MotionPurpose purpose) {
@@ -200,11 +206,11 @@ Reading motion_request(Context& context, const Call& call, routines::Plan plan, 
 
 // Straight, spin and pattern as one motion in one recording, or a single manoeuvre that goes with earlier
 // recordings.
-Result<routines::Plan> calibration_plan(const RobotParts& parts, CallParameters& options) {
-  const Config& config = parts.config;
+Result<routines::Plan> calibration_plan(const Config& config, const RobotDescription& robot,
+                                        CallParameters& options) {
   const routines::PatternOptions pattern{.area_length = config.area_length,
                                          .area_width = config.area_width,
-                                         .track_width = parts.drive.robot().track_width,
+                                         .track_width = robot.track_width,
                                          .quick = options.flag("quick"),
                                          .limits = config.limits};
   if (const std::string name = options.text("manoeuvre", ""); !name.empty()) {
@@ -235,7 +241,8 @@ Result<routines::Plan> calibration_plan(const RobotParts& parts, CallParameters&
 }  // namespace
 
 Reading nudge(Context& context, const Call& call) {
-  return motion_request(context, call, routines::nudge_plan(context.parts.config.limits), ReportWiring{});
+  return motion_request(context, call, routines::nudge_plan(context.parts.config.limits),
+                        ReportWiring{[&parts = context.parts] { return check_report(parts); }});
 }
 
 Reading straight(Context& context, const Call& call) {
@@ -288,7 +295,7 @@ Reading calibrate(Context& context, const Call& call) {
   const ordered_json& wanted = given.member("options");
   CallParameters options(wanted.is_null() ? kNone : wanted, "options");
   SolveRecording solve{wanted_effects(options), {}};
-  auto plan = calibration_plan(parts, options);
+  auto plan = calibration_plan(parts.config, parts.drive.robot(), options);
   if (options.wrong()) return WrongParameter{*options.wrong()};
   if (parts.calibrator.wrong_effects)
     if (auto wrong = parts.calibrator.wrong_effects(solve.effects)) return *wrong;
@@ -306,7 +313,9 @@ Reading record(Context& context, const Call& call) {
   if (given.wrong()) return WrongParameter{*given.wrong()};
   if (!within(duration, 0.0, service::settings::kLongestRecord_s))
     return out_of_range("duration is not 0 to 3600 s");
-  auto task = RecordingTask::begin(context.parts, call.caller, name, duration);
+  RobotParts& parts = context.parts;
+  auto task = RecordingTask::begin({parts.outbox, parts.recorded, parts.write_back}, call.caller,
+                                   {name, duration}, parts.now);
   if (!task) return task.error();
   return std::move(task).value();
 }

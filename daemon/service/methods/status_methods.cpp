@@ -12,7 +12,7 @@ Reading get_status(Context& context, const Call& /*call*/) {
 }
 
 Reading get_scan(Context& context, const Call& /*call*/) {
-  return Answer{{{"scan", scan_report(context.parts)}}};
+  return Answer{{{"scan", scan_report(context.parts.surroundings, context.parts.now)}}};
 }
 
 Reading describe(Context& context, const Call& /*call*/) {
@@ -27,7 +27,8 @@ Reading check(Context& context, const Call& call) {
 }
 
 Reading get_parameters(Context& context, const Call& /*call*/) {
-  return Answer{{{"parameters", parameter_report(context.parts, context.parts.applied.get())}}};
+  const RobotParts& parts = context.parts;
+  return Answer{{{"parameters", parameter_report(parts.drive, parts.calibrator, parts.applied.get())}}};
 }
 
 Reading get_history(Context& context, const Call& call) {

@@ -45,7 +45,7 @@ ordered_json dry_run_report(const RobotParts& parts, const ParameterMap& present
                          {"before", present},
                          {"after", rounded.values},
                          {"rounding_error", to_json(rounded.remaining)},
-                         {"parameters", parameter_report(parts, wanted)},
+                         {"parameters", parameter_report(parts.drive, parts.calibrator, wanted)},
                          {"asks", wish.asks}};
   if (!wish.place.empty()) report["goes_to"] = wish.place;
   return report;
@@ -66,9 +66,13 @@ Error not_vouched_for(const std::string& what) {
       "state robot.id in the configuration, or say that it is: odomcalibctl apply asks (\"of_this_robot\")"};
 }
 
+ParameterTask::Parts for_writing(RobotParts& parts) {
+  return {parts.write_back, parts.drive, parts.applied, parts.calibrator, parts.outbox, *parts.disk};
+}
+
 Outcome begin_write(RobotParts& parts, const Caller& caller, Wish wish, bool dry_run) {
   const ParameterMap present = present_lengths(parts.drive.robot());
-  const NominalLengths nominal = nominal_lengths(parts);
+  const NominalLengths nominal = nominal_lengths(parts.drive, parts.config);
   if (const auto wrong = implausible(wish.values, nominal)) {
     if (wish.verified.empty()) return *wrong;
     wish.place += "; " + wrong->what;  // what was verified may come back all the same, and it is said
@@ -82,11 +86,10 @@ Outcome begin_write(RobotParts& parts, const Caller& caller, Wish wish, bool dry
   origin.nominal_from = nominal.from;
   const WriteTask::Order order{wish.label, rounded,    wish.calibration, wish.replaces_calibration,
                                wish.prove, wish.place, std::move(origin)};
-  ReadingTask::Next next = [caller, order](RobotParts& read) -> Result<std::unique_ptr<Task>> {
-    if (auto changed = read.drive.changed_besides(order.rounded.values)) return *changed;
-    return WriteTask::begin(read, caller, order);
-  };
-  return std::make_unique<ReadingTask>(caller, parts.now, std::move(next));
+  return begin_reading(parts, caller, [&parts, caller, order]() -> Result<std::unique_ptr<Task>> {
+    if (auto changed = parts.drive.changed_besides(order.rounded.values)) return *changed;
+    return WriteTask::begin(for_writing(parts), caller, order, parts.now);
+  });
 }
 
 /// Where the configuration names this robot, a calibration names the same one.
@@ -126,7 +129,7 @@ Result<Wish> wish_of(Calibration calibration, const RobotParts& parts, bool repl
   if (auto wrong = of_another_robot(calibration, robot)) return *wrong;
   if (auto wrong = of_another_controller(calibration, device_of(parts.drive.controller()), replaced))
     return *wrong;
-  if (auto wrong = absurd(calibration, nominal_lengths(parts))) return *wrong;
+  if (auto wrong = absurd(calibration, nominal_lengths(parts.drive, parts.config))) return *wrong;
   Wish wish;
   if (robot.empty()) wish.asks.push_back(whose_robot(calibration));
   for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
@@ -145,7 +148,7 @@ Reading write_request(Context& context, const Call& call, MakeWish make_wish) {
   const bool dry_run = given.flag("dry_run");
   return Request{lease, dry_run,
                  [&parts = context.parts, caller = call.caller, dry_run, make_wish]() -> Outcome {
-                   if (auto forbidden = write_forbidden(parts)) return *forbidden;
+                   if (auto forbidden = write_forbidden(parts.drive, parts.write_back)) return *forbidden;
                    const Result<Wish> wish = make_wish();
                    if (!wish) return wish.error();
                    return begin_write(parts, caller, wish.value(), dry_run);
@@ -183,12 +186,14 @@ Reading end_proof(Context& context, const Call& call, bool proven) {
                    if (proven ? !values.proving() : !values.busy() && !values.proving() && !values.ended)
                      return Error{ErrorCode::refused, "no values wait for their proof", "write-back",
                                   "odomcalibctl params get"};
-                   if (!proven) return std::make_unique<ProofTask>(caller, proven, parts.now);
-                   return std::make_unique<ReadingTask>(
-                       caller, parts.now, [caller](RobotParts& read) -> Result<std::unique_ptr<Task>> {
-                         if (auto changed = read.drive.changed_besides({})) return *changed;
-                         return std::unique_ptr<Task>(std::make_unique<ProofTask>(caller, true, read.now));
-                       });
+                   const auto task = [&parts, caller, proven]() -> std::unique_ptr<Task> {
+                     return std::make_unique<ProofTask>(for_writing(parts), caller, proven, parts.now);
+                   };
+                   if (!proven) return task();
+                   return begin_reading(parts, caller, [&parts, task]() -> Result<std::unique_ptr<Task>> {
+                     if (auto changed = parts.drive.changed_besides({})) return *changed;
+                     return task();
+                   });
                  }};
 }
 

@@ -34,10 +34,10 @@ RobotParts::RobotParts(const Config& configuration, Clock& time, Calibrator func
 
 // A quick stop makes the controller refuse parameters for a moment: in the middle of a write-back, which
 // begins only when the axes are off, it would stop nothing and leave the values half written.
-void stop_drive(RobotParts& parts) {
-  if (parts.write_back.busy() && parts.drive.off()) return;
-  parts.drive.controller().quick_stop(parts.now);
-  parts.drive.link.flush();
+void stop_drive(Drive& drive, const WriteBack& write_back, double now) {
+  if (write_back.busy() && drive.off()) return;
+  drive.controller().quick_stop(now);
+  drive.link.flush();
 }
 
 }  // namespace odomcalib

@@ -55,11 +55,10 @@ struct RobotParts {
   safety::Lease lease;
 
   LastRun last_run;
-  std::uint64_t late_steps = 0;  ///< control steps that came noticeably late
-  bool ending = false;           ///< the daemon ends
+  bool ending = false;  ///< the daemon ends
 };
 
 /// Zero speed and quick stop, on the bus when it returns.
-void stop_drive(RobotParts& parts);
+void stop_drive(Drive& drive, const WriteBack& write_back, double now);
 
 }  // namespace odomcalib

@@ -69,6 +69,8 @@ class WriteBack {
   void learn(const WriteReport& report);
   /// From now on nothing is read or recovered any more.
   void end();
+  /// The daemon ends.
+  [[nodiscard]] bool ending() const { return ending_; }
   /// Until what it came to is in the history, too.
   [[nodiscard]] bool busy() const { return (transaction.busy() && !proving()) || settling; }
   /// Without an entry: what an unfinished write-back is to be taken back to, else one entry further back.

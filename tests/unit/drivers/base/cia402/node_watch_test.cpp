@@ -50,6 +50,7 @@ TEST_F(NodeWatch, a_boot_up_is_a_loss_of_a_node_in_use_and_news_of_one_that_fell
   EXPECT_FALSE(back.lost);
   ASSERT_TRUE(back.event);
   EXPECT_FALSE(back.event->stop);
+  EXPECT_FALSE(watch_.on_life_sign(boot, new_to_us_, 5.0).event) << "told once";
 }
 
 TEST_F(NodeWatch, who_only_reads_the_node_commands_nothing) {
