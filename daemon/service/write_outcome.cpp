@@ -6,13 +6,13 @@ namespace odomcalib {
 namespace {
 
 void learn(RobotParts& parts, const WriteReport& report) {
-  const bool unknown = report.outcome == WriteOutcome::unknown;
+  const bool certain = ending_of(report.outcome).certain;
   const bool was_read = !report.in_force.empty() || !report.error;
   // Where nothing was touched, it was a reading.
   const ParameterMap written = report.steps.empty() ? ParameterMap{} : report.before;
-  if (unknown) parts.drive.forget_values();
+  if (!certain) parts.drive.forget_values();
   if (was_read) settle_reading(parts.drive, parts.outbox, report.in_force, written);
-  parts.drive.values_known = !unknown && (parts.drive.values_known || was_read);
+  parts.drive.values_known = certain && (parts.drive.values_known || was_read);
   parts.write_back.learn(report);
 }
 
@@ -91,19 +91,17 @@ void settle_reading(Drive& drive, Outbox& outbox, const std::vector<drivers::Sto
 
 void settle_write(RobotParts& parts, const WriteReport& report) {
   learn(parts, report);
-  if (report.outcome == WriteOutcome::read) return;
-  const bool committed = report.outcome == WriteOutcome::committed;
-  const bool proving = report.outcome == WriteOutcome::proving;
-  parts.outbox.event(committed || proving ? messages::Severity::info : messages::Severity::fault,
-                     "write_back",
-                     name_of(report.outcome) + (report.error ? ": " + report.error->text() : ""));
+  const Ending& how = ending_of(report.outcome);
+  if (!how.of_a_write) return;
+  parts.outbox.event(how.as_asked ? messages::Severity::info : messages::Severity::fault, "write_back",
+                     how.name + (report.error ? ": " + report.error->text() : ""));
   // Nothing of it lasts yet: neither the history nor the calibration in force changes.
-  if (proving) {
+  if (!how.lasts) {
     parts.write_back.ended = WriteEnd{report, std::nullopt};
     return;
   }
   const auto end = std::make_shared<Settlement>();
-  end->calibration = committed ? report.calibration : "";
+  end->calibration = how.as_asked ? report.calibration : "";
   end->entry = entry_of(parts, report);
   parts.write_back.settling = true;
   parts.disk->post([&history = parts.write_back.history, &applied = parts.applied,

@@ -10,19 +10,12 @@
 #include <vector>
 
 #include "daemon/writeback/journal_writer.hpp"
+#include "daemon/writeback/outcome.hpp"
 #include "drivers/base/controller.hpp"
 
 namespace odomcalib {
 
 using ParameterMap = std::map<std::string, double>;  ///< SI, by quantity
-
-enum class WriteOutcome {
-  read,         ///< only read
-  proving,      ///< new values in force and not stored: they wait for their proof
-  committed,    ///< new values in force and stored
-  rolled_back,  ///< old values in force
-  unknown,      ///< forbids motion until an operator or a recovery has decided
-};
 
 /// Whether new values are stored at once, or after a motion with them.
 enum class Proof { none, wanted };

@@ -103,7 +103,6 @@ class WriteBack {
  private:
   void begin_reading(const drivers::Controller& controller, bool values_known, double now);
   void serve_proof(drivers::ControllerState state, bool may_begin, double now);
-  void learn_of_proof(const WriteReport& report);
 
   [[nodiscard]] bool unfinished() const { return transaction.journal().unfinished().has_value(); }
 
@@ -117,7 +116,5 @@ class WriteBack {
   std::optional<Error> not_proven_;  // why the values that wait go back
   double proof_ends_ = 0.0;          // s, of the longest wait
 };
-
-std::string name_of(WriteOutcome outcome);
 
 }  // namespace odomcalib

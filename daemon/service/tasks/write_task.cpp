@@ -94,7 +94,7 @@ ordered_json write_reply(const ParameterTask::Parts& parts, const WriteReport& r
 
 TaskTurn turn_of(const ParameterTask::Parts& parts, const WriteEnd& end) {
   const WriteReport& report = end.report;
-  if (report.outcome != WriteOutcome::committed && report.outcome != WriteOutcome::proving)
+  if (!ending_of(report.outcome).as_asked)
     return Failed{report.error.value_or(Error{ErrorCode::write_failed, "write-back failed", "", ""})};
   if (end.unsettled) return Failed{*end.unsettled};
   return done_with(write_reply(parts, report, report.before, report.after, parts.write_back.rounding));
