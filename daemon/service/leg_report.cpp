@@ -48,11 +48,11 @@ bool MovesReport::compare_next(const std::array<double, 3>& lidar_pose) {
   if (next_ == comparisons_.size()) return false;
   Comparison& now = comparisons_[next_];
   const auto seen = calibrator_.match(legs_[now.from].scans_before[now.tried],
-                                      legs_[now.to].scans_after[now.tried], now.told, lidar_pose);
+                                      legs_[now.to].scans_after[now.tried], now.by_odometry, lidar_pose);
   ++now.tried;
   if (!seen) return true;
   // The lidar cannot count full turns: the nearest to what the odometry says.
-  const double yaw = now.told.yaw + routines::wrapped(seen->yaw - now.told.yaw);
+  const double yaw = now.by_odometry.yaw + routines::wrapped(seen->yaw - now.by_odometry.yaw);
   now.sum = {now.sum.x + seen->x, now.sum.y + seen->y, now.sum.yaw + yaw};
   ++now.matched;
   return true;
@@ -60,16 +60,16 @@ bool MovesReport::compare_next(const std::array<double, 3>& lidar_pose) {
 
 /// The lidar's motion is the mean over pairs of scans; null when no pair matches.
 void MovesReport::add(const Comparison& comparison, ordered_json& body) {
-  const routines::Pose &told = comparison.told, &sum = comparison.sum;
-  body["odometry"] = json_of(told);
+  const routines::Pose &driven = comparison.by_odometry, &sum = comparison.sum;
+  body["odometry"] = json_of(driven);
   body["lidar"] = nullptr;
   body["error"] = nullptr;
   if (comparison.matched == 0) return;
   const auto count = static_cast<double>(comparison.matched);
   const routines::Pose seen{sum.x / count, sum.y / count, sum.yaw / count};
   body["lidar"] = json_of(seen);
-  body["error"] = {{"distance", std::hypot(told.x, told.y) - std::hypot(seen.x, seen.y)},
-                   {"yaw", told.yaw - seen.yaw}};
+  body["error"] = {{"distance", std::hypot(driven.x, driven.y) - std::hypot(seen.x, seen.y)},
+                   {"yaw", driven.yaw - seen.yaw}};
 }
 
 ordered_json MovesReport::body(const RobotDescription& robot) const {

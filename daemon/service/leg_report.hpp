@@ -39,8 +39,8 @@ class MovesReport {
  private:
   /// Base motion between two moments at rest, in the frame of the first.
   struct Comparison {
-    std::size_t from, to;          ///< legs
-    routines::Pose told;           ///< by odometry
+    std::size_t from, to;  ///< legs
+    routines::Pose by_odometry;
     std::size_t pairs, tried = 0;  ///< of scans
     routines::Pose sum = {};       ///< over the pairs that match, by the lidar
     std::size_t matched = 0;

@@ -75,7 +75,7 @@ void Loop::turn() {
     parts_.loop.passed(name != nullptr ? name : of_task, clock.now());
   }
   parts_.drive.link.flush();
-  see_that_it_gets_on();
+  abort_if_stuck();
   const double end = clock.now();
   parts_.loop.passed("sending", end);
   parts_.loop.end(end);
@@ -86,7 +86,7 @@ void Loop::report(const char* line, const std::optional<LinkWatch::News>& news) 
   parts_.outbox.event(news->good ? messages::Severity::info : messages::Severity::warning, line, news->text);
 }
 
-void Loop::see_that_it_gets_on() {
+void Loop::abort_if_stuck() {
   const auto& clients = parts_.outbox.server.counters();
   const std::array<std::uint64_t, kPolled.size()> taken = {
       parts_.drive.link.taken(), parts_.surroundings.link.taken(), parts_.disk->taken(),

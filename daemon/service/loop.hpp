@@ -43,7 +43,7 @@ class Loop {
   void forget(ClientId gone);
   void settle(TaskTurn turn);
   /// Ends the process when the loop hangs; the service manager starts it again.
-  void see_that_it_gets_on();
+  void abort_if_stuck();
 
   RobotParts parts_;
   std::unique_ptr<Task> task_;  // after the parts: its end may stop the drive
