@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "daemon/service/dead_reckoning.hpp"
+
 namespace odomcalib {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "daemon/routines/wiring.hpp"
+#include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/leg_report.hpp"
 #include "proto/angles.hpp"
 

@@ -8,14 +8,14 @@
 namespace odomcalib {
 namespace {
 
-const auto kTtl_ms = std::lround(1000.0 * safety::kLeaseTime);
+const auto kTtlMilliseconds = std::lround(1000.0 * safety::kLeaseTime);
 
 }  // namespace
 
 Reading acquire(Context& context, const Call& call) {
   const auto granted = context.parts.lease.acquire(call.caller.client, context.parts.now);
   if (!granted) return granted.error();
-  return Answer{{{"lease", granted.value()}, {"ttl_ms", kTtl_ms}}};
+  return Answer{{{"lease", granted.value()}, {"ttl_ms", kTtlMilliseconds}}};
 }
 
 Reading renew(Context& context, const Call& call) {
@@ -27,7 +27,7 @@ Reading renew(Context& context, const Call& call) {
   // One that has waited behind other calls says that the client was there when it arrived.
   const auto renewed = context.parts.lease.renew(lease, now, std::min(sent, call.arrived));
   if (!renewed) return renewed.error();
-  return Answer{{{"ttl_ms", kTtl_ms}}};
+  return Answer{{{"ttl_ms", kTtlMilliseconds}}};
 }
 
 Reading release(Context& context, const Call& call) {
