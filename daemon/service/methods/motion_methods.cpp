@@ -17,6 +17,7 @@
 #include "daemon/service/methods/methods.hpp"
 #include "daemon/service/motion_gate.hpp"
 #include "daemon/service/settings.hpp"
+#include "daemon/service/status_report.hpp"
 #include "daemon/service/tasks/motion_task.hpp"
 #include "daemon/service/tasks/reading_task.hpp"
 #include "daemon/service/tasks/recording_task.hpp"
