@@ -9,9 +9,9 @@
 #include "calib/ingest/phantom_return.hpp"
 #include "calib/ingest/put_right.hpp"
 #include "calib/ingest/recordings.hpp"
+#include "calib/ingest/two_robots.hpp"
 #include "calib/report/findings.hpp"
 #include "calib/report/gate.hpp"
-#include "calib/report/one_robot.hpp"
 #include "calib/report/report_data.hpp"
 #include "calib/selection/fit_stages.hpp"
 #include "calib/selection/lidar_correction.hpp"
@@ -37,7 +37,7 @@ selection::SearchResult select_terms(const estimation::Fit& fit, bool is_wanted,
 /// What makes any fit of the recordings meaningless, as far as it shows before scans are matched from where
 /// the counts say they are.
 std::optional<Error> contradiction(const ingest::Recordings& recordings, bool same_robot) {
-  if (auto error = same_robot ? std::nullopt : report::different_robots(recordings.view())) return error;
+  if (auto error = ingest::two_robots(recordings.view(), same_robot)) return error;
   for (const Recording& recording : recordings.view())
     if (auto error = estimation::counts_without_direction(recording)) return error;
   return std::nullopt;

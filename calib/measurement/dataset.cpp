@@ -19,11 +19,6 @@ wheels::BaseParameters start_of(const RobotDescription& robot) {
   return base;
 }
 
-bool same_robot(const RobotDescription& a, const RobotDescription& b) {
-  return a.ticks_per_rev == b.ticks_per_rev && a.left_wheel_diameter == b.left_wheel_diameter &&
-         a.right_wheel_diameter == b.right_wheel_diameter && a.track_width == b.track_width;
-}
-
 Dataset measured_by(Dataset dataset, const Eigen::VectorXd& parameters, const vehicle::EffectList& effects,
                     const PairOptions& options) {
   dataset.data.clear();
@@ -88,9 +83,6 @@ Result<Dataset> open_dataset(const ingest::Recordings& recordings) {
   dataset.recordings = recordings;
   dataset.nominal = start_of(recordings.front().robot);
   for (const Recording& recording : recordings.view()) {
-    if (!same_robot(recording.robot, recordings.front().robot))
-      return Error{ErrorCode::format, "nominal values differ from those of " + recordings.front().name,
-                   recording.name, "solve recordings of different robots separately"};
     auto track = track_of(recording);
     if (!track) return track.error();
     std::vector<vehicle::StepContext> context = vehicle::make_context(track.value(), dataset.nominal);

@@ -41,7 +41,7 @@ struct Dataset {
   [[nodiscard]] bool is_measured_with(const Eigen::VectorXd& parameters) const;
 };
 
-/// Nothing is measured yet. Errors: those of check_recordings; format also when robots differ.
+/// Nothing is measured yet. Errors: those of check_recordings.
 Result<Dataset> open_dataset(const ingest::Recordings& recordings);
 
 /// The same drives, to be measured by other scans.

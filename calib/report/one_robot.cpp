@@ -49,21 +49,6 @@ bool any_too_far(const selection::Homogeneity& found) {
 
 }  // namespace
 
-std::optional<Error> different_robots(std::span<const Recording> recordings) {
-  const Recording* known = nullptr;
-  for (const Recording& recording : recordings) {
-    if (recording.robot.robot_id.empty()) continue;
-    if (known == nullptr) known = &recording;
-    if (recording.robot.robot_id == known->robot.robot_id) continue;
-    return Error{ErrorCode::refused,
-                 "is of robot \"" + recording.robot.robot_id + "\", but " + known->name + " of \"" +
-                     known->robot.robot_id + "\"",
-                 recording.name,
-                 "solve each robot's recordings separately, or say --same-robot where only the name changed"};
-  }
-  return std::nullopt;
-}
-
 std::optional<Apart> recordings_apart(const selection::Homogeneity& found,
                                       std::span<const Recording> recordings) {
   if (!(found.p_value < settings::kApartLevel)) return std::nullopt;

@@ -1,4 +1,5 @@
 // Whether several recordings are of one robot in one state: what the calibration file and the verdict say.
+// What they state of it themselves was compared before anything was measured (ingest/two_robots.hpp).
 #pragma once
 
 #include <optional>
@@ -10,9 +11,6 @@
 #include "proto/recording/recording.hpp"
 
 namespace odomcalib::calib::report {
-
-/// Recordings that state different robots; nullopt where all that state one state the same. Error: refused.
-std::optional<Error> different_robots(std::span<const Recording> recordings);
 
 /// What speaks against one set of lengths; nullopt where chance explains the differences.
 std::optional<Apart> recordings_apart(const selection::Homogeneity& found,

@@ -5,16 +5,12 @@
 #include <numbers>
 #include <utility>
 
+#include "daemon/service/dead_reckoning.hpp"
+
 namespace odomcalib {
 namespace {
 
 ordered_json json_of(const routines::Pose& pose) { return {pose.x, pose.y, pose.yaw}; }
-
-std::array<double, 3> lidar_pose(const std::optional<Calibration>& applied, const Config& config) {
-  if (!applied || !applied->parameter("lidar_x")) return config.lidar_pose;
-  return {*applied->parameter("lidar_x"), applied->parameter("lidar_y").value_or(0.0),
-          applied->parameter("lidar_yaw").value_or(0.0)};
-}
 
 ordered_json lengths(const RobotDescription& robot) {
   return {{"left_wheel_diameter", robot.left_wheel_diameter},
@@ -25,6 +21,12 @@ ordered_json lengths(const RobotDescription& robot) {
 
 }  // namespace
 
+std::array<double, 3> lidar_pose(const std::optional<Calibration>& applied, const Config& config) {
+  if (!applied || !applied->parameter("lidar_x")) return config.lidar_pose;
+  return {*applied->parameter("lidar_x"), applied->parameter("lidar_y").value_or(0.0),
+          applied->parameter("lidar_yaw").value_or(0.0)};
+}
+
 std::array<double, 2> wheel_turns(const Leg& leg, double ticks_per_rev) {
   if (!(ticks_per_rev > 0.0)) return {};
   const double turn = 2.0 * std::numbers::pi / ticks_per_rev;
@@ -32,28 +34,27 @@ std::array<double, 2> wheel_turns(const Leg& leg, double ticks_per_rev) {
           turn * static_cast<double>(leg.ticks_after.right - leg.ticks_before.right)};
 }
 
-MovesReport::MovesReport(const Bench& bench, std::vector<Leg> legs, std::size_t moves_in_round)
-    : legs_(std::move(legs)), in_rounds_(moves_in_round != 0) {
+MovesReport::MovesReport(const Calibrator& calibrator, std::vector<Leg> legs, std::size_t moves_in_round)
+    : calibrator_(calibrator), legs_(std::move(legs)), in_rounds_(moves_in_round != 0) {
   const std::size_t together = in_rounds_ ? moves_in_round : 1;
   for (std::size_t k = 0; k + together <= legs_.size(); k += together) {
     const Leg &first = legs_[k], &last = legs_[k + together - 1];
     const std::size_t pairs =
-        bench.calibrator.match ? std::min(first.scans_before.size(), last.scans_after.size()) : 0;
+        calibrator.match ? std::min(first.scans_before.size(), last.scans_after.size()) : 0;
     comparisons_.push_back({k, k + together - 1, relative(first.before, last.after), pairs});
   }
 }
 
-bool MovesReport::compare_next(const Bench& bench) {
+bool MovesReport::compare_next(const std::array<double, 3>& lidar_pose) {
   while (next_ < comparisons_.size() && comparisons_[next_].tried == comparisons_[next_].pairs) ++next_;
   if (next_ == comparisons_.size()) return false;
   Comparison& now = comparisons_[next_];
-  const auto seen =
-      bench.calibrator.match(legs_[now.from].scans_before[now.tried], legs_[now.to].scans_after[now.tried],
-                             now.told, lidar_pose(bench.applied.get(), bench.config));
+  const auto seen = calibrator_.match(legs_[now.from].scans_before[now.tried],
+                                      legs_[now.to].scans_after[now.tried], now.by_odometry, lidar_pose);
   ++now.tried;
   if (!seen) return true;
   // The lidar cannot count full turns: the nearest to what the odometry says.
-  const double yaw = now.told.yaw + routines::wrapped(seen->yaw - now.told.yaw);
+  const double yaw = now.by_odometry.yaw + routines::wrapped(seen->yaw - now.by_odometry.yaw);
   now.sum = {now.sum.x + seen->x, now.sum.y + seen->y, now.sum.yaw + yaw};
   ++now.matched;
   return true;
@@ -61,25 +62,25 @@ bool MovesReport::compare_next(const Bench& bench) {
 
 /// The lidar's motion is the mean over pairs of scans; null when no pair matches.
 void MovesReport::add(const Comparison& comparison, ordered_json& body) {
-  const routines::Pose &told = comparison.told, &sum = comparison.sum;
-  body["odometry"] = json_of(told);
+  const routines::Pose &driven = comparison.by_odometry, &sum = comparison.sum;
+  body["odometry"] = json_of(driven);
   body["lidar"] = nullptr;
   body["error"] = nullptr;
   if (comparison.matched == 0) return;
   const auto count = static_cast<double>(comparison.matched);
   const routines::Pose seen{sum.x / count, sum.y / count, sum.yaw / count};
   body["lidar"] = json_of(seen);
-  body["error"] = {{"distance", std::hypot(told.x, told.y) - std::hypot(seen.x, seen.y)},
-                   {"yaw", told.yaw - seen.yaw}};
+  body["error"] = {{"distance", std::hypot(driven.x, driven.y) - std::hypot(seen.x, seen.y)},
+                   {"yaw", driven.yaw - seen.yaw}};
 }
 
-ordered_json MovesReport::body(const Bench& bench) const {
-  ordered_json body = {{"moves", ordered_json::array()}, {"robot", lengths(bench.drive.robot())}};
+ordered_json MovesReport::body(const RobotDescription& robot) const {
+  ordered_json body = {{"moves", ordered_json::array()}, {"robot", lengths(robot)}};
   for (std::size_t k = 0; k < legs_.size(); ++k) {
     const Leg& leg = legs_[k];
     ordered_json move = {{"move", leg.move.name}, {"begin", leg.begin}, {"end", leg.end}};
     add(in_rounds_ ? Comparison{k, k, relative(leg.before, leg.after), 0} : comparisons_[k], move);
-    move["wheels"] = wheel_turns(leg, bench.drive.robot().ticks_per_rev);
+    move["wheels"] = wheel_turns(leg, robot.ticks_per_rev);
     body["moves"].push_back(std::move(move));
   }
   if (!in_rounds_) return body;

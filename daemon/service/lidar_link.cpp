@@ -176,9 +176,9 @@ std::vector<Scan> LidarLink::take_scans() {
 /// an answer knows less.
 std::optional<Error> LidarLink::problem() const {
   if (problem_) return problem_;
-  auto told = lidar_->problem();
-  const bool seen = told && told->code == ErrorCode::format;
-  return data_problem_ && !seen ? data_problem_ : told;
+  auto reported = lidar_->problem();
+  const bool seen = reported && reported->code == ErrorCode::format;
+  return data_problem_ && !seen ? data_problem_ : reported;
 }
 
 drivers::Counters LidarLink::counters() const {

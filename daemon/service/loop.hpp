@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "daemon/service/loop_guard.hpp"
-#include "daemon/service/parts/bench.hpp"
+#include "daemon/service/parts/robot_parts.hpp"
 #include "daemon/service/tasks/task.hpp"
 
 namespace odomcalib {
@@ -25,7 +25,7 @@ class Loop {
   void turn();
   void stop_all(const std::string& why);
 
-  [[nodiscard]] const Bench& bench() const { return bench_; }
+  [[nodiscard]] const RobotParts& parts() const { return parts_; }
   [[nodiscard]] const Task* task() const { return task_.get(); }
 
  private:
@@ -43,10 +43,10 @@ class Loop {
   void forget(ClientId gone);
   void settle(TaskTurn turn);
   /// Ends the process when the loop hangs; the service manager starts it again.
-  void see_that_it_gets_on();
+  void abort_if_stuck();
 
-  Bench bench_;
-  std::unique_ptr<Task> task_;  // after the bench: its end may stop the drive
+  RobotParts parts_;
+  std::unique_ptr<Task> task_;  // after the parts: its end may stop the drive
   std::vector<pollfd> polled_;  // what the last wait was for: drive, lidar, disk, then the control socket
   static constexpr std::array kPolled = {"base", "lidar", "disk", "control socket", "client"};
   LoopGuard guard_{kPolled};

@@ -22,14 +22,18 @@ class LoopWatch {
   /// A motion begins: its longest turn is looked for.
   void motion_begins() { motion_ = {}; }
 
+  /// A control step came noticeably late.
+  void step_was_late() { ++late_steps_; }
+
   [[nodiscard]] std::uint64_t turns() const { return turns_; }
+  [[nodiscard]] std::uint64_t late_steps() const { return late_steps_; }
   [[nodiscard]] const Longest& since_start() const { return ever_; }
   [[nodiscard]] const Longest& in_motion() const { return motion_; }
 
  private:
   double mark_ = 0.0, wait_ = 0.0, worst_ = 0.0;
   Longest turn_, ever_, motion_;
-  std::uint64_t turns_ = 0;
+  std::uint64_t turns_ = 0, late_steps_ = 0;
 };
 
 }  // namespace odomcalib

@@ -38,21 +38,21 @@ std::optional<Error> too_long(const routines::Plan& plan) {
                    "less distance, fewer turns or repetitions, or faster");
 }
 
-std::optional<Error> motion_forbidden(const Bench& bench, const routines::Preview& preview) {
-  if (bench.write_back.operator_needed)
+std::optional<Error> motion_forbidden(const RobotParts& parts, const routines::Preview& preview) {
+  if (parts.write_back.operator_needed)
     return forbidden(ErrorCode::write_unknown,
                      "an interrupted write-back has left the controller's values unknown",
                      "connect the controller and restart odomcalibd, then see odomcalibctl params get");
-  if (bench.write_back.going_back())
+  if (parts.write_back.going_back())
     return forbidden(ErrorCode::busy, "values that were not proven are taken back first", "wait for its end");
-  if (auto wrong = controller_forbids(bench.drive)) return wrong;
-  if (const auto stale = bench.drive.encoders.stale(bench.now))
+  if (auto wrong = controller_forbids(parts.drive)) return wrong;
+  if (const auto stale = parts.drive.encoders.stale(parts.now))
     return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
-  if (const auto stale = bench.surroundings.scans.stale(bench.now))
+  if (const auto stale = parts.surroundings.scans.stale(parts.now))
     return forbidden(ErrorCode::device, *stale, "see odomcalibctl check");
-  if (auto why = bench.drive.unread()) return why;
-  if (const auto way = safety::occupied(bench.surroundings.points, preview, bench.config.footprint,
-                                        bench.config.clearance))
+  if (auto why = parts.drive.unread()) return why;
+  if (const auto way = safety::occupied(parts.surroundings.points, preview, parts.config.footprint,
+                                        parts.config.clearance))
     return forbidden(ErrorCode::refused, *way, "clear the area, or move the robot");
   return std::nullopt;
 }

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "daemon/routines/wiring.hpp"
+#include "daemon/service/dead_reckoning.hpp"
 #include "daemon/service/leg_report.hpp"
-#include "daemon/service/status_report.hpp"
 #include "proto/angles.hpp"
 
 namespace odomcalib {
@@ -98,13 +98,13 @@ void add_rows(const routines::Wiring& wiring, ordered_json& checks) {
 
 }  // namespace
 
-ordered_json nudge_report(const Bench& bench, const std::vector<Leg>& legs) {
-  ordered_json list = check_report(bench);
-  if (legs.size() != 4) return {{"checks", list}, {"wiring", nullptr}};
-  const auto nudge = nudge_of(bench.calibrator, bench.drive.robot(), legs);
+ordered_json nudge_report(ordered_json checks, const Calibrator& calibrator, const RobotDescription& robot,
+                          const std::vector<Leg>& legs) {
+  if (legs.size() != 4) return {{"checks", checks}, {"wiring", nullptr}};
+  const auto nudge = nudge_of(calibrator, robot, legs);
   const auto wiring = routines::judge_wiring(nudge);
-  add_rows(wiring, list);
-  return {{"checks", list}, {"wiring", json_of(nudge, wiring)}};
+  add_rows(wiring, checks);
+  return {{"checks", checks}, {"wiring", json_of(nudge, wiring)}};
 }
 
 }  // namespace odomcalib

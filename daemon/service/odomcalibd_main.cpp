@@ -86,17 +86,17 @@ class Watchdog {
   }
   void turned(double now, const Service& service) {
     worker_.serve();
-    if (now < next_ || untold_) return;
+    if (now < next_ || under_way_) return;
     next_ = now + (enabled_ ? 0.5e-6 * static_cast<double>(interval_us_) : settings::kStatusLine_s);
-    untold_ = true;
+    under_way_ = true;
     const std::string text = (enabled_ ? "WATCHDOG=1\nSTATUS=" : "STATUS=") + service.status_line();
-    worker_.post([text] { sd_notify(0, text.c_str()); }, [this] { untold_ = false; });
+    worker_.post([text] { sd_notify(0, text.c_str()); }, [this] { under_way_ = false; });
   }
 
  private:
   std::uint64_t interval_us_ = 0;
   bool enabled_ = false;
-  bool untold_ = false;  // the last one is still on its way
+  bool under_way_ = false;  // the last one is still on its way
   double next_ = 0.0;
   odomcalib::DiskWorker worker_;  // last: what its work uses exists
 };
@@ -161,7 +161,7 @@ int refuse(const odomcalib::Error& error, const std::string& path) {
 
 // Whoever reads the journal sees that scans depend on a name service; a name that has no address is told
 // later, as whatever else keeps the lidar away.
-void tell_of_name(const odomcalib::Config& config) {
+void log_host_name(const odomcalib::Config& config) {
   const auto lidar = odomcalib::LidarLink::create(config.lidar_device, config.lidar_type);
   if (lidar && !lidar.value().host_name().empty())
     spdlog::info(
@@ -188,7 +188,7 @@ int serve(const std::string& path) {
     return kFailure;
   }
   spdlog::info("odomcalibd {} serves {}", odomcalib::kVersion, config.value().socket.string());
-  tell_of_name(config.value());
+  log_host_name(config.value());
   run(*service.value(), clock, log);
   service.value().reset();
   log.finish();

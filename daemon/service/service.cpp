@@ -38,9 +38,9 @@ void Service::poll_once(int timeout_ms) {
 }
 
 void Service::stop_all(const std::string& why) { loop_->stop_all(why); }
-bool Service::drive_off() const { return loop_->bench().drive.off(); }
-bool Service::writing() const { return loop_->bench().write_back.busy(); }
-std::string Service::status_line() const { return one_line(loop_->bench(), loop_->task()); }
-std::string Service::status_json() const { return json_text(status_report(loop_->bench(), loop_->task())); }
+bool Service::drive_off() const { return loop_->parts().drive.off(); }
+bool Service::writing() const { return loop_->parts().write_back.busy(); }
+std::string Service::status_line() const { return one_line(loop_->parts(), loop_->task()); }
+std::string Service::status_json() const { return json_text(status_report(loop_->parts(), loop_->task())); }
 
 }  // namespace odomcalib

@@ -73,9 +73,8 @@ ordered_json watchdog_check(const drivers::Controller& controller) {
                "use a profile with a watchdog");
 }
 
-ordered_json check_disk(const Bench& bench) {
-  const std::filesystem::path& folder = bench.config.state_dir;
-  if (const auto& why = bench.folder.read_only()) return check("disk", false, why->what, why->remedy);
+ordered_json check_disk(const std::filesystem::path& folder, const StateFolder& state) {
+  if (const auto& why = state.read_only()) return check("disk", false, why->what, why->remedy);
   constexpr std::uintmax_t kMegabyte = 1'000'000;
   std::error_code error;
   const auto space = std::filesystem::space(folder, error);
@@ -123,8 +122,7 @@ void add_host_values(const std::vector<HostValue>& values, ordered_json& list) {
                     {"applied_in", value.applied_in}});
 }
 
-ordered_json controller_report(const Bench& bench) {
-  const Drive& drive = bench.drive;
+ordered_json controller_report(const Drive& drive, double now) {
   const drivers::Controller& controller = drive.controller();
   ordered_json body = {{"device", drive.link.device()},
                        {"connected", drive.link.connected()},
@@ -132,7 +130,7 @@ ordered_json controller_report(const Bench& bench) {
                        {"problem", text_of(drive.link.problem())},
                        {"watchdog_armed", controller.watchdog_armed()},
                        {"ticks", drive.tick_count},
-                       {"stale", drive.encoders.stale(bench.now).value_or("")},
+                       {"stale", drive.encoders.stale(now).value_or("")},
                        {"counters", drive.link.counters()},
                        {"supply_voltage", nullptr}};
   if (const auto voltage = controller.supply_voltage()) body["supply_voltage"] = *voltage;
@@ -151,22 +149,19 @@ ordered_json controller_report(const Bench& bench) {
   return body;
 }
 
-ordered_json lidar_report(const Bench& bench) {
-  const LidarLink& lidar = bench.surroundings.link;
-  return {{"device", lidar.device()},
-          {"identity", lidar.identity()},
-          {"connected", lidar.connected()},
-          {"problem", text_of(lidar.problem())},
-          {"scans", bench.surroundings.scan_count},
-          {"stale", bench.surroundings.scans.stale(bench.now).value_or("")},
+ordered_json lidar_report(const Surroundings& surroundings, double now) {
+  const LidarLink& lidar = surroundings.link;
+  return {{"device", lidar.device()},         {"identity", lidar.identity()},
+          {"connected", lidar.connected()},   {"problem", text_of(lidar.problem())},
+          {"scans", surroundings.scan_count}, {"stale", surroundings.scans.stale(now).value_or("")},
           {"counters", lidar.counters()}};
 }
 
 /// A controller that took the place of another: what it holds is not what was verified. Empty: it is no
 /// other.
-std::string replaced_text(const Bench& bench) {
-  const std::string ours = device_of(bench.drive.controller());
-  const auto former = bench.write_back.of_former_controller(ours);
+std::string replaced_text(const Drive& drive, const WriteBack& write_back) {
+  const std::string ours = device_of(drive.controller());
+  const auto former = write_back.of_former_controller(ours);
   if (!former) return "";
   return fmt::format(
       "this controller (\"{}\") is another than that of the newest write-back, entry {} (\"{}\")", ours,
@@ -174,10 +169,10 @@ std::string replaced_text(const Bench& bench) {
 }
 
 /// No failure: the robot goes by what the controller holds, as far as that is likely.
-std::optional<ordered_json> replaced_check(const Bench& bench) {
-  const std::string found = replaced_text(bench);
+std::optional<ordered_json> replaced_check(const Drive& drive, const WriteBack& write_back) {
+  const std::string found = replaced_text(drive, write_back);
   if (found.empty()) return std::nullopt;
-  const auto former = bench.write_back.of_former_controller(device_of(bench.drive.controller()));
+  const auto former = write_back.of_former_controller(device_of(drive.controller()));
   return ordered_json{
       {"name", "replaced"},
       {"outcome", "warn"},
@@ -213,74 +208,74 @@ ordered_json lcm_report(const Publisher::Counters& counters) {
   return {{"sent", counters.sent}, {"failed", counters.failed}, {"dropped", counters.dropped}};
 }
 
-ordered_json loop_report(const Bench& bench) {
-  return {{"scheduling", bench.urgency.found},
-          {"turns", bench.loop.turns()},
-          {"late_steps", bench.late_steps},
-          {"longest_turn", json_of(bench.loop.since_start())},
-          {"longest_turn_in_motion", json_of(bench.loop.in_motion())}};
+ordered_json loop_report(const Urgency& urgency, const LoopWatch& loop) {
+  return {{"scheduling", urgency.found},
+          {"turns", loop.turns()},
+          {"late_steps", loop.late_steps()},
+          {"longest_turn", json_of(loop.since_start())},
+          {"longest_turn_in_motion", json_of(loop.in_motion())}};
 }
 
 }  // namespace
 
-std::string activity(const Bench& bench, const Task* task) {
-  if (bench.ending) return bench.write_back.busy() ? "ending: reading or writing parameters" : "ending";
-  if (task != nullptr) return task->activity(bench);
-  return bench.write_back.busy() ? "reading or writing parameters" : "idle";
+std::string activity(const RobotParts& parts, const Task* task) {
+  if (parts.ending) return parts.write_back.busy() ? "ending: reading or writing parameters" : "ending";
+  if (task != nullptr) return task->activity();
+  return parts.write_back.busy() ? "reading or writing parameters" : "idle";
 }
 
-std::string one_line(const Bench& bench, const Task* task) {
-  std::string line = activity(bench, task);
+std::string one_line(const RobotParts& parts, const Task* task) {
+  std::string line = activity(parts, task);
   const auto missing = [&line](const char* what, const std::string& why) {
     line += std::string("; no ") + what + (why.empty() ? "" : ": " + why);
   };
-  const auto state = bench.drive.controller().state();
-  const BaseLink& base = bench.drive.link;
+  const auto state = parts.drive.controller().state();
+  const BaseLink& base = parts.drive.link;
   if (!base.connected())
     missing("bus", text_of(base.problem()));
   else if (state == drivers::ControllerState::absent)
-    missing("controller", bench.drive.trouble);
-  const LidarLink& lidar = bench.surroundings.link;
-  if (!lidar.connected() || bench.surroundings.scans.stale(bench.now))
+    missing("controller", parts.drive.trouble);
+  const LidarLink& lidar = parts.surroundings.link;
+  if (!lidar.connected() || parts.surroundings.scans.stale(parts.now))
     missing("scans", text_of(lidar.problem()));
-  if (bench.write_back.proving()) line += "; new values wait for their proof";
+  if (parts.write_back.proving()) line += "; new values wait for their proof";
   return line;
 }
 
-ordered_json status_report(const Bench& bench, const Task* task) {
-  const Telemetry& telemetry = bench.outbox.telemetry;
-  const auto& pose = bench.odometry.pose();
+ordered_json status_report(const RobotParts& parts, const Task* task) {
+  const Telemetry& telemetry = parts.outbox.telemetry;
+  const auto& pose = parts.odometry.pose();
   ordered_json body;
   body["format"] = "odomcalib-status/1";
-  body["state"] = activity(bench, task);
+  body["state"] = activity(parts, task);
   body["version"] = kVersion;
-  body["controller"] = controller_report(bench);
-  body["lidar"] = lidar_report(bench);
-  body["robot"] = robot_report(bench.drive);
-  body["obstacle"] = bench.surroundings.obstacles.obstacle().value_or("");
-  body["progress"] = task == nullptr ? ordered_json() : bench.outbox.last_progress();
+  body["controller"] = controller_report(parts.drive, parts.now);
+  body["lidar"] = lidar_report(parts.surroundings, parts.now);
+  body["robot"] = robot_report(parts.drive);
+  body["obstacle"] = parts.surroundings.obstacles.obstacle().value_or("");
+  body["progress"] = task == nullptr ? ordered_json() : parts.outbox.last_progress();
   body["odometry"] = {pose.x, pose.y, routines::wrapped(pose.yaw)};
-  body["calibrated"] = bench.applied.get().has_value();
-  const auto proven = bench.write_back.proven();
+  body["calibrated"] = parts.applied.get().has_value();
+  const auto proven = parts.write_back.proven();
   body["proven"] = proven ? ordered_json(*proven) : ordered_json(nullptr);
-  body["replaced_controller"] = replaced_text(bench);
-  body["operator_needed"] = bench.write_back.operator_needed;
-  body["last_stop"] = bench.last_run.last_stop();
+  body["replaced_controller"] = replaced_text(parts.drive, parts.write_back);
+  body["operator_needed"] = parts.write_back.operator_needed;
+  body["last_stop"] = parts.last_run.last_stop();
   body["lcm"] = lcm_report(telemetry.publisher.counters());
-  body["clients"] = client_report(bench.outbox.server);
-  body["loop"] = loop_report(bench);
+  body["clients"] = client_report(parts.outbox.server);
+  body["loop"] = loop_report(parts.urgency, parts.loop);
   body["recording_bytes"] = telemetry.recorder.bytes();
   body["recording_bytes_waiting"] = telemetry.recorder.bytes_waiting();
-  body["recorded_motion"] = motion_report(bench.recorded);
+  body["recorded_motion"] = motion_report(parts.recorded);
   return body;
 }
 
-ordered_json scan_report(const Bench& bench) {
-  const auto& points = bench.surroundings.points;
+ordered_json scan_report(const Surroundings& surroundings, double now) {
+  const auto& points = surroundings.points;
   ordered_json list = ordered_json::array();
   const std::size_t step = points.size() / service::settings::kMostScanPoints + 1;
   const auto rounded = [](double metres) { return std::round(1000.0 * metres) / 1000.0; };
-  if (!bench.surroundings.scans.stale(bench.now))
+  if (!surroundings.scans.stale(now))
     for (std::size_t k = 0; k < points.size(); k += step)
       list.push_back({rounded(points[k].x), rounded(points[k].y)});
   return {{"points", list}};
@@ -301,24 +296,24 @@ ordered_json description(const Config& config) {
       {"state_dir", config.state_dir.string()}};
 }
 
-ordered_json check_report(const Bench& bench) {
-  const Drive& drive = bench.drive;
-  const Surroundings& around = bench.surroundings;
-  const WriteBack& write_back = bench.write_back;
+ordered_json check_report(const RobotParts& parts) {
+  const Drive& drive = parts.drive;
+  const Surroundings& around = parts.surroundings;
+  const WriteBack& write_back = parts.write_back;
   const RobotDescription all = drive.robot();
   ordered_json list = ordered_json::array();
   list.push_back(check("bus", drive.link.connected(), found_at(drive.link.connected(), drive.link.problem()),
                        "connect the adapter; check controller.device"));
   list.push_back(controller_check(drive));
   list.push_back(watchdog_check(drive.controller()));
-  list.push_back(check("encoders", !drive.encoders.stale(bench.now),
-                       drive.encoders.stale(bench.now).value_or("counts arrive"), "check the bus"));
+  list.push_back(check("encoders", !drive.encoders.stale(parts.now),
+                       drive.encoders.stale(parts.now).value_or("counts arrive"), "check the bus"));
   list.push_back(check("lidar port", around.link.connected(),
                        found_at(around.link.connected(), around.link.problem()) + by_name(around.link),
                        "connect it; check lidar.device"));
-  list.push_back(check("scans", !around.scans.stale(bench.now),
-                       around.scans.stale(bench.now).value_or("scans arrive"), "check lidar and baud rate"));
-  list.push_back(view_check(around.cover.blind(bench.now).sectors()));
+  list.push_back(check("scans", !around.scans.stale(parts.now),
+                       around.scans.stale(parts.now).value_or("scans arrive"), "check lidar and baud rate"));
+  list.push_back(view_check(around.cover.blind(parts.now).sectors()));
   const auto wrong = drive.geometry_forbidden();
   const bool ticks_known = all.ticks_per_rev > 0.0;
   list.push_back(wrong ? check("geometry", false, wrong->what, wrong->remedy)
@@ -331,16 +326,17 @@ ordered_json check_report(const Bench& bench) {
       check("write-back", !write_back.operator_needed,
             write_back.operator_needed ? write_back.problem : "nothing unfinished",
             "odomcalibctl rollback, or apply a calibration; or connect the controller and restart"));
-  if (auto replaced = replaced_check(bench)) list.push_back(*replaced);
-  list.push_back(check_disk(bench));
-  if (!bench.urgency.found.empty()) list.push_back(scheduling_check(bench.urgency));
-  if (auto configuration = config_check(bench.config)) list.push_back(*configuration);
+  if (auto replaced = replaced_check(drive, write_back)) list.push_back(*replaced);
+  list.push_back(check_disk(parts.config.state_dir, parts.folder));
+  if (!parts.urgency.found.empty()) list.push_back(scheduling_check(parts.urgency));
+  if (auto configuration = config_check(parts.config)) list.push_back(*configuration);
   return list;
 }
 
-ordered_json parameter_report(const Bench& bench, const std::optional<Calibration>& calibration) {
-  const auto& in_force = bench.drive.in_force;
-  const RobotDescription all = bench.drive.robot();
+ordered_json parameter_report(const Drive& drive, const Calibrator& calibrator,
+                              const std::optional<Calibration>& calibration) {
+  const auto& in_force = drive.in_force;
+  const RobotDescription all = drive.robot();
   const std::array<std::pair<const char*, double>, 3> values = {
       {{"left_wheel_diameter", all.left_wheel_diameter},
        {"right_wheel_diameter", all.right_wheel_diameter},
@@ -360,8 +356,7 @@ ordered_json parameter_report(const Bench& bench, const std::optional<Calibratio
         stored ? "controller, rounding remainder in corrected odometry" : "corrected odometry on the host";
     list.push_back(entry);
   }
-  if (calibration && bench.calibrator.host_values)
-    add_host_values(bench.calibrator.host_values(*calibration), list);
+  if (calibration && calibrator.host_values) add_host_values(calibrator.host_values(*calibration), list);
   return list;
 }
 

@@ -6,17 +6,18 @@
 namespace odomcalib {
 
 /// @param task that runs, or null
-std::string activity(const Bench& bench, const Task* task);
+std::string activity(const RobotParts& parts, const Task* task);
 /// That, and which devices are missing: for systemd's STATUS.
-std::string one_line(const Bench& bench, const Task* task);
-ordered_json status_report(const Bench& bench, const Task* task);
+std::string one_line(const RobotParts& parts, const Task* task);
+ordered_json status_report(const RobotParts& parts, const Task* task);
 /// The newest scan: points [x, y], m in the frame of the base, thinned; none where no current scan arrives.
-ordered_json scan_report(const Bench& bench);
+ordered_json scan_report(const Surroundings& surroundings, double now);
 /// The configuration in force.
 ordered_json description(const Config& config);
 /// Rows {name, outcome, found, remedy}.
-ordered_json check_report(const Bench& bench);
+ordered_json check_report(const RobotParts& parts);
 /// @param calibration whose values are shown beside those in force
-ordered_json parameter_report(const Bench& bench, const std::optional<Calibration>& calibration);
+ordered_json parameter_report(const Drive& drive, const Calibrator& calibrator,
+                              const std::optional<Calibration>& calibration);
 
 }  // namespace odomcalib

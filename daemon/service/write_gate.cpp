@@ -8,32 +8,32 @@
 
 namespace odomcalib {
 
-Error axes_not_off(const Bench& bench) {
-  return {ErrorCode::device, "controller is " + name_of(bench.drive.controller().state()), "write-back",
+Error axes_not_off(const Drive& drive) {
+  return {ErrorCode::device, "controller is " + name_of(drive.controller().state()), "write-back",
           "values are written only to a controller that answers and whose axes are off"};
 }
 
-bool comes_to_rest(const Bench& bench) {
-  const auto state = bench.drive.controller().state();
+bool comes_to_rest(const Drive& drive) {
+  const auto state = drive.controller().state();
   return state == drivers::ControllerState::enabled || state == drivers::ControllerState::enabling;
 }
 
-std::optional<Error> write_forbidden(const Bench& bench) {
-  const auto state = bench.drive.controller().state();
-  if (bench.write_back.busy())
+std::optional<Error> write_forbidden(const Drive& drive, const WriteBack& write_back) {
+  const auto state = drive.controller().state();
+  if (write_back.busy())
     return Error{ErrorCode::busy, "another write-back is running", "", "wait for its end"};
-  if (bench.write_back.proving())
+  if (write_back.proving())
     return Error{ErrorCode::busy, "other values wait for their proof", "write-back",
                  "wait for its end, or take them back: odomcalibctl rollback"};
-  if (state != drivers::ControllerState::disabled && !comes_to_rest(bench)) return axes_not_off(bench);
-  return bench.drive.unread();
+  if (state != drivers::ControllerState::disabled && !comes_to_rest(drive)) return axes_not_off(drive);
+  return drive.unread();
 }
 
-NominalLengths nominal_lengths(const Bench& bench) {
-  const RobotDescription& given = bench.config.robot;
-  const std::string file = bench.config.file.empty() ? "the configuration" : bench.config.file.string();
-  const std::string profile = "profile " + bench.config.controller_profile;
-  NominalLengths nominal{present_lengths(bench.drive.nominal()), {}};
+NominalLengths nominal_lengths(const Drive& drive, const Config& config) {
+  const RobotDescription& given = config.robot;
+  const std::string file = config.file.empty() ? "the configuration" : config.file.string();
+  const std::string profile = "profile " + config.controller_profile;
+  NominalLengths nominal{present_lengths(drive.nominal()), {}};
   for (const auto& [name, value] : present_lengths(given))
     nominal.from[name] = value > 0.0 ? fmt::format("robot.{} of {}", name, file) : profile;
   return nominal;

@@ -1,25 +1,28 @@
 // What must be true before values are written to the controller.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 
-#include "daemon/service/parts/bench.hpp"
+#include "daemon/service/parts/drive.hpp"
+#include "daemon/service/parts/write_back.hpp"
 
 namespace odomcalib {
 
 /// The axes have torque, or one of them: nothing drives them while a write-back may begin, so it goes.
-bool comes_to_rest(const Bench& bench);
-Error axes_not_off(const Bench& bench);
+bool comes_to_rest(const Drive& drive);
+Error axes_not_off(const Drive& drive);
 
 /// Why nothing may be written now. Axes that come to rest are waited for, by whoever writes.
-std::optional<Error> write_forbidden(const Bench& bench);
+std::optional<Error> write_forbidden(const Drive& drive, const WriteBack& write_back);
 
 /// The robot's own lengths, by which values are judged, and where each is stated.
 struct NominalLengths {
   ParameterMap values;  ///< m, by quantity; 0: not stated
   std::map<std::string, std::string> from;
 };
-NominalLengths nominal_lengths(const Bench& bench);
+NominalLengths nominal_lengths(const Drive& drive, const Config& config);
 
 /// Why these values are not this robot's: one band around what is nominal, none around what is present. A
 /// controller that was replaced is no dead end, and small steps do not walk away.

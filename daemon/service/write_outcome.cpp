@@ -5,15 +5,15 @@
 namespace odomcalib {
 namespace {
 
-void learn(Bench& bench, const WriteReport& report) {
-  const bool unknown = report.outcome == WriteOutcome::unknown;
+void learn(RobotParts& parts, const WriteReport& report) {
+  const bool certain = ending_of(report.outcome).certain;
   const bool was_read = !report.in_force.empty() || !report.error;
   // Where nothing was touched, it was a reading.
   const ParameterMap written = report.steps.empty() ? ParameterMap{} : report.before;
-  if (unknown) bench.drive.forget_values();
-  if (was_read) settle_reading(bench, report.in_force, written);
-  bench.drive.values_known = !unknown && (bench.drive.values_known || was_read);
-  bench.write_back.learn(report);
+  if (!certain) parts.drive.forget_values();
+  if (was_read) settle_reading(parts.drive, parts.outbox, report.in_force, written);
+  parts.drive.values_known = certain && (parts.drive.values_known || was_read);
+  parts.write_back.learn(report);
 }
 
 // A recovery that fails in the same way at every start tells nothing new, and must not push out what could be
@@ -26,11 +26,11 @@ bool known_already(const History& history, const HistoryEntry& entry) {
 }
 
 /// What the history gets; nullopt: nothing was touched, or it says so already.
-std::optional<HistoryEntry> entry_of(const Bench& bench, const WriteReport& report) {
+std::optional<HistoryEntry> entry_of(const RobotParts& parts, const WriteReport& report) {
   if (report.steps.empty()) return std::nullopt;
-  const History& history = bench.write_back.history;
+  const History& history = parts.write_back.history;
   HistoryEntry entry{.id = report.origin.entry,
-                     .time = bench.clock.wall_us(),
+                     .time = parts.clock.wall_us(),
                      .action = report.label,
                      .outcome = name_of(report.outcome),
                      .calibration = std::nullopt,
@@ -61,13 +61,13 @@ void settle_on_disk(const History& history, const AppliedCalibration& applied, S
 
 /// @return why the host goes on with the former calibration although the controller has the values of this
 /// one
-std::optional<Error> take_over(Bench& bench, const Settlement& end) {
-  Outbox& outbox = bench.outbox;
+std::optional<Error> take_over(RobotParts& parts, const Settlement& end) {
+  Outbox& outbox = parts.outbox;
   // The journal has it, whether its file could be written or not.
-  if (end.entry) bench.write_back.history.keep(*end.entry);
-  if (end.entry && !end.noted) bench.write_back.unwritten.push_back(*end.entry);
+  if (end.entry) parts.write_back.history.keep(*end.entry);
+  if (end.entry && !end.noted) parts.write_back.unwritten.push_back(*end.entry);
   if (!end.noted) outbox.event(messages::Severity::warning, "history", end.noted.error().text());
-  bench.applied.take(end.in_force);
+  parts.applied.take(end.in_force);
   if (!end.in_force) outbox.event(messages::Severity::warning, "active", end.in_force.error().text());
   if (end.settled) return std::nullopt;
   const Error& why = end.settled.error();
@@ -81,56 +81,53 @@ std::optional<Error> take_over(Bench& bench, const Settlement& end) {
 
 }  // namespace
 
-void settle_reading(Bench& bench, const std::vector<drivers::StoredParameter>& found,
+void settle_reading(Drive& drive, Outbox& outbox, const std::vector<drivers::StoredParameter>& found,
                     const ParameterMap& written) {
-  if (bench.drive.take(found, written))
-    bench.outbox.event(messages::Severity::warning, "values_changed",
-                       bench.drive.changed_besides({})->text());
-  bench.drive.values_known = true;
-  bench.outbox.send_robot_soon();
+  if (drive.take(found, written))
+    outbox.event(messages::Severity::warning, "values_changed", drive.changed_besides({})->text());
+  drive.values_known = true;
+  outbox.send_robot_soon();
 }
 
-void settle_write(Bench& bench, const WriteReport& report) {
-  learn(bench, report);
-  if (report.outcome == WriteOutcome::read) return;
-  const bool committed = report.outcome == WriteOutcome::committed;
-  const bool proving = report.outcome == WriteOutcome::proving;
-  bench.outbox.event(committed || proving ? messages::Severity::info : messages::Severity::fault,
-                     "write_back",
-                     name_of(report.outcome) + (report.error ? ": " + report.error->text() : ""));
+void settle_write(RobotParts& parts, const WriteReport& report) {
+  learn(parts, report);
+  const Ending& how = ending_of(report.outcome);
+  if (!how.of_a_write) return;
+  parts.outbox.event(how.as_asked ? messages::Severity::info : messages::Severity::fault, "write_back",
+                     how.name + (report.error ? ": " + report.error->text() : ""));
   // Nothing of it lasts yet: neither the history nor the calibration in force changes.
-  if (proving) {
-    bench.write_back.ended = WriteEnd{report, std::nullopt};
+  if (!how.lasts) {
+    parts.write_back.ended = WriteEnd{report, std::nullopt};
     return;
   }
   const auto end = std::make_shared<Settlement>();
-  end->calibration = committed ? report.calibration : "";
-  end->entry = entry_of(bench, report);
-  bench.write_back.settling = true;
-  bench.disk->post([&history = bench.write_back.history, &applied = bench.applied,
+  end->calibration = how.as_asked ? report.calibration : "";
+  end->entry = entry_of(parts, report);
+  parts.write_back.settling = true;
+  parts.disk->post([&history = parts.write_back.history, &applied = parts.applied,
                     end] { settle_on_disk(history, applied, *end); },
-                   [&bench, report, end] {
-                     bench.write_back.settling = false;
-                     bench.write_back.ended = WriteEnd{report, take_over(bench, *end)};
+                   [&parts, report, end] {
+                     parts.write_back.settling = false;
+                     parts.write_back.ended = WriteEnd{report, take_over(parts, *end)};
                    });
 }
 
-void settle_from_journal(Bench& bench) {
-  WriteBack& values = bench.write_back;
+void settle_from_journal(RobotParts& parts) {
+  WriteBack& values = parts.write_back;
   for (const JournalRecord& record : values.history.missing(values.journal_ends())) {
     Settlement end;
     end.entry = entry_of(record);
     const bool committed = record.state == JournalState::commit;
-    if (committed) end.entry->calibration = bench.applied.file.announced(record.calibration);
-    if (!bench.folder.read_only()) end.noted = values.history.write(*end.entry);
+    if (committed) end.entry->calibration = parts.applied.file.announced(record.calibration);
+    if (!parts.folder.read_only()) end.noted = values.history.write(*end.entry);
     values.history.keep(*end.entry);
     if (!end.noted) values.unwritten.push_back(*end.entry);
   }
   const auto& last = values.transaction.journal().last();
   Settlement end;
   end.calibration = last && last->state == JournalState::commit ? last->calibration : "";
-  settle_on_disk(values.history, bench.applied, end);
-  (void)take_over(bench, end);
+  settle_on_disk(values.history, parts.applied, end);
+  (void)take_over(parts, end);
 }
 
 }  // namespace odomcalib

@@ -1,22 +1,22 @@
 // What the service makes of the end of a write-back: committed, rolled back or unknown.
 #pragma once
 
-#include "daemon/service/parts/bench.hpp"
+#include "daemon/service/parts/robot_parts.hpp"
 
 namespace odomcalib {
 
 /// Takes over what the controller holds now, and forbids motion where a write-back ended unknown
 /// (WriteBack::operator_needed). What belongs on the disk goes there beside the loop: the history, and the
 /// calibration that comes into force with a commit. WriteBack::ended says when that is done.
-void settle_write(Bench& bench, const WriteReport& report);
+void settle_write(RobotParts& parts, const WriteReport& report);
 
 /// Takes over what was read of the controller, and says where somebody else has changed it.
 /// @param written quantities that were written by us since the last time
-void settle_reading(Bench& bench, const std::vector<drivers::StoredParameter>& found,
+void settle_reading(Drive& drive, Outbox& outbox, const std::vector<drivers::StoredParameter>& found,
                     const ParameterMap& written = {});
 
 /// At the start, at once: the journal is what counts. Entries that the history lacks are made of it, and the
 /// calibration that came with the last commit comes into force.
-void settle_from_journal(Bench& bench);
+void settle_from_journal(RobotParts& parts);
 
 }  // namespace odomcalib

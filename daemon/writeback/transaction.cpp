@@ -162,41 +162,40 @@ JournalRecord Transaction::record_of(JournalState state) const {
           .origin = report_.origin};
 }
 
-void Transaction::announce(std::deque<JournalState> states, After after, drivers::Controller& controller,
-                           double now) {
+void Transaction::announce(std::deque<JournalState> states, After after) {
   announced_ = std::move(states);
   after_ = after;
   announcing_ = true;
   if (!announced_.empty()) journal_.append(record_of(announced_.front()));
-  go_on_announcing(controller, now);
+  go_on_announcing();
 }
 
-void Transaction::go_on_announcing(drivers::Controller& controller, double now) {
+void Transaction::go_on_announcing() {
   while (!announced_.empty()) {
     const auto written = journal_.take_result();
     if (!written) return;  // the disk takes its time
     const JournalState state = announced_.front();
     announced_.pop_front();
     if (*written) report_.steps.push_back(name_of(state));
-    if (!*written && must_be_written(state)) return not_announced(written->error(), controller, now);
+    if (!*written && must_be_written(state)) return not_announced(written->error());
     if (!announced_.empty()) journal_.append(record_of(announced_.front()));
   }
   announcing_ = false;
-  proceed(after_, controller, now);
+  proceed(after_);
 }
 
 /// What it announces must not happen: nothing has been touched yet, or everything goes back.
-void Transaction::not_announced(const Error& why, drivers::Controller& controller, double now) {
+void Transaction::not_announced(const Error& why) {
   announced_.clear();
   announcing_ = false;
   const bool touched = phase_ == Phase::write_new || phase_ == Phase::proving;
-  return touched ? go_back(why, controller, now) : not_begun(why, controller, now);
+  return touched ? go_back(why) : not_begun(why);
 }
 
-void Transaction::proceed(After after, drivers::Controller& controller, double now) {
+void Transaction::proceed(After after) {
   switch (after) {
     case After::write_new:
-      return start(Phase::write_new, controller, now);
+      return start(Phase::write_new);
     case After::prove:
       phase_ = Phase::proving;
       report_.outcome = WriteOutcome::proving;
@@ -204,11 +203,11 @@ void Transaction::proceed(After after, drivers::Controller& controller, double n
       return;
     case After::store_new:
       store_begun_ = true;
-      return start(Phase::store_new, controller, now);
+      return start(Phase::store_new);
     case After::commit:
-      return finish(WriteOutcome::committed, controller, now);
+      return finish(WriteOutcome::committed);
     case After::write_old:
-      return start(Phase::write_old, controller, now);
+      return start(Phase::write_old);
     case After::report:
       return report();
   }
@@ -227,118 +226,119 @@ drivers::ParameterJobResult::Kind Transaction::kind() const {
   }
 }
 
-Result<void> Transaction::start_job(drivers::Controller& controller, double now) const {
+Result<void> Transaction::start_job() const {
   switch (kind()) {
     case Job::Kind::read:
-      return controller.start_read_parameters(now);
+      return controller_->start_read_parameters(now_);
     case Job::Kind::write:
-      return controller.start_write_parameters(
-          list_of(phase_ == Phase::write_new ? report_.after : report_.before), now);
+      return controller_->start_write_parameters(
+          list_of(phase_ == Phase::write_new ? report_.after : report_.before), now_);
     case Job::Kind::store:
-      return controller.start_store(now);
+      return controller_->start_store(now_);
   }
   return {};
 }
 
-void Transaction::start(Phase phase, drivers::Controller& controller, double now) {
+void Transaction::start(Phase phase) {
   phase_ = phase;
-  entered_ = now;
+  entered_ = now_;
   started_ = false;
-  start_when_at_rest(controller, now);
+  start_when_at_rest();
 }
 
 /// On the way back it is waited for: what it holds is read before motion is forbidden. On the way forth a
 /// controller that has left has lost the new values, or will.
-bool Transaction::controller_there(const drivers::Controller& controller) const {
+bool Transaction::controller_there() const {
   const bool way_back =
       phase_ == Phase::write_old || phase_ == Phase::store_old || phase_ == Phase::verify_old;
-  const auto state = controller.state();
+  const auto state = controller_->state();
   return !way_back ||
          (state != drivers::ControllerState::absent && state != drivers::ControllerState::configuring);
 }
 
-void Transaction::start_when_at_rest(drivers::Controller& controller, double now) {
-  if (!controller_there(controller) && now - entered_ < writeback::settings::kWaitForController_s) return;
+void Transaction::start_when_at_rest() {
+  if (!controller_there() && now_ - entered_ < writeback::settings::kWaitForController_s) return;
   const bool needs_rest = kind() != Job::Kind::read;
-  if (needs_rest && !controller.at_rest() && now - entered_ < writeback::settings::kWaitForRest_s) return;
+  if (needs_rest && !controller_->at_rest() && now_ - entered_ < writeback::settings::kWaitForRest_s) return;
   started_ = true;
-  if (auto begun = start_job(controller, now); !begun) {
+  if (auto begun = start_job(); !begun) {
     Job job;
     job.error = begun.error();
-    on_result(job, controller, now);
+    on_result(job);
   }
 }
 
 void Transaction::step(drivers::Controller& controller, double now, std::int64_t wall_us) {
+  controller_ = &controller;
   now_ = now;
   wall_us_ = wall_us;
   if (phase_ == Phase::idle) return;
-  if (announcing_) return go_on_announcing(controller, now);
-  if (phase_ == Phase::proving) return on_proof(controller, now);
-  if (!started_) return start_when_at_rest(controller, now);
+  if (announcing_) return go_on_announcing();
+  if (phase_ == Phase::proving) return on_proof();
+  if (!started_) return start_when_at_rest();
   // The driver bounds the time of its jobs: it knows how long a store may take.
-  const auto result = controller.take_job_result();
-  if (result && result->kind == kind()) on_result(*result, controller, now);
+  const auto result = controller_->take_job_result();
+  if (result && result->kind == kind()) on_result(*result);
 }
 
-void Transaction::on_result(const Job& job, drivers::Controller& controller, double now) {
+void Transaction::on_result(const Job& job) {
   switch (phase_) {
     case Phase::read_first:
-      return on_read(job, controller, now);
+      return on_read(job);
     case Phase::write_new:
-      return on_written(job, controller, now);
+      return on_written(job);
     case Phase::store_new:
-      if (job.error) return go_back(*job.error, controller, now);
-      return start(Phase::verify_new, controller, now);
+      if (job.error) return go_back(*job.error);
+      return start(Phase::verify_new);
     case Phase::verify_new:
-      return on_verified(job, controller, now);
+      return on_verified(job);
     case Phase::write_old:
-      return on_old_written(job, controller, now);
+      return on_old_written(job);
     case Phase::store_old:
-      if (!job.error) return start(Phase::verify_old, controller, now);
+      if (!job.error) return start(Phase::verify_old);
       // A lost answer must not be the reason why nobody knows what is stored.
-      if (!std::exchange(stored_again_, true)) return start(Phase::store_old, controller, now);
+      if (!std::exchange(stored_again_, true)) return start(Phase::store_old);
       report_.error = *job.error;
-      return finish(WriteOutcome::unknown, controller, now);
+      return finish(WriteOutcome::unknown);
     case Phase::verify_old:
-      return on_old_verified(job, controller, now);
+      return on_old_verified(job);
     case Phase::idle:
     case Phase::proving:
       return;
   }
 }
 
-void Transaction::on_read(const Job& job, drivers::Controller& controller, double now) {
-  if (job.error) return not_begun(*job.error, controller, now);
+void Transaction::on_read(const Job& job) {
+  if (job.error) return not_begun(*job.error);
   report_.in_force = job.parameters;
-  report_.device = device_of(controller);
-  if (task_ == Task::read) return finish(WriteOutcome::read, controller, now);
-  if (task_ == Task::recover) return decide_recovery(controller, now);
-  plan_write(controller, now);
+  report_.device = device_of(*controller_);
+  if (task_ == Task::read) return finish(WriteOutcome::read);
+  if (task_ == Task::recover) return decide_recovery();
+  plan_write();
 }
 
 /// Nothing was touched: what was in force still is. After an interrupted write-back nobody knows what that
 /// is.
-void Transaction::not_begun(const Error& why, drivers::Controller& controller, double now) {
+void Transaction::not_begun(const Error& why) {
   report_.error = why;
-  if (task_ != Task::write) return finish(WriteOutcome::read, controller, now);
-  finish(interrupted_ ? WriteOutcome::unknown : WriteOutcome::rolled_back, controller, now);
+  if (task_ != Task::write) return finish(WriteOutcome::read);
+  finish(interrupted_ ? WriteOutcome::unknown : WriteOutcome::rolled_back);
 }
 
 bool Transaction::about_this_device() const {
   return interrupted_ && (interrupted_->device.empty() || interrupted_->device == report_.device);
 }
 
-void Transaction::plan_write(drivers::Controller& controller, double now) {
+void Transaction::plan_write() {
   const ParameterMap present = map_of(report_.in_force);
   report_.before = common(present, report_.after);
   report_.after = common(report_.after, report_.before);
   if (about_this_device()) {
     const ParameterMap& doubtful = interrupted_->before.empty() ? present : interrupted_->before;
-    if (!names_all(report_.after, doubtful)) return not_begun(mixture(*interrupted_), controller, now);
+    if (!names_all(report_.after, doubtful)) return not_begun(mixture(*interrupted_));
     take_old_from_journal();
   }
-  begin_writing(controller, now);
+  begin_writing();
 }
 
 /// What was read may be a mixture that nobody ever wanted. It must not become the values to go back to.
@@ -350,70 +350,69 @@ void Transaction::take_old_from_journal() {
   for (const auto& [name, value] : common(interrupted_->before, report_.before)) report_.before[name] = value;
 }
 
-void Transaction::begin_writing(drivers::Controller& controller, double now) {
+void Transaction::begin_writing() {
   // What a controller has no place for is kept on the host: nothing that a crash could leave half done.
-  if (report_.after.empty()) return finish(WriteOutcome::committed, controller, now);
-  announce({JournalState::begin, JournalState::write}, After::write_new, controller, now);
+  if (report_.after.empty()) return finish(WriteOutcome::committed);
+  announce({JournalState::begin, JournalState::write}, After::write_new);
 }
 
-void Transaction::on_written(const Job& job, drivers::Controller& controller, double now) {
-  if (job.error) return go_back(*job.error, controller, now);
-  if (!holds(job.parameters, report_.after)) return go_back(mismatch("read back"), controller, now);
+void Transaction::on_written(const Job& job) {
+  if (job.error) return go_back(*job.error);
+  if (!holds(job.parameters, report_.after)) return go_back(mismatch("read back"));
   report_.in_force = job.parameters;
-  if (unproven_) return announce({JournalState::readback_ok}, After::prove, controller, now);
-  keep({JournalState::readback_ok}, controller, now);
+  if (unproven_) return announce({JournalState::readback_ok}, After::prove);
+  keep({JournalState::readback_ok});
 }
 
-void Transaction::on_proof(drivers::Controller& controller, double now) {
+void Transaction::on_proof() {
   if (!proof_) return;
-  if (!*proof_) return go_back(proof_->error(), controller, now);
+  if (!*proof_) return go_back(proof_->error());
   unproven_ = false;
   report_.origin.proven = true;
-  keep({JournalState::proof_ok}, controller, now);
+  keep({JournalState::proof_ok});
 }
 
 /// Stores what RAM holds, where there is something to store it in.
-void Transaction::keep(std::deque<JournalState> states, drivers::Controller& controller, double now) {
-  const bool stored = stores_any(controller, report_.after);
+void Transaction::keep(std::deque<JournalState> states) {
+  const bool stored = stores_any(*controller_, report_.after);
   if (stored) states.push_back(JournalState::store_begin);
-  announce(std::move(states), stored ? After::store_new : After::commit, controller, now);
+  announce(std::move(states), stored ? After::store_new : After::commit);
 }
 
-void Transaction::on_verified(const Job& job, drivers::Controller& controller, double now) {
-  if (job.error) return go_back(*job.error, controller, now);
-  if (!holds(job.parameters, report_.after)) return go_back(mismatch("after the store"), controller, now);
+void Transaction::on_verified(const Job& job) {
+  if (job.error) return go_back(*job.error);
+  if (!holds(job.parameters, report_.after)) return go_back(mismatch("after the store"));
   report_.in_force = job.parameters;
   // The store is done: a journal that cannot be written now is repaired by the comparison at the next start.
-  announce({JournalState::store_ok}, After::commit, controller, now);
+  announce({JournalState::store_ok}, After::commit);
 }
 
-void Transaction::go_back(const Error& why, drivers::Controller& controller, double now) {
+void Transaction::go_back(const Error& why) {
   if (!report_.error) report_.error = Error{ErrorCode::write_failed, why.what, why.where, why.remedy};
-  announce({JournalState::rollback}, After::write_old, controller, now);
+  announce({JournalState::rollback}, After::write_old);
 }
 
-void Transaction::on_old_written(const Job& job, drivers::Controller& controller, double now) {
+void Transaction::on_old_written(const Job& job) {
   const bool restored = !job.error && holds(job.parameters, report_.before);
   // What refuses its old value may never have lost it: that is seen, not concluded.
-  if (!restored && !store_begun_) return start(Phase::verify_old, controller, now);
-  if (!restored) return finish(WriteOutcome::unknown, controller, now);
+  if (!restored && !store_begun_) return start(Phase::verify_old);
+  if (!restored) return finish(WriteOutcome::unknown);
   report_.in_force = job.parameters;
-  const bool stored = store_begun_ && stores_any(controller, report_.before);
-  if (stored) return start(Phase::store_old, controller, now);
-  finish(WriteOutcome::rolled_back, controller, now);
+  const bool stored = store_begun_ && stores_any(*controller_, report_.before);
+  if (stored) return start(Phase::store_old);
+  finish(WriteOutcome::rolled_back);
 }
 
-void Transaction::on_old_verified(const Job& job, drivers::Controller& controller, double now) {
+void Transaction::on_old_verified(const Job& job) {
   const bool good = !job.error && holds(job.parameters, report_.before);
   if (good) report_.in_force = job.parameters;
-  finish(good ? WriteOutcome::rolled_back : WriteOutcome::unknown, controller, now);
+  finish(good ? WriteOutcome::rolled_back : WriteOutcome::unknown);
 }
 
 // By comparison, not by memory: the journal says only which two sets to compare with, and whose they are.
-void Transaction::decide_recovery(drivers::Controller& controller, double now) {
-  if (!interrupted_) return finish(WriteOutcome::read, controller, now);
-  if (!about_this_device())
-    return leave_alone(other_device(interrupted_->device, report_.device), controller, now);
+void Transaction::decide_recovery() {
+  if (!interrupted_) return finish(WriteOutcome::read);
+  if (!about_this_device()) return leave_alone(other_device(interrupted_->device, report_.device));
   report_.label = interrupted_->label;
   report_.before = interrupted_->before;
   report_.after = interrupted_->after;
@@ -421,26 +420,24 @@ void Transaction::decide_recovery(drivers::Controller& controller, double now) {
   report_.origin = interrupted_->origin;
   store_begun_ = interrupted_->store_begun;
   const bool forward = interrupted_->state != JournalState::rollback && !interrupted_->unproven;
-  if (forward && holds(report_.in_force, report_.after)) return store_again(controller, now);
-  if (report_.before.empty()) return leave_alone(nothing_to_compare(), controller, now);
-  if (holds(report_.in_force, report_.before) && !store_begun_)
-    return finish(WriteOutcome::rolled_back, controller, now);
-  go_back({ErrorCode::write_failed, "an interrupted write-back was undone", "recovery", "apply again"},
-          controller, now);
+  if (forward && holds(report_.in_force, report_.after)) return store_again();
+  if (report_.before.empty()) return leave_alone(nothing_to_compare());
+  if (holds(report_.in_force, report_.before) && !store_begun_) return finish(WriteOutcome::rolled_back);
+  go_back({ErrorCode::write_failed, "an interrupted write-back was undone", "recovery", "apply again"});
 }
 
 /// RAM holds the new set; whether it was stored cannot be seen, storing again is harmless.
-void Transaction::store_again(drivers::Controller& controller, double now) {
-  if (!stores_any(controller, report_.after)) return finish(WriteOutcome::committed, controller, now);
-  announce({JournalState::store_begin}, After::store_new, controller, now);
+void Transaction::store_again() {
+  if (!stores_any(*controller_, report_.after)) return finish(WriteOutcome::committed);
+  announce({JournalState::store_begin}, After::store_new);
 }
 
-void Transaction::leave_alone(const Error& why, drivers::Controller& controller, double now) {
+void Transaction::leave_alone(const Error& why) {
   report_.error = why;
-  finish(WriteOutcome::unknown, controller, now);
+  finish(WriteOutcome::unknown);
 }
 
-void Transaction::finish(WriteOutcome outcome, drivers::Controller& controller, double now) {
+void Transaction::finish(WriteOutcome outcome) {
   if (outcome == WriteOutcome::rolled_back && !old_known_) outcome = WriteOutcome::unknown;
   report_.outcome = outcome;
   std::deque<JournalState> last;
@@ -452,7 +449,7 @@ void Transaction::finish(WriteOutcome outcome, drivers::Controller& controller, 
     if (!report_.error) report_.error = mismatch("after restoring");
     report_.error->code = ErrorCode::write_unknown;
   }
-  announce(std::move(last), After::report, controller, now);
+  announce(std::move(last), After::report);
 }
 
 void Transaction::report() {

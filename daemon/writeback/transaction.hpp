@@ -10,19 +10,12 @@
 #include <vector>
 
 #include "daemon/writeback/journal_writer.hpp"
+#include "daemon/writeback/outcome.hpp"
 #include "drivers/base/controller.hpp"
 
 namespace odomcalib {
 
 using ParameterMap = std::map<std::string, double>;  ///< SI, by quantity
-
-enum class WriteOutcome {
-  read,         ///< only read
-  proving,      ///< new values in force and not stored: they wait for their proof
-  committed,    ///< new values in force and stored
-  rolled_back,  ///< old values in force
-  unknown,      ///< forbids motion until an operator or a recovery has decided
-};
 
 /// Whether new values are stored at once, or after a motion with them.
 enum class Proof { none, wanted };
@@ -92,35 +85,35 @@ class Transaction {
   using Job = drivers::ParameterJobResult;
 
   Result<void> begin(Task task, const std::string& label);
-  void start(Phase phase, drivers::Controller& controller, double now);
-  [[nodiscard]] bool controller_there(const drivers::Controller& controller) const;
-  void start_when_at_rest(drivers::Controller& controller, double now);
-  Result<void> start_job(drivers::Controller& controller, double now) const;
+  void start(Phase phase);
+  [[nodiscard]] bool controller_there() const;
+  void start_when_at_rest();
+  Result<void> start_job() const;
   [[nodiscard]] Job::Kind kind() const;
   [[nodiscard]] bool about_this_device() const;
-  void on_result(const Job& job, drivers::Controller& controller, double now);
-  void on_read(const Job& job, drivers::Controller& controller, double now);
-  void on_written(const Job& job, drivers::Controller& controller, double now);
-  void on_proof(drivers::Controller& controller, double now);
-  void keep(std::deque<JournalState> states, drivers::Controller& controller, double now);
-  void on_verified(const Job& job, drivers::Controller& controller, double now);
-  void on_old_written(const Job& job, drivers::Controller& controller, double now);
-  void on_old_verified(const Job& job, drivers::Controller& controller, double now);
-  void decide_recovery(drivers::Controller& controller, double now);
-  void store_again(drivers::Controller& controller, double now);
-  void not_begun(const Error& why, drivers::Controller& controller, double now);
-  void plan_write(drivers::Controller& controller, double now);
+  void on_result(const Job& job);
+  void on_read(const Job& job);
+  void on_written(const Job& job);
+  void on_proof();
+  void keep(std::deque<JournalState> states);
+  void on_verified(const Job& job);
+  void on_old_written(const Job& job);
+  void on_old_verified(const Job& job);
+  void decide_recovery();
+  void store_again();
+  void not_begun(const Error& why);
+  void plan_write();
   void take_old_from_journal();
-  void begin_writing(drivers::Controller& controller, double now);
-  void go_back(const Error& why, drivers::Controller& controller, double now);
+  void begin_writing();
+  void go_back(const Error& why);
   /// `after` follows when all of the records are on the disk.
-  void announce(std::deque<JournalState> states, After after, drivers::Controller& controller, double now);
-  void go_on_announcing(drivers::Controller& controller, double now);
-  void not_announced(const Error& why, drivers::Controller& controller, double now);
-  void proceed(After after, drivers::Controller& controller, double now);
+  void announce(std::deque<JournalState> states, After after);
+  void go_on_announcing();
+  void not_announced(const Error& why);
+  void proceed(After after);
   [[nodiscard]] JournalRecord record_of(JournalState state) const;
-  void leave_alone(const Error& why, drivers::Controller& controller, double now);
-  void finish(WriteOutcome outcome, drivers::Controller& controller, double now);
+  void leave_alone(const Error& why);
+  void finish(WriteOutcome outcome);
   void report();
 
   JournalWriter journal_;
@@ -135,7 +128,10 @@ class Transaction {
   bool old_known_ = true;      // the old values are a whole set, not what was read of a mixture
   bool unproven_ = false;      // the new values are to be proven before they are stored
   std::optional<Result<void>> proof_;
-  double entered_ = 0.0, now_ = 0.0;
+  double entered_ = 0.0;
+  // Of the step that is done now.
+  drivers::Controller* controller_ = nullptr;
+  double now_ = 0.0;
   std::int64_t wall_us_ = 0;
   std::optional<JournalRecord> interrupted_;  // that the journal was left with
   WriteReport report_;

@@ -100,7 +100,7 @@ class SocketCan final : public CanTransport {
 
   Result<std::vector<CanFrame>> receive(double now) override {
     std::vector<CanFrame> out;
-    if (failed_ != 0) return told_failure();
+    if (failed_ != 0) return take_failure();
     const double wall_now = read_clock(CLOCK_REALTIME);
     const bool stepped = wall_clock_stepped(wall_now);
     for (int i = 0; i < kFramesAtMost; ++i) {
@@ -109,7 +109,7 @@ class SocketCan final : public CanTransport {
       if (status == EAGAIN) break;
       if (status != 0) {  // the kernel says it once: told after these frames
         failed_ = status;
-        if (out.empty()) return told_failure();
+        if (out.empty()) return take_failure();
         break;
       }
       if (got.overflows) lost_ = *got.overflows;
@@ -190,7 +190,7 @@ class SocketCan final : public CanTransport {
   }
 
   /// A socket whose interface went down lives again when it comes up; any other failure is for ever.
-  Error told_failure() {
+  Error take_failure() {
     Error error = gone(failed_);
     if (failed_ == ENETDOWN) failed_ = 0;
     return error;
@@ -205,7 +205,7 @@ class SocketCan final : public CanTransport {
   int fd_;
   std::string interface_;
   bool rejected_last_ = false;
-  int failed_ = 0;    // errno that is still to be told
+  int failed_ = 0;    // errno that is still to be reported
   bool off_ = false;  // an error frame said bus-off, and no carrier was seen since
   double offset_ = read_clock(CLOCK_REALTIME) - read_clock(CLOCK_MONOTONIC);  // s, wall minus monotonic
   std::uint64_t frames_ = 0, sent_ = 0, send_failed_ = 0, lost_ = 0, error_frames_ = 0, bus_off_ = 0;

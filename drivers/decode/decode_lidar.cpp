@@ -107,7 +107,7 @@ class Feeder {
     take_scans();
     lidar_.reset();
   }
-  void tell(const LidarMessage& message) { lines_.add(message); }
+  void report(const LidarMessage& message) { lines_.add(message); }
 
   std::string finish(const Counters& also_rejected) {
     lidar_.finish();
@@ -175,8 +175,8 @@ Result<std::string> decode_lidar_capture(Lidar& lidar, unsigned port, std::strin
   Feeder feeder(lidar);
   Counters rejected{{"capture_gaps", 0}, {"capture_cut_off", capture.cut_off.empty() ? 0U : 1U}};
   for (const CapturedStream& one : capture.streams)
-    feeder.tell(stream_message(one, std::find(chosen.begin(), chosen.end(), &one) != chosen.end()));
-  if (!capture.cut_off.empty()) feeder.tell({"capture_cut_off", {{"text", capture.cut_off}}});
+    feeder.report(stream_message(one, std::find(chosen.begin(), chosen.end(), &one) != chosen.end()));
+  if (!capture.cut_off.empty()) feeder.report({"capture_cut_off", {{"text", capture.cut_off}}});
   for (CapturedStream* one : chosen) {
     if (one != chosen.front()) feeder.interrupt();
     for (const TcpStreamBytes::Run& run : one->stream.take()) {

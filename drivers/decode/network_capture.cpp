@@ -79,9 +79,9 @@ std::optional<Segment> read_segment(Bytes packet) {
   ByteReader ip(packet);
   const std::size_t head = v6 ? 40 : 4 * (packet[0] & 15U);
   ip.take(v6 ? 4 : 2);
-  const std::size_t told = big16(ip);
+  const std::size_t stated = big16(ip);
   // 0 where the network card cuts the segments: then what was captured is the packet.
-  const std::size_t length = told == 0 ? packet.size() : told + (v6 ? head : 0);
+  const std::size_t length = stated == 0 ? packet.size() : stated + (v6 ? head : 0);
   if (!v6) ip.take(2);
   const unsigned fragment = v6 ? 0 : big16(ip) & 0x3FFFU;
   if (!v6) ip.take(1);

@@ -70,7 +70,7 @@ class Lidar {
 
  protected:
   [[nodiscard]] bool has_listener() const { return listener_ != nullptr; }
-  void tell(LidarMessage message) const {
+  void report(LidarMessage message) const {
     if (listener_) listener_(std::move(message));
   }
 

@@ -276,15 +276,15 @@ class Session {
     return {std::move(base).value(),  std::move(lidar).value(),   std::move(server).value(),
             std::move(state).value(), std::move(journal).value(), {}};
   }
-  [[nodiscard]] const Bench& bench() const { return loop_->bench(); }
+  [[nodiscard]] const RobotParts& parts() const { return loop_->parts(); }
   [[nodiscard]] bool moves() const { return loop_->task() != nullptr && loop_->task()->moves(); }
   [[nodiscard]] bool ready() const {
-    const Drive& drive = bench().drive;
+    const Drive& drive = parts().drive;
     return drive.controller().state() == drivers::ControllerState::disabled && drive.values_known &&
-           !drive.encoders.stale(clock_.time) && !bench().surroundings.scans.stale(clock_.time) && idle();
+           !drive.encoders.stale(clock_.time) && !parts().surroundings.scans.stale(clock_.time) && idle();
   }
   [[nodiscard]] bool idle() const {
-    return loop_->task() == nullptr && !bench().write_back.busy() && !bench().outbox.server.calls_wait();
+    return loop_->task() == nullptr && !parts().write_back.busy() && !parts().outbox.server.calls_wait();
   }
 
   void act(unsigned action, std::size_t client, std::size_t much, std::string_view bytes) {
@@ -360,17 +360,17 @@ class Session {
     clock_.time += kTurn;
     robot_.advance(clock_.time - std::exchange(robot_time_, clock_.time));
     const bool moved = moves();
-    const auto served = bench().outbox.server.counters().served;
+    const auto served = parts().outbox.server.counters().served;
     const double begin = processor_time();
     loop_->wait(0);
     loop_->turn();
     require(processor_time() - begin < kLongestTurn);
-    check_served(bench().outbox.server.counters().served - served);
+    check_served(parts().outbox.server.counters().served - served);
     check_stop(moved);
     for (auto& peer : clients_)
       if (peer && peer->reads) listen(*peer);
     check_motion();
-    written_ = written_ || bench().write_back.busy();
+    written_ = written_ || parts().write_back.busy();
   }
   /// A turn serves so many calls of each client, and none after its time.
   void check_served(std::uint64_t served) const {
@@ -396,7 +396,7 @@ class Session {
   }
   /// Nobody but a client that holds a lease and says so moves the robot.
   void check_motion() {
-    late_for_lease_.check(robot_.driven() && !bench().lease.active());
+    late_for_lease_.check(robot_.driven() && !parts().lease.active());
     late_for_silence_.check(robot_.driven() && clock_.time - renewed_ > safety::kLongestSilence);
     require(!robot_.driven() || !lease_.empty());
   }
@@ -415,7 +415,7 @@ class Session {
     for (int left = kLongestEnd; left > 0 && !idle(); --left) {
       turn();
       // The thread that writes a recording has a time of its own.
-      for (int i = 0; i < 1000 && bench().outbox.telemetry.recorder.finishing(); ++i) wait_for_disk();
+      for (int i = 0; i < 1000 && parts().outbox.telemetry.recorder.finishing(); ++i) wait_for_disk();
     }
     require(idle());
     turn();  // what was left to be sent

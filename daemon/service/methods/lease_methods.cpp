@@ -8,37 +8,38 @@
 namespace odomcalib {
 namespace {
 
-const auto kTtl_ms = std::lround(1000.0 * safety::kLeaseTime);
+const auto kTtlMilliseconds = std::lround(1000.0 * safety::kLeaseTime);
 
 }  // namespace
 
 Reading acquire(Context& context, const Call& call) {
-  const auto granted = context.bench.lease.acquire(call.caller.client, context.bench.now);
+  const auto granted = context.parts.lease.acquire(call.caller.client, context.parts.now);
   if (!granted) return granted.error();
-  return Answer{{{"lease", granted.value()}, {"ttl_ms", kTtl_ms}}};
+  return Answer{{{"lease", granted.value()}, {"ttl_ms", kTtlMilliseconds}}};
 }
 
 Reading renew(Context& context, const Call& call) {
   CallParameters given(call.parameters);
-  const double now = context.bench.now;
+  const double now = context.parts.now;
   const std::string lease = given.text("lease", "");
   const double sent = given.number("sent", call.arrived);
   if (given.wrong()) return WrongParameter{*given.wrong()};
   // One that has waited behind other calls says that the client was there when it arrived.
-  const auto renewed = context.bench.lease.renew(lease, now, std::min(sent, call.arrived));
+  const auto renewed = context.parts.lease.renew(lease, now, std::min(sent, call.arrived));
   if (!renewed) return renewed.error();
-  return Answer{{{"ttl_ms", kTtl_ms}}};
+  return Answer{{{"ttl_ms", kTtlMilliseconds}}};
 }
 
 Reading release(Context& context, const Call& call) {
-  context.bench.lease.release(CallParameters(call.parameters).text("lease", ""));
+  context.parts.lease.release(CallParameters(call.parameters).text("lease", ""));
   return Answer{ordered_json::object()};
 }
 
 void stop_robot(Context context) {
-  stop_drive(context.bench);
-  if (context.task != nullptr) context.task->stop(context.bench);
-  context.bench.outbox.event(messages::Severity::stop, "stop", "stopped on request of a client");
+  RobotParts& parts = context.parts;
+  stop_drive(parts.drive, parts.write_back, parts.now);
+  if (context.task != nullptr) context.task->stop(parts.now);
+  parts.outbox.event(messages::Severity::stop, "stop", "stopped on request of a client");
 }
 
 // One that was found on its arrival has been obeyed then: what has begun since was asked for after it.

@@ -49,11 +49,11 @@ const Method& method_of(const std::string& name, const ordered_json& parameters)
 }
 
 std::optional<Error> not_now(const Method& method, const Context& context, bool stopped_since) {
-  if (context.bench.ending && method.when != When::always)
+  if (context.parts.ending && method.when != When::always)
     return Error{ErrorCode::refused, "the daemon is ending", "odomcalibd",
                  "start it again: systemctl start odomcalib"};
   if (context.task != nullptr && method.when == When::when_idle)
-    return Error{ErrorCode::busy, "busy: " + activity(context.bench, context.task), "",
+    return Error{ErrorCode::busy, "busy: " + activity(context.parts, context.task), "",
                  "wait for its end, or stop it"};
   if (stopped_since && method.when == When::when_idle)
     return Error{ErrorCode::cancelled, "stopped on request before it began", method.name, "start again"};
@@ -63,7 +63,7 @@ std::optional<Error> not_now(const Method& method, const Context& context, bool 
 Outcome begin(const Method& method, const Context& context, const Request& request) {
   const bool required =
       method.lease == Lease::always || (method.lease == Lease::unless_dry_run && !request.dry_run);
-  if (required && !context.bench.lease.holds(request.lease))
+  if (required && !context.parts.lease.holds(request.lease))
     return Error{ErrorCode::not_permitted, "no lease", method.lease_of, "acquire one and keep it alive"};
   return request.begin();
 }
@@ -84,8 +84,13 @@ std::unique_ptr<Task> settle_outcome(Outcome outcome, const Caller& caller, Outb
 
 }  // namespace
 
+std::unique_ptr<Task> begin_reading(RobotParts& parts, const Caller& caller, ReadingTask::Next next) {
+  return std::make_unique<ReadingTask>(ReadingTask::Parts{parts.write_back, parts.drive, parts.outbox},
+                                       caller, parts.now, std::move(next));
+}
+
 std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming) {
-  Outbox& outbox = context.bench.outbox;
+  Outbox& outbox = context.parts.outbox;
   const Caller caller{incoming.client, incoming.call.more, incoming.call.oneway};
   const Method& method = method_of(incoming.call.name(), incoming.call.parameters);
   if (auto refused = not_now(method, context, incoming.stopped_since))

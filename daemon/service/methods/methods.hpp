@@ -6,13 +6,15 @@
 #include <string>
 #include <variant>
 
+#include "daemon/service/parts/robot_parts.hpp"
+#include "daemon/service/tasks/reading_task.hpp"
 #include "daemon/service/tasks/task.hpp"
 
 namespace odomcalib {
 
 /// What a method works on.
 struct Context {
-  Bench& bench;
+  RobotParts& parts;
   Task* task = nullptr;  ///< that runs, or null
 };
 
@@ -62,6 +64,9 @@ std::unique_ptr<Task> handle_call(Context context, const IncomingCall& incoming)
 
 /// Obeys a stop at once; the call is answered in its place.
 void stop_robot(Context context);
+
+/// Reads the controller again before what follows, which `next` makes or refuses.
+std::unique_ptr<Task> begin_reading(RobotParts& parts, const Caller& caller, ReadingTask::Next next);
 
 // status_methods.cpp
 Handler get_status, get_scan, describe, check, get_parameters, get_history, monitor;

@@ -17,6 +17,7 @@
 #include "daemon/service/methods/methods.hpp"
 #include "daemon/service/motion_gate.hpp"
 #include "daemon/service/settings.hpp"
+#include "daemon/service/status_report.hpp"
 #include "daemon/service/tasks/motion_task.hpp"
 #include "daemon/service/tasks/reading_task.hpp"
 #include "daemon/service/tasks/recording_task.hpp"
@@ -117,8 +118,9 @@ ordered_json json_of(const safety::ClearSpace& space) {
   return body;
 }
 
-ordered_json plan_report(const Bench& bench, const routines::Plan& plan, const routines::Preview& preview,
-                         const std::vector<std::string>& unseen, const std::vector<safety::Sector>& blind) {
+ordered_json plan_report(const RobotParts& parts, const routines::Plan& plan,
+                         const routines::Preview& preview, const std::vector<std::string>& unseen,
+                         const std::vector<safety::Sector>& blind) {
   return {{"plan", plan.name},
           {"moves", plan.moves.size()},
           {"duration", preview.duration},
@@ -126,11 +128,11 @@ ordered_json plan_report(const Bench& bench, const routines::Plan& plan, const r
           {"unseen_moves", unseen},
           {"blind_sectors", json_of(blind)},
           {"limited", routines::limited(plan)},
-          {"first_motion", !bench.last_run.moved()},
+          {"first_motion", !parts.last_run.moved()},
           {"stopping_distance",
-           safety::stopping_distance(plan.limits.speed, bench.surroundings.obstacles.options())},
-          {"clear_space", json_of(safety::clear_space(bench.surroundings.points, preview,
-                                                      bench.config.footprint, bench.config.clearance))}};
+           safety::stopping_distance(plan.limits.speed, parts.surroundings.obstacles.options())},
+          {"clear_space", json_of(safety::clear_space(parts.surroundings.points, preview,
+                                                      parts.config.footprint, parts.config.clearance))}};
 }
 
 struct View {
@@ -138,15 +140,15 @@ struct View {
   std::vector<std::string> unseen;  ///< moves that go there
 };
 
-View view_of(const Bench& bench, const routines::Plan& plan) {
-  const safety::BlindArea blind = bench.surroundings.cover.blind(bench.now);
-  return {blind, safety::unseen_moves(plan, blind, bench.surroundings.obstacles.options())};
+View view_of(const Surroundings& surroundings, const routines::Plan& plan, double now) {
+  const safety::BlindArea blind = surroundings.cover.blind(now);
+  return {blind, safety::unseen_moves(plan, blind, surroundings.obstacles.options())};
 }
 
 /// Where the lidar sees nothing, nothing but a person stops the robot: one has to stand for it, in this call
 /// and for this motion (rule M10). Notes in the order what it is.
-std::optional<Error> not_vouched_for(const Bench& bench, MotionTask::Order& order) {
-  const View view = view_of(bench, order.plan);
+std::optional<Error> not_vouched_for(const Surroundings& surroundings, MotionTask::Order& order, double now) {
+  const View view = view_of(surroundings, order.plan, now);
   order.unseen.clear();
   if (view.unseen.empty()) return std::nullopt;
   order.unseen = fmt::format("the lidar does not see {} of the robot, and \"{}\" goes there",
@@ -157,30 +159,36 @@ std::optional<Error> not_vouched_for(const Bench& bench, MotionTask::Order& orde
                "clients say who (vouched_by)"};
 }
 
-Outcome begin_motion(Bench& bench, const Caller& caller, MotionTask::Order order, bool dry_run) {
+MotionTask::Parts for_motion(RobotParts& parts) {
+  return {parts.config,     parts.clock,        parts.calibrator, parts.loop,     parts.outbox,
+          parts.drive,      parts.surroundings, parts.odometry,   parts.recorded, parts.applied,
+          parts.write_back, parts.lease,        parts.last_run};
+}
+
+Outcome begin_motion(RobotParts& parts, const Caller& caller, MotionTask::Order order, bool dry_run) {
   routines::Plan& plan = order.plan;
-  if (bench.drive.controller().watchdog_armed())
+  if (parts.drive.controller().watchdog_armed())
     plan.limits.speed = std::min(routines::capped(plan.limits).speed,
-                                 safety::fastest_with(bench.drive.controller().watchdog_time()));
+                                 safety::fastest_with(parts.drive.controller().watchdog_time()));
   if (const auto error = too_long(plan)) return *error;
   const auto preview = routines::preview(plan);
-  if (const auto error = motion_forbidden(bench, preview)) return *error;
+  if (const auto error = motion_forbidden(parts, preview)) return *error;
   if (dry_run) {
-    if (auto wrong = bench.drive.geometry_forbidden()) return *wrong;
-    const View view = view_of(bench, plan);
-    return Answer{{{"result", plan_report(bench, plan, preview, view.unseen, view.blind.sectors())}}};
+    if (auto wrong = parts.drive.geometry_forbidden()) return *wrong;
+    const View view = view_of(parts.surroundings, plan, parts.now);
+    return Answer{{{"result", plan_report(parts, plan, preview, view.unseen, view.blind.sectors())}}};
   }
-  if (const auto refused = not_vouched_for(bench, order)) return *refused;
+  if (const auto refused = not_vouched_for(parts.surroundings, order, parts.now)) return *refused;
   for (const auto& text : routines::limited(plan))
-    bench.outbox.event(messages::Severity::info, "limited", text);
-  ReadingTask::Next next = [caller, order = std::move(order),
-                            preview](Bench& read) mutable -> Result<std::unique_ptr<Task>> {
-    if (const auto error = motion_forbidden(read, preview)) return *error;
-    if (const auto wrong = read.drive.geometry_forbidden()) return *wrong;
-    if (const auto refused = not_vouched_for(read, order)) return *refused;
-    return MotionTask::begin(read, caller, order);
+    parts.outbox.event(messages::Severity::info, "limited", text);
+  ReadingTask::Next next = [&parts, caller, order = std::move(order),
+                            preview]() mutable -> Result<std::unique_ptr<Task>> {
+    if (const auto error = motion_forbidden(parts, preview)) return *error;
+    if (const auto wrong = parts.drive.geometry_forbidden()) return *wrong;
+    if (const auto refused = not_vouched_for(parts.surroundings, order, parts.now)) return *refused;
+    return MotionTask::begin(for_motion(parts), caller, order, parts.now);
   };
-  return std::make_unique<ReadingTask>(caller, bench.now, std::move(next));
+  return begin_reading(parts, caller, std::move(next));
 }
 
 Reading motion_request(Context& context, const Call& call, routines::Plan plan, MotionPurpose purpose) {
@@ -192,18 +200,18 @@ Reading motion_request(Context& context, const Call& call, routines::Plan plan, 
   MotionTask::Order order{std::move(plan), lease, std::move(purpose),
                           vouched_by.substr(0, service::settings::kLongestName)};
   return Request{lease, dry_run,
-                 [&bench = context.bench, caller = call.caller, dry_run, order = std::move(order)] {
-                   return begin_motion(bench, caller, order, dry_run);
+                 [&parts = context.parts, caller = call.caller, dry_run, order = std::move(order)] {
+                   return begin_motion(parts, caller, order, dry_run);
                  }};
 }
 
 // Straight, spin and pattern as one motion in one recording, or a single manoeuvre that goes with earlier
 // recordings.
-Result<routines::Plan> calibration_plan(const Bench& bench, CallParameters& options) {
-  const Config& config = bench.config;
+Result<routines::Plan> calibration_plan(const Config& config, const RobotDescription& robot,
+                                        CallParameters& options) {
   const routines::PatternOptions pattern{.area_length = config.area_length,
                                          .area_width = config.area_width,
-                                         .track_width = bench.drive.robot().track_width,
+                                         .track_width = robot.track_width,
                                          .quick = options.flag("quick"),
                                          .limits = config.limits};
   if (const std::string name = options.text("manoeuvre", ""); !name.empty()) {
@@ -234,7 +242,8 @@ Result<routines::Plan> calibration_plan(const Bench& bench, CallParameters& opti
 }  // namespace
 
 Reading nudge(Context& context, const Call& call) {
-  return motion_request(context, call, routines::nudge_plan(context.bench.config.limits), ReportWiring{});
+  return motion_request(context, call, routines::nudge_plan(context.parts.config.limits),
+                        ReportWiring{[&parts = context.parts] { return check_report(parts); }});
 }
 
 Reading straight(Context& context, const Call& call) {
@@ -244,7 +253,7 @@ Reading straight(Context& context, const Call& call) {
   options.speed = given.number("speed", options.speed);
   options.repeat = given.whole("repeat", 1);
   options.one_way = given.flag("one_way");
-  options.limits = context.bench.config.limits;
+  options.limits = context.parts.config.limits;
   (void)given.flag("dry_run");
   if (given.wrong()) return WrongParameter{*given.wrong()};
   if (auto wrong = wrong_straight(options)) return *wrong;
@@ -257,7 +266,7 @@ Reading square(Context& context, const Call& call) {
   options.side = given.number("distance");
   options.speed = given.number("speed", options.speed);
   options.repeat = given.whole("repeat", 1);
-  options.limits = context.bench.config.limits;
+  options.limits = context.parts.config.limits;
   (void)given.flag("dry_run");
   if (given.wrong()) return WrongParameter{*given.wrong()};
   if (auto wrong = wrong_square(options)) return *wrong;
@@ -270,7 +279,7 @@ Reading spin(Context& context, const Call& call) {
   options.turns = given.number("turns");
   options.rate = given.number("rate", options.rate);
   options.repeat = given.whole("repeat", 1);
-  options.limits = context.bench.config.limits;
+  options.limits = context.parts.config.limits;
   choose_sides(given, options);
   (void)given.flag("dry_run");
   if (given.wrong()) return WrongParameter{*given.wrong()};
@@ -280,19 +289,19 @@ Reading spin(Context& context, const Call& call) {
 
 Reading calibrate(Context& context, const Call& call) {
   static const ordered_json kNone = ordered_json::object();
-  const Bench& bench = context.bench;
+  const RobotParts& parts = context.parts;
   CallParameters given(call.parameters);
   (void)given.flag("dry_run");
   if (given.wrong()) return WrongParameter{*given.wrong()};
   const ordered_json& wanted = given.member("options");
   CallParameters options(wanted.is_null() ? kNone : wanted, "options");
   SolveRecording solve{wanted_effects(options), {}};
-  auto plan = calibration_plan(bench, options);
+  auto plan = calibration_plan(parts.config, parts.drive.robot(), options);
   if (options.wrong()) return WrongParameter{*options.wrong()};
-  if (bench.calibrator.wrong_effects)
-    if (auto wrong = bench.calibrator.wrong_effects(solve.effects)) return *wrong;
+  if (parts.calibrator.wrong_effects)
+    if (auto wrong = parts.calibrator.wrong_effects(solve.effects)) return *wrong;
   if (!plan) return plan.error();
-  auto earlier = earlier_recordings(options.member("with"), bench.config.state_dir / "recordings");
+  auto earlier = earlier_recordings(options.member("with"), parts.config.state_dir / "recordings");
   if (!earlier) return earlier.error();
   solve.earlier = std::move(earlier).value();
   return motion_request(context, call, std::move(plan).value(), std::move(solve));
@@ -305,7 +314,9 @@ Reading record(Context& context, const Call& call) {
   if (given.wrong()) return WrongParameter{*given.wrong()};
   if (!within(duration, 0.0, service::settings::kLongestRecord_s))
     return out_of_range("duration is not 0 to 3600 s");
-  auto task = RecordingTask::begin(context.bench, call.caller, name, duration);
+  RobotParts& parts = context.parts;
+  auto task = RecordingTask::begin({parts.outbox, parts.recorded, parts.write_back}, call.caller,
+                                   {name, duration}, parts.now);
   if (!task) return task.error();
   return std::move(task).value();
 }

@@ -8,26 +8,27 @@
 namespace odomcalib {
 
 Reading get_status(Context& context, const Call& /*call*/) {
-  return Answer{{{"status", status_report(context.bench, context.task)}}};
+  return Answer{{{"status", status_report(context.parts, context.task)}}};
 }
 
 Reading get_scan(Context& context, const Call& /*call*/) {
-  return Answer{{{"scan", scan_report(context.bench)}}};
+  return Answer{{{"scan", scan_report(context.parts.surroundings, context.parts.now)}}};
 }
 
 Reading describe(Context& context, const Call& /*call*/) {
-  return Answer{{{"description", description(context.bench.config)}}};
+  return Answer{{{"description", description(context.parts.config)}}};
 }
 
 Reading check(Context& context, const Call& call) {
   CallParameters given(call.parameters);
   (void)given.flag("nudge");
   if (given.wrong()) return WrongParameter{*given.wrong()};
-  return Answer{{{"checks", check_report(context.bench)}}};
+  return Answer{{{"checks", check_report(context.parts)}}};
 }
 
 Reading get_parameters(Context& context, const Call& /*call*/) {
-  return Answer{{{"parameters", parameter_report(context.bench, context.bench.applied.get())}}};
+  const RobotParts& parts = context.parts;
+  return Answer{{{"parameters", parameter_report(parts.drive, parts.calibrator, parts.applied.get())}}};
 }
 
 Reading get_history(Context& context, const Call& call) {
@@ -35,17 +36,17 @@ Reading get_history(Context& context, const Call& call) {
   const int limit = given.whole("limit", std::numeric_limits<int>::max());
   if (given.wrong() || limit < 0) return WrongParameter{"limit"};
   ordered_json list = ordered_json::array();
-  for (const auto& entry : context.bench.write_back.history.entries())
+  for (const auto& entry : context.parts.write_back.history.entries())
     if (list.size() < static_cast<std::size_t>(limit))
       list.push_back(ordered_json::parse(to_json(entry, false)));
   return Answer{
-      {{"entries", list}, {"calibrations", (context.bench.config.state_dir / "calibrations").string()}}};
+      {{"entries", list}, {"calibrations", (context.parts.config.state_dir / "calibrations").string()}}};
 }
 
 // A stream of events needs a client that takes more than one reply.
 Reading monitor(Context& context, const Call& call) {
   if (!call.caller.more) return WrongParameter{"more"};
-  context.bench.outbox.monitor(call.caller.client);
+  context.parts.outbox.monitor(call.caller.client);
   return Subscribed{};
 }
 

@@ -36,8 +36,8 @@ struct Wish {
   std::vector<std::string> asks = {};  ///< what the caller has to vouch for, and has not yet
 };
 
-ordered_json dry_run_report(const Bench& bench, const ParameterMap& present, const RoundedParameters& rounded,
-                            const Wish& wish) {
+ordered_json dry_run_report(const RobotParts& parts, const ParameterMap& present,
+                            const RoundedParameters& rounded, const Wish& wish) {
   std::optional<Calibration> wanted;
   if (wish.calibration)
     if (auto read = calibration_from_json(*wish.calibration, "calibration")) wanted = std::move(read).value();
@@ -45,18 +45,18 @@ ordered_json dry_run_report(const Bench& bench, const ParameterMap& present, con
                          {"before", present},
                          {"after", rounded.values},
                          {"rounding_error", to_json(rounded.remaining)},
-                         {"parameters", parameter_report(bench, wanted)},
+                         {"parameters", parameter_report(parts.drive, parts.calibrator, wanted)},
                          {"asks", wish.asks}};
   if (!wish.place.empty()) report["goes_to"] = wish.place;
   return report;
 }
 
 /// Of values that wait for their proof, and what was in force before them.
-ordered_json discard_report(const Bench& bench) {
-  const auto& last = bench.write_back.transaction.journal().last();
+ordered_json discard_report(const RobotParts& parts) {
+  const auto& last = parts.write_back.transaction.journal().last();
   Wish wish;
   wish.place = kBeforeProof;
-  return dry_run_report(bench, present_lengths(bench.drive.robot()),
+  return dry_run_report(parts, present_lengths(parts.drive.robot()),
                         {last ? last->before : ParameterMap(), {}}, wish);
 }
 
@@ -66,27 +66,30 @@ Error not_vouched_for(const std::string& what) {
       "state robot.id in the configuration, or say that it is: odomcalibctl apply asks (\"of_this_robot\")"};
 }
 
-Outcome begin_write(Bench& bench, const Caller& caller, Wish wish, bool dry_run) {
-  const ParameterMap present = present_lengths(bench.drive.robot());
-  const NominalLengths nominal = nominal_lengths(bench);
+ParameterTask::Parts for_writing(RobotParts& parts) {
+  return {parts.write_back, parts.drive, parts.applied, parts.calibrator, parts.outbox, *parts.disk};
+}
+
+Outcome begin_write(RobotParts& parts, const Caller& caller, Wish wish, bool dry_run) {
+  const ParameterMap present = present_lengths(parts.drive.robot());
+  const NominalLengths nominal = nominal_lengths(parts.drive, parts.config);
   if (const auto wrong = implausible(wish.values, nominal)) {
     if (wish.verified.empty()) return *wrong;
     wish.place += "; " + wrong->what;  // what was verified may come back all the same, and it is said
   }
-  const RoundedParameters rounded = round_together(wish.values, bench.drive.in_force);
-  if (dry_run) return Answer{{{"result", dry_run_report(bench, present, rounded, wish)}}};
+  const RoundedParameters rounded = round_together(wish.values, parts.drive.in_force);
+  if (dry_run) return Answer{{{"result", dry_run_report(parts, present, rounded, wish)}}};
   if (!wish.asks.empty()) return not_vouched_for(wish.asks.front());
   Provenance origin = wish.origin;
-  origin.user = bench.outbox.server.user_of(caller.client);
+  origin.user = parts.outbox.server.user_of(caller.client);
   origin.nominal = nominal.values;
   origin.nominal_from = nominal.from;
   const WriteTask::Order order{wish.label, rounded,    wish.calibration, wish.replaces_calibration,
                                wish.prove, wish.place, std::move(origin)};
-  ReadingTask::Next next = [caller, order](Bench& read) -> Result<std::unique_ptr<Task>> {
-    if (auto changed = read.drive.changed_besides(order.rounded.values)) return *changed;
-    return WriteTask::begin(read, caller, order);
-  };
-  return std::make_unique<ReadingTask>(caller, bench.now, std::move(next));
+  return begin_reading(parts, caller, [&parts, caller, order]() -> Result<std::unique_ptr<Task>> {
+    if (auto changed = parts.drive.changed_besides(order.rounded.values)) return *changed;
+    return WriteTask::begin(for_writing(parts), caller, order, parts.now);
+  });
 }
 
 /// Where the configuration names this robot, a calibration names the same one.
@@ -118,15 +121,15 @@ std::string whose_robot(const Calibration& calibration) {
 }
 
 /// The values of a calibration that a controller may hold.
-Result<Wish> wish_of(Calibration calibration, const Bench& bench, bool replaced) {
-  const std::string& robot = bench.drive.nominal().robot_id;
+Result<Wish> wish_of(Calibration calibration, const RobotParts& parts, bool replaced) {
+  const std::string& robot = parts.drive.nominal().robot_id;
   if (calibration.verdict == Verdict::refused)
     return Error{ErrorCode::refused, "this calibration was refused by its quality gate", "calibration",
                  "record again and solve"};
   if (auto wrong = of_another_robot(calibration, robot)) return *wrong;
-  if (auto wrong = of_another_controller(calibration, device_of(bench.drive.controller()), replaced))
+  if (auto wrong = of_another_controller(calibration, device_of(parts.drive.controller()), replaced))
     return *wrong;
-  if (auto wrong = absurd(calibration, nominal_lengths(bench))) return *wrong;
+  if (auto wrong = absurd(calibration, nominal_lengths(parts.drive, parts.config))) return *wrong;
   Wish wish;
   if (robot.empty()) wish.asks.push_back(whose_robot(calibration));
   for (const auto* name : {"left_wheel_diameter", "right_wheel_diameter", "track_width"})
@@ -144,11 +147,11 @@ Reading write_request(Context& context, const Call& call, MakeWish make_wish) {
   const std::string lease = given.text("lease", "");
   const bool dry_run = given.flag("dry_run");
   return Request{lease, dry_run,
-                 [&bench = context.bench, caller = call.caller, dry_run, make_wish]() -> Outcome {
-                   if (auto forbidden = write_forbidden(bench)) return *forbidden;
+                 [&parts = context.parts, caller = call.caller, dry_run, make_wish]() -> Outcome {
+                   if (auto forbidden = write_forbidden(parts.drive, parts.write_back)) return *forbidden;
                    const Result<Wish> wish = make_wish();
                    if (!wish) return wish.error();
-                   return begin_write(bench, caller, wish.value(), dry_run);
+                   return begin_write(parts, caller, wish.value(), dry_run);
                  }};
 }
 
@@ -163,10 +166,10 @@ Reading apply(Context& context, const Call& call) {
   if (!wanted.is_object()) given.reject("calibration");
   if (given.wrong()) return WrongParameter{*given.wrong()};
   return write_request(context, call,
-                       [&bench = context.bench, &wanted, prove, replaced, ours]() -> Result<Wish> {
+                       [&parts = context.parts, &wanted, prove, replaced, ours]() -> Result<Wish> {
                          auto calibration = calibration_from(wanted, "calibration");
                          if (!calibration) return calibration.error();
-                         auto wish = wish_of(std::move(calibration).value(), bench, replaced);
+                         auto wish = wish_of(std::move(calibration).value(), parts, replaced);
                          if (wish) wish.value().prove = prove;
                          if (wish && ours) wish.value().asks.clear();
                          return wish;
@@ -177,18 +180,20 @@ namespace {
 
 Reading end_proof(Context& context, const Call& call, bool proven) {
   return Request{CallParameters(call.parameters).text("lease", ""), false,
-                 [&bench = context.bench, caller = call.caller, proven]() -> Outcome {
-                   const WriteBack& values = bench.write_back;
+                 [&parts = context.parts, caller = call.caller, proven]() -> Outcome {
+                   const WriteBack& values = parts.write_back;
                    // What has gone back by itself is discarded, too.
                    if (proven ? !values.proving() : !values.busy() && !values.proving() && !values.ended)
                      return Error{ErrorCode::refused, "no values wait for their proof", "write-back",
                                   "odomcalibctl params get"};
-                   if (!proven) return std::make_unique<ProofTask>(caller, proven, bench.now);
-                   return std::make_unique<ReadingTask>(
-                       caller, bench.now, [caller](Bench& read) -> Result<std::unique_ptr<Task>> {
-                         if (auto changed = read.drive.changed_besides({})) return *changed;
-                         return std::unique_ptr<Task>(std::make_unique<ProofTask>(caller, true, read.now));
-                       });
+                   const auto task = [&parts, caller, proven]() -> std::unique_ptr<Task> {
+                     return std::make_unique<ProofTask>(for_writing(parts), caller, proven, parts.now);
+                   };
+                   if (!proven) return task();
+                   return begin_reading(parts, caller, [&parts, task]() -> Result<std::unique_ptr<Task>> {
+                     if (auto changed = parts.drive.changed_besides({})) return *changed;
+                     return task();
+                   });
                  }};
 }
 
@@ -219,12 +224,12 @@ Reading rollback(Context& context, const Call& call) {
   if (!wanted.before.empty() && !wanted.after.empty()) given.reject("to");
   if (given.wrong()) return WrongParameter{*given.wrong()};
   const bool named = !wanted.before.empty() || !wanted.after.empty();
-  if (context.bench.write_back.proving() && !named)
-    return given.flag("dry_run") ? Reading(Outcome(Answer{{{"result", discard_report(context.bench)}}}))
+  if (context.parts.write_back.proving() && !named)
+    return given.flag("dry_run") ? Reading(Outcome(Answer{{{"result", discard_report(context.parts)}}}))
                                  : end_proof(context, call, false);
-  return write_request(context, call, [&bench = context.bench, wanted]() -> Result<Wish> {
-    const auto former = bench.write_back.former_values(wanted, device_of(bench.drive.controller()),
-                                                       bench.drive.in_force, bench.applied.text());
+  return write_request(context, call, [&parts = context.parts, wanted]() -> Result<Wish> {
+    const auto former = parts.write_back.former_values(wanted, device_of(parts.drive.controller()),
+                                                       parts.drive.in_force, parts.applied.text());
     if (!former) return former.error();
     const FormerValues& back = former.value();
     Wish wish{back.values, "rollback", back.calibration};

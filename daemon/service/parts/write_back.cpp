@@ -16,12 +16,6 @@ bool away(drivers::ControllerState state) {
 
 }  // namespace
 
-std::string name_of(WriteOutcome outcome) {
-  if (outcome == WriteOutcome::committed) return "committed";
-  if (outcome == WriteOutcome::proving) return "proving";
-  return outcome == WriteOutcome::rolled_back ? "rolled_back" : "unknown";
-}
-
 WriteBack::WriteBack(Journal write_journal, const std::filesystem::path& state_dir, Background& disk)
     : journal_(std::move(write_journal)),
       transaction(journal_, disk),
@@ -103,31 +97,16 @@ Result<void> WriteBack::write(const std::string& label, const ParameterMap& valu
 }
 
 void WriteBack::learn(const WriteReport& report) {
-  const bool unknown = report.outcome == WriteOutcome::unknown;
-  learn_of_proof(report);
-  recovery_tried_ = recovery_tried_ || unknown;
-  if (report.outcome == WriteOutcome::committed || report.outcome == WriteOutcome::rolled_back) {
+  const Ending& end = ending_of(report.outcome);
+  // What was driven was driven with the values in force then.
+  if (end.proof != nullptr) (proof.*end.proof)();
+  recovery_tried_ = recovery_tried_ || !end.certain;
+  if (end.lasts && end.certain) {
     next_recovery_ = 0.0;
     recovery_pause_ = service::settings::kRecoverAgain_s;
   }
-  operator_needed = unknown || (report.outcome == WriteOutcome::read && unfinished());
+  operator_needed = !end.certain || (!end.of_a_write && unfinished());
   if (operator_needed && report.error) problem = report.error->text();
-}
-
-// What was driven was driven with the values in force then.
-void WriteBack::learn_of_proof(const WriteReport& report) {
-  switch (report.outcome) {
-    case WriteOutcome::proving:
-      return proof.other_values();
-    case WriteOutcome::rolled_back:
-      return proof.taken_back();
-    case WriteOutcome::committed:
-      return proof.committed();
-    case WriteOutcome::unknown:
-      return proof.forget();
-    case WriteOutcome::read:
-      return;
-  }
 }
 
 void WriteBack::end() {

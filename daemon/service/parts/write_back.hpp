@@ -69,6 +69,8 @@ class WriteBack {
   void learn(const WriteReport& report);
   /// From now on nothing is read or recovered any more.
   void end();
+  /// The daemon ends.
+  [[nodiscard]] bool ending() const { return ending_; }
   /// Until what it came to is in the history, too.
   [[nodiscard]] bool busy() const { return (transaction.busy() && !proving()) || settling; }
   /// Without an entry: what an unfinished write-back is to be taken back to, else one entry further back.
@@ -101,7 +103,6 @@ class WriteBack {
  private:
   void begin_reading(const drivers::Controller& controller, bool values_known, double now);
   void serve_proof(drivers::ControllerState state, bool may_begin, double now);
-  void learn_of_proof(const WriteReport& report);
 
   [[nodiscard]] bool unfinished() const { return transaction.journal().unfinished().has_value(); }
 
@@ -115,7 +116,5 @@ class WriteBack {
   std::optional<Error> not_proven_;  // why the values that wait go back
   double proof_ends_ = 0.0;          // s, of the longest wait
 };
-
-std::string name_of(WriteOutcome outcome);
 
 }  // namespace odomcalib

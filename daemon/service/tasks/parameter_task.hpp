@@ -3,21 +3,36 @@
 
 #include <string>
 
+#include "daemon/service/calibrator.hpp"
+#include "daemon/service/parts/applied_calibration.hpp"
+#include "daemon/service/parts/drive.hpp"
+#include "daemon/service/parts/write_back.hpp"
 #include "daemon/service/tasks/task.hpp"
+#include "daemon/writeback/background.hpp"
 
 namespace odomcalib {
 
 class ParameterTask : public Task {
  public:
-  using Task::Task;
+  /// What they work on; all of it outlives them.
+  struct Parts {
+    WriteBack& write_back;
+    const Drive& drive;
+    AppliedCalibration& applied;
+    const Calibrator& calibrator;
+    Outbox& outbox;
+    Background& disk;
+  };
+  ParameterTask(const Parts& parts, const Caller& waits) : Task(waits), parts_(parts) {}
 
   [[nodiscard]] const char* part() const override { return "write-back"; }
-  [[nodiscard]] std::string activity(const Bench& /*bench*/) const override {
-    return "reading or writing parameters";
-  }
+  [[nodiscard]] std::string activity() const override { return "reading or writing parameters"; }
   /// Values are written wholly or not at all: what has begun goes on.
-  void stop(Bench& /*bench*/) override {}
-  void abandoned(Bench& /*bench*/) override {}
+  void stop(double /*now*/) override {}
+  void abandoned(double /*now*/) override {}
+
+ protected:
+  const Parts parts_;
 };
 
 }  // namespace odomcalib

@@ -8,13 +8,13 @@ namespace odomcalib {
 class ProofTask final : public ParameterTask {
  public:
   /// @param proven the values that wait are stored
-  ProofTask(const Caller& waits, bool proven, double now)
-      : ParameterTask(waits), proven_(proven), asked_at_(now) {}
+  ProofTask(const Parts& parts, const Caller& waits, bool proven, double now)
+      : ParameterTask(parts, waits), proven_(proven), asked_at_(now) {}
 
-  TaskTurn turn(Bench& bench) override;
+  TaskTurn turn(double now) override;
 
  private:
-  TaskTurn store(Bench& bench);
+  TaskTurn store(double now);
 
   bool proven_;
   double asked_at_;  // s

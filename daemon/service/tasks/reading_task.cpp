@@ -6,24 +6,24 @@
 namespace odomcalib {
 
 /// Axes that still have torque after a motion are waited for.
-TaskTurn ReadingTask::begin(Bench& bench) {
-  if (bench.write_back.busy()) return Running{};
-  const auto begun = bench.drive.controller().start_read_parameters(bench.now);
+TaskTurn ReadingTask::begin(double now) {
+  if (parts_.write_back.busy()) return Running{};
+  const auto begun = parts_.drive.controller().start_read_parameters(now);
   reading_ = begun.ok();
-  const bool waits = reading_ || bench.now - asked_at_ < service::settings::kComesToRest_s;
+  const bool waits = reading_ || now - asked_at_ < service::settings::kComesToRest_s;
   return waits ? TaskTurn(Running{}) : Failed{begun.error()};
 }
 
-TaskTurn ReadingTask::turn(Bench& bench) {
+TaskTurn ReadingTask::turn(double now) {
   const auto result =
-      reading_ ? bench.drive.controller().take_job_result() : std::optional<drivers::ParameterJobResult>();
+      reading_ ? parts_.drive.controller().take_job_result() : std::optional<drivers::ParameterJobResult>();
   if (reading_ && !result) return Running{};
-  if (bench.ending) cancelled_ = "the daemon ends";
+  if (parts_.write_back.ending()) cancelled_ = "the daemon ends";
   if (cancelled_ != nullptr) return Failed{{ErrorCode::cancelled, cancelled_, part(), "start again"}};
-  if (!reading_) return begin(bench);
+  if (!reading_) return begin(now);
   if (result->error) return Failed{*result->error};
-  settle_reading(bench, result->parameters);
-  auto task = next_(bench);
+  settle_reading(parts_.drive, parts_.outbox, result->parameters);
+  auto task = next_();
   return task ? TaskTurn(Then{std::move(task).value()}) : Failed{task.error()};
 }
 

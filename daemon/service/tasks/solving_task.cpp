@@ -27,28 +27,29 @@ Calibrator cancellable(Calibrator calibrator, std::shared_ptr<std::atomic<bool>>
 
 }  // namespace
 
-SolvingTask::SolvingTask(const Bench& bench, const Caller& waits, const Order& order)
+SolvingTask::SolvingTask(const Parts& parts, const Caller& waits, const Order& order)
     : Task(waits),
+      outbox_(parts.outbox),
       recording_(order.recordings.back()),
       cancelled_(std::make_shared<std::atomic<bool>>(false)),
-      job_(cancellable(bench.calibrator, cancelled_), order.recordings, order.effects,
-           kept_at(bench.config, recording_)) {}
+      job_(cancellable(parts.calibrator, cancelled_), order.recordings, order.effects,
+           kept_at(parts.config, recording_)) {}
 
-TaskTurn SolvingTask::turn(Bench& bench) {
+TaskTurn SolvingTask::turn(double /*now*/) {
   const auto [phase, fraction] = job_.progress();
-  bench.outbox.progress(caller, "solve: " + phase, fraction, std::nullopt);
+  outbox_.progress(caller, "solve: " + phase, fraction, std::nullopt);
   auto result = job_.take_result();
   if (!result) return Running{};
   if (const auto problem = job_.not_kept())
-    bench.outbox.event(messages::Severity::warning, "not_kept", problem->text());
+    outbox_.event(messages::Severity::warning, "not_kept", problem->text());
   if (*cancelled_)
     return Failed{{ErrorCode::cancelled, "stopped on request", "solve",
                    "the recording is kept: odomcalibctl solve " + recording_.string()}};
   if (!*result) return Failed{result->error()};
   Solution solution = std::move(*result).value();
-  bench.outbox.event(messages::Severity::info, "calibration", solution.line);
-  bench.outbox.send_result(solution.calibration);
-  bench.outbox.send_paths(solution.paths);
+  outbox_.event(messages::Severity::info, "calibration", solution.line);
+  outbox_.send_result(solution.calibration);
+  outbox_.send_paths(solution.paths);
   return Done{std::move(solution.reply)};
 }
 

@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "daemon/config/config.hpp"
+#include "daemon/service/calibrator.hpp"
 #include "daemon/service/solver_job.hpp"
 #include "daemon/service/tasks/task.hpp"
 
@@ -17,16 +19,23 @@ class SolvingTask final : public Task {
     std::vector<std::filesystem::path> recordings;  ///< solved together; the one just driven is the last
     std::vector<std::string> effects;
   };
-  SolvingTask(const Bench& bench, const Caller& waits, const Order& order);
+  /// All of it outlives the task.
+  struct Parts {
+    Outbox& outbox;
+    const Calibrator& calibrator;
+    const Config& config;
+  };
+  SolvingTask(const Parts& parts, const Caller& waits, const Order& order);
 
   [[nodiscard]] const char* part() const override { return "solver"; }
-  [[nodiscard]] std::string activity(const Bench& /*bench*/) const override { return "solving"; }
-  TaskTurn turn(Bench& bench) override;
-  void stop(Bench& /*bench*/) override { *cancelled_ = true; }
+  [[nodiscard]] std::string activity() const override { return "solving"; }
+  TaskTurn turn(double now) override;
+  void stop(double /*now*/) override { *cancelled_ = true; }
   /// The result is kept in a file.
-  void abandoned(Bench& /*bench*/) override {}
+  void abandoned(double /*now*/) override {}
 
  private:
+  Outbox& outbox_;
   std::filesystem::path recording_;
   std::shared_ptr<std::atomic<bool>> cancelled_;  // read by the thread that solves
   SolverJob job_;

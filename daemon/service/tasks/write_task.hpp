@@ -23,15 +23,16 @@ class WriteTask final : public ParameterTask {
   };
   /// Error: refused while another write-back runs. Errors of announcing the calibration (io) and of
   /// Transaction::write end the task.
-  static Result<std::unique_ptr<Task>> begin(Bench& bench, const Caller& caller, const Order& order);
+  static Result<std::unique_ptr<Task>> begin(const Parts& parts, const Caller& caller, const Order& order,
+                                             double now);
 
-  TaskTurn turn(Bench& bench) override;
+  TaskTurn turn(double now) override;
 
  private:
-  WriteTask(const Caller& waits, Order order, double now)
-      : ParameterTask(waits), order_(std::move(order)), asked_at_(now) {}
-  void announce(Bench& bench);
-  TaskTurn begin_writing(Bench& bench);
+  WriteTask(const Parts& parts, const Caller& waits, Order order, double now)
+      : ParameterTask(parts, waits), order_(std::move(order)), asked_at_(now) {}
+  void announce();
+  TaskTurn begin_writing(double now);
 
   struct Announcement {
     std::vector<HistoryEntry> unwritten;     // that the disk did not take before
@@ -48,10 +49,11 @@ ordered_json to_json(const RoundingError& error);
 
 /// What a write-back answers that has come to its end: done with the values that were asked for, or waiting
 /// for their proof.
-ordered_json write_reply(const Bench& bench, const WriteReport& report, const ParameterMap& before,
-                         const ParameterMap& after, const RoundingError& remaining);
+ordered_json write_reply(const ParameterTask::Parts& parts, const WriteReport& report,
+                         const ParameterMap& before, const ParameterMap& after,
+                         const RoundingError& remaining);
 
 /// The end of a write-back as the last turn of the task that waited for it.
-TaskTurn turn_of(const Bench& bench, const WriteEnd& end);
+TaskTurn turn_of(const ParameterTask::Parts& parts, const WriteEnd& end);
 
 }  // namespace odomcalib

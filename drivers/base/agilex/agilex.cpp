@@ -73,7 +73,7 @@ void Agilex::on_frame(const CanFrame& frame) {
   const bool numbered = is_motor(frame.id) || message->name == "motor_driver";
   if (numbered)
     message->fields.insert(message->fields.begin(), {"motor", static_cast<double>(frame.id & 0xF), {}});
-  tell(std::move(*message));
+  report(std::move(*message));
 }
 
 void Agilex::on_state(const DeviceMessage& message) {

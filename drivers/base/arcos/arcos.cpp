@@ -119,11 +119,11 @@ void Arcos::on_status(Bytes data, double t) {
   }
   state_.enabled = (flags & kMotorsEnabled) != 0;
   state_.fault = (flags & kEmergencyFlag) != 0 ? "emergency stop is pressed" : "";
-  tell({t,
-        "status",
-        {field("x", x), field("y", y), field("heading_rad", heading), field("left_mm_s", left),
-         field("right_mm_s", right), field("battery_V", battery), field("stall", stall),
-         field("flags", flags)}});
+  report({t,
+          "status",
+          {field("x", x), field("y", y), field("heading_rad", heading), field("left_mm_s", left),
+           field("right_mm_s", right), field("battery_V", battery), field("stall", stall),
+           field("flags", flags)}});
 }
 
 void Arcos::on_configuration(Bytes data, double t) {
@@ -145,11 +145,11 @@ void Arcos::on_configuration(Bytes data, double t) {
   identity_ = Identity{0, 0, 0, 0, type + " " + subtype + " " + name + " " + serial};
   timeout_s_ = 1e-3 * watchdog_ms;
   ++configurations_;
-  tell({t,
-        "configuration",
-        {field("type", type), field("subtype", subtype), field("serial", serial), field("name", name),
-         field("RevCount", rev_count), field("watchdog_ms", watchdog_ms), field("DriftFactor", drift),
-         field("TicksMM", ticks_per_mm)}});
+  report({t,
+          "configuration",
+          {field("type", type), field("subtype", subtype), field("serial", serial), field("name", name),
+           field("RevCount", rev_count), field("watchdog_ms", watchdog_ms), field("DriftFactor", drift),
+           field("TicksMM", ticks_per_mm)}});
 }
 
 bool Arcos::ask_settings() {

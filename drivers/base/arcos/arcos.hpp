@@ -29,7 +29,7 @@ class Arcos final : public SpeedProtocol {
   [[nodiscard]] DeviceState device_state() const override { return state_; }
   [[nodiscard]] std::optional<double> reported_timeout_s() const override { return timeout_s_; }
   bool ask_settings() override;
-  [[nodiscard]] std::uint64_t settings_told() const override { return configurations_; }
+  [[nodiscard]] std::uint64_t settings_reported() const override { return configurations_; }
   [[nodiscard]] Counters counters() const override;
 
  private:

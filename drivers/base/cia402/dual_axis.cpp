@@ -1,199 +1,112 @@
-// Life signs, emergencies, other masters; what comes in and goes out. Set-up and motion have their own files.
 #include "drivers/base/cia402/dual_axis.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 #include "drivers/base/canopen/words.hpp"
 #include "drivers/base/cia402/settings.hpp"
-#include "drivers/base/motion/settings.hpp"
-#include "drivers/bytes.hpp"
 
 namespace odomcalib::drivers {
-namespace {
 
 using namespace cia402;
-
-constexpr std::uint8_t kOperational = 0x05;
-constexpr std::uint8_t kNmtResetNode = 0x81;
-constexpr std::uint32_t kBusOff = 0x040;  // SocketCAN error classes
-constexpr std::uint32_t kController = 0x004;
-
-}  // namespace
 
 DualAxis::DualAxis(Profile profile)
     : profile_(std::move(profile)),
       sdo_(profile_.node),
-      job_(profile_),
-      motion_(*this,
-              {profile_.name, profile_.max_rpm * std::numbers::pi / 30.0, profile_.ticks_per_rev, kRest_s}),
-      dates_(profile_),
-      counts_(profile_) {}
+      setup_(profile_, out_),
+      watch_(profile_),
+      data_(profile_, out_),
+      job_(profile_) {}
 
-void DualAxis::event(const std::string& code, const std::string& text, bool stop) {
-  motion_.event(code, text, stop, now_);
-}
+void DualAxis::event(const ControllerEvent& found) { data_.event(found.code, found.text, found.stop, now_); }
 
 void DualAxis::on_frame(const CanFrame& frame) {
   ++frames_in_;
   now_ = std::max(now_, frame.t);
-  if (frame.error) return on_error_frame(frame);
+  if (frame.error) return take(watch_.on_error_frame(frame, now_));
   if (frame.extended || frame.remote || frame.length > 8) return;
   if (sdo_.on_frame(frame, now_)) {
-    ++frames_used_;
+    ++answers_;
     advance_setup();
     return;
   }
   if (frame.id == 0x080) return on_sync(frame.t);
-  if (frame.id == 0x080u + profile_.node) return on_emergency(frame);
-  if (frame.id == 0x700u + profile_.node) return on_life_sign(frame);
+  if (frame.id == 0x080u + profile_.node) return take(watch_.on_emergency(frame, now_));
+  if (frame.id == 0x700u + profile_.node) return take(watch_.on_life_sign(frame, situation(), now_));
   if (frame.id == 0x000 || frame.id == 0x600u + profile_.node) return on_other_master(frame);
-  for (const canopen::Pdo& pdo : profile_.pdos)
-    if (pdo.cob_id == frame.id) return pdo.transmit ? on_process_data(pdo, frame) : on_other_master(frame);
-  if (receives(frame.id)) on_other_master(frame);
-}
-
-bool DualAxis::receives(std::uint32_t cob_id) const {
-  return std::any_of(unlisted_.begin(), unlisted_.end(),
-                     [&](const auto& pdo) { return (pdo.value & canopen::kPdoIdentifier) == cob_id; });
-}
-
-void DualAxis::on_error_frame(const CanFrame& frame) {
-  ++error_frames_;
-  if ((frame.id & kBusOff) != 0)
-    return event("bus_off", "the CAN interface is off the bus; restart it", true);
-  const bool passive = (frame.id & kController) != 0 && (frame.data[1] & 0x30) != 0;
-  if (passive)
-    event("error_passive", "the CAN interface is error-passive: check wiring and termination", true);
-}
-
-void DualAxis::on_emergency(const CanFrame& frame) {
-  if (frame.length != 8) {
-    ++bad_frames_;
-    return;
+  for (const canopen::Pdo& pdo : profile_.pdos) {
+    if (pdo.cob_id != frame.id) continue;
+    return pdo.transmit ? data_.on_frame(pdo, frame, setup_.started(), now_) : on_other_master(frame);
   }
-  ++frames_used_;
-  ++emergencies_;
-  ByteReader reader(Bytes(frame.data).first(frame.length));
-  const std::uint16_t code = reader.u16();
-  if (code == 0) return event("emcy_cleared", "controller reports: error gone", false);
-  event("emcy", "emergency of the controller: " + canopen::emergency_text(code), true);
+  if (setup_.receives(frame.id)) on_other_master(frame);
 }
 
-void DualAxis::on_life_sign(const CanFrame& frame) {
-  if (frame.length != 1) {
-    ++bad_frames_;
-    return;
-  }
-  ++frames_used_;
-  ++heartbeats_;
-  heard_at_ = now_;
-  node_state_ = frame.data[0] & 0x7F;  // bit 7 is the toggle of node guarding
-  if (node_state_ == 0) return on_boot_up();
-  if (phase_ == Phase::ready && node_state_ != kOperational)
-    lose("left_operational",
-         "the controller left operational: it is " + canopen::nmt_state_text(node_state_));
-}
-
-/// Most controllers boot for longer than their life signs may be missing: then the stop was before.
-void DualAxis::on_boot_up() {
-  ++boot_ups_;
-  const bool expected = phase_ == Phase::absent || phase_ == Phase::identifying;
-  const char* const text = "the controller restarted: its RAM parameters and PDO mapping are gone";
-  if (!expected)
-    lose("unexpected_boot", text);
-  else if (fell_silent_)
-    event("unexpected_boot", text, false);
-  fell_silent_ = false;
-  look_after_ = now_;
-}
-
-/// NMT, an SDO download, or process data to the node. An SDO client that only reads commands nothing.
-bool DualAxis::commands_node(const CanFrame& frame) const {
-  if (frame.id == 0x000) return frame.length >= 2 && (frame.data[1] == 0 || frame.data[1] == profile_.node);
-  if (frame.id != 0x600u + profile_.node) return true;
-  constexpr unsigned kDownloadSegment = 0, kDownload = 1, kBlockDownload = 6;
-  const unsigned specifier = frame.data[0] >> 5;
-  return specifier == kDownloadSegment || specifier == kDownload || specifier == kBlockDownload;
-}
-
-/// Our own frames do not come back. What moves the wheels while somebody else commands them was not asked for
-/// here (M19).
 void DualAxis::on_other_master(const CanFrame& frame) {
-  ++other_master_;
-  const bool is_client = frame.id == 0x600u + profile_.node, is_nmt = frame.id == 0x000;
-  double& last = is_client || is_nmt ? last_other_master_ : last_foreign_data_;
-  const bool first = now_ - last > motion::kOtherMasterAgain_s;
-  last = now_;
-  const bool commands = commands_node(frame);
-  if (commands) ++foreign_commands_;
-  if (commands && (is_client || is_nmt)) touched_at_ = now_;
-  const bool stops = motion_.active() && commands;
-  if (!first && !stops) return;
-  event("other_master",
-        is_nmt      ? "another program sends NMT commands on this bus"
-        : is_client ? "another SDO client talks to this node"
-                    : "another program sends speeds or control words to this node",
-        stops);
+  take(watch_.on_other_master(frame, situation(), now_));
 }
 
-void DualAxis::check_life() {
-  if (phase_ != Phase::ready || job_.storing() || !heard_at_) return;
-  const double longest = kMissedHeartbeats * 1e-3 * profile_.heartbeat_ms;
-  if (now_ - *heard_at_ <= longest) return;
-  lose("heartbeat_lost", "three heartbeats of the controller are missing");
-  fell_silent_ = true;
+NodeWatch::Situation DualAxis::situation() const {
+  const Phase phase = setup_.phase();
+  return {phase == Phase::absent || phase == Phase::identifying, setup_.ready(), data_.motion().active(),
+          job_.storing()};
+}
+
+void DualAxis::take(const NodeWatch::Finding& finding) {
+  if (finding.lost)
+    lose(*finding.event);
+  else if (finding.event)
+    event(*finding.event);
+  if (finding.booted) setup_.look_now(now_);
 }
 
 /// The node is no longer what was configured: stop, forget, look again.
-void DualAxis::lose(const std::string& code, const std::string& text) {
-  event(code, text, true);
+void DualAxis::lose(const ControllerEvent& why) {
+  event(why);
   job_.abandon();
-  forget_node();
-  look_after_ = now_ + kLostAgain_s;
+  forget_node(kLostAgain_s);
 }
 
-void DualAxis::forget_node() {
-  motion_.forget();
-  setup_.cancel();
+void DualAxis::forget_node(double pause) {
+  setup_.begin_again(now_, pause);
   sdo_.cancel();
-  phase_ = Phase::absent;
-  phase_since_ = now_;
-  watchdog_armed_ = false;
-  positions_at_.reset();
-  dates_.forget();
-  status_at_.reset();
-  counts_.begin_segment();
+  data_.forget();
 }
 
 /// What a store is worth is seen after a reset only. Everything in RAM is set up again afterwards.
 void DualAxis::restart_to_verify() {
-  event("restarted_to_verify", "the controller is reset to see what it stored", false);
+  event({now_, "restarted_to_verify", "the controller is reset to see what it stored", false});
   restarted_at_ = now_;
-  fell_silent_ = false;
-  send_nmt(kNmtResetNode);
-  forget_node();
-  look_after_ = now_ + kBoot_s;  // a boot-up message makes it sooner
-}
-
-void DualAxis::send_nmt(std::uint8_t command) {
-  CanFrame frame;
-  frame.id = 0x000;
-  frame.length = 2;
-  frame.data = {command, profile_.node};
-  out_.push_back(frame);
+  watch_.expect_boot();
+  setup_.reset_node();
+  forget_node(kBoot_s);  // a boot-up message makes it sooner
 }
 
 void DualAxis::send_own_heartbeat() {
-  const bool watched = phase_ == Phase::configuring || phase_ == Phase::starting || phase_ == Phase::ready;
-  if (!watched || now_ < own_heartbeat_due_) return;
-  own_heartbeat_due_ = now_ + kOwnHeartbeat_s;
-  CanFrame frame;
-  frame.id = 0x700u + profile_.host_node;
-  frame.length = 1;
-  frame.data[0] = kOperational;
-  out_.push_back(frame);
+  if (setup_.phase() != Phase::configuring && !setup_.started()) return;
+  if (const auto frame = watch_.take_heartbeat(now_)) out_.push_back(*frame);
+}
+
+void DualAxis::advance_setup() {
+  if (setup_.ready()) return advance_job();
+  const NodeSetup::Step step = setup_.advance(
+      sdo_, {watch_.other_master(now_), watch_.node_state(), data_.has_positions(), data_.has_status()},
+      now_);
+  for (const ControllerEvent& found : setup_.take_events()) event(found);
+  switch (step) {
+    case NodeSetup::Step::none:
+      return;
+    case NodeSetup::Step::no_answer:
+      return watch_.unheard();
+    case NodeSetup::Step::identified:
+      return watch_.heard(now_);
+    case NodeSetup::Step::configured:
+      watch_.was_set_up();
+      return data_.expect();
+    case NodeSetup::Step::running:
+      data_.begin_motion();
+      watch_.heard(now_);
+      return job_.on_set_up_again();
+  }
 }
 
 /// A drive that is not as it was set up is set up again; until then its state is not that of one that may
@@ -201,32 +114,26 @@ void DualAxis::send_own_heartbeat() {
 void DualAxis::advance_job() {
   const bool reading = job_.reading();
   job_.advance(sdo_, now_);
-  if (const auto change = job_.take_change()) return lose("drive_changed", change->what);
-  if (reading && !job_.running() && touched_at_ && *touched_at_ < read_since_) touched_at_.reset();
+  if (const auto change = job_.take_change()) return lose({now_, "drive_changed", change->what, true});
+  if (reading && !job_.running()) watch_.was_read(read_since_);
 }
 
 void DualAxis::on_time(double now) {
   now_ = std::max(now_, now);
   sdo_.on_time(now_);
   advance_setup();
-  if (phase_ == Phase::ready) advance_job();
+  if (setup_.ready()) advance_job();
   if (job_.take_reset_request()) restart_to_verify();
   if (job_.resetting() && now_ - restarted_at_ > kRestart_s) job_.abandon();
   send_own_heartbeat();
   send_sync();
-  check_life();
-  cycle_motion();
+  take(watch_.check(situation(), now_));
+  if (setup_.ready()) data_.cycle(watch_.was_commanded(), now_);
 }
 
-/// For drives that sample on SYNC. One of a pair leaves it to the pair.
+/// One of a pair leaves it to the pair.
 void DualAxis::send_sync() {
-  if (profile_.sync_period_s <= 0.0 || profile_.axes == 1 || !wants_sync() || now_ < sync_due_) return;
-  const bool in_time = now_ - sync_due_ < profile_.sync_period_s;
-  sync_due_ = (in_time ? sync_due_ : now_) + profile_.sync_period_s;
-  CanFrame frame;
-  frame.id = 0x080;
-  out_.push_back(frame);
-  on_sync(now_);
+  if (profile_.sync_period_s > 0.0 && profile_.axes == 2 && wants_sync()) data_.sync(now_);
 }
 
 std::vector<CanFrame> DualAxis::take_frames() {
@@ -235,13 +142,13 @@ std::vector<CanFrame> DualAxis::take_frames() {
 }
 
 ControllerState DualAxis::state() const {
-  switch (phase_) {
+  switch (setup_.phase()) {
     case Phase::absent:
       return ControllerState::absent;
     case Phase::foreign:
       return ControllerState::fault;
     case Phase::identifying:
-      return heard_at_ ? ControllerState::configuring : ControllerState::absent;
+      return watch_.hears() ? ControllerState::configuring : ControllerState::absent;
     case Phase::configuring:
     case Phase::starting:
       return ControllerState::configuring;
@@ -249,35 +156,55 @@ ControllerState DualAxis::state() const {
       break;
   }
   using enum canopen::DriveState;
-  if (motion_.enabling()) return ControllerState::enabling;
-  if (any_axis(fault) || any_axis(fault_reaction)) return ControllerState::fault;
+  const MotionCycle& motion = data_.motion();
+  if (motion.enabling()) return ControllerState::enabling;
+  if (data_.any_axis(fault) || data_.any_axis(fault_reaction)) return ControllerState::fault;
   // While the axes are brought to rest they still have torque: not disabled before the drive says so, and not
   // before it may be given a job.
-  const bool ending = motion_.motion() == Motion::disabling || motion_.motion() == Motion::stopping;
-  return ending || any_axis(enabled) ? ControllerState::enabled : ControllerState::disabled;
+  const bool ending = motion.motion() == Motion::disabling || motion.motion() == Motion::stopping;
+  return ending || data_.any_axis(enabled) ? ControllerState::enabled : ControllerState::disabled;
+}
+
+void DualAxis::enable(double now) {
+  now_ = std::max(now_, now);
+  data_.enable(enable_refusal(), now_);
+}
+
+void DualAxis::disable(double now) {
+  now_ = std::max(now_, now);
+  data_.disable(now_);
+}
+
+void DualAxis::quick_stop(double now) {
+  now_ = std::max(now_, now);
+  const bool known = setup_.identity() && setup_.phase() != Phase::foreign;
+  if (known) data_.quick_stop(now_);
+}
+
+Result<void> DualAxis::command(double left_rad_s, double right_rad_s, double now) {
+  now_ = std::max(now_, now);
+  return data_.command(left_rad_s, right_rad_s, now_);
+}
+
+std::string DualAxis::enable_refusal() const {
+  if (!setup_.ready()) return "the controller is not configured";
+  if (!setup_.watchdog_armed()) return "the controller would not stop by itself if this program died";
+  return job_.running() ? "a parameter job is in progress" : "";
 }
 
 Counters DualAxis::counters() const {
   Counters all = sdo_.counters();
-  all.insert({{"frames_in", frames_in_},
-              {"frames_used", frames_used_},
-              {"emergencies", emergencies_},
-              {"boot_ups", boot_ups_},
-              {"heartbeats", heartbeats_},
-              {"bad_frames", bad_frames_},
-              {"short_pdos", short_pdos_},
-              {"other_master", other_master_},
-              {"error_frames", error_frames_}});
-  counts_.count_into(all);
-  motion_.count_into(all);
+  all.insert({{"frames_in", frames_in_}, {"frames_used", answers_ + watch_.used() + data_.used()}});
+  watch_.count_into(all);
+  data_.count_into(all);
   return all;
 }
 
 Result<void> DualAxis::job_allowed() const {
   const std::string where = "controller " + profile_.name;
-  if (phase_ != Phase::ready)
+  if (!setup_.ready())
     return Error{ErrorCode::refused, "controller is not configured", where, "wait until it is"};
-  if (motion_.motion() != Motion::off || any_axis(canopen::DriveState::enabled))
+  if (data_.motion().motion() != Motion::off || data_.any_axis(canopen::DriveState::enabled))
     return Error{ErrorCode::refused, "axes are not disabled", where, "stop and disable first"};
   if (job_.running())
     return Error{ErrorCode::refused, "another parameter job is in progress", where, "wait for it"};
@@ -298,7 +225,7 @@ Result<void> DualAxis::start_read_parameters(double now) {
   now_ = std::max(now_, now);
   if (auto allowed = job_allowed(); !allowed) return allowed;
   read_since_ = now_;
-  return job_.start_read(as_set_up_);
+  return job_.start_read(setup_.as_set_up());
 }
 
 Result<void> DualAxis::start_write_parameters(const std::vector<ParameterValue>& values, double now) {

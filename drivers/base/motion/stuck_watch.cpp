@@ -14,7 +14,7 @@ StuckWatch::StuckWatch(double ticks_per_rev) : tick_rad_(2.0 * std::numbers::pi 
 
 void StuckWatch::begin(double now) {
   rate_ = 0.0;
-  told_at_ = changed_at_ = now;
+  commanded_at_ = changed_at_ = now;
   expected_rad_ = 0.0;
   turn_to(0);
 }
@@ -27,8 +27,8 @@ void StuckWatch::turn_to(int direction) {
 }
 
 void StuckWatch::commanded(double rad_s, double now) {
-  expected_rad_ += std::abs(rate_) * (now - told_at_);
-  told_at_ = now;
+  expected_rad_ += std::abs(rate_) * (now - commanded_at_);
+  commanded_at_ = now;
   rate_ = rad_s;
   lowest_ = std::min(lowest_, std::abs(rad_s));
   const int direction = (rad_s > 0.0) - (rad_s < 0.0);

@@ -28,7 +28,7 @@ class StuckWatch {
   [[nodiscard]] bool froze() const;
 
   double tick_rad_;
-  double rate_ = 0.0, told_at_ = 0.0;        // command in force, rad/s; s
+  double rate_ = 0.0, commanded_at_ = 0.0;   // command in force, rad/s; s
   int direction_ = 0;                        // of the command
   std::int64_t count_ = 0, began_at_ = 0;    // now; when the direction was first commanded
   double changed_at_ = 0.0;                  // s, arrival of the last count that differed

@@ -50,7 +50,7 @@ void Odrive::on_frame(const CanFrame& frame) {
   if (!message) return;
   on_message(node == profile_.left_node ? Side::left : Side::right, *message);
   message->fields.insert(message->fields.begin(), {"node", static_cast<double>(node), {}});
-  tell(std::move(*message));
+  report(std::move(*message));
 }
 
 void Odrive::on_message(Side side, const DeviceMessage& message) {

@@ -61,7 +61,7 @@ void Segway::on_frame(const CanFrame& frame) {
   }
   auto message = read_message(*layout, data, Endian::big, frame.t);
   ++(message ? frames_used_ : bad_frames_);
-  if (message) tell(std::move(*message));
+  if (message) report(std::move(*message));
 }
 
 Counters Segway::counters() const {

@@ -195,7 +195,7 @@ Result<void> SpeedBase::start_read_parameters(double now) {
   if (!present_) return refused("controller does not answer", "wait until it does");
   job_result_.reset();
   if (protocol_->ask_settings()) {
-    reading_ = Reading{now_ + kSettings_s, protocol_->settings_told(), protocol_->reported_timeout_s()};
+    reading_ = Reading{now_ + kSettings_s, protocol_->settings_reported(), protocol_->reported_timeout_s()};
     return {};
   }
   job_result_ = ParameterJobResult{ParameterJobResult::Kind::read, std::nullopt, {}};
@@ -213,10 +213,10 @@ std::optional<Error> SpeedBase::timeout_changed() const {
 
 void SpeedBase::serve_reading() {
   if (!reading_) return;
-  const bool told = protocol_->settings_told() > reading_->told;
-  if (!told && present_ && now_ < reading_->ends_at) return;
+  const bool reported = protocol_->settings_reported() > reading_->reports;
+  if (!reported && present_ && now_ < reading_->ends_at) return;
   std::optional<Error> error = refused("the controller does not tell its settings", "look at its line");
-  if (told) error = timeout_changed();
+  if (reported) error = timeout_changed();
   job_result_ = ParameterJobResult{ParameterJobResult::Kind::read, error, {}};
   reading_.reset();
 }

@@ -85,7 +85,7 @@ class SpeedBase final : public Controller, private MotionDevice {
   std::string last_fault_;
   struct Reading {
     double ends_at = 0.0;          ///< s
-    std::uint64_t told = 0;        ///< how often before
+    std::uint64_t reports = 0;     ///< how often it had reported its settings before
     std::optional<double> before;  ///< s, the time-out
   };
   std::optional<Reading> reading_;

@@ -57,8 +57,8 @@ class SpeedProtocol {
   [[nodiscard]] virtual std::optional<double> reported_timeout_s() const { return std::nullopt; }
   /// Asks the device for its own settings, that time-out among them. @return false: it does not tell them
   virtual bool ask_settings() { return false; }
-  /// How often it has told them.
-  [[nodiscard]] virtual std::uint64_t settings_told() const { return 0; }
+  /// How often it has reported them.
+  [[nodiscard]] virtual std::uint64_t settings_reported() const { return 0; }
   [[nodiscard]] virtual Counters counters() const = 0;
 
   std::vector<CanFrame> take_frames() { return std::exchange(frames_, {}); }
@@ -78,7 +78,7 @@ class SpeedProtocol {
   void count(Side side, double t, std::int64_t raw) {
     if (counts_.size() < kMostQueued) counts_.push_back({t, side, raw});
   }
-  void tell(DeviceMessage message) {
+  void report(DeviceMessage message) {
     if (messages_.size() < kMostQueued) messages_.push_back(std::move(message));
   }
 

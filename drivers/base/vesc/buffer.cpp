@@ -34,11 +34,11 @@ std::optional<std::vector<std::uint8_t>> ReceiveBuffer::on_end(Bytes data) {
   ByteReader reader(data);
   reader.take(2);  // sender, flag
   const std::size_t length = reader.big_endian(2);
-  const std::uint64_t told = reader.big_endian(2);
+  const std::uint64_t stated = reader.big_endian(2);
   const bool whole = reader.ok() && length > 0 && length <= kMostBytes &&
                      std::all_of(filled_.begin(), filled_.begin() + static_cast<std::ptrdiff_t>(length),
                                  [](bool filled) { return filled; });
-  if (!whole || checksum(Bytes(bytes_).first(length)) != told) {
+  if (!whole || checksum(Bytes(bytes_).first(length)) != stated) {
     ++rejected_;
     filled_.fill(false);
     return std::nullopt;

@@ -67,7 +67,7 @@ void Vesc::on_status(Side side, std::uint32_t command, const CanFrame& frame) {
   if (!message) return;
   if (command == kStatus5) count(side, frame.t, static_cast<std::int64_t>(message->number("tachometer")));
   message->fields.insert(message->fields.begin(), {"controller", static_cast<double>(frame.id & 0xFF), {}});
-  tell(std::move(*message));
+  report(std::move(*message));
 }
 
 void Vesc::on_buffer(std::uint32_t command, const CanFrame& frame) {
@@ -79,7 +79,7 @@ void Vesc::on_buffer(std::uint32_t command, const CanFrame& frame) {
 void Vesc::on_packet(const std::vector<std::uint8_t>& packet, double t) {
   if (packet[0] != kGetTemporaryConfiguration) return;
   auto message = read_message(configuration(), packet, Endian::big, t);
-  if (message) return tell(std::move(*message));
+  if (message) return report(std::move(*message));
   ++bad_packets_;
 }
 

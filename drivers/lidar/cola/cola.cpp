@@ -41,7 +41,7 @@ void Cola::on_bytes(std::span<const std::uint8_t> bytes, double now) {
 }
 
 void Cola::on_telegram(const cola::Telegram& telegram, double arrival) {
-  if (!telegram.scan) return tell_telegram(telegram);
+  if (!telegram.scan) return report_telegram(telegram);
   if (is_repeated(*telegram.scan)) return finder_.frames().reject("repeated_scans");
   // Of a sensor with several layers only the horizontal one can be matched in the plane.
   if (layers_.size() < cola::kMostLayers) layers_.insert(telegram.scan->layer);
@@ -104,14 +104,14 @@ void Cola::on_scan(const ScanData& data, double arrival) {
   ++published_;
 }
 
-void Cola::tell_telegram(const cola::Telegram& telegram) const {
+void Cola::report_telegram(const cola::Telegram& telegram) const {
   if (!has_listener()) return;
   const auto& arguments = telegram.arguments;
   const bool text = telegram.dialect == cola::Dialect::ascii;
-  tell({"cola_telegram",
-        {{"kind", telegram.kind},
-         {"command", telegram.name},
-         {"data", text ? std::string(arguments.begin(), arguments.end()) : hex_text(arguments)}}});
+  report({"cola_telegram",
+          {{"kind", telegram.kind},
+           {"command", telegram.name},
+           {"data", text ? std::string(arguments.begin(), arguments.end()) : hex_text(arguments)}}});
 }
 
 Counters Cola::counters() const {

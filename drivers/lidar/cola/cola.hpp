@@ -36,7 +36,7 @@ class Cola final : public Lidar {
   bool is_repeated(const cola::ScanData& data);
   double date(const cola::ScanData& data, double arrival, double sweep_turns);
   std::uint64_t lost_scans(unsigned between);
-  void tell_telegram(const cola::Telegram& telegram) const;
+  void report_telegram(const cola::Telegram& telegram) const;
 
   LidarOptions options_;
   cola::TelegramFinder finder_;

@@ -66,7 +66,7 @@ void Ld06::add(const ld06::Packet& packet, double t_end) {
   }
 }
 
-void Ld06::tell_packet(const ld06::Packet& packet) const {
+void Ld06::report_packet(const ld06::Packet& packet) const {
   if (!has_listener()) return;
   std::vector<double> ranges;
   std::vector<std::int64_t> intensities;
@@ -74,14 +74,14 @@ void Ld06::tell_packet(const ld06::Packet& packet) const {
     ranges.push_back(point.range_mm == 0 ? kNoReading : 1e-3 * point.range_mm);
     intensities.push_back(point.intensity);
   }
-  tell({"ld06_packet",
-        {{"speed_deg_s", std::int64_t{packet.speed_deg_s}},
-         {"start_deg", 0.01 * packet.start_cdeg},
-         {"end_deg", 0.01 * ((packet.start_cdeg + packet.span_cdeg) % 36'000)},
-         {"device_time", 1e-3 * packet.stamp_ms},
-         {"ranges", std::move(ranges)},
-         {"intensities", std::move(intensities)}},
-        true});
+  report({"ld06_packet",
+          {{"speed_deg_s", std::int64_t{packet.speed_deg_s}},
+           {"start_deg", 0.01 * packet.start_cdeg},
+           {"end_deg", 0.01 * ((packet.start_cdeg + packet.span_cdeg) % 36'000)},
+           {"device_time", 1e-3 * packet.stamp_ms},
+           {"ranges", std::move(ranges)},
+           {"intensities", std::move(intensities)}},
+          true});
 }
 
 void Ld06::on_bytes(std::span<const std::uint8_t> bytes, double now) {
@@ -90,7 +90,7 @@ void Ld06::on_bytes(std::span<const std::uint8_t> bytes, double now) {
     clock_.to_host(packet.stamp_ms, now - wire_time(packet.bytes_after + ld06::kPacketBytes, options_.baud));
     if (!last_end_) host_offset_ = clock_.offset();
     add(packet, date());
-    tell_packet(packet);
+    report_packet(packet);
   }
 }
 

@@ -28,7 +28,7 @@ class Ld06 final : public Lidar {
   double date();
   void begin_turn();
   void add(const ld06::Packet& packet, double t_end);
-  void tell_packet(const ld06::Packet& packet) const;
+  void report_packet(const ld06::Packet& packet) const;
 
   LidarOptions options_;
   double nominal_period_;  // s between packets

@@ -73,7 +73,7 @@ LidarMessage describe_answer(std::uint8_t type, Bytes payload) {
   return {"rplidar_answer", {{"answer_type", std::int64_t{type}}, {"data", hex_text(payload)}}};
 }
 
-std::optional<double> told_sample_time(std::uint8_t type, Bytes payload) {
+std::optional<double> reported_sample_time(std::uint8_t type, Bytes payload) {
   ByteReader reader(payload);
   const bool fits = static_cast<AnswerType>(type) == AnswerType::configuration && payload.size() >= 8 &&
                     static_cast<Setting>(reader.u32()) == Setting::sample_time;

@@ -12,6 +12,6 @@ namespace odomcalib::drivers::rplidar {
 LidarMessage describe_answer(std::uint8_t type, Bytes payload);
 
 /// Time per point, s, when the answer tells it for the mode in use (key 71h).
-std::optional<double> told_sample_time(std::uint8_t type, Bytes payload);
+std::optional<double> reported_sample_time(std::uint8_t type, Bytes payload);
 
 }  // namespace odomcalib::drivers::rplidar

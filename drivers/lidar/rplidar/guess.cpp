@@ -73,14 +73,14 @@ Guess layout_of(Bytes rest) {
 
 }  // namespace
 
-Guess guess_type(Bytes rest, std::optional<PacketType> told) {
+Guess guess_type(Bytes rest, std::optional<PacketType> given) {
   bool undecided = false;
   const auto begins = [&](PacketType type, std::size_t wanted) {
     const Guess guess = run_begins(type, rest, wanted);
     undecided |= guess.kind == Kind::wait;
     return guess.kind == Kind::found;
   };
-  if (begins(PacketType::express, kCapsuleRun)) return told ? Guess{Kind::found, *told} : layout_of(rest);
+  if (begins(PacketType::express, kCapsuleRun)) return given ? Guess{Kind::found, *given} : layout_of(rest);
   for (const PacketType type : {PacketType::ultra, PacketType::ultra_dense})
     if (begins(type, kCapsuleRun)) return {Kind::found, type};
   if (begins(PacketType::hq, 1)) return {Kind::found, PacketType::hq};

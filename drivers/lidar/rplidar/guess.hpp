@@ -21,7 +21,7 @@ struct Guess {
 /// Capsules are believed when two in a row are sound. Express and dense ones look alike but for the layout of
 /// their distances: in the right one neighbouring beams mostly see the same wall, in the wrong one hardly
 /// ever.
-/// @param told layout of capsules of 84 bytes, when the user says it
-Guess guess_type(Bytes rest, std::optional<PacketType> told);
+/// @param given layout of capsules of 84 bytes, when the user says it
+Guess guess_type(Bytes rest, std::optional<PacketType> given);
 
 }  // namespace odomcalib::drivers::rplidar

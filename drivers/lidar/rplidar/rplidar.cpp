@@ -49,8 +49,8 @@ void Rplidar::on_bytes(std::span<const std::uint8_t> bytes, double now) {
 void Rplidar::on_item(const Item& item, double now) {
   if (item.kind == Item::Kind::packet) return on_packet(item, now);
   if (item.kind == Item::Kind::answer) {
-    tell_answer(item);
-    if (const auto sample = rplidar::told_sample_time(item.type, item.bytes)) told_sample_s_ = sample;
+    report_answer(item);
+    if (const auto sample = rplidar::reported_sample_time(item.type, item.bytes)) reported_sample_s_ = sample;
     if (!options_.device_time) startup_.on_answer(item.type, item.bytes, now);
     return;
   }
@@ -63,7 +63,7 @@ void Rplidar::on_item(const Item& item, double now) {
 
 /// End of a packet's measurement and transmission; `packets` have passed since the one before.
 double Rplidar::date(unsigned packets, double arrival) {
-  const double sample = startup_.sample_s().value_or(told_sample_s_.value_or(format_->sample_s));
+  const double sample = startup_.sample_s().value_or(reported_sample_s_.value_or(format_->sample_s));
   const auto stamp = clock_.on_packet(packets * format_->points * sample, arrival);
   if (!stamp.continuous) sweep_.interrupt();
   return stamp.t;
@@ -116,9 +116,9 @@ void Rplidar::on_capsule(const Item& item, double arrival) {
 
 /// Point i of N was measured N - 1 - i samples before the end, and the packet then took its time on the line.
 void Rplidar::emit(const std::vector<Point>& points, double t_end, double span) {
-  tell_points(points);
+  report_points(points);
   const double n = static_cast<double>(points.size());
-  const double nominal = startup_.sample_s().value_or(told_sample_s_.value_or(format_->sample_s));
+  const double nominal = startup_.sample_s().value_or(reported_sample_s_.value_or(format_->sample_s));
   const double sample = nominal * clock_.rate();
   const double t_last = t_end - wire_time(format_->bytes, options_.baud) - kFilterDelay * sample;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -138,11 +138,11 @@ void Rplidar::emit(const std::vector<Point>& points, double t_end, double span) 
   }
 }
 
-void Rplidar::tell_answer(const Item& item) const {
-  if (has_listener()) tell(rplidar::describe_answer(item.type, item.bytes));
+void Rplidar::report_answer(const Item& item) const {
+  if (has_listener()) report(rplidar::describe_answer(item.type, item.bytes));
 }
 
-void Rplidar::tell_points(const std::vector<Point>& points) const {
+void Rplidar::report_points(const std::vector<Point>& points) const {
   if (!has_listener() || points.size() < 2) return;
   std::vector<double> angles, ranges;
   std::vector<std::int64_t> qualities;
@@ -151,9 +151,10 @@ void Rplidar::tell_points(const std::vector<Point>& points) const {
     ranges.push_back(point.range_mm > 0.0 ? 1e-3 * point.range_mm : kNoReading);
     qualities.push_back(point.quality);
   }
-  tell({std::string("rplidar_") + format_->name,
-        {{"angles", std::move(angles)}, {"ranges", std::move(ranges)}, {"intensities", std::move(qualities)}},
-        true});
+  report(
+      {std::string("rplidar_") + format_->name,
+       {{"angles", std::move(angles)}, {"ranges", std::move(ranges)}, {"intensities", std::move(qualities)}},
+       true});
 }
 
 Counters Rplidar::counters() const {

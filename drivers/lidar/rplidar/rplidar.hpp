@@ -46,8 +46,8 @@ class Rplidar final : public Lidar {
   void emit(const std::vector<rplidar::Point>& points, double t_end, double span);
   double date(unsigned packets, double arrival);
   bool believable(double span, unsigned& packets);
-  void tell_answer(const rplidar::Item& item) const;
-  void tell_points(const std::vector<rplidar::Point>& points) const;
+  void report_answer(const rplidar::Item& item) const;
+  void report_points(const std::vector<rplidar::Point>& points) const;
   void forget_motion();
 
   LidarOptions options_;
@@ -56,7 +56,7 @@ class Rplidar final : public Lidar {
   SampleClock clock_;
   Sweep sweep_;
   const rplidar::PacketFormat* format_ = nullptr;
-  std::optional<double> told_sample_s_;  // read along in a recording
+  std::optional<double> reported_sample_s_;  // read along in a recording
   std::optional<Waiting> waiting_;
   double usual_span_ = 0.0;  // degrees per capsule
   std::optional<double> last_angle_;

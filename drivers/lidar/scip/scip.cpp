@@ -48,13 +48,13 @@ void Scip::on_reply(const scip::Reply& reply, double arrival) {
   if (reply.measurement) {
     if (!parameters_) {
       finder_.frames().reject("no_parameters");
-      return tell_reply(reply);
+      return report_reply(reply);
     }
     return on_measurement(*reply.measurement, arrival);
   }
-  tell_reply(reply);
+  report_reply(reply);
   if (reply.echo.starts_with("PP") && reply.status == "00")
-    if (const auto told = scip::read_parameters(reply.lines)) parameters_ = told;
+    if (const auto parameters = scip::read_parameters(reply.lines)) parameters_ = parameters;
 }
 
 /// The stamp is of the start of the revolution. Nothing can arrive before the last step was measured.
@@ -93,7 +93,7 @@ LidarScan Scip::make_scan(const Measurement& measurement, double t_first, double
   return out;
 }
 
-void Scip::tell_reply(const scip::Reply& reply) const {
+void Scip::report_reply(const scip::Reply& reply) const {
   if (!has_listener()) return;
   LidarMessage message{"scip_reply", {{"echo", reply.echo}, {"status", reply.status}}};
   for (const auto& [key, value] : scip::fields_of(reply.lines)) message.fields.emplace_back(key, value);
@@ -107,7 +107,7 @@ void Scip::tell_reply(const scip::Reply& reply) const {
     for (const std::string& line : reply.lines) text += (text.empty() ? "" : "\n") + line;
     message.fields.emplace_back("text", text);
   }
-  tell(std::move(message));
+  report(std::move(message));
 }
 
 std::vector<LidarScan> Scip::take_scans() { return std::exchange(scans_, {}); }

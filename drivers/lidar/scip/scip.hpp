@@ -32,7 +32,7 @@ class Scip final : public Lidar {
   void on_measurement(const scip::Measurement& measurement, double arrival);
   [[nodiscard]] LidarScan make_scan(const scip::Measurement& measurement, double t_first,
                                     double period) const;
-  void tell_reply(const scip::Reply& reply) const;
+  void report_reply(const scip::Reply& reply) const;
 
   LidarOptions options_;
   scip::ReplyFinder finder_;

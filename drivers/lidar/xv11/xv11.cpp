@@ -19,7 +19,7 @@ void Xv11::reset() {
   last_index_.reset();
 }
 
-void Xv11::tell_packet(const xv11::Packet& packet) const {
+void Xv11::report_packet(const xv11::Packet& packet) const {
   if (!has_listener()) return;
   std::vector<double> angles, ranges;
   std::vector<std::int64_t> strengths, weak;
@@ -30,14 +30,14 @@ void Xv11::tell_packet(const xv11::Packet& packet) const {
     strengths.push_back(reading.strength);
     weak.push_back(reading.weak ? 1 : 0);
   }
-  tell({"xv11_packet",
-        {{"index", std::int64_t{packet.index}},
-         {"rpm", packet.rpm},
-         {"angles", std::move(angles)},
-         {"ranges", std::move(ranges)},
-         {"intensities", std::move(strengths)},
-         {"weak", std::move(weak)}},
-        true});
+  report({"xv11_packet",
+          {{"index", std::int64_t{packet.index}},
+           {"rpm", packet.rpm},
+           {"angles", std::move(angles)},
+           {"ranges", std::move(ranges)},
+           {"intensities", std::move(strengths)},
+           {"weak", std::move(weak)}},
+          true});
 }
 
 /// The unit sends each packet when it is measured: the last reading is as old as the transmission.
@@ -62,7 +62,7 @@ void Xv11::on_packet(const xv11::Packet& packet, double now) {
     sweep_.add({t, radians(angle), 1e-3 * reading.range_mm, static_cast<double>(reading.strength)},
                radians(1.0));
   }
-  tell_packet(packet);
+  report_packet(packet);
 }
 
 void Xv11::on_bytes(std::span<const std::uint8_t> bytes, double now) {

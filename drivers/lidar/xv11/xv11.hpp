@@ -24,7 +24,7 @@ class Xv11 final : public Lidar {
 
  private:
   void on_packet(const xv11::Packet& packet, double now);
-  void tell_packet(const xv11::Packet& packet) const;
+  void report_packet(const xv11::Packet& packet) const;
 
   LidarOptions options_;
   xv11::PacketFinder finder_;

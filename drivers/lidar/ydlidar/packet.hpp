@@ -38,7 +38,7 @@ struct Sample {
 
 struct Packet {
   bool zero = false;   ///< a new turn begins
-  double turn_hz = 0;  ///< as told by the device; 0: not told
+  double turn_hz = 0;  ///< as reported by the device; 0: not reported
   double start = 0.0, end = 0.0;
   std::vector<Sample> samples;
   std::size_t bytes_after = 0;  ///< of the same read, behind this packet

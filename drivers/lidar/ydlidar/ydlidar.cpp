@@ -43,7 +43,7 @@ double Ydlidar::step_of(const ydlidar::Packet& packet) const {
   return span / static_cast<double>(packet.samples.size() - 1);
 }
 
-void Ydlidar::tell_packet(const ydlidar::Packet& packet) const {
+void Ydlidar::report_packet(const ydlidar::Packet& packet) const {
   if (!has_listener()) return;
   std::vector<double> angles, ranges;
   std::vector<std::int64_t> intensities;
@@ -61,7 +61,7 @@ void Ydlidar::tell_packet(const ydlidar::Packet& packet) const {
                        true};
   if (packet.turn_hz > 0.0) message.fields.emplace_back("turn_hz", packet.turn_hz);
   if (model_.intensity_bits != 0) message.fields.emplace_back("intensities", std::move(intensities));
-  tell(std::move(message));
+  report(std::move(message));
 }
 
 void Ydlidar::on_packet(const ydlidar::Packet& packet, double now) {
@@ -76,7 +76,7 @@ void Ydlidar::on_packet(const ydlidar::Packet& packet, double now) {
     sweep_.add({t, -radians(sample.clockwise), 1e-3 * sample.range_mm, static_cast<double>(sample.intensity)},
                radians(usual_step_));
   }
-  tell_packet(packet);
+  report_packet(packet);
 }
 
 void Ydlidar::on_bytes(std::span<const std::uint8_t> bytes, double now) {
@@ -88,10 +88,10 @@ void Ydlidar::on_bytes(std::span<const std::uint8_t> bytes, double now) {
       continue;
     }
     if (item.answer.type == ydlidar::kNameType)
-      told_name_ = clean_text(std::string(item.answer.payload.begin(), item.answer.payload.end()));
+      reported_name_ = clean_text(std::string(item.answer.payload.begin(), item.answer.payload.end()));
     if (has_listener())
-      tell({"ydlidar_answer",
-            {{"answer_type", std::int64_t{item.answer.type}}, {"data", hex_text(item.answer.payload)}}});
+      report({"ydlidar_answer",
+              {{"answer_type", std::int64_t{item.answer.type}}, {"data", hex_text(item.answer.payload)}}});
     if (talks) startup_.on_answer(item.answer, now);
   }
   if (talks) startup_.step(now);
@@ -111,7 +111,7 @@ std::optional<Error> Ydlidar::wrong_kind() const {
   for (const ydlidar::Model& model : ydlidar::models())
     if ((model.sample_bytes() == 3) == three)
       fitting += std::string(fitting.empty() ? "" : ", ") + "ydlidar:" + model.name;
-  const std::string named = told_name_.empty() ? "" : "; the lidar calls itself " + told_name_;
+  const std::string named = reported_name_.empty() ? "" : "; the lidar calls itself " + reported_name_;
   return Error{ErrorCode::format,
                std::string("every checksum is wrong: samples come in ") +
                    (three ? "three bytes" : "two bytes") + ", and model " + model_.name + " has " +

@@ -27,7 +27,7 @@ class Ydlidar final : public Lidar {
   [[nodiscard]] Counters counters() const override;
   [[nodiscard]] Counters rejected() const override { return sweep_.rejected(finder_.frames().rejected()); }
   [[nodiscard]] std::string identity() const override {
-    return startup_.identity().empty() ? told_name_ : startup_.identity();
+    return startup_.identity().empty() ? reported_name_ : startup_.identity();
   }
   [[nodiscard]] std::optional<Error> problem() const override;
 
@@ -35,7 +35,7 @@ class Ydlidar final : public Lidar {
   void on_packet(const ydlidar::Packet& packet, double now);
   double date(const ydlidar::Packet& packet, double now);
   [[nodiscard]] double step_of(const ydlidar::Packet& packet) const;
-  void tell_packet(const ydlidar::Packet& packet) const;
+  void report_packet(const ydlidar::Packet& packet) const;
   [[nodiscard]] std::optional<Error> wrong_kind() const;
 
   LidarOptions options_;
@@ -44,8 +44,8 @@ class Ydlidar final : public Lidar {
   ydlidar::Startup startup_;
   SampleClock clock_;
   Sweep sweep_;
-  double usual_step_ = 0.0;  // degrees between samples
-  std::string told_name_;    // of a model that sends it unasked
+  double usual_step_ = 0.0;    // degrees between samples
+  std::string reported_name_;  // of a model that sends it unasked
 };
 
 }  // namespace odomcalib::drivers

@@ -1,10 +1,9 @@
-// Process data of the two axes: counts, status, and the cyclic command with its time-outs.
+#include "drivers/base/cia402/process_data.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "drivers/base/canopen/words.hpp"
-#include "drivers/base/cia402/dual_axis.hpp"
 #include "drivers/base/cia402/settings.hpp"
 #include "drivers/bytes.hpp"
 
@@ -18,31 +17,48 @@ double rpm(double rad_s) { return rad_s * 30.0 / std::numbers::pi; }
 
 }  // namespace
 
-bool DualAxis::both_axes(DriveState state) const { return axes_[0] == state && axes_[1] == state; }
-bool DualAxis::any_axis(DriveState state) const { return axes_[0] == state || axes_[1] == state; }
+ProcessData::ProcessData(const Profile& profile, std::vector<CanFrame>& out)
+    : profile_(profile),
+      out_(out),
+      motion_(*this,
+              {profile.name, profile.max_rpm * std::numbers::pi / 30.0, profile.ticks_per_rev, kRest_s}),
+      dates_(profile),
+      counts_(profile) {}
 
-void DualAxis::on_process_data(const canopen::Pdo& pdo, const CanFrame& frame) {
+void ProcessData::event(const std::string& code, const std::string& text, bool stop, double now) {
+  now_ = now;
+  motion_.event(code, text, stop, now_);
+}
+
+bool ProcessData::both_axes(DriveState state) const { return axes_[0] == state && axes_[1] == state; }
+bool ProcessData::any_axis(DriveState state) const { return axes_[0] == state || axes_[1] == state; }
+
+void ProcessData::on_frame(const canopen::Pdo& pdo, const CanFrame& frame, bool expected, double now) {
+  now_ = now;
   if (frame.length < canopen::mapped_bytes(pdo)) {
     ++short_pdos_;
     return;
   }
-  ++frames_used_;
+  ++used_;
   const auto left = canopen::unpack(pdo, frame, profile_.position_left);
   const auto right = profile_.axes == 1 ? std::optional<std::uint64_t>(0)
                                         : canopen::unpack(pdo, frame, profile_.position_right);
-  if (left && right)
-    on_positions(static_cast<std::int32_t>(sign_extend(*left, 32)),
-                 static_cast<std::int32_t>(sign_extend(*right, 32)), dates_.date(pdo, frame));
+  if (left && right) {
+    const double t = dates_.date(pdo, frame);
+    if (expected)
+      on_positions(static_cast<std::int32_t>(sign_extend(*left, 32)),
+                   static_cast<std::int32_t>(sign_extend(*right, 32)), t);
+  }
   if (profile_.fault) {
     if (const auto fault = canopen::unpack(pdo, frame, *profile_.fault))
       fault_code_ = static_cast<std::uint32_t>(*fault);
   }
+  if (!expected) return;
   if (const auto status = canopen::unpack(pdo, frame, profile_.status))
     on_status(static_cast<std::uint32_t>(*status));
 }
 
-void DualAxis::on_positions(std::int32_t left, std::int32_t right, double t) {
-  if (phase_ != Phase::ready && phase_ != Phase::starting) return;  // before that the mapping is not ours
+void ProcessData::on_positions(std::int32_t left, std::int32_t right, double t) {
   positions_at_ = now_;
   const bool left_ok = on_count(Side::left, left, t);
   const bool right_ok = on_count(Side::right, right, t);
@@ -50,11 +66,11 @@ void DualAxis::on_positions(std::int32_t left, std::int32_t right, double t) {
   event("tick_jump",
         std::string(to_text(left_ok ? Side::right : Side::left)) +
             " count jumped: reset, or a broken encoder line",
-        motion_.motion() != Motion::off);
+        motion_.motion() != Motion::off, now_);
 }
 
 /// False when no wheel turns so fast.
-bool DualAxis::on_count(Side side, std::int32_t count, double t) {
+bool ProcessData::on_count(Side side, std::int32_t count, double t) {
   const WheelCounts::Reading reading = counts_.on_count(side, count, t);
   if (reading.kind == TickUnwrap::Reading::Kind::wild) {
     motion_.moved(now_);
@@ -64,11 +80,9 @@ bool DualAxis::on_count(Side side, std::int32_t count, double t) {
   return true;
 }
 
-void DualAxis::on_status(std::uint32_t status) {
-  if (phase_ != Phase::ready && phase_ != Phase::starting) return;
+void ProcessData::on_status(std::uint32_t status) {
   status_at_ = now_;
   const std::array<DriveState, 2> before = axes_;
-  status_ = status;
   axes_ = {canopen::decode_status(static_cast<std::uint16_t>(status)),
            canopen::decode_status(static_cast<std::uint16_t>(status >> 16))};
   if (profile_.axes == 1) axes_[1] = axes_[0];
@@ -79,15 +93,15 @@ void DualAxis::on_status(std::uint32_t status) {
   event(fault ? "drive_fault" : "axis_not_enabled",
         std::string(axes_[0] == DriveState::enabled ? "right" : "left") + " axis fell to \"" +
             canopen::to_text(odd) + "\", error code " + std::to_string(fault_code_),
-        true);
+        true, now_);
 }
 
-std::int64_t DualAxis::speed_counts(double rad_s, int sign) const {
+std::int64_t ProcessData::speed_counts(double rad_s, int sign) const {
   const double limited = std::clamp(rpm(rad_s), -profile_.max_rpm, profile_.max_rpm);
   return sign * static_cast<std::int64_t>(std::lround(limited / profile_.rpm_per_count));
 }
 
-void DualAxis::send_command(std::uint16_t control_word, double left_rad_s, double right_rad_s) {
+void ProcessData::send_command(std::uint16_t control_word, double left_rad_s, double right_rad_s) {
   const auto left = static_cast<std::uint64_t>(speed_counts(left_rad_s, profile_.left_sign));
   const auto right = static_cast<std::uint64_t>(speed_counts(right_rad_s, profile_.right_sign));
   std::vector<CanFrame> frames;
@@ -106,79 +120,100 @@ void DualAxis::send_command(std::uint16_t control_word, double left_rad_s, doubl
   motion_.defer(now_);
 }
 
-void DualAxis::enable(double now) {
-  now_ = std::max(now_, now);
+void ProcessData::enable(const std::string& refusal, double now) {
+  now_ = now;
+  refusal_ = refusal;
   motion_.enable(now_);
 }
 
-void DualAxis::disable(double now) {
-  now_ = std::max(now_, now);
+void ProcessData::disable(double now) {
+  now_ = now;
   motion_.disable(now_);
 }
 
-void DualAxis::quick_stop(double now) {
-  now_ = std::max(now_, now);
-  const bool known = identity_ && phase_ != Phase::foreign;
-  if (known) motion_.quick_stop(now_);
+void ProcessData::quick_stop(double now) {
+  now_ = now;
+  motion_.quick_stop(now_);
 }
 
-Result<void> DualAxis::command(double left_rad_s, double right_rad_s, double now) {
-  now_ = std::max(now_, now);
+Result<void> ProcessData::command(double left_rad_s, double right_rad_s, double now) {
+  now_ = now;
   return motion_.command(left_rad_s, right_rad_s, now_);
 }
 
-void DualAxis::cycle_motion() {
-  if (phase_ != Phase::ready) return;
+void ProcessData::cycle(bool commanded, double now) {
+  now_ = now;
+  commanded_ = commanded;
   check_motion();
   motion_.cycle(now_);
 }
 
-void DualAxis::check_motion() {
+void ProcessData::sync(double now) {
+  if (now < sync_due_) return;
+  const bool in_time = now - sync_due_ < profile_.sync_period_s;
+  sync_due_ = (in_time ? sync_due_ : now) + profile_.sync_period_s;
+  CanFrame frame;
+  frame.id = 0x080;
+  out_.push_back(frame);
+  on_sync(now);
+}
+
+void ProcessData::expect() {
+  positions_at_.reset();
+  status_at_.reset();
+}
+
+void ProcessData::forget() {
+  motion_.forget();
+  expect();
+  dates_.forget();
+  counts_.begin_segment();
+}
+
+void ProcessData::check_motion() {
   if (!motion_.active()) return;
   const bool on = motion_.motion() == Motion::on;
   const double oldest = std::min(positions_at_.value_or(-1e9), on ? status_at_.value_or(-1e9) : now_);
   if (now_ - oldest > kPositionsLive_s)
-    return event("pdo_frozen", "no process data of the controller for more than 100 ms", true);
+    return event("pdo_frozen", "no process data of the controller for more than 100 ms", true, now_);
   if (on) motion_.check_encoders(now_);
 }
 
-std::string DualAxis::enable_refusal() const {
-  if (phase_ != Phase::ready) return "the controller is not configured";
-  if (!watchdog_armed_) return "the controller would not stop by itself if this program died";
-  return job_.running() ? "a parameter job is in progress" : "";
-}
-
-bool DualAxis::follows() const { return both_axes(DriveState::enabled); }
-
-std::string DualAxis::enable_failure() const {
+std::string ProcessData::enable_failure() const {
   return "the axes do not get beyond \"" + canopen::to_text(axes_[0]) + ", " + canopen::to_text(axes_[1]) +
          "\", error code " + std::to_string(fault_code_);
 }
 
-bool DualAxis::shows_torque() const { return any_axis(DriveState::enabled); }
+bool ProcessData::shows_no_torque() const {
+  return !shows_torque() && !any_axis(DriveState::quick_stop_active);
+}
 
-bool DualAxis::shows_no_torque() const { return !shows_torque() && !any_axis(DriveState::quick_stop_active); }
-
-void DualAxis::engage() {
+void ProcessData::engage() {
   const bool edge = (cycles_++ / kResetCycles) % 2 == 1;
   send_command(canopen::control_word_towards_enabled(axes_[0], axes_[1], edge), 0.0, 0.0);
 }
 
-void DualAxis::drive(double left_rad_s, double right_rad_s) {
+void ProcessData::drive(double left_rad_s, double right_rad_s) {
   send_command(canopen::kEnableOperation, left_rad_s, right_rad_s);
 }
 
-void DualAxis::stop() { send_command(canopen::kQuickStop, 0.0, 0.0); }
+void ProcessData::stop() { send_command(canopen::kQuickStop, 0.0, 0.0); }
 
-void DualAxis::release() { send_command(canopen::kDisableVoltage, 0.0, 0.0); }
+void ProcessData::release() { send_command(canopen::kDisableVoltage, 0.0, 0.0); }
 
 /// A late word may have enabled an axis after the motion had ended. With another master it may be his; one
 /// that only reads has no part in it.
-double DualAxis::idle() {
-  const bool late = foreign_commands_ == 0 && any_axis(DriveState::enabled);
+double ProcessData::idle() {
+  const bool late = !commanded_ && any_axis(DriveState::enabled);
   if (profile_.watchdog.kind != ProfileWatchdog::Kind::object && !late) return 0.0;
   release();
   return kIdleCycle_s;
+}
+
+void ProcessData::count_into(Counters& counters) const {
+  counters["short_pdos"] = short_pdos_;
+  counts_.count_into(counters);
+  motion_.count_into(counters);
 }
 
 }  // namespace odomcalib::drivers

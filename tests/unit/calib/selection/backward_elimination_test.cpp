@@ -7,7 +7,7 @@
 #include "calib/terms/catalogue.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection::retirement_test {
+namespace odomcalib::calib::selection::backward_elimination_test {
 namespace {
 
 /// A scrub that is plain, and one wheel that rolls a little shorter backwards: too little for Schwarz's
@@ -36,7 +36,7 @@ class BackwardElimination : public ::testing::Test {
   measurement::FitData data_;
 };
 
-TEST_F(BackwardElimination, spares_what_was_just_proved) {
+TEST_F(BackwardElimination, spares_what_was_just_found) {
   SearchResult result = found({plain_, slight_});
   EXPECT_FALSE(eliminate_superfluous(task(), schwarz(result.model.fit), result));
   EXPECT_EQ(result.findings.size(), 2U);
@@ -51,4 +51,4 @@ TEST_F(BackwardElimination, takes_out_what_is_not_worth_its_parameters_any_more)
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection::retirement_test
+}  // namespace odomcalib::calib::selection::backward_elimination_test

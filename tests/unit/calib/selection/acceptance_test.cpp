@@ -14,7 +14,7 @@
 #include "calib/terms/smooth_term_effect.hpp"
 #include "tests/unit/calib/selection/selection_support.hpp"
 
-namespace odomcalib::calib::selection::proof_test {
+namespace odomcalib::calib::selection::acceptance_test {
 namespace {
 
 TEST(Candidate, what_must_help_over_ten_seconds) {
@@ -142,4 +142,4 @@ TEST(WindowErrors, a_fold_that_would_not_have_chosen_keeps_its_error) {
 }
 
 }  // namespace
-}  // namespace odomcalib::calib::selection::proof_test
+}  // namespace odomcalib::calib::selection::acceptance_test

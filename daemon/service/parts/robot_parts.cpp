@@ -1,9 +1,9 @@
-#include "daemon/service/parts/bench.hpp"
+#include "daemon/service/parts/robot_parts.hpp"
 
 namespace odomcalib {
 
-Bench::Bench(const Config& configuration, Clock& time, Calibrator functions, Opened opened,
-             std::unique_ptr<Background> disk_worker, EventLog log)
+RobotParts::RobotParts(const Config& configuration, Clock& time, Calibrator functions, Opened opened,
+                       std::unique_ptr<Background> disk_worker, EventLog log)
     : config(configuration),
       clock(time),
       calibrator(std::move(functions)),
@@ -34,10 +34,10 @@ Bench::Bench(const Config& configuration, Clock& time, Calibrator functions, Ope
 
 // A quick stop makes the controller refuse parameters for a moment: in the middle of a write-back, which
 // begins only when the axes are off, it would stop nothing and leave the values half written.
-void stop_drive(Bench& bench) {
-  if (bench.write_back.busy() && bench.drive.off()) return;
-  bench.drive.controller().quick_stop(bench.now);
-  bench.drive.link.flush();
+void stop_drive(Drive& drive, const WriteBack& write_back, double now) {
+  if (write_back.busy() && drive.off()) return;
+  drive.controller().quick_stop(now);
+  drive.link.flush();
 }
 
 }  // namespace odomcalib

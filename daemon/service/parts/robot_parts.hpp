@@ -29,12 +29,12 @@ struct Opened {
   Urgency urgency;
 };
 
-struct Bench {
-  Bench(const Config& configuration, Clock& time, Calibrator functions, Opened opened,
-        std::unique_ptr<Background> disk_worker, EventLog log);
-  Bench(const Bench&) = delete;
-  Bench& operator=(const Bench&) = delete;
-  ~Bench() { disk->finish(); }  // while everything is there that its work may use
+struct RobotParts {
+  RobotParts(const Config& configuration, Clock& time, Calibrator functions, Opened opened,
+             std::unique_ptr<Background> disk_worker, EventLog log);
+  RobotParts(const RobotParts&) = delete;
+  RobotParts& operator=(const RobotParts&) = delete;
+  ~RobotParts() { disk->finish(); }  // while everything is there that its work may use
 
   Config config;
   Clock& clock;
@@ -55,11 +55,10 @@ struct Bench {
   safety::Lease lease;
 
   LastRun last_run;
-  std::uint64_t late_steps = 0;  ///< control steps that came noticeably late
-  bool ending = false;           ///< the daemon ends
+  bool ending = false;  ///< the daemon ends
 };
 
 /// Zero speed and quick stop, on the bus when it returns.
-void stop_drive(Bench& bench);
+void stop_drive(Drive& drive, const WriteBack& write_back, double now);
 
 }  // namespace odomcalib

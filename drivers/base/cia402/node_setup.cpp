@@ -1,11 +1,11 @@
-// From "nothing heard" to "configured and sending": identity before any write, then what the profile says,
-// read back.
+#include "drivers/base/cia402/node_setup.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "drivers/base/canopen/words.hpp"
-#include "drivers/base/cia402/dual_axis.hpp"
+#include "drivers/base/cia402/drive_state.hpp"
 #include "drivers/base/cia402/settings.hpp"
 #include "drivers/clean_text.hpp"
 
@@ -16,8 +16,6 @@ using namespace cia402;
 
 using canopen::NumberType;
 using canopen::SdoStep;
-constexpr std::uint8_t kNmtStart = 0x01;
-constexpr std::uint8_t kNmtPreOperational = 0x80;
 constexpr std::uint8_t kOperationalState = 0x05;
 constexpr NumberType kU16{2, false};
 constexpr NumberType kU32{4, false};
@@ -108,111 +106,145 @@ std::vector<SdoStep> configuration(const Profile& profile, const std::vector<can
 
 }  // namespace
 
-void DualAxis::advance_setup() {
-  if (phase_ == Phase::ready) return advance_job();
-  if (phase_ == Phase::absent) return look_for_node();
-  if (phase_ == Phase::starting) return check_started();
-  if (!setup_.advance(sdo_, now_)) return;
-  if (phase_ == Phase::identifying) return end_identification();
-  if (phase_ == Phase::configuring) end_configuration();
+NodeSetup::Step NodeSetup::advance(canopen::SdoClient& sdo, const Seen& seen, double now) {
+  now_ = now;
+  if (phase_ == Phase::absent) {
+    look_for_node(sdo, seen.other_master);
+    return Step::none;
+  }
+  if (phase_ == Phase::starting) return check_started(seen);
+  if (!sequence_.advance(sdo, now_)) return Step::none;
+  if (phase_ == Phase::identifying) return end_identification(sdo);
+  return phase_ == Phase::configuring ? end_configuration() : Step::none;
 }
 
-void DualAxis::look_for_node() {
-  if (!look_after_) look_after_ = now_ + kListen_s;
-  const bool quiet = now_ - last_other_master_ > kOtherMaster_s;
-  if (now_ >= *look_after_ && quiet) begin_identification();
+void NodeSetup::begin_again(double now, double pause) {
+  now_ = now;
+  sequence_.cancel();
+  enter(Phase::absent);
+  watchdog_armed_ = false;
+  look_after_ = now_ + pause;
 }
 
-void DualAxis::begin_identification() {
-  phase_ = Phase::identifying;
+bool NodeSetup::receives(std::uint32_t cob_id) const {
+  return std::any_of(unlisted_.begin(), unlisted_.end(),
+                     [&](const auto& pdo) { return (pdo.value & canopen::kPdoIdentifier) == cob_id; });
+}
+
+void NodeSetup::event(const std::string& code, const std::string& text, bool stop) {
+  events_.push_back({now_, code, text, stop});
+}
+
+void NodeSetup::enter(Phase phase) {
+  phase_ = phase;
   phase_since_ = now_;
-  sdo_.cancel();
+}
+
+void NodeSetup::send_nmt(std::uint8_t command) {
+  CanFrame frame;
+  frame.id = 0x000;
+  frame.length = 2;
+  frame.data = {command, profile_.node};
+  out_.push_back(frame);
+}
+
+void NodeSetup::look_for_node(canopen::SdoClient& sdo, bool other_master) {
+  if (!look_after_) look_after_ = now_ + kListen_s;
+  if (now_ >= *look_after_ && !other_master) begin_identification(sdo);
+}
+
+void NodeSetup::begin_identification(canopen::SdoClient& sdo) {
+  enter(Phase::identifying);
+  sdo.cancel();
   std::vector<SdoStep> steps = {
       read_step(0x1018, 1, kU32, false, "vendor"), read_step(0x1018, 2, kU32, false, "product"),
       read_step(0x1018, 3, kU32, true, "revision"), read_step(0x1018, 4, kU32, true, "serial"),
       read_step(0x1008, 0, kU32, true, "name")};
   add_receive_pdo_readings(steps);
-  setup_.start(std::move(steps));
-  setup_.advance(sdo_, now_);
+  sequence_.start(std::move(steps));
+  sequence_.advance(sdo, now_);
 }
 
-void DualAxis::end_identification() {
-  if (setup_.error()) {
-    phase_ = Phase::absent;
-    heard_at_.reset();
-    look_after_ = now_ + kAskAgain_s;
-    return;
-  }
+Identity NodeSetup::read_identity() const {
   const auto number = [&](const char* tag) {
-    const auto* outcome = setup_.find(tag);
+    const auto* outcome = sequence_.find(tag);
     return outcome == nullptr || outcome->error ? 0U : static_cast<std::uint32_t>(outcome->value);
   };
   Identity found{number("vendor"), number("product"), number("revision"), number("serial"), ""};
-  if (const auto* name = setup_.find("name"); name != nullptr)
+  if (const auto* name = sequence_.find("name"); name != nullptr)
     found.name = clean_text(std::string(name->bytes.begin(), name->bytes.end()));
+  return found;
+}
+
+NodeSetup::Step NodeSetup::end_identification(canopen::SdoClient& sdo) {
+  if (sequence_.error()) {
+    enter(Phase::absent);
+    look_after_ = now_ + kAskAgain_s;
+    return Step::no_answer;
+  }
+  const Identity found = read_identity();
   identity_ = found;
-  heard_at_ = now_;
   const bool ours = (profile_.vendor == 0 || profile_.vendor == found.vendor) &&
                     (profile_.product == 0 || profile_.product == found.product);
-  if (ours) return begin_configuration();
-  phase_ = Phase::foreign;
+  if (ours) {
+    begin_configuration(sdo);
+    return Step::identified;
+  }
+  enter(Phase::foreign);
   event("identity_mismatch",
         "node " + std::to_string(profile_.node) + " is vendor " + std::to_string(found.vendor) +
             ", product " + std::to_string(found.product) + "; profile \"" + profile_.name + "\" expects " +
             std::to_string(profile_.vendor) + ", " + std::to_string(profile_.product) +
             ": nothing is written to it",
         true);
+  return Step::identified;
 }
 
-void DualAxis::begin_configuration() {
-  phase_ = Phase::configuring;
-  phase_since_ = now_;
-  unlisted_ = unlisted_pdos(profile_, setup_.outcomes());
+void NodeSetup::begin_configuration(canopen::SdoClient& sdo) {
+  enter(Phase::configuring);
+  unlisted_ = unlisted_pdos(profile_, sequence_.outcomes());
   send_nmt(kNmtPreOperational);
-  setup_.start(configuration(profile_, unlisted_));
-  setup_.advance(sdo_, now_);
+  sequence_.start(configuration(profile_, unlisted_));
+  sequence_.advance(sdo, now_);
 }
 
-void DualAxis::end_configuration() {
-  if (setup_.error()) {
-    event("configuration_failed", setup_.error()->text(), true);
-    phase_ = Phase::absent;
+NodeSetup::Step NodeSetup::end_configuration() {
+  if (sequence_.error()) {
+    event("configuration_failed", sequence_.error()->text(), true);
+    enter(Phase::absent);
     look_after_ = now_ + kFailedAgain_s;
-    return;
+    return Step::none;
   }
   note_safety_objects();
   note_as_set_up();
-  touched_at_.reset();
-  phase_ = Phase::starting;
-  phase_since_ = now_;
-  positions_at_.reset();
-  status_at_.reset();
+  enter(Phase::starting);
   send_nmt(kNmtStart);
+  return Step::configured;
 }
 
-void DualAxis::note_safety_objects() {
+void NodeSetup::note_safety_objects() {
   watchdog_armed_ = profile_.watchdog.kind != ProfileWatchdog::Kind::none;
-  for (const canopen::SdoOutcome& outcome : setup_.outcomes()) {
+  for (const canopen::SdoOutcome& outcome : sequence_.outcomes()) {
     if (outcome.step.tag == "unlisted" && outcome.error)
       event("process_data_not_disabled", outcome.error->text(), false);
     if (outcome.step.tag != "watchdog" || !outcome.error) continue;
     watchdog_armed_ = false;
     event("watchdog_refused", "the controller cannot watch this program: " + outcome.error->text(), false);
   }
-  const auto* quick_stop_option = setup_.find("605A");
+  const auto* quick_stop_option = sequence_.find("605A");
   if (quick_stop_option != nullptr && !quick_stop_option->error && quick_stop_option->value == 0)
     event("coasts_on_quick_stop",
           "605Ah = 0: the drive coasts on a quick stop; the stopping distance is longer", false);
-  const auto* mode = setup_.find("mode");
+  const auto* mode = sequence_.find("mode");
   if (mode != nullptr && mode->error)
     event("mode_not_active", "mode of operation: " + mode->error->text(), false);
 }
 
 /// The last check of each object, and what was found of the reactions that are only read. What the node took
 /// otherwise was told when it was set up.
-void DualAxis::note_as_set_up() {
+void NodeSetup::note_as_set_up() {
   as_set_up_.clear();
-  for (const canopen::SdoOutcome& outcome : setup_.outcomes()) {
+  for (const canopen::SdoOutcome& outcome : sequence_.outcomes()) {
     if (outcome.step.kind == SdoStep::Kind::write || outcome.error) continue;
     SdoStep check = outcome.step;
     check.kind = SdoStep::Kind::check;
@@ -224,22 +256,19 @@ void DualAxis::note_as_set_up() {
   }
 }
 
-void DualAxis::check_started() {
-  const bool running = node_state_ == kOperationalState && positions_at_ && status_at_;
-  if (running) {
-    phase_ = Phase::ready;
-    phase_since_ = now_;
-    motion_.forget();
-    heard_at_ = now_;
-    return job_.on_set_up_again();
+NodeSetup::Step NodeSetup::check_started(const Seen& seen) {
+  if (seen.state == kOperationalState && seen.positions && seen.status) {
+    enter(Phase::ready);
+    return Step::running;
   }
-  if (now_ - phase_since_ < kStart_s) return;
+  if (now_ - phase_since_ < kStart_s) return Step::none;
   event("start_failed",
-        "the controller is " + canopen::nmt_state_text(node_state_) + " and sends " +
-            (positions_at_ ? "no status" : "no positions") + " after the NMT start",
+        "the controller is " + canopen::nmt_state_text(seen.state) + " and sends " +
+            (seen.positions ? "no status" : "no positions") + " after the NMT start",
         true);
-  phase_ = Phase::absent;
+  enter(Phase::absent);
   look_after_ = now_ + kFailedAgain_s;
+  return Step::none;
 }
 
 }  // namespace odomcalib::drivers
