@@ -3,7 +3,7 @@
 # what tests/packages.txt lists and is missing. A second run builds and checks only what changed.
 #
 # With --packages the Debian packages are built and taken through install, calibration, upgrade, reboot and purge in a
-# virtual machine too, which takes some twenty minutes more.
+# virtual machine too, and the archive is tried on a bare Debian, which takes some half an hour more.
 #
 # With --long, tests that take minutes each run too: more robots and recordings than are needed to see a fault.
 #
@@ -56,7 +56,7 @@ ctest --preset release -j 2 --output-junit tests.xml || failed+=("ctest")
 
 count() { tr -s '[:space:]' ' ' < build/release/tests.xml | grep -o '<testsuite [^>]*' | grep -o " $1=\"[0-9]*" | tr -dc 0-9; }
 tests/build_times build/release --tests build/release/tests.xml --jobs "$jobs" || failed+=("tests/build_times")
-[ $packages = ON ] || echo "not tested: packages, and the system that they are installed in (./test.sh --packages)"
+[ $packages = ON ] || echo "not tested: archive, packages, and the system that they are installed in (./test.sh --packages)"
 [ -n "${ODOMCALIB_LONG:-}" ] || echo "not tested: what takes minutes a test (./test.sh --long)"
 echo "tests run: $(count tests), failed: $(count failures), skipped: $(count skipped)"
 if [ ${#failed[@]} -gt 0 ]; then

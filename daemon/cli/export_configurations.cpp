@@ -11,8 +11,10 @@
 #include <optional>
 
 #include "calib/odometry/correction.hpp"
+#include "daemon/cli/diff_drive_place.hpp"
 #include "daemon/cli/export_noise.hpp"
 #include "daemon/cli/export_step.hpp"
+#include "daemon/cli/lidar_joint_place.hpp"
 #include "daemon/cli/usable_calibration.hpp"
 #include "odomcalib_version.hpp"
 #include "proto/calibration/report_data.hpp"
@@ -35,26 +37,40 @@ std::string robot_toml(const Calibration& calibration, const Dimensions& d) {
 
 /// One radius and a factor for each wheel; effects that only a host can compensate are not in these
 /// parameters.
-std::string diff_drive_yaml(const Dimensions& d) {
-  return fmt::format(
-      "diff_drive_controller:\n  ros__parameters:\n    wheel_separation: {}\n    wheel_radius: {}\n"
-      "    wheel_separation_multiplier: 1.0\n    left_wheel_radius_multiplier: {}\n"
-      "    right_wheel_radius_multiplier: {}\n",
-      d.track, 0.5 * d.mean(), d.left / d.mean(), d.right / d.mean());
+std::vector<std::pair<std::string, double>> diff_drive_parameters(const Dimensions& d) {
+  return {{"wheel_separation", d.track},
+          {"wheel_radius", 0.5 * d.mean()},
+          {"wheel_separation_multiplier", 1.0},
+          {"left_wheel_radius_multiplier", d.left / d.mean()},
+          {"right_wheel_radius_multiplier", d.right / d.mean()}};
 }
 
-/// The lidar on the robot, REP-103: x forward, y left, z up, m and rad. Its height is not measured.
-Result<std::string> urdf(const Calibration& calibration, const std::string& where) {
+std::string diff_drive_yaml(const Dimensions& d) {
+  std::string text = "diff_drive_controller:\n  ros__parameters:\n";
+  for (const auto& [name, value] : diff_drive_parameters(d))
+    text += fmt::format("    {}: {}\n", name, real_text(value));
+  return text;
+}
+
+Result<LidarPlace> lidar_place(const Calibration& calibration, const std::string& where) {
   const auto x = calibration.parameter("lidar_x"), y = calibration.parameter("lidar_y"),
              yaw = calibration.parameter("lidar_yaw");
   if (!x || !y || !yaw)
     return Error{ErrorCode::format, "the calibration has no lidar pose", where,
                  "solve a recording with scans of the lidar"};
+  return LidarPlace{*x, *y, *yaw};
+}
+
+/// The lidar on the robot, REP-103: x forward, y left, z up, m and rad. Its height is not measured.
+Result<std::string> urdf(const Calibration& calibration, const std::string& where) {
+  const auto place = lidar_place(calibration, where);
+  if (!place) return place.error();
+  const auto& [x, y, yaw] = place.value();
   return fmt::format(
       "<joint name=\"laser_joint\" type=\"fixed\">\n  <parent link=\"base_link\"/>\n  <child "
       "link=\"laser\"/>\n"
       "  <!-- z is not measured -->\n  <origin xyz=\"{} {} 0\" rpy=\"0 0 {}\"/>\n</joint>\n",
-      *x, *y, *yaw);
+      x, y, yaw);
 }
 
 /// Parameters of the node that comes with ros_arduino_bridge (its README, "Base controller parameters"): one
@@ -225,6 +241,21 @@ Result<std::string> configuration(const Calibration& calibration, const std::str
   std::string head = provenance(calibration, what);
   for (const std::string& sentence : not_held(calibration, what)) head += commented(what, sentence);
   return head + text.value();
+}
+
+bool goes_into_files(const std::string& what) { return what == "diff_drive" || what == "urdf"; }
+
+Result<std::vector<TextEdit>> edits_of(const Calibration& calibration, const std::string& what,
+                                       const OwnText& own, const std::string& where) {
+  if (calibration.verdict == Verdict::refused) return refusal_of(calibration, where);
+  if (what == "urdf") {
+    const auto place = lidar_place(calibration, where);
+    if (!place) return place.error();
+    return lidar_joint_edits(own.text, place.value(), own.link, own.path);
+  }
+  const auto dimensions = dimensions_of(calibration, where);
+  if (!dimensions) return dimensions.error();
+  return diff_drive_edits(own.text, diff_drive_parameters(dimensions.value()), own.path);
 }
 
 }  // namespace odomcalib::cli

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/cli/text_edit.hpp"
 #include "proto/calibration/calibration.hpp"
 
 namespace odomcalib::cli {
@@ -24,5 +25,20 @@ std::vector<std::string> not_held(const Calibration& calibration, const std::str
 /// @param where the calibration is from, for errors
 Result<std::string> configuration(const Calibration& calibration, const std::string& what,
                                   const std::string& where);
+
+/// A file of the user's own that has a configuration among other things.
+struct OwnText {
+  std::string path, text;
+  std::string link = {};  ///< of the lidar, for urdf; empty: by its name
+};
+
+/// Whether `edits_of` takes this name: diff_drive, urdf.
+bool goes_into_files(const std::string& what);
+
+/// Changes to that text after which it has the values of the calibration.
+/// Errors: format (the calibration has no such values, the text not one place for them), refused.
+/// @param where the calibration is from, for errors
+Result<std::vector<TextEdit>> edits_of(const Calibration& calibration, const std::string& what,
+                                       const OwnText& own, const std::string& where);
 
 }  // namespace odomcalib::cli

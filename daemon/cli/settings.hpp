@@ -25,6 +25,14 @@ inline constexpr double kMostErrorOfMetre = 0.2;
 /// has.
 inline constexpr double kMostOdometer_km = 1e7;
 
+// --- Files of the user's own -----------------------------------------------------------------------------
+
+/// Bytes of a file that export changes. Chosen: a hundred times a large URDF; more is another kind of file.
+inline constexpr std::size_t kMostOwnFile_bytes = 16'000'000;
+/// Cosine of the tilt up to which a lidar is level. Chosen: 15 degrees, as where a bag says how it is
+/// mounted.
+inline constexpr double kLevelLidar = 0.966;
+
 // --- Inspection of a recording ---------------------------------------------------------------------------
 
 /// m, and counts of a wheel's turn, of a robot of which nobody stated them: what kinds of motion there are

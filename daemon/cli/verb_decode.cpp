@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <system_error>
 
 #include "daemon/cli/exit_codes.hpp"
 #include "daemon/cli/verbs.hpp"
@@ -12,8 +14,15 @@
 namespace odomcalib::cli {
 namespace {
 
+/// A program that runs where it was unpacked has its folder beside it.
+std::string profile_folder() {
+  std::error_code unknown;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  return (program.parent_path() / kProfileFolder).lexically_normal();
+}
+
 struct DecodeOptions {
-  std::string driver, file, profiles = kProfileFolder;
+  std::string driver, file, profiles = profile_folder();
 };
 
 int decode_file(const DecodeOptions& options, const Session& session) {

@@ -124,6 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
                                   "predict drive.jsonl --calibration cal.json --trajectory", "cal.json"},
                       Overwriting{"report", "report cal.json --html", "cal.json"},
                       Overwriting{"export", "export cal.json --out", "cal.json"},
+                      Overwriting{"export_into", "export cal.json --what urdf --into", "cal.json"},
                       Overwriting{"graph_optimize", "graph optimize map.g2o --out", "map.g2o"},
                       Overwriting{"graph_picture", "graph optimize map.g2o --svg", "map.g2o"},
                       Overwriting{"graph_build", "graph build drive.jsonl --out", "drive.jsonl"}),
@@ -164,6 +165,50 @@ TEST_F(CommandLine, values_that_are_no_numbers_are_refused_by_name_where_they_ar
     EXPECT_THAT(got.out, Not(HasSubstr("nan,"))) << verb;
   }
   EXPECT_FALSE(exists("out"));
+}
+
+constexpr const char* kOwnFile = "a:\n  wheel_separation: 0.41  # m\n  wheel_radius: 0.075\n";
+constexpr const char* kOwnFileAfter = "a:\n  wheel_separation: 0.4  # m\n  wheel_radius: 0.075\n";
+constexpr const char* kInto = "export cal.json --what diff_drive --into c.yaml";
+
+TEST_F(CommandLine, a_file_of_ones_own_is_changed_with_consent_alone) {
+  write("c.yaml", kOwnFile);
+  const auto nobody = ctl(kInto);
+  EXPECT_EQ(nobody.status, 2) << nobody.err;
+  EXPECT_THAT(nobody.out, HasSubstr("-  wheel_separation: 0.41  # m\n+  wheel_separation: 0.4  # m\n"));
+  EXPECT_THAT(nobody.err, AllOf(HasSubstr("add --yes"), HasSubstr("nothing was written")));
+  EXPECT_EQ(read("c.yaml"), kOwnFile);
+  EXPECT_FALSE(exists("c.yaml~"));
+
+  EXPECT_EQ(ctl(std::string(kInto) + " --yes").status, 0);
+  EXPECT_EQ(read("c.yaml"), kOwnFileAfter);
+  EXPECT_EQ(read("c.yaml~"), kOwnFile);
+
+  const auto again = ctl(std::string(kInto) + " --yes");
+  EXPECT_EQ(again.status, 0);
+  EXPECT_THAT(again.err, HasSubstr("holds these values already"));
+  EXPECT_EQ(read("c.yaml~"), kOwnFile) << "the old file is still the old one";
+}
+
+TEST_F(CommandLine, a_person_on_a_terminal_is_asked_before_a_file_changes) {
+  write("c.yaml", kOwnFile);
+  const std::string on_terminal = std::string("script -qec '") + ODOMCALIB_CTL + " " + kInto + "' /dev/null";
+  const auto no = run("echo no | " + on_terminal, "");
+  EXPECT_EQ(no.status, 4) << no.out;
+  EXPECT_THAT(no.out, AllOf(HasSubstr("+  wheel_separation: 0.4  # m"), HasSubstr("kept as c.yaml~")));
+  EXPECT_EQ(read("c.yaml"), kOwnFile);
+  const auto yes = run("echo yes | " + on_terminal, "");
+  EXPECT_EQ(yes.status, 0) << yes.out;
+  EXPECT_EQ(read("c.yaml"), kOwnFileAfter);
+}
+
+TEST_F(CommandLine, a_refused_calibration_changes_no_file) {
+  auto refused = calibration();
+  refused.verdict = Verdict::refused;
+  save("cal.json", refused);
+  write("c.yaml", kOwnFile);
+  EXPECT_EQ(ctl(std::string(kInto) + " --yes").status, 3);
+  EXPECT_EQ(read("c.yaml"), kOwnFile);
 }
 
 TEST_F(CommandLine, dead_reckoning_that_leaves_the_numbers_is_refused) {

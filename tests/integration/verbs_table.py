@@ -64,6 +64,11 @@ TABLE = [
     ("export", "cal.json --what parameters", DONE, "export"),
     ("export", "cal.json --what toml", REFUSED, "error"),
     ("export", "cal.json --what fax", USAGE, "error"),
+    ("export", "good.json --what diff_drive --into controllers.yaml --yes", DONE, "export"),
+    ("export", "good.json --what diff_drive --into controllers.yaml --yes", DONE, "export"),
+    ("export", "before.json --what diff_drive --into controllers.yaml", USAGE, "error"),
+    ("export", "good.json --what diff_drive --into robot.toml --yes", FAILURE, "error"),
+    ("export", "good.json --what toml --into robot.toml --yes", USAGE, "error"),
     ("graph info", "map.g2o", DONE, "graph-info"),
     ("graph info", ABSENT, FAILURE, "error"),
     ("graph optimize", "map.g2o --out better.g2o", DONE, "graph-optimize"),
@@ -155,6 +160,8 @@ def prepare(folder, sample):
         file.write("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n")
     with open(os.path.join(folder, "pairs.jsonl"), "w", encoding="utf-8") as file:
         file.write(json.dumps({"reference": room(0.0), "scan": room(0.1), "guess": [0.0, 0.0, 0.0]}) + "\n")
+    with open(os.path.join(folder, "controllers.yaml"), "w", encoding="utf-8") as file:
+        file.write("diff_drive_controller:\n  ros__parameters:\n    wheel_separation: 0.4\n    wheel_radius: 0.07\n")
     with open(os.path.join(folder, "lidar.bin"), "wb") as file:
         file.write(bytes(range(256)))
     with gzip.open(sample, "rt", encoding="utf-8") as file:

@@ -1,0 +1,33 @@
+// Changes to a text that somebody else wrote: everything that is not changed stays as it is, byte for byte.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace odomcalib::cli {
+
+/// What stands there, and what shall stand there in its place.
+struct TextEdit {
+  std::size_t at = 0, length = 0;  ///< bytes
+  std::string text;
+};
+
+/// Edits may come in any order; they lie within the text and not on each other.
+std::string edited(std::string_view text, std::vector<TextEdit> edits);
+
+/// As `diff -U0` prints it, for people. Two texts that are equal give nothing.
+std::string diff_of(const std::string& name, std::string_view before, std::string_view after);
+
+/// Finite, written out in whole; nullopt: not a number, or one with something beside it.
+std::optional<double> number_in(std::string_view text);
+
+/// The shortest text that reads back to the same number, and is no whole number to YAML: 1.0.
+std::string real_text(double number);
+
+/// Of a byte of the text, from 1.
+std::size_t line_of(std::string_view text, std::size_t at);
+
+}  // namespace odomcalib::cli
