@@ -45,7 +45,7 @@ Result<MotionNoise> noise_of(const Calibration& calibration, const std::string& 
   const auto contact = calib::odometry::contact_noise_of(calibration);
   if (contact) return motion_noise(calibration, *contact);
   return Error{ErrorCode::format, "the calibration states no noise of wheels and floor (\"contact_noise\")",
-               where, "solve the recording again with this program"};
+               where, "solve a recording of a minute or more with this program"};
 }
 
 }  // namespace
