@@ -5,6 +5,7 @@
 #include <random>
 
 #include "calib/solve.hpp"
+#include "proto/calibration/report_data.hpp"
 #include "tests/unit/calib/driven_fit.hpp"
 
 namespace odomcalib::calib::report::contact_noise_test {
@@ -37,6 +38,7 @@ TEST(ContactNoise, is_not_stated_where_nothing_was_held_out) {
   EXPECT_FALSE(of_one_block.parameters.empty());
   EXPECT_FALSE(odometry::contact_noise_of(of_one_block));
   EXPECT_FALSE(of_one_block.residual.held_out);
+  EXPECT_TRUE(report_data_of(of_one_block).drive_errors.empty());
 }
 
 }  // namespace
