@@ -167,6 +167,7 @@ Result<std::string> configuration_text(const Calibration& calibration, const Dim
   if (what == "arcos") return arcos(calibration, dimensions, where);
   if (what == "amcl") return amcl_yaml(calibration, where);
   if (what == "robot_localization") return robot_localization_yaml(calibration, where);
+  if (what == "slam_toolbox") return slam_toolbox_yaml(calibration, where);
   if (what == "c_header" || what == "python") return step(calibration, what, where);
   return Error{ErrorCode::usage, "unknown export \"" + what + "\"", "--what",
                "see odomcalibctl export --help"};
@@ -175,9 +176,9 @@ Result<std::string> configuration_text(const Calibration& calibration, const Dim
 }  // namespace
 
 const std::vector<std::string>& configurations() {
-  static const std::vector<std::string> names = {"toml",        "diff_drive", "urdf",
-                                                 "ros_arduino", "arcos",      "c_header",
-                                                 "python",      "amcl",       "robot_localization"};
+  static const std::vector<std::string> names = {
+      "toml",     "diff_drive", "urdf", "ros_arduino",        "arcos",
+      "c_header", "python",     "amcl", "robot_localization", "slam_toolbox"};
   return names;
 }
 
@@ -188,7 +189,7 @@ bool is_configuration(const std::string& what) {
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what) {
   std::vector<std::string> sentences;
   // How far odometry errs is no odometry.
-  if (what == "amcl" || what == "robot_localization") return sentences;
+  if (what == "amcl" || what == "robot_localization" || what == "slam_toolbox") return sentences;
   const bool is_step = what == "c_header" || what == "python";
   bool lacks_effects = false;
   for (const auto& placement : calib::odometry::effect_placements(calibration)) {
