@@ -329,6 +329,15 @@ Result<FitResult> fit_joint(std::span<const measurement::FitData> data, const ve
   return fit;
 }
 
+std::vector<measurement::NoiseModel> noise_shown(std::span<const measurement::FitData> data,
+                                                 const vehicle::EffectList& effects, const FitResult& fit,
+                                                 std::span<const Eigen::Vector3d> residuals) {
+  Stack stack = make_stack(data, effects, fit.parameters, false);
+  for (std::size_t k = 0; k < residuals.size(); ++k)
+    stack.residual.block<3, 1>(static_cast<Eigen::Index>(3 * k), 0) = residuals[k];
+  return estimate_noise(data, stack, fit.noise);
+}
+
 FitResult with_weights(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
                        FitResult fit, const std::vector<double>& weights) {
   const Stack stack = make_stack(data, effects, fit.parameters, true);

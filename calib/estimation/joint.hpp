@@ -45,6 +45,13 @@ struct FitResult {
 Result<FitResult> fit_joint(std::span<const measurement::FitData> data, const vehicle::EffectList& effects,
                             const Eigen::VectorXd& start, const FitOptions& options = {});
 
+/// The noise that residuals show, found as fit_joint finds it: of each recording, or of short ones together.
+/// @param fit says how the sensor moved
+/// @param residuals one per pair, measured - predicted in the sensor's frame: m, m, rad
+std::vector<measurement::NoiseModel> noise_shown(std::span<const measurement::FitData> data,
+                                                 const vehicle::EffectList& effects, const FitResult& fit,
+                                                 std::span<const Eigen::Vector3d> residuals);
+
 /// The same fit seen with other weights: whitened residual and Jacobian are made anew, nothing is fitted. Two
 /// models can be compared only with the same weights, since each model's own weights spare what it explains
 /// badly.

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "calib/measurement/whitening.hpp"
 #include "calib/selection/settings.hpp"
@@ -37,10 +38,21 @@ Eigen::Vector3d variances_of_wheels(const measurement::SensorPair& pair,
   return variances;
 }
 
+std::vector<Eigen::Vector3d> errors_of(std::span<const selection::HeldOutError> held_out) {
+  std::vector<Eigen::Vector3d> errors;
+  errors.reserve(held_out.size());
+  for (const selection::HeldOutError& one : held_out) errors.push_back(one.error);
+  return errors;
+}
+
 }  // namespace
 
 std::optional<odometry::IncrementNoise> contact_noise(const measurement::Dataset& dataset,
-                                                      const estimation::FitResult& fit) {
+                                                      const selection::FittedModel& model,
+                                                      std::span<const selection::HeldOutError> held_out) {
+  if (held_out.empty()) return std::nullopt;
+  const estimation::FitResult& fit = model.fit;
+  const auto noise = noise_shown(dataset.data, model.effects, fit, errors_of(held_out));
   const wheels::BaseParameters base = vehicle::to_base(vehicle::as_span(fit.parameters));
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double way = 0.0;
@@ -48,7 +60,7 @@ std::optional<odometry::IncrementNoise> contact_noise(const measurement::Dataset
   for (std::size_t i = 0; i < dataset.data.size(); ++i)
     for (const measurement::SensorPair& pair : dataset.data[i].pairs) {
       if (fit.weights[k++] < selection::settings::kTrustedWeight) continue;
-      sum += variances_of_wheels(pair, fit.noise[i]);
+      sum += variances_of_wheels(pair, noise[i]);
       way += way_rolled(*dataset.data[i].model, pair.interval, base);
     }
   if (!(way > 0.0)) return std::nullopt;

@@ -2,19 +2,23 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
-#include "calib/estimation/joint.hpp"
 #include "calib/measurement/dataset.hpp"
 #include "calib/odometry/uncertainty.hpp"
+#include "calib/selection/fitted_model.hpp"
+#include "calib/selection/held_out.hpp"
 
 namespace odomcalib::calib::report {
 
-/// By the noise of the fit: the part of the pairs' errors that is neither the reference's nor taken back by
-/// the neighbours, over the way that the wheels rolled in them. Forward and sideways it is the same, as the
-/// fit has it, less what the lever of the sensor makes of the heading's; forward no less than what wheels
+/// By errors on data that was not fitted: their part that is neither the reference's nor taken back by the
+/// neighbours, over the way that the wheels rolled in them. Forward and sideways it is the same, as the noise
+/// model has it, less what the lever of the sensor makes of the heading's; forward no less than what wheels
 /// that err by themselves add where they turn the base so much.
-/// @return nullopt where no trusted pair rolled
+/// @param held_out see selection::held_out_errors
+/// @return nullopt where nothing was held out or no trusted pair rolled
 std::optional<odometry::IncrementNoise> contact_noise(const measurement::Dataset& dataset,
-                                                      const estimation::FitResult& fit);
+                                                      const selection::FittedModel& model,
+                                                      std::span<const selection::HeldOutError> held_out);
 
 }  // namespace odomcalib::calib::report

@@ -151,11 +151,18 @@ PlainFit plain_fit(const Findings& found) {
   return plain ? PlainFit(std::move(plain).value()) : std::nullopt;
 }
 
-ResidualReport residual(const Findings& found, const PlainFit& plain) {
+using HeldOutErrors = std::vector<selection::HeldOutError>;
+
+HeldOutErrors held_out(const Findings& found) {
   const measurement::Dataset& dataset = found.fit.dataset;
   const auto& [effects, fit] = found.outcome.model;
-  const auto of_all =
-      selection::held_out_errors(dataset.data, effects, fit, vehicle::fixed_with(dataset.fixed(), effects));
+  return selection::held_out_errors(dataset.data, effects, fit,
+                                    vehicle::fixed_with(dataset.fixed(), effects));
+}
+
+ResidualReport residual(const Findings& found, const PlainFit& plain, const HeldOutErrors& of_all) {
+  const measurement::Dataset& dataset = found.fit.dataset;
+  const auto& [effects, fit] = found.outcome.model;
   const auto of_plain = effects.empty() || !plain
                             ? of_all
                             : selection::held_out_errors(dataset.data, {}, *plain, dataset.fixed());
@@ -188,15 +195,15 @@ std::optional<Unexplained> unexplained(const Findings& found, const Outliers& ou
 
 /// Members of the file beyond its contract.
 std::map<std::string, std::string> extensions(const Findings& found, const SmoothTerms& smooths,
-                                              const Outliers& outliers,
-                                              const estimation::GyroWitness& gyros) {
+                                              const Outliers& outliers, const estimation::GyroWitness& gyros,
+                                              const HeldOutErrors& errors) {
   std::map<std::string, std::string> members;
   if (!smooths.empty()) members[terms::kSmoothTermsMember] = smooth_terms_to_json(smooths);
   if (std::any_of(found.lidar.begin(), found.lidar.end(),
                   [](const auto& f) { return !f.effect->is_named(); }))
     members[selection::kLidarSmoothTermsMember] = selection::lidar_smooth_terms_to_json(found.lidar);
   if (outliers) members["outliers"] = to_json(*outliers);
-  if (const auto noise = contact_noise(found.fit.dataset, found.outcome.model.fit))
+  if (const auto noise = contact_noise(found.fit.dataset, found.outcome.model, errors))
     members[odometry::kContactNoiseMember] = odometry::to_json(*noise);
   const ingest::StampReport& stamps = found.fit.dataset.recordings.stamps();
   if (stamps.any()) members["stamps"] = to_json(stamps);
@@ -336,10 +343,11 @@ Calibration calibrated(const Findings& found) {
   calibration.parameters = base.stated;
   calibration.covariance_order = base_quantity_names();
   calibration.covariance = diameter_covariance(base.covariance);
-  calibration.residual = residual(found, plain);
+  const HeldOutErrors errors = held_out(found);
+  calibration.residual = residual(found, plain, errors);
   calibration.effects = found_effects(found, plain);
   calibration.unexplained = unexplained(found, outliers, !calibration.effects.empty(), data.drive_errors);
-  calibration.extensions = extensions(found, smooths, outliers, gyros);
+  calibration.extensions = extensions(found, smooths, outliers, gyros, errors);
   store_report_data(data, calibration);
   if (together.homogeneity)
     store_homogeneity(*together.homogeneity, found.fit.dataset.recordings.view(), calibration);

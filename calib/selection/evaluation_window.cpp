@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "calib/math/vector2.hpp"
+#include "calib/selection/folds.hpp"
 #include "calib/selection/settings.hpp"
 
 namespace odomcalib::calib::selection {
@@ -233,6 +234,7 @@ std::vector<EvaluationWindow> windows_of(WindowKind kind, double whole,
                                          const estimation::FitResult& fit, const std::vector<bool>& trusted) {
   const math::Pose mount = vehicle::to_base(vehicle::as_span(fit.parameters)).mount;
   std::vector<EvaluationWindow> all;
+  if (!hold_out(folds)) return all;
   std::size_t first = 0;
   for (std::size_t d = 0; d < data.size(); ++d) {
     const std::size_t count = data[d].pairs.size();

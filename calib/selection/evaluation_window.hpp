@@ -40,6 +40,7 @@ std::vector<bool> trusted_pairs(const estimation::FitResult& a, const estimation
 /// there is part of odometry's error.
 std::vector<bool> measured_pairs(std::span<const measurement::FitData> data, std::vector<bool> trusted);
 
+/// None where all pairs lie in one fold: nothing is left to fit to.
 /// @param folds of all pairs (see folds_of)
 /// @param fit gives mount and noise
 /// @param trusted one flag per pair; windows do not cross a pair that is not. Two models are compared on

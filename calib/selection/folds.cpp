@@ -1,6 +1,8 @@
 #include "calib/selection/folds.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <functional>
 
 #include "calib/math/linear_solve.hpp"
 #include "calib/selection/settings.hpp"
@@ -21,6 +23,10 @@ std::vector<std::size_t> folds_of(std::span<const measurement::FitData> data) {
     }
   }
   return folds;
+}
+
+bool hold_out(const std::vector<std::size_t>& folds) {
+  return std::adjacent_find(folds.begin(), folds.end(), std::not_equal_to<>()) != folds.end();
 }
 
 Eigen::VectorXd without_fold(const estimation::FitResult& fit, const std::vector<std::size_t>& folds,

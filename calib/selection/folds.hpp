@@ -18,6 +18,9 @@ inline constexpr std::size_t kFolds = settings::kFolds;
 /// early and late motion.
 std::vector<std::size_t> folds_of(std::span<const measurement::FitData> data);
 
+/// Whether each fold leaves something to fit to: a drive of one block has nothing to hold out.
+bool hold_out(const std::vector<std::size_t>& folds);
+
 /// Parameters without the fold: one Gauss-Newton step on the remaining whitened rows, which for a nearly
 /// linear problem is the refit.
 Eigen::VectorXd without_fold(const estimation::FitResult& fit, const std::vector<std::size_t>& folds,

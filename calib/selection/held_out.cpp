@@ -37,6 +37,7 @@ std::vector<HeldOutError> held_out_errors(std::span<const measurement::FitData> 
                                           const vehicle::EffectList& effects,
                                           const estimation::FitResult& fit, const std::vector<bool>& fixed) {
   const auto folds = folds_of(data);
+  if (!hold_out(folds)) return {};
   std::vector<HeldOutError> errors(folds.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const Eigen::VectorXd parameters = without_fold(fit, folds, fold, fixed);
@@ -59,7 +60,7 @@ std::optional<HeldOut> held_out_residual(const std::vector<HeldOutError>& errors
                                          const std::vector<HeldOutError>& other) {
   Eigen::Vector3d squares = Eigen::Vector3d::Zero(), expected = squares, bounded = squares;
   std::size_t count = 0;
-  for (std::size_t k = 0; k < errors.size(); ++k) {
+  for (std::size_t k = 0; k < std::min(errors.size(), other.size()); ++k) {
     bounded += errors[k].error.cwiseAbs2().cwiseMin(settings::kGrossError * settings::kGrossError *
                                                     errors[k].variance);
     if (is_gross(errors[k]) && is_gross(other[k])) continue;

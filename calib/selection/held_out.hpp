@@ -30,7 +30,7 @@ struct HeldOutError {
 
 /// One per pair. Cross-validation over five folds of whole blocks of 20 s: each block is predicted with
 /// parameters fitted to the others (one Gauss-Newton step from the full fit, which for a nearly linear
-/// problem is the refit).
+/// problem is the refit). None where all pairs lie in one block, so that nothing is left to fit to.
 std::vector<HeldOutError> held_out_errors(std::span<const measurement::FitData> data,
                                           const vehicle::EffectList& effects,
                                           const estimation::FitResult& fit, const std::vector<bool>& fixed);

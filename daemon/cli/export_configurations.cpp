@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <iterator>
@@ -18,20 +19,44 @@
 #include "daemon/cli/usable_calibration.hpp"
 #include "odomcalib_version.hpp"
 #include "proto/calibration/report_data.hpp"
+#include "proto/recording/wheel_motion.hpp"
 
 namespace odomcalib::cli {
 namespace {
+
+/// Of the encoder; none where the recordings told the motion by something else and nobody stated any.
+std::optional<double> counts_a_turn(const Calibration& calibration) {
+  const double counts = calibration.robot.ticks_per_rev;
+  const auto is_made = [](const DataUse& data) {
+    return std::any_of(data.choices.begin(), data.choices.end(),
+                       [](const std::string& choice) { return choice.starts_with(kMotionFrom); });
+  };
+  const bool stand_for_none =
+      counts == kFineCountsPerRev && std::any_of(calibration.data.begin(), calibration.data.end(), is_made);
+  return counts > 0.0 && !stand_for_none ? std::optional(counts) : std::nullopt;
+}
+
+/// x, y, yaw; none where it was not measured, as by poses of the base itself.
+std::optional<std::array<double, 3>> lidar_pose(const Calibration& calibration) {
+  std::array<double, 3> pose{};
+  for (std::size_t k = 0; k < pose.size(); ++k) {
+    constexpr std::array kNames = {"lidar_x", "lidar_y", "lidar_yaw"};
+    const auto found = std::find_if(calibration.parameters.begin(), calibration.parameters.end(),
+                                    [&](const auto& one) { return one.first == kNames.at(k); });
+    if (found == calibration.parameters.end() || !(found->second.std >= 0.0)) return std::nullopt;
+    pose.at(k) = found->second.value;
+  }
+  return pose;
+}
 
 /// As `--robot` reads it.
 std::string robot_toml(const Calibration& calibration, const Dimensions& d) {
   std::string out = fmt::format("left_wheel_diameter = {}\nright_wheel_diameter = {}\ntrack_width = {}\n",
                                 d.left, d.right, d.track);
-  if (calibration.robot.ticks_per_rev > 0.0)
-    fmt::format_to(std::back_inserter(out), "ticks_per_rev = {:.1f}\n", calibration.robot.ticks_per_rev);
-  const auto x = calibration.parameter("lidar_x");
-  const auto y = calibration.parameter("lidar_y");
-  const auto yaw = calibration.parameter("lidar_yaw");
-  if (x && y && yaw) fmt::format_to(std::back_inserter(out), "lidar_pose = [{}, {}, {}]\n", *x, *y, *yaw);
+  if (const auto counts = counts_a_turn(calibration))
+    fmt::format_to(std::back_inserter(out), "ticks_per_rev = {:.1f}\n", *counts);
+  if (const auto lidar = lidar_pose(calibration))
+    fmt::format_to(std::back_inserter(out), "lidar_pose = [{}]\n", fmt::join(*lidar, ", "));
   return out;
 }
 
@@ -53,12 +78,11 @@ std::string diff_drive_yaml(const Dimensions& d) {
 }
 
 Result<LidarPlace> lidar_place(const Calibration& calibration, const std::string& where) {
-  const auto x = calibration.parameter("lidar_x"), y = calibration.parameter("lidar_y"),
-             yaw = calibration.parameter("lidar_yaw");
-  if (!x || !y || !yaw)
-    return Error{ErrorCode::format, "the calibration has no lidar pose", where,
+  const auto lidar = lidar_pose(calibration);
+  if (!lidar)
+    return Error{ErrorCode::format, "the calibration has no lidar pose that was measured", where,
                  "solve a recording with scans of the lidar"};
-  return LidarPlace{*x, *y, *yaw};
+  return LidarPlace{(*lidar)[0], (*lidar)[1], (*lidar)[2]};
 }
 
 /// The lidar on the robot, REP-103: x forward, y left, z up, m and rad. Its height is not measured.
@@ -75,13 +99,11 @@ Result<std::string> urdf(const Calibration& calibration, const std::string& wher
 
 /// Parameters of the node that comes with ros_arduino_bridge (its README, "Base controller parameters"): one
 /// diameter for both wheels; what a gear does is in the counts per turn of the wheel already.
-Result<std::string> ros_arduino_yaml(const Calibration& calibration, const Dimensions& d,
-                                     const std::string& where) {
-  if (!(calibration.robot.ticks_per_rev > 0.0))
-    return Error{ErrorCode::format, "the calibration has no counts per turn", where,
-                 "state ticks_per_rev in the recording or the robot file, and solve again"};
-  return fmt::format("wheel_diameter: {}\nwheel_track: {}\nencoder_resolution: {:.0f}\ngear_reduction: 1.0\n",
-                     d.mean(), d.track, calibration.robot.ticks_per_rev);
+std::string ros_arduino_yaml(const Calibration& calibration, const Dimensions& d) {
+  std::string out = fmt::format("wheel_diameter: {}\nwheel_track: {}\n", d.mean(), d.track);
+  if (const auto counts = counts_a_turn(calibration))
+    fmt::format_to(std::back_inserter(out), "encoder_resolution: {:.0f}\ngear_reduction: 1.0\n", *counts);
+  return out;
 }
 
 /// What the values of the controller are to be multiplied by, and what is to be added. TicksMM counts per mm
@@ -174,15 +196,28 @@ std::string remaining_error(const Calibration& calibration, bool is_step) {
   return "without these effects odometry errs by " + without + ", with them by " + with + ": " + remedy;
 }
 
+/// What is to be done where the calibration does not know the counts of a turn; null: they are not asked for.
+const char* unknown_counts(const std::string& what) {
+  if (what == "ros_arduino")
+    return "encoder_resolution and gear_reduction are left out: the recording has no counts; they stay what "
+           "they are";
+  if (what == "c_header" || what == "python")
+    return "the recording has no counts: those that this takes are angles of the wheels in parts of a turn, "
+           "as "
+           "many as it states";
+  return nullptr;
+}
+
 Result<std::string> configuration_text(const Calibration& calibration, const Dimensions& dimensions,
                                        const std::string& what, const std::string& where) {
   if (what == "toml") return robot_toml(calibration, dimensions);
   if (what == "diff_drive") return diff_drive_yaml(dimensions);
   if (what == "urdf") return urdf(calibration, where);
-  if (what == "ros_arduino") return ros_arduino_yaml(calibration, dimensions, where);
+  if (what == "ros_arduino") return ros_arduino_yaml(calibration, dimensions);
   if (what == "arcos") return arcos(calibration, dimensions, where);
   if (what == "amcl") return amcl_yaml(calibration, where);
   if (what == "robot_localization") return robot_localization_yaml(calibration, where);
+  if (what == "slam_toolbox") return slam_toolbox_yaml(calibration, where);
   if (what == "c_header" || what == "python") return step(calibration, what, where);
   return Error{ErrorCode::usage, "unknown export \"" + what + "\"", "--what",
                "see odomcalibctl export --help"};
@@ -191,9 +226,9 @@ Result<std::string> configuration_text(const Calibration& calibration, const Dim
 }  // namespace
 
 const std::vector<std::string>& configurations() {
-  static const std::vector<std::string> names = {"toml",        "diff_drive", "urdf",
-                                                 "ros_arduino", "arcos",      "c_header",
-                                                 "python",      "amcl",       "robot_localization"};
+  static const std::vector<std::string> names = {
+      "toml",     "diff_drive", "urdf", "ros_arduino",        "arcos",
+      "c_header", "python",     "amcl", "robot_localization", "slam_toolbox"};
   return names;
 }
 
@@ -204,7 +239,7 @@ bool is_configuration(const std::string& what) {
 std::vector<std::string> not_held(const Calibration& calibration, const std::string& what) {
   std::vector<std::string> sentences;
   // How far odometry errs is no odometry.
-  if (what == "amcl" || what == "robot_localization") return sentences;
+  if (what == "amcl" || what == "robot_localization" || what == "slam_toolbox") return sentences;
   const bool is_step = what == "c_header" || what == "python";
   bool lacks_effects = false;
   for (const auto& placement : calib::odometry::effect_placements(calibration)) {
@@ -226,6 +261,8 @@ std::vector<std::string> not_held(const Calibration& calibration, const std::str
     sentences.push_back(
         fmt::format("not held here: left and right wheel differ by {:.2f} %, this is their mean",
                     100.0 * (*left / *right - 1.0)));
+  if (const char* counts = counts_a_turn(calibration) ? nullptr : unknown_counts(what))
+    sentences.emplace_back(counts);
   if (lacks_effects) sentences.push_back(remaining_error(calibration, is_step));
   return sentences;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -45,7 +46,22 @@ Result<MotionNoise> noise_of(const Calibration& calibration, const std::string& 
   const auto contact = calib::odometry::contact_noise_of(calibration);
   if (contact) return motion_noise(calibration, *contact);
   return Error{ErrorCode::format, "the calibration states no noise of wheels and floor (\"contact_noise\")",
-               where, "solve the recording again with this program"};
+               where, "solve a recording of a minute or more with this program"};
+}
+
+/// Variance that a pose has before each match, once matches and steps have gone on for a while (Kalman's
+/// equation of a random walk, steady state).
+/// @param step variance that a step adds
+/// @param match variance of a match
+double variance_before_match(double step, double match) {
+  return 0.5 * step + std::sqrt(0.25 * step * step + step * match);
+}
+
+/// The deviation in slam_toolbox's penalty 1 - gain (distance / deviation)^2: that of a Gaussian near its
+/// top. It multiplies the response, which falls by the smear of the grid and not by the deviation of a match:
+/// so much wider is the penalty.
+double deviation_of_penalty(double step, double match, double smear) {
+  return std::sqrt(2.0 * settings::kSlamGain * variance_before_match(step, match) / match) * smear;
 }
 
 }  // namespace
@@ -90,6 +106,31 @@ Result<std::string> robot_localization_yaml(const Calibration& calibration, cons
       "    twist_covariance_diagonal: [{:.4g}, {:.4g}, {:.4g}, {:.4g}, {:.4g}, {:.4g}]\n",
       kSpeed, kRate, noise.along * by_chance + noise.length * kSpeed * kSpeed, noise.sideways * by_chance,
       kUnknown, kUnknown, kUnknown, noise.yaw * by_chance + noise.bend * kSpeed * kSpeed);
+}
+
+Result<std::string> slam_toolbox_yaml(const Calibration& calibration, const std::string& where) {
+  const auto found = noise_of(calibration, where);
+  if (!found) return found.error();
+  const MotionNoise& n = found.value();
+  constexpr double kStep = settings::kSlamStep_m, kTurn = settings::kSlamTurn_rad,
+                   kGrid = settings::kSlamGrid_m, kSmear = settings::kSlamSmear_m,
+                   kFine = settings::kSlamFine_rad;
+  // A step is a way or a turn, and one number serves both. On the way an error of the heading moves it aside.
+  const double rolled = 0.5 * n.track_width * kTurn, squared = kStep * kStep;
+  const double along = n.along * kStep + n.length * squared;
+  const double aside = n.sideways * kStep + squared * (n.yaw * kStep / 3.0 + n.bend * squared / 4.0);
+  const double place = std::max(0.5 * (along + aside), 0.5 * (n.along + n.sideways) * rolled);
+  const double heading = std::max(n.yaw * kStep + n.bend * squared, n.yaw * rolled + n.turn * kTurn * kTurn);
+  // A match is as good as the grid at best, and so is what it is matched with.
+  const double match = kGrid * kGrid / 6.0, match_heading = kFine * kFine / 6.0;
+  return fmt::format(
+      "# the penalties hold for these steps and this grid: they change with them\n"
+      "slam_toolbox:\n  ros__parameters:\n    minimum_travel_distance: {}\n    minimum_travel_heading: {}\n"
+      "    correlation_search_space_resolution: {}\n    correlation_search_space_smear_deviation: {}\n"
+      "    fine_search_angle_offset: {}\n    distance_variance_penalty: {:.4g}\n"
+      "    angle_variance_penalty: {:.4g}\n",
+      kStep, kTurn, kGrid, kSmear, kFine, deviation_of_penalty(place, match, kSmear),
+      deviation_of_penalty(heading, match_heading, kSmear / settings::kSlamRange_m));
 }
 
 }  // namespace odomcalib::cli

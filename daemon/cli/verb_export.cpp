@@ -118,7 +118,8 @@ void add_export(CLI::App& app, Session& session) {
           "ros2_control's diff_drive_controller: diff_drive; joint of the lidar: urdf; parameters of "
           "ros_arduino_bridge: ros_arduino; changes to ARCOS (Pioneer): arcos; odometry with all effects as "
           "one file "
-          "of source: c_header, python; noise of odometry for filters: amcl, robot_localization")
+          "of source: c_header, python; noise of odometry for filters: amcl, robot_localization, "
+          "slam_toolbox")
       ->check(CLI::IsMember(export_formats()))
       ->capture_default_str();
   verb->add_option("--out", options->out, "file to write instead of standard output");

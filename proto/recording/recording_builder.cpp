@@ -420,7 +420,7 @@ void RecordingBuilder::make_ticks() {
     made = ticks_from_odometry(recording_.odometry, robot);
   recording_.ticks = std::move(made.ticks);
   recording_.robot.ticks_per_rev = made.ticks_per_rev;
-  choose("wheel motion from " + std::string(name_of(recording_.motion)));
+  choose(kMotionFrom + std::string(name_of(recording_.motion)));
 }
 
 /// Says between which stamps the way is not known, and which counts were not believed.

@@ -14,6 +14,9 @@ namespace odomcalib {
 /// below what any encoder resolves, and a wheel can turn 8e9 times before a count leaves 2^53.
 inline constexpr double kFineCountsPerRev = 1 << 20;
 
+/// How a recording's choices begin where its counts were made of something else.
+inline constexpr const char* kMotionFrom = "wheel motion from ";
+
 /// The count nearest to an angle in rad; zero for one that no double counts exactly.
 std::int64_t count_of(double angle, double counts_per_rev);
 

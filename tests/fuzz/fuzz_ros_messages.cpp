@@ -4,6 +4,7 @@
 
 #include "proto/recording/ros/messages.hpp"
 #include "proto/recording/ros/mounting.hpp"
+#include "proto/recording/ros/urdf.hpp"
 #include "tests/fuzz/share.hpp"
 
 using odomcalib::fuzz::require;
@@ -13,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::string_view bytes(reinterpret_cast<const char*>(data + 1), size - 1);
   const Encoding encoding = (data[0] & 1U) == 0 ? Encoding::ros1 : Encoding::cdr;
-  switch (data[0] / 2 % 6) {
+  switch (data[0] / 2 % 7) {
     case 0:
       if (const auto scan = decode_scan(bytes, encoding)) {
         require(scan->scan.ranges.size() <= size / sizeof(float));
@@ -37,12 +38,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     case 4:
       if (const auto pose = decode_pose(bytes, encoding)) require(std::isfinite(pose->yaw));
       break;
-    default:
+    case 5:
       if (const auto transforms = decode_transforms(bytes, encoding); transforms && !transforms->empty()) {
         require(transforms->size() <= size / (7 * sizeof(double)));
         const auto found = mounting_of(*transforms, {transforms->front().frame}, transforms->back().child);
         require(!found || std::isfinite(found->pose[0] + found->pose[1] + found->pose[2]));
       }
+      break;
+    default:
+      if (const auto text = decode_text(bytes, encoding))
+        for (const Transform& joint : fixed_joints(*text)) {
+          require(!joint.frame.empty() && !joint.child.empty());
+          for (const double one : joint.position) require(std::isfinite(one));
+          for (const double one : joint.quaternion) require(std::isfinite(one));
+        }
       break;
   }
   return 0;

@@ -679,6 +679,11 @@ def ros_messages():
     for number, kind in enumerate(ROS_TYPES):
         for cdr in (0, 1):
             seed("ros_messages", kind + ("_cdr" if cdr else "_ros1"), bytes([2 * number + cdr]) + ros_message(kind, 3, cdr))
+    urdf = ('<robot><joint name="a" type="fixed"><parent link="base_link"/><child link="laser"/>'
+            '<origin xyz="0.1 0 0" rpy="0 0 1.5"/></joint></robot>')
+    for cdr in (0, 1):
+        text = (b"\0\1\0\0" if cdr else b"") + ros_text(urdf, cdr)
+        seed("ros_messages", "description" + ("_cdr" if cdr else "_ros1"), bytes([12 + cdr]) + text)
 
 
 def profiles():

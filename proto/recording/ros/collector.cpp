@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "proto/recording/ros/urdf.hpp"
+
 namespace odomcalib::ros {
 namespace {
 
@@ -109,6 +111,18 @@ bool add_transforms(Topic& topic, std::string_view bytes) {
   return true;
 }
 
+/// The last description counts.
+bool add_description(Topic& topic, std::string_view bytes) {
+  const auto text = decode_text(bytes, topic.encoding);
+  if (!text) return false;
+  topic.transforms = fixed_joints(*text);
+  for (Transform& one : topic.transforms) {
+    one.frame = frame_name(one.frame);
+    one.child = frame_name(one.child);
+  }
+  return true;
+}
+
 bool add(Topic& topic, std::int64_t received, std::string_view bytes) {
   switch (topic.kind) {
     case Kind::scan:
@@ -122,14 +136,18 @@ bool add(Topic& topic, std::int64_t received, std::string_view bytes) {
       return add_pose(topic, received, bytes);
     case Kind::transforms:
       return add_transforms(topic, bytes);
+    case Kind::description:
+      return add_description(topic, bytes);
     case Kind::none:
       break;
   }
   return true;
 }
 
-/// Where frames are at rest to each other; /tf has those that move.
-bool is_static(const TopicHeader& header) { return header.name.ends_with("tf_static"); }
+/// Where frames are at rest to each other; /tf has those that move. Any other text is no description.
+bool is_of_mounting(Kind kind, const TopicHeader& header) {
+  return header.name.ends_with(kind == Kind::transforms ? "tf_static" : "robot_description");
+}
 
 }  // namespace
 
@@ -148,7 +166,7 @@ std::size_t Collector::topic(const TopicHeader& described) {
     topic.kind = said->second;
     topic.header.type = std::string(type_of(topic.kind)) + " as chosen";
   }
-  if (topic.kind == Kind::transforms && !is_static(header)) topic.kind = Kind::none;
+  if (tells_mounting(topic.kind) && !is_of_mounting(topic.kind, header)) topic.kind = Kind::none;
   if (topic.kind != Kind::none) topic.problem = problem_of(header, topic.kind);
   if (!topic.problem.empty()) topic.kind = Kind::none;
   topics_.push_back(std::move(topic));

@@ -22,13 +22,14 @@ struct Row {
   std::string_view md5;  // rosmsg md5
 };
 
-constexpr std::array<Row, 6> kKinds{{
+constexpr std::array<Row, 7> kKinds{{
     {Kind::scan, "sensor_msgs/LaserScan", "90c7ef2dc6895d81024acba2ac42f369"},
     {Kind::joints, "sensor_msgs/JointState", "3066dcd76a6cfaef579bd0f34173e9fd"},
     {Kind::imu, "sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2"},
     {Kind::odometry, "nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7"},
     {Kind::pose, "geometry_msgs/PoseStamped", "d3812c3cbc69362b77dc0b19b345f8f5"},
     {Kind::transforms, "tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec"},
+    {Kind::description, "std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1"},
 }};
 
 /// Numbers of one message, whatever its encoding.
@@ -239,6 +240,12 @@ std::optional<std::vector<Transform>> decode_transforms(std::string_view bytes, 
     out.push_back(std::move(one));
   }
   return if_whole(reader, std::move(out));
+}
+
+std::optional<std::string> decode_text(std::string_view bytes, Encoding encoding) {
+  MessageReader reader(bytes, encoding);
+  std::string text = reader.text();
+  return if_whole(reader, std::move(text));
 }
 
 }  // namespace odomcalib::ros

@@ -19,7 +19,10 @@ namespace odomcalib::ros {
 enum class Encoding : std::uint8_t { ros1, cdr };
 
 /// What can be decoded.
-enum class Kind : std::uint8_t { none, scan, joints, imu, odometry, pose, transforms };
+enum class Kind : std::uint8_t { none, scan, joints, imu, odometry, pose, transforms, description };
+
+/// Where things sit on the robot, no samples.
+constexpr bool tells_mounting(Kind kind) { return kind == Kind::transforms || kind == Kind::description; }
 
 /// @param type as ROS 1 (sensor_msgs/LaserScan) or ROS 2 (sensor_msgs/msg/LaserScan) writes it
 Kind kind_of(std::string_view type);
@@ -72,5 +75,7 @@ std::optional<Imu> decode_imu(std::string_view bytes, Encoding encoding);
 std::optional<PoseMessage> decode_odometry(std::string_view bytes, Encoding encoding);
 std::optional<PoseMessage> decode_pose(std::string_view bytes, Encoding encoding);
 std::optional<std::vector<Transform>> decode_transforms(std::string_view bytes, Encoding encoding);
+/// std_msgs/String.
+std::optional<std::string> decode_text(std::string_view bytes, Encoding encoding);
 
 }  // namespace odomcalib::ros

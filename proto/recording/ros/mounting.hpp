@@ -1,4 +1,4 @@
-// Where the lidar sits on the base, by the transforms of /tf_static. Internal to proto/.
+// Where the lidar sits on the base, by the transforms of /tf_static or a description. Internal to proto/.
 #pragma once
 
 #include <array>

@@ -122,22 +122,39 @@ std::vector<std::string> frames_of_base(const std::vector<Topic>& topics) {
   return bases;
 }
 
-/// The nominal pose of the lidar, where the recording has it and its user states none.
-void add_mounting(RecordingBuilder& builder, const std::vector<Topic>& topics, const std::string& lidar) {
+std::vector<Transform> transforms_of(const std::vector<Topic>& topics, Kind kind) {
   std::vector<Transform> all;
-  for (const Topic& topic : topics) all.insert(all.end(), topic.transforms.begin(), topic.transforms.end());
-  if (all.empty() || lidar.empty()) return;
-  const auto found = mounting_of(all, frames_of_base(topics), lidar);
-  if (!found) return builder.choose("/tf_static does not lead from the base to the lidar's frame " + lidar);
+  for (const Topic& topic : topics)
+    if (topic.kind == kind) all.insert(all.end(), topic.transforms.begin(), topic.transforms.end());
+  return all;
+}
+
+/// The nominal pose of the lidar, where the recording has it and its user states none: by what was published,
+/// or by the robot's description with that.
+void add_mounting(RecordingBuilder& builder, const std::vector<Topic>& topics, const std::string& lidar) {
+  const auto published = transforms_of(topics, Kind::transforms);
+  auto all = transforms_of(topics, Kind::description);
+  const bool is_described = !all.empty();
+  if ((published.empty() && !is_described) || lidar.empty()) return;
+  std::string by = "/tf_static";
+  auto found = mounting_of(published, frames_of_base(topics), lidar);
+  if (!found && is_described) {
+    by = published.empty() ? "/robot_description" : "/robot_description and /tf_static";
+    // Of a frame that both place the published place counts, which is the later one.
+    all.insert(all.end(), published.begin(), published.end());
+    found = mounting_of(all, frames_of_base(topics), lidar);
+  }
+  const char* lead = by.ends_with("description") || !is_described ? " does" : " do";
+  if (!found) return builder.choose(by + lead + " not lead from the base to the lidar's frame " + lidar);
   if (!found->upright)
-    return builder.choose("by /tf_static the lidar's frame " + lidar +
+    return builder.choose("by " + by + " the lidar's frame " + lidar +
                           " is not level or upside down: its pose there is not taken; state lidar_pose");
   builder.mount_lidar(found->pose);
   std::array<char, 96> pose{};
   (void)std::snprintf(pose.data(), pose.size(), "[%.3f, %.3f, %.4f] in ", found->pose[0], found->pose[1],
                       found->pose[2]);
-  builder.choose("lidar_pose = " + std::string(pose.data()) + found->base +
-                 " by /tf_static, unless --robot states one");
+  builder.choose("lidar_pose = " + std::string(pose.data()) + found->base + " by " + by +
+                 ", unless --robot states one");
 }
 
 /// Of a topic that cannot be read.
@@ -151,7 +168,7 @@ void tell_rest(RecordingBuilder& builder, const Collector& collector, const Chos
   const auto taken = taken_topics(chosen);
   for (const Topic& topic : collector.topics()) {
     const bool is_taken = std::find(taken.begin(), taken.end(), &topic) != taken.end();
-    if (topic.kind == Kind::transforms) continue;  // they are no samples
+    if (tells_mounting(topic.kind)) continue;  // they are no samples
     if (topic.kind == Kind::none)
       builder.discard("message", unread(topic), topic.count);
     else if (!is_taken)

@@ -283,6 +283,8 @@ std::string encode_transforms(Wire wire, const std::vector<RosTransform>& transf
   return out.take();
 }
 
+std::string encode_text(Wire wire, const std::string& text) { return Encoder(wire).text(text).take(); }
+
 RosLog ros_log(const Recording& recording, const RosDrive& drive) {
   RosLog log;
   log.wire = drive.wire;

@@ -64,6 +64,8 @@ struct RosTransform {
   std::array<double, 4> quaternion{0, 0, 0, 1};  ///< x, y, z, w
 };
 std::string encode_transforms(Wire wire, const std::vector<RosTransform>& transforms);
+/// std_msgs/String.
+std::string encode_text(Wire wire, const std::string& text);
 
 // ---- a whole drive
 

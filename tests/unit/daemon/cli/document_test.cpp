@@ -341,12 +341,34 @@ TEST(Export, to_other_programs_has_their_numbers) {
   EXPECT_EQ(exported(example(), "urdf").error().code, ErrorCode::format) << "no lidar pose";
   const std::string arduino = exported(for_export(), "ros_arduino").value();
   EXPECT_THAT(arduino, HasSubstr("wheel_diameter: 0.14775\nwheel_track: 0.41\nencoder_resolution: 4096\n"));
-  EXPECT_EQ(exported(example(), "ros_arduino").error().code, ErrorCode::format) << "no counts per turn";
+  EXPECT_EQ(exported(example(), "c_header").error().code, ErrorCode::format) << "no counts per turn";
   // Diameters 0.15 and 0.15 were right 0.147 and left 0.1485; the track 0.4 is 0.41.
   const std::string arcos = exported(for_export(), "arcos").value();
   EXPECT_THAT(arcos, HasSubstr("TicksMM      * 1.020408\n"));
   EXPECT_THAT(arcos, HasSubstr("RevCount     * 1.045918\n"));
   EXPECT_THAT(arcos, HasSubstr("DriftFactor  + 84\n"));
+}
+
+TEST(Export, leaves_out_what_was_not_measured) {
+  Calibration calibration = for_export();
+  calibration.robot.ticks_per_rev = 1048576.0;
+  EXPECT_THAT(exported(calibration, "toml").value(), HasSubstr("ticks_per_rev = 1048576")) << "an encoder's";
+  EXPECT_THAT(exported(calibration, "c_header").value(), Not(HasSubstr("the recording has no counts")));
+  calibration.data[0].choices = {"wheel motion from wheels"};
+  const std::string toml = exported(calibration, "toml").value();
+  EXPECT_THAT(toml, Not(HasSubstr("ticks_per_rev")));
+  EXPECT_THAT(toml, HasSubstr("lidar_pose = [0.12, -0.01, 1.5]"));
+  const std::string arduino = exported(calibration, "ros_arduino").value();
+  EXPECT_THAT(arduino, Not(HasSubstr("encoder_resolution:")));
+  EXPECT_THAT(arduino, HasSubstr("# encoder_resolution and gear_reduction are left out"));
+  EXPECT_THAT(exported(calibration, "c_header").value(), HasSubstr("the recording has no counts"));
+  // Joint angles on the grid of a stated encoder are its counts.
+  calibration.robot.ticks_per_rev = 4096.0;
+  EXPECT_THAT(exported(calibration, "ros_arduino").value(), HasSubstr("encoder_resolution: 4096"));
+  // Poses of the base itself tell nothing of a lidar.
+  calibration.parameters[4].second.std = -1.0;
+  EXPECT_THAT(exported(calibration, "toml").value(), Not(HasSubstr("lidar_pose")));
+  EXPECT_EQ(exported(calibration, "urdf").error().code, ErrorCode::format);
 }
 
 TEST(Export, every_format_is_known_and_others_are_not) {

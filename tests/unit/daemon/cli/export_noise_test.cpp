@@ -44,19 +44,25 @@ struct Step {
   Pose motion, truth;
 };
 
-/// A drive in straights and turns on the spot, cut where `is_due` says.
-template <typename Due>
-std::vector<Step> drive(std::uint64_t seed, Due is_due) {
-  sim::Geometry truth;
-  sim::BodyOptions options;
-  options.slip_noise = kSlip;
-  sim::Body body(truth, options, seed);
-  calib::odometry::Odometry odometry(calibration_of(kSlip));
+/// Straights and turns on the spot.
+std::vector<sim::Manoeuvre> to_and_fro() {
   std::vector<sim::Manoeuvre> moves;
   for (int leg = 0; leg < 12; ++leg) {
     moves.push_back({0.4, 0.0, 3.0});
     moves.push_back({0.0, leg % 3 == 0 ? -0.8 : 0.8, 2.0});
   }
+  return moves;
+}
+
+/// A drive, cut where `is_due` says.
+template <typename Due>
+std::vector<Step> drive(std::uint64_t seed, Due is_due,
+                        const std::vector<sim::Manoeuvre>& moves = to_and_fro()) {
+  sim::Geometry truth;
+  sim::BodyOptions options;
+  options.slip_noise = kSlip;
+  sim::Body body(truth, options, seed);
+  calib::odometry::Odometry odometry(calibration_of(kSlip));
   const sim::Drive command = follow(truth, moves);
   std::vector<Step> steps;
   Pose from;
@@ -172,6 +178,89 @@ TEST(ExportNoise, of_robot_localization_makes_innovations_that_are_as_large_as_t
   const int inside = count_in_band(is_due, noise_of, 10);
   EXPECT_GE(inside, 90);
   EXPECT_LE(inside, 98);
+}
+
+/// What slam_toolbox's matcher does with odometry, by its exported parameters.
+struct KartoMatcher {
+  double step, smear, range;      ///< m
+  double distance, angle;         ///< deviations of the penalties, m and rad
+  double place_match, yaw_match;  ///< variances of a match
+
+  explicit KartoMatcher(const std::string& text)
+      : step(value_in(text, "minimum_travel_distance")),
+        smear(value_in(text, "correlation_search_space_smear_deviation")),
+        range(3.0),
+        distance(value_in(text, "distance_variance_penalty")),
+        angle(value_in(text, "angle_variance_penalty")),
+        place_match(std::pow(value_in(text, "correlation_search_space_resolution"), 2) / 6.0),
+        yaw_match(std::pow(value_in(text, "fine_search_angle_offset"), 2) / 6.0) {}
+
+  /// Of the pose before a match, as docs/user/library.md has it.
+  [[nodiscard]] double place_before() const { return std::pow(distance / smear, 2) / 0.4 * place_match; }
+  [[nodiscard]] double yaw_before() const { return std::pow(angle * range / smear, 2) / 0.4 * yaw_match; }
+};
+
+/// Sums of the normalised squared innovations of place and heading in a filter whose gain stays what it is.
+std::pair<double, double> innovations_of(const KartoMatcher& matcher, const std::vector<Step>& steps,
+                                         std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> unit(0.0, 1.0);
+  const double place = std::sqrt(matcher.place_match), yaw = std::sqrt(matcher.yaw_match);
+  const double all_place = matcher.place_before() + matcher.place_match,
+               all_yaw = matcher.yaw_before() + matcher.yaw_match;
+  Pose at;
+  double sum_place = 0.0, sum_yaw = 0.0;
+  for (const Step& step : steps) {
+    at = compose(at, step.motion);
+    const double x = step.truth.x + place * unit(random) - at.x,
+                 y = step.truth.y + place * unit(random) - at.y,
+                 turn = std::remainder(step.truth.yaw + yaw * unit(random) - at.yaw, 2.0 * M_PI);
+    sum_place += (x * x + y * y) / all_place;
+    sum_yaw += turn * turn / all_yaw;
+    const double gain = matcher.place_before() / all_place;
+    at = {at.x + gain * x, at.y + gain * y, at.yaw + matcher.yaw_before() / all_yaw * turn};
+  }
+  return {sum_place, sum_yaw};
+}
+
+TEST(ExportNoise, of_slam_toolbox_makes_innovations_that_are_as_large_as_they_should_be) {
+  const auto text = configuration(calibration_of(kSlip), "slam_toolbox", "cal.json");
+  ASSERT_TRUE(text.ok()) << text.error().text();
+  const KartoMatcher matcher(text.value());
+  const auto is_due = [&](const Pose& motion) { return std::hypot(motion.x, motion.y) >= matcher.step; };
+  int places = 0, headings = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const auto steps = drive(seed, is_due, {{0.5, 0.0, 60.0}});
+    const auto [place, yaw] = innovations_of(matcher, steps, seed);
+    const auto count = static_cast<double>(steps.size());
+    if (std::abs(place - 2.0 * count) < 1.96 * std::sqrt(4.0 * count)) ++places;
+    if (std::abs(yaw - count) < 1.96 * std::sqrt(2.0 * count)) ++headings;
+  }
+  std::cout << places << " and " << headings << " of 100 drives lie in the band of 95 %\n";
+  EXPECT_GE(places, 90);
+  EXPECT_LE(places, 98);
+  EXPECT_GE(headings, 90);
+  EXPECT_LE(headings, 98);
+}
+
+// Karto's Mapper.cpp: the response falls with the smear of its grid, and is multiplied by the penalty.
+TEST(ExportNoise, of_slam_toolbox_makes_its_matcher_weigh_odometry_as_a_filter_does) {
+  const auto text = configuration(calibration_of(kSlip), "slam_toolbox", "cal.json");
+  ASSERT_TRUE(text.ok()) << text.error().text();
+  const KartoMatcher matcher(text.value());
+  const auto gain = [](double smear, double penalty, double match) {
+    double best = 0.0, at = 0.0;
+    for (double pose = 0.0; pose <= match; pose += 1e-3 * match) {
+      const double response = std::exp(-0.5 * std::pow((match - pose) / smear, 2)) *
+                              std::max(1.0 - 0.2 * std::pow(pose / penalty, 2), 0.5);
+      if (response > best) best = response, at = pose;
+    }
+    return at / match;
+  };
+  const double place = matcher.place_before(), yaw = matcher.yaw_before();
+  EXPECT_NEAR(gain(matcher.smear, matcher.distance, 2e-3), place / (place + matcher.place_match), 0.02);
+  EXPECT_NEAR(gain(matcher.smear / matcher.range, matcher.angle, 1e-3), yaw / (yaw + matcher.yaw_match),
+              0.02);
 }
 
 TEST(ExportNoise, a_calibration_that_states_none_says_so) {

@@ -106,5 +106,67 @@ TEST(RosMounting, of_a_damaged_message_is_none) {
   EXPECT_FALSE(value_of(read_ros(write_mcap(log))).robot.lidar_pose);
 }
 
+/// A bag with a description, and maybe with frames.
+RosLog with_description(Wire wire, const std::string& urdf, const std::vector<RosTransform>& transforms = {},
+                        const std::string& topic = "/robot_description") {
+  RosLog log = transforms.empty() ? small_log(wire) : with_frames(wire, transforms);
+  log.add(topic, "std_msgs/String", kRosStart, encode_text(wire, urdf));
+  return log;
+}
+
+/// The lidar hangs on a mast that is turned by a quarter; wheels turn, and lead nowhere.
+std::string urdf_of(const std::string& type_of_mast, const std::string& rpy = "0 0 1.5707963267948966") {
+  return R"(<?xml version="1.0"?><!-- of a shop --><robot name="r"><link name="base_link"/><link name="mast"/>
+<joint name="wheel" type="continuous"><parent link="base_link"/><child link="wheel"/><origin xyz="0 0.2 0"/></joint>
+<joint name="to_mast" type=")" +
+         type_of_mast + R"("><origin xyz="0.2  0.1
+0.3" rpy=")" +
+         rpy + R"("/><parent link="base_link"/><child link="mast"/></joint>
+<joint name="to_laser" type="fixed"><parent link="mast"/><child link="laser"/><origin xyz="5e-2 0 0" rpy="0 0 .25"/></joint>
+</robot>)";
+}
+
+TEST(RosMounting, is_told_by_the_description_where_no_frames_are_published) {
+  for (const Wire wire : {Wire::ros1, Wire::cdr_little, Wire::cdr_big}) {
+    const RosLog log = with_description(wire, urdf_of("fixed"));
+    const auto found = value_of(read_ros(wire == Wire::ros1 ? write_bag(log) : write_mcap(log)));
+    ASSERT_TRUE(found.robot.lidar_pose) << all_told(found.choices);
+    EXPECT_NEAR((*found.robot.lidar_pose)[0], 0.2, 1e-9);
+    EXPECT_NEAR((*found.robot.lidar_pose)[1], 0.15, 1e-9);
+    EXPECT_NEAR((*found.robot.lidar_pose)[2], 0.5 * kPi + 0.25, 1e-9);
+    EXPECT_TRUE(told(found, "lidar_pose = [0.200, 0.150, 1.8208] in base_link by /robot_description"))
+        << all_told(found.choices);
+  }
+}
+
+TEST(RosMounting, of_published_frames_goes_before_the_description) {
+  const auto found = value_of(read_ros(write_mcap(with_description(
+      Wire::cdr_little, urdf_of("fixed"), {placed("base_link", "laser", {0.4, 0.0, 0.0})}))));
+  ASSERT_TRUE(found.robot.lidar_pose);
+  EXPECT_EQ((*found.robot.lidar_pose)[0], 0.4);
+  const auto both = value_of(read_ros(write_mcap(
+      with_description(Wire::cdr_little, urdf_of("fixed"), {placed("base_footprint", "base_link", {})}))));
+  EXPECT_TRUE(told(both, "by /robot_description and /tf_static")) << all_told(both.choices);
+}
+
+TEST(RosMounting, by_a_description_that_moves_or_is_none_is_none) {
+  for (const std::string& urdf :
+       {urdf_of("revolute"), urdf_of("fixed", "0 0 north"), urdf_of("fixed", "0 0 nan"),
+        urdf_of("fixed", "0 0"), urdf_of("fixed").substr(0, 300),
+        std::string("<robot><joint type='fixed'/></robot>"), std::string(100000, '<'), std::string()}) {
+    const auto found = value_of(read_ros(write_mcap(with_description(Wire::cdr_little, urdf))));
+    EXPECT_FALSE(found.robot.lidar_pose) << urdf.substr(0, 400);
+  }
+  std::string deep = "<robot>";
+  for (int k = 0; k < 50000; ++k) deep += "<joint>";
+  EXPECT_FALSE(value_of(read_ros(write_mcap(with_description(Wire::cdr_little, deep)))).robot.lidar_pose);
+  const auto upside_down = value_of(
+      read_ros(write_mcap(with_description(Wire::cdr_little, urdf_of("fixed", "3.141592653589793 0 0")))));
+  EXPECT_TRUE(told(upside_down, "upside down")) << all_told(upside_down.choices);
+  const auto elsewhere =
+      value_of(read_ros(write_mcap(with_description(Wire::cdr_little, urdf_of("fixed"), {}, "/news"))));
+  EXPECT_FALSE(elsewhere.robot.lidar_pose);
+}
+
 }  // namespace
 }  // namespace odomcalib::ros_mounting_test
