@@ -1,4 +1,5 @@
-// Included first by every source that tests/mutation/draw.py puts mutants into; no part of any program otherwise.
+// Included first by every source that tests/mutation/draw.py puts mutants into; no part of any program
+// otherwise.
 #pragma once
 
 #include <fcntl.h>
@@ -26,7 +27,8 @@ namespace odomcalib_drawn {
 
 inline constexpr int kMost = 4096;
 
-// A file shared between all processes of a test, so that one that is killed has told it too; null without one.
+// A file shared between all processes of a test, so that one that is killed has told it too; null without
+// one.
 inline char* reached() {
   static char* const shared = [] {
     const char* name = std::getenv("ODOMCALIB_MUTANTS_REACHED");
