@@ -139,7 +139,10 @@ TEST_F(Gate, of_a_controller_that_would_not_stop_by_itself) {
   acquire();
   TestClient mover(folder_ / "control");
   mover.call("Straight", {{"lease", lease_}, {"distance", 0.5}});
-  expect_refused(wait_reply(mover, 0.1), "Device", "would not stop by itself");
+  const auto reply = wait_reply(mover, 0.1);
+  expect_refused(reply, "Device", "would not stop by itself");
+  EXPECT_NE(json::parse(reply.parameters).value("remedy", "").find("a profile with a watchdog"),
+            std::string::npos);
 }
 
 TEST_F(Gate, of_values_without_a_lease) {

@@ -65,14 +65,18 @@ class TestClient {
     while (const auto frame = decoder_.next()) {
       const auto reply = control::decode_reply(*frame);
       if (reply && !reply.value().continues) return reply.value();
+      ++continued_;
     }
     return std::nullopt;
   }
   [[nodiscard]] bool connected() const { return connected_; }
+  /// Replies that continue, so far.
+  [[nodiscard]] int continued() const { return continued_; }
 
  private:
   int fd_;
   bool connected_ = false;
+  int continued_ = 0;
   control::FrameDecoder decoder_;
 };
 

@@ -405,6 +405,33 @@ TEST_F(HalfBlind, nothing_goes_where_the_lidar_sees_nothing_unless_somebody_vouc
 TEST_F(ServiceLoop, a_lidar_that_sees_all_around_has_nothing_to_ask) {
   const json plan = json::parse(ask("Spin", {{"turns", 1.0}, {"dry_run", true}}, 1.0).parameters)["result"];
   EXPECT_EQ(plan["unseen_moves"], json::array()) << plan;
+  std::string view;
+  const json checks = json::parse(ask("Check", json::object(), 1.0).parameters)["checks"];
+  for (const json& check : checks)
+    if (check["name"] == "lidar view") view = check["outcome"];
+  EXPECT_EQ(view, "ok");
+}
+
+TEST_F(ServiceLoop, progress_is_told_five_times_a_second) {
+  acquire();
+  Mover mover(*this);
+  (void)mover.reply();
+  const int before = mover.continued();
+  EXPECT_FALSE(run_until([&] { return mover.reply().has_value(); }, 2.0));
+  EXPECT_GE(mover.continued() - before, 9);
+  EXPECT_LE(mover.continued() - before, 11);
+}
+
+// Each wheel is held to its own value of the configuration.
+TEST_F(ServiceLoop, a_right_wheel_of_another_size_is_named) {
+  service_.reset();
+  robot_->node().dictionary().set({0x2100, 2}, 125000);
+  start_service();
+  ASSERT_TRUE(run_until([this] { return ready(); }, 15.0)) << service_->status_json();
+  EXPECT_NEAR(status()["robot"]["left_wheel_diameter"], 0.150, 1e-9);
+  EXPECT_NEAR(status()["robot"]["right_wheel_diameter"], 0.125, 1e-9);
+  const auto reply = ask("Straight", {{"distance", 0.5}, {"dry_run", true}}, 2.0);
+  EXPECT_NE(reply.parameters.find("right_wheel_diameter = 0.1250 m"), std::string::npos) << reply.parameters;
 }
 
 // 0.05 m in the controller of wheels of 0.15 m: what is called 0.3 m/s would be 0.9.

@@ -136,7 +136,6 @@ Profile read_tables(ProfileTable& table, const Again& again) {
   }
   for (const char* side : {"left", "right"}) profile.sides.push_back(read_side(again(), side));
   profile.sync_period_s = profile.sides[0].sync_period_s;
-  profile.watchdog = profile.sides[0].watchdog;
   return profile;
 }
 

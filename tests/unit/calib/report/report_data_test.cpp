@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "calib/report/contact_noise.hpp"
 #include "calib/report/report.hpp"
 #include "calib/selection/drive_error.hpp"
 #include "calib/selection/residual_trace.hpp"
@@ -347,6 +348,76 @@ TEST(ClassicalMethods, S3_11_rounds_and_shares_of_the_closed_form_are_those_aske
   const std::size_t pairs = dataset.data.front().pairs.size();
   EXPECT_GE(discarded({1, 0.2}), pairs / 4) << "two cuts of a fifth, by position and by heading";
   EXPECT_GT(discarded({3, 0.2}), discarded({1, 0.2}));
+}
+
+TEST(ClassicalMethods, each_has_its_name_also_where_it_is_refused) {
+  const Recording recording = test_support::driven_recording({}, 0.0);
+  const measurement::Dataset dataset = test_support::rough_dataset({&recording, 1});
+  Calibration calibration;
+  std::vector<std::string> names;
+  std::size_t refused = 0;
+  for (const MethodResult& method : classical_methods(dataset, 0.0, {0, 0.01}, calibration)) {
+    names.push_back(method.name);
+    refused += method.refused ? 1 : 0;
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"straight", "spin", "linear", "joint_closed_form"}));
+  EXPECT_GE(refused, 1U) << "nothing turned on the spot";
+}
+
+TEST(ClassicalMethods, of_true_values_the_linear_correction_is_none) {
+  const Recording recording = test_support::driven_recording({});
+  measurement::Dataset dataset = test_support::rough_dataset({&recording, 1});
+  dataset.nominal.left_radius = test_support::kLeftRadius;
+  dataset.nominal.right_radius = test_support::kRightRadius;
+  dataset.nominal.track_width = test_support::kTrackWidth;
+  Calibration calibration;
+  classical_methods(dataset, 0.0, {0, 0.01}, calibration);
+  ASSERT_TRUE(calibration.linear_correction);
+  for (std::size_t row : {0U, 2U})
+    for (std::size_t column : {0U, 2U})
+      EXPECT_NEAR(calibration.linear_correction->matrix[row][column], row == column ? 1.0 : 0.0, 0.01)
+          << row << column;
+}
+
+TEST(BaseQuantities, what_stays_as_it_is_has_no_deviation) {
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(6, 6);
+  covariance(1, 1) = 1e-8;
+  const QuantityList list = base_quantities(kTruth, covariance);
+  ASSERT_EQ(list.size(), 6U);
+  for (std::size_t k = 0; k < list.size(); ++k)
+    EXPECT_NEAR(list[k].second.std, k == 1 ? 2e-4 : -1.0, 1e-12) << list[k].first;
+}
+
+// Of pairs that owe next to all of their errors to the wheels, over the way that these rolled.
+TEST(ContactNoise, is_that_of_the_fit_without_what_neighbours_take_back) {
+  const auto world = make_world({}, {}, 12);
+  measurement::Dataset dataset;
+  dataset.data = world->data;
+  estimation::FitResult fit = fitted(*world, {});
+  const wheels::WheelTrack track = drive(420.0);
+  double way = 0.0;
+  for (std::size_t k = 1; k < track.t.size(); ++k)
+    way += 0.5 * kTruth.left_radius * std::abs(track.left[k] - track.left[k - 1]) +
+           0.5 * kTruth.right_radius * std::abs(track.right[k] - track.right[k - 1]);
+  const double pairs = static_cast<double>(dataset.data.front().pairs.size());
+  std::fill(fit.weights.begin(), fit.weights.end(), 1.0);
+  for (const double correlation : {0.0, 0.2, -0.4}) {
+    measurement::NoiseModel noise;
+    noise.process_translation = 0.02;
+    noise.process_rotation = 0.03;
+    noise.correlation = {correlation, correlation, correlation};
+    fit.noise = {noise};
+    const auto found = contact_noise(dataset, fit);
+    ASSERT_TRUE(found);
+    const double lasting = std::min(1.0, 1.0 + 2.0 * correlation);
+    const double turn = lasting * pairs * 9e-4 / way;
+    const double lever = 0.09 * 0.09 + 0.01 * 0.01;
+    EXPECT_NEAR(found->at(2), std::sqrt(turn), 0.02 * std::sqrt(turn)) << correlation;
+    EXPECT_NEAR(found->at(1), std::sqrt(lasting * pairs * 4e-4 / way - 0.5 * lever * turn), 2e-3)
+        << correlation;
+  }
+  std::fill(fit.weights.begin(), fit.weights.end(), 0.0);
+  EXPECT_FALSE(contact_noise(dataset, fit)) << "no trusted pair";
 }
 
 ReportData example() {

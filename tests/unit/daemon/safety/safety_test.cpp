@@ -109,6 +109,7 @@ TEST(SpeedWatch, holds_what_is_measured_to_the_command_beyond_the_lag_of_the_dri
   };
   EXPECT_EQ(said({0.17, 0.0}, {0.1, 0.0}), "");
   EXPECT_NE(said({0.19, 0.0}, {0.1, 0.0}).find("0.10 m/s is commanded"), std::string::npos);
+  EXPECT_EQ(said({0.376, 0.0}, {0.3, 0.0}), "") << "a fifth of the command, and a little";
   EXPECT_EQ(said({0.0, -0.3}, {0.0, -0.1}), "");
   EXPECT_NE(said({0.0, -0.35}, {0.0, -0.1}).find("0.10 rad/s is commanded"), std::string::npos);
   EXPECT_NE(said({0.1, 0.0}, {}), "") << "somebody pushes it";
@@ -374,6 +375,18 @@ TEST(ClearSpace, of_a_long_way_has_coarse_cells) {
   EXPECT_LT(space.rows.size(), 50U);
 }
 
+// The farthest to the right is neither the last place nor opposite the farthest to the left.
+TEST(ClearSpace, of_a_way_to_the_side_is_as_wide_as_the_way) {
+  routines::Preview preview;
+  preview.path = {{0.0, 0.0, 0.0}, {0.0, -5.0, 0.0}, {0.0, 0.5, 0.0}};
+  const ClearSpace space = clear_space({}, preview, {}, 0.3);
+  EXPECT_NEAR(space.sides[0].needed, 0.55, 1e-9);
+  EXPECT_NEAR(space.sides[1].needed, 1.05, 1e-9);
+  EXPECT_NEAR(space.sides[2].needed, 0.55, 1e-9);
+  EXPECT_NEAR(space.sides[3].needed, 5.55, 1e-9);
+  EXPECT_NEAR(space.cell, (1.05 + 5.55) / 40.0, 1e-9);
+}
+
 TEST(Obstacle, ahead_counts_when_driving_ahead_and_not_when_backing) {
   const ObstacleOptions options;
   EXPECT_EQ(in_way(cluster(0.5, 0.0), {0.2, 0.0}, options).size(), 3U);
@@ -448,6 +461,24 @@ TEST(Cover, what_stands_behind_a_lidar_of_270_degrees_is_hidden) {
   EXPECT_NEAR(blind.sectors()[0].from, 0.375 * kTurn, 0.06);
   EXPECT_NEAR(blind.sectors()[0].to, 0.625 * kTurn, 0.06);
   EXPECT_NE(text_of(blind.sectors()).find("deg"), std::string::npos);
+}
+
+// One bin that is seen is enough between two blind sectors, wherever it is; a sector over 0 is one.
+TEST(BlindArea, has_a_sector_on_either_side_of_what_is_seen) {
+  constexpr std::size_t kBins = BlindArea::kBins;
+  constexpr double kBin = kTurn / kBins;
+  for (std::size_t middle = 0; middle < kBins; ++middle) {
+    BlindArea::Bins blind{};
+    for (std::size_t k = 1; k <= 3; ++k)
+      blind.at((middle + k) % kBins) = blind.at((middle + kBins - k) % kBins) = true;
+    const auto sectors = BlindArea({}, blind).sectors();
+    ASSERT_EQ(sectors.size(), 2U) << middle;
+    for (const Sector& sector : sectors) EXPECT_NEAR(sector.to - sector.from, 3.0 * kBin, 1e-9) << middle;
+    blind.at(middle) = true;
+    const auto one = BlindArea({}, blind).sectors();
+    ASSERT_EQ(one.size(), 1U) << middle;
+    EXPECT_NEAR(one[0].to - one[0].from, 7.0 * kBin, 1e-9) << middle;
+  }
 }
 
 TEST(Cover, a_beam_without_an_echo_sees_and_one_that_ends_on_the_robot_does_not) {

@@ -57,6 +57,17 @@ TEST_F(StateFolderTest, LastRun_knows_a_daemon_that_ended_in_a_motion_without_be
   EXPECT_NE(next.last_stop().find("straight"), std::string::npos) << next.last_stop();
 }
 
+TEST_F(StateFolderTest, LastRun_knows_that_a_motion_had_ended_before) {
+  {
+    LastRun run(path_ / "last_run.json", foreground());
+    run.begins("straight");
+    run.ends();
+  }
+  const LastRun next(path_ / "last_run.json", foreground());
+  EXPECT_TRUE(next.after_crash());
+  EXPECT_EQ(next.last_stop().find("straight"), std::string::npos) << next.last_stop();
+}
+
 TEST_F(StateFolderTest, LastRun_knows_whether_the_robot_has_ever_moved) {
   for (const bool before : {false, true}) {
     LastRun run(path_ / "last_run.json", foreground());

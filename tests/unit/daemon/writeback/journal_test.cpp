@@ -238,6 +238,44 @@ TEST(Journal, is_rotated_between_write_backs_and_never_within_one) {
   EXPECT_EQ(Journal::open(path).value().ends().back().state, JournalState::commit);
 }
 
+TEST(Journal, is_rotated_from_its_size_on) {
+  for (const std::size_t short_by : {0U, 1U}) {
+    const TemporaryFolder folder;
+    auto journal = value_of(Journal::open(folder / "journal"));
+    JournalRecord bare = record_of(JournalState::commit);
+    bare.seq = 1;
+    bare.label.clear();
+    bare.label = std::string(Journal::kRotateAt - short_by - to_line(bare).size(), 'x');
+    ASSERT_TRUE(journal.append(bare).ok());
+    ASSERT_EQ(std::filesystem::file_size(folder / "journal"), Journal::kRotateAt - short_by);
+    ASSERT_TRUE(journal.append(record_of(JournalState::begin)).ok());
+    EXPECT_EQ(std::filesystem::exists(folder / "journal.1"), short_by == 0) << short_by;
+  }
+}
+
+// No file can be opened: the one that was put away comes back, and is written as soon as there is one.
+TEST(Journal, that_cannot_be_rotated_stays_as_it_was) {
+  const TemporaryFolder folder;
+  const auto path = folder / "journal";
+  auto journal = value_of(Journal::open(path));
+  JournalRecord bulky = record_of(JournalState::commit);
+  bulky.label = std::string(Journal::kRotateAt, 'x');
+  ASSERT_TRUE(journal.append(bulky).ok());
+  const auto size = std::filesystem::file_size(path);
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{0, before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &none);
+  EXPECT_FALSE(journal.append(record_of(JournalState::begin)).ok());
+  setrlimit(RLIMIT_NOFILE, &before);
+  ASSERT_TRUE(std::filesystem::exists(path));
+  EXPECT_EQ(std::filesystem::file_size(path), size);
+  EXPECT_EQ(Journal::open(path).value().last()->state, JournalState::commit);
+  ASSERT_TRUE(journal.append(record_of(JournalState::begin)).ok());
+  EXPECT_EQ(Journal::open(path).value().last()->state, JournalState::begin);
+  EXPECT_EQ(std::filesystem::file_size(folder / "journal.1"), size);
+}
+
 TEST(CalibrationInForce, is_the_announced_one_once_it_is_settled) {
   const TemporaryFolder folder;
   const CalibrationInForce calibrations(folder);
@@ -370,6 +408,16 @@ class FullHistory : public testing::Test {
 TEST_F(FullHistory, keeps_the_newest_fifty_newest_first) {
   expect_newest_fifty(history_);
   expect_newest_fifty(History(folder_ / "history"));  // what the disk has
+}
+
+// What the fifty newest have pushed out does not come back with the next start.
+TEST_F(FullHistory, misses_nothing_that_is_older_than_it_keeps) {
+  JournalRecord end = record_of(JournalState::commit);
+  end.origin = some_provenance();
+  end.origin.entry = "0010";
+  EXPECT_TRUE(history_.missing({end}).empty());
+  end.origin.entry = "0011";
+  EXPECT_EQ(history_.missing({end}).size(), 1U) << "kept, and told otherwise";
 }
 
 TEST_F(FullHistory, goes_on_counting_behind_an_entry_that_cannot_be_read) {

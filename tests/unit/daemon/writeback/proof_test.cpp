@@ -30,9 +30,11 @@ TEST_F(WaitingForProof, new_values_are_in_ram_alone) {
 }
 
 TEST_F(WaitingForProof, proven_values_are_stored_once) {
-  write_unproven();
+  EXPECT_FALSE(write_unproven().origin.proven);
   const auto report = conclude({});
   EXPECT_EQ(report.outcome, WriteOutcome::committed);
+  EXPECT_TRUE(report.origin.proven) << "the history says so";
+  EXPECT_TRUE(journal.last()->origin.proven);
   EXPECT_TRUE(all_new());
   EXPECT_EQ(controller.stores, 1);
   const std::vector<std::string> steps{"begin",       "write",    "readback_ok", "proof_ok",

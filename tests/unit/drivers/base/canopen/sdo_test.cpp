@@ -88,7 +88,7 @@ TEST(Sdo, writes_any_length_in_segments_that_a_server_can_join) {
     for (std::size_t i = 0; i < n; ++i) data[i] = static_cast<std::uint8_t>(i + 1);
     SdoClient client(kNode);
     ASSERT_TRUE(client.start(write_of(0x2000, 1, data), 0.0));
-    EXPECT_EQ(sent(client)[4], static_cast<int>(n));
+    EXPECT_EQ(sent(client), (std::vector<int>{0x21, 0x00, 0x20, 0x01, static_cast<int>(n), 0, 0, 0}));
     client.on_frame(answer({0x60, 0x00, 0x20, 0x01}), 0.0);
     std::vector<std::uint8_t> joined;
     bool toggle = false;

@@ -30,6 +30,7 @@ struct TwoDrives {
   }
   std::vector<sim::Frame> exchange(const std::vector<sim::Frame>& sent, double now) {
     std::vector<sim::Frame> out;
+    for (const sim::Frame& frame : sent) life_signs += frame.id == 0x77F ? 1 : 0;
     for (std::size_t side = 0; side < 2; ++side) {
       for (const sim::Frame& frame : sent) node[side]->receive(frame, now);
       const sim::MotorOrder order = node[side]->order();
@@ -48,6 +49,7 @@ struct TwoDrives {
   std::array<std::unique_ptr<sim::DriveNode>, 2> node;
   std::array<double, 2> rate{}, angle{};
   double last = 0.0;
+  int life_signs = 0;  ///< of this program
 };
 
 /// The shipped profile, with the speed unit of the simulated drive.
@@ -260,9 +262,19 @@ TEST_F(AxisPair, a_drive_that_does_not_come_back_leaves_the_state_unknown) {
   ASSERT_TRUE(bench_.controller->start_store(bench_.now).ok());
   for (int i = 0; i < 20'000 && !bench_.happened("restarted_to_verify"); ++i) bench_.turn();
   drives_.node[0]->sdo_faults().silent = true;
+  const double reset = bench_.now;
   const auto stored = job();
   ASSERT_TRUE(stored.error);
   EXPECT_EQ(stored.error->code, ErrorCode::write_unknown);
+  EXPECT_NEAR(bench_.now - reset, 10.0, 0.05) << "given up then";
+}
+
+// Both drives watch this program: one frame is the life sign for both.
+TEST_F(AxisPair, gives_one_life_sign_for_both) {
+  ready();
+  drives_.life_signs = 0;
+  bench_.run(1.0);
+  EXPECT_NEAR(drives_.life_signs, 45, 6) << "every 20 ms";
 }
 
 TEST_F(AxisPair, when_the_second_drive_refuses_the_first_one_gets_its_old_value_back) {

@@ -104,6 +104,7 @@ class Bench {
   std::vector<ControllerEvent> events;
   std::vector<TickSample> ticks;
   std::vector<CanFrame> sent;
+  std::uint32_t lost_id = ~0U;  ///< what does not reach the node
   bool link_to_node = true, link_from_node = true, wheels_turn = true;
   sim::FrameLine from_node{{}, 1}, to_node{{}, 2};
   double now = 0.0;
@@ -123,7 +124,7 @@ class Bench {
     controller->on_time(now);
     for (const CanFrame& frame : controller->take_frames()) {
       sent.push_back(frame);
-      if (link_to_node) to_node.send(to_sim(frame), now);
+      if (link_to_node && frame.id != lost_id) to_node.send(to_sim(frame), now);
     }
     for (const sim::Frame& frame : to_node.take(now)) node.receive(frame, now);
     for (auto& event : controller->take_events()) events.push_back(event);

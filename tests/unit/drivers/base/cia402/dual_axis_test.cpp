@@ -136,6 +136,19 @@ TEST(DualAxis, a_quick_stop_that_is_lost_on_the_bus_is_sent_again) {
   EXPECT_EQ(bench.node.order().rate[0], 0.0);
 }
 
+TEST(DualAxis, that_does_not_get_its_torque_says_so) {
+  Bench bench;
+  ASSERT_TRUE(bench.ready());
+  bench.controller->enable(bench.now);
+  bench.lost_id = 0x201;  // the control word
+  bench.run(3.0);
+  EXPECT_EQ(bench.controller->state(), ControllerState::disabled);
+  const ControllerEvent* const said = bench.find("enable_failed");
+  ASSERT_NE(said, nullptr);
+  EXPECT_NE(said->text.find("the axes do not get beyond"), std::string::npos) << said->text;
+  EXPECT_FALSE(said->stop);
+}
+
 TEST(DualAxis, disable_ends_without_torque) {
   Enabled bench;
   bench.drive(1.0, 1.0, 0.3);

@@ -109,6 +109,11 @@ TEST(WheelCounts, one_wild_count_of_either_wheel_costs_no_motion_and_at_most_one
   }
 }
 
+TEST(WheelCounts, are_told_by_the_name_of_the_wheel) {
+  EXPECT_STREQ(to_text(Side::left), "left");
+  EXPECT_STREQ(to_text(Side::right), "right");
+}
+
 TEST(WheelCounts, a_restart_begins_a_segment) {
   WheelCounts counts(profile());
   const auto samples = drive(counts, 100, [](int i, auto& raw) {

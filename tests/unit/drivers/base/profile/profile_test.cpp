@@ -45,6 +45,25 @@ TEST(Profile, problems_name_the_key_and_what_is_allowed) {
   EXPECT_NE(problem("node = 1", "node = = 1").find("test.toml:"), std::string::npos);
 }
 
+// A feed is a way per turn of the motor's shaft unless the profile says of how many; less than one is none.
+TEST(Profile, a_feed_is_one_of_one_turn_or_more) {
+  const std::string good = test::read_text(kFolder + "sim-dual.toml");
+  const auto turns_of = [&](const std::string& line) -> std::optional<double> {
+    std::string text = good;
+    const std::string scale = "scale = ";
+    text.insert(text.find(scale, text.find("track_width")), "formula = \"feed\"\n" + line);
+    const auto read = parse_profile(text, "test.toml");
+    if (!read) return std::nullopt;
+    for (const ProfileParameter& one : read.value().parameters)
+      if (one.feed) return one.turns;
+    return std::nullopt;
+  };
+  EXPECT_EQ(turns_of(""), 1.0);
+  EXPECT_EQ(turns_of("turns = 1.0\n"), 1.0);
+  EXPECT_EQ(turns_of("turns = 1.01\n"), 1.01);
+  EXPECT_FALSE(turns_of("turns = 0.99\n"));
+}
+
 TEST(Profile, no_damaged_file_passes_the_border_as_an_exception) {
   const std::string good = test::read_text(kFolder + "sim-dual.toml");
   auto random = test::seeded(8);

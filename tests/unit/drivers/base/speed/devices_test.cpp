@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/base/profile/profile.hpp"
+#include "drivers/base/speed/speed_protocol.hpp"
 #include "tests/unit/drivers/base/bench.hpp"
 #include "tests/unit/drivers/test_support.hpp"
 
@@ -31,6 +33,26 @@ struct Rig {
     bench = std::make_unique<Wire>(std::move(controller), device);
   }
 };
+
+void exchange(SpeedProtocol& protocol, sim::CanDevice& device, double now) {
+  for (const CanFrame& frame : protocol.take_frames())
+    device.receive({frame.id, frame.extended, frame.remote, frame.length, frame.data}, now);
+  for (const sim::Frame& frame : device.advance(now)) {
+    CanFrame back;
+    back.id = frame.id;
+    back.extended = frame.extended;
+    back.length = frame.length;
+    back.data = frame.data;
+    back.t = now;
+    protocol.on_frame(back);
+  }
+}
+void exchange(SpeedProtocol& protocol, sim::SerialDevice& device, double now) {
+  const auto sent = protocol.take_bytes();
+  device.receive(std::string(sent.begin(), sent.end()), now);
+  const std::string back = device.advance(now);
+  protocol.on_bytes({reinterpret_cast<const std::uint8_t*>(back.data()), back.size()}, now);
+}
 
 template <typename T>
 class Devices : public testing::Test {};
@@ -268,6 +290,55 @@ TEST(Vesc, its_configuration_is_read_in_pieces) {
   EXPECT_GE(device.configurations_asked(), 2U);
   EXPECT_EQ(bench.controller->counters()["bad_pieces"], 0U);
   EXPECT_EQ(bench.controller->counters()["bad_packets"], 0U);
+}
+
+/// What a device of this profile says of itself in a message of this name, asked as on its wire.
+template <typename Device>
+std::optional<DeviceMessage> said_by(Device& device, const std::string& profile, const std::string& name) {
+  const auto protocol =
+      make_speed_protocol(value_of(read_profile("drivers/base/profiles/" + profile + ".toml"))).value();
+  protocol->on_connected(std::nullopt);
+  for (double now = 1.0; now < 5.0; now += 0.001) {
+    protocol->ask(now);
+    if (std::fmod(now, 0.3) < 0.001) protocol->greet(now);
+    exchange(*protocol, device, now);
+    for (const DeviceMessage& message : protocol->take_messages())
+      if (message.name == name) return message;
+  }
+  return std::nullopt;
+}
+
+TEST(Vesc, says_what_it_is_set_to) {
+  sim::VescPair device;
+  const auto said = said_by(device, "vesc", "configuration");
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->number("motor_poles"), 46.0);
+  EXPECT_EQ(said->number("gear_ratio"), 1.0);
+  EXPECT_NEAR(said->number("wheel_diameter_m"), 0.168, 1e-6);
+}
+
+TEST(Arcos, says_what_it_is_set_to) {
+  sim::PioneerBase device;
+  const auto said = said_by(device, "arcos", "configuration");
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->number("RevCount"), 16570.0);
+  EXPECT_EQ(said->number("watchdog_ms"), 2000.0);
+  EXPECT_EQ(said->number("DriftFactor"), -120.0);
+  EXPECT_EQ(said->number("TicksMM"), 132.0);
+}
+
+// The time that it gets begins when it is asked, however long ago the controller was looked after.
+TEST(Arcos, has_its_time_to_tell_its_settings) {
+  sim::PioneerBase device;
+  SerialBench bench(shipped("arcos"), device);
+  ASSERT_TRUE(bench.run_until(ControllerState::disabled)) << bench.story();
+  bench.run(0.5);
+  device.tells_configuration = false;
+  const double asked = bench.now + 0.4;
+  ASSERT_TRUE(bench.controller->start_read_parameters(asked).ok());
+  bench.now = asked;
+  while (!bench.controller->take_job_result() && bench.now < asked + 5.0) bench.turn();
+  EXPECT_NEAR(bench.now - asked, 1.0, 0.01);
 }
 
 TEST(Arcos, tells_who_it_is_and_its_watchdog) {
